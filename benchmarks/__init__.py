@@ -1,7 +1,7 @@
-"""Benchmarks: speed and benefit as ratios, measured side by side; plain data out.
+"""Benchmarks of speed: ratios to other programs, measured side by side; the answer is plain data.
 
-A folder a subject: a benchmark's module has its name, and its peers stand beside it. `rounds` measures them in
-turns.
+A script a subject; `peers` holds the programs beside ours, and `rounds` measures all in turns. ``python -m
+benchmarks`` lists them, ``python -m benchmarks NAME`` runs one. Stored results lie in ``benchmarks/results``.
 """
 
 from importlib import import_module
@@ -11,58 +11,22 @@ from lifelore.core.protocols import Progress
 
 MOST_REPEATS = 1000
 
-
 BENCHES = {
-    "kernels": "learners",
-    "courier": "lives",
-    "priors": "action",
-    "separator": "perception",
-    "perceive": "perception",
-    "relations": "perception",
-    "plans": "perception",
-    "puzzles": "perception",
-    "pictures": "perception",
-    "lived_relations": "perception",
-    "views": "perception",
-    "registration": "perception",
-    "segmentation": "perception",
-    "raw_frames": "perception",
-    "factory": "action",
-    "deep": "action",
-    "reuse": "interaction",
-    "start": "startup",
-    "buildings": "lives",
-    "merge": "fleet",
-    "capacity": "fleet",
-    "large_memory": "fleet",
-    "fleet": "fleet",
-    "customer_fleet": "fleet",
-    "recognition": "lives",
-    "lidar": "lives",
-    "destinations": "lives",
-    "worlds": "lives",
-    "tabletop_lives": "lives",
-    "contexts": "action",
-    "advice_classes": "action",
-    "deep_layouts": "action",
-    "long_user": "interaction",
-    "changing_types": "interaction",
-    "bands": "interaction",
-    "perfect_information": "interaction",
-    "evaluation": "interaction",
-    "novelty": "interaction",
-    "log": "interaction",
-    "long_lived_worlds": "agent",
-    "changing_customers": "agent",
-    "serve": "service",
-    "soak": "service",
+    "kernels": "steps of Q-learning, beside C, Gymnasium with NumPy, and tuned Python",
+    "start": "time to a first answer: of a learner, and of each verb from the shell",
+    "perceive": "a scene stage by stage, and a cloud from the shell",
+    "separator": "the support vector machine between two clouds, beside scikit-learn",
+    "reuse": "a decision of policy reuse, beside loops, MABWiser and BoTorch; a million users",
+    "serve": "decisions and outcomes over HTTP, beside a bare FastAPI route",
+    "memory": "learners, contexts and memory files of growing size; many memories merged, beside one by one",
+    "buildings": "the first and a later task in buildings of 5,000 to 300,000 places",
+    "lives": "the time of a life's tasks, beside Q-learning in plain Python",
+    "priors": "an action prior of a million contexts, beside dictionaries and lists; a factory's tables",
 }
-"""Each benchmark and its folder; the function is ``bench_NAME(repeats, progress)`` in the module of that name."""
-WITH_MAP = ("courier", "recognition", "lidar", "long_lived_worlds")
-"""Benchmarks that also take a ROS map."""
+"""Each benchmark and what it measures; the function is ``bench_NAME(repeats, progress)`` in the module NAME."""
 
 
-def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Progress | None = None) -> dict:
+def bench(name: str, *, repeats: int = 7, progress: Progress | None = None) -> dict:
     """Run a benchmark.
 
     Parameters
@@ -70,16 +34,7 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
     name : str
         One of `BENCHES`.
     repeats : int
-        Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier`` and ``lidar``:
-        lives; for ``recognition`` and ``destinations``: offices; for ``relations``, ``segmentation``, ``plans``,
-        ``views`` and ``registration``: lots of scenes, judged together; for ``raw_frames``: rooms of each kind;
-        for ``puzzles``: lots of 20 puzzles; for ``perfect_information``: groups of ten tasks in each world;
-        for ``deep``: runs of learning; for ``serve``: at most 5; for ``soak``: minutes; for ``tabletop_lives``:
-        five lives each; for ``long_lived_worlds``: lives, half as many outside the factory; for
-        ``changing_customers`` and ``lived_relations``: lives; for ``customer_fleet``: worlds; for ``evaluation``:
-        60 simulated studies each; for ``novelty``: libraries of each case.
-    map : str, optional
-        For those of `WITH_MAP`: a ROS map to live in; default generated offices.
+        Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. Parts of minutes run fewer.
     progress : callable, optional
         Called as ``progress(done, total, label)`` after each piece.
 
@@ -88,7 +43,6 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
     dict
         ``{"bench", "rows": [{"name", "value", "unit", "ratio_to", "ratio"}], "goals": [{"name", "goal",
         "measured", "met"}]}``; `value`, `ratio`, `measured` and `met` are None where nothing could be measured.
-        Sometimes also ``"notes"``, sentences that say why.
 
     Raises
     ------
@@ -98,14 +52,11 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         `repeats` breaks its rule, or a program that is compared with does not build.
     """
     if name not in BENCHES:
-        raise NotFoundError(f"bench must be one of {', '.join(BENCHES)}, got '{name}'")
+        raise NotFoundError(f"benchmark must be one of {', '.join(BENCHES)}, got '{name}'")
     if not 1 <= repeats <= MOST_REPEATS:
         raise InputError(f"repeats must lie in [1, {MOST_REPEATS}], got {repeats}")
-    if map is not None and name not in WITH_MAP:
-        raise InputError(f"map applies to bench {' and '.join(WITH_MAP)}, got {map} for {name}; leave it out")
-    run = getattr(import_module(f"{__name__}.{BENCHES[name]}.{name}"), f"bench_{name}")
-    options = {"map": map} if name in WITH_MAP else {}
-    return {"bench": name, **run(repeats, progress or _silent, **options)}
+    run = getattr(import_module(f"{__name__}.{name}"), f"bench_{name}")
+    return {"bench": name, **run(repeats, progress or _silent)}
 
 
 def _silent(done: int, total: int, label: str) -> None:

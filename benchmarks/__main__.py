@@ -1,62 +1,68 @@
-"""`lifelore bench`: run benchmarks against other methods in one process."""
+"""``python -m benchmarks``: list the benchmarks, or run one; ``make bench NAME=kernels`` does the same."""
 
-from typing import Annotated
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import NoReturn
 
-import typer
+from benchmarks import BENCHES, bench
+from lifelore.app.console import print_json, progress_bar
+from lifelore.core.errors import LifeloreError
+
+STORED = Path(__file__).with_name("results")
 
 
-def bench(
-    name: Annotated[
-        str,
-        typer.Argument(
-            help="Speed: kernels, start, buildings, capacity, large_memory, merge, priors, factory, separator, "
-            "perceive, reuse, long_user, serve, soak, log. Benefit: fleet, customer_fleet, courier, recognition, "
-            "lidar, destinations, tabletop_lives, worlds, contexts, raw_frames, segmentation, relations, plans, "
-            "puzzles, views, registration, pictures, lived_relations, deep, deep_layouts, novelty, "
-            "changing_types, bands, perfect_information, advice_classes, long_lived_worlds, changing_customers. "
-            "Statistics: evaluation."
-        ),
-    ],
-    repeats: Annotated[int, typer.Option(help="Interleaved rounds; the medians are reported.")] = 7,
-    map: Annotated[
-        str | None,
-        typer.Option(
-            metavar="YAML",
-            help="courier, recognition, lidar, long_lived_worlds: a ROS map; default: generated offices.",
-        ),
-    ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
-) -> None:
-    """Measure speed and benefit beside other methods.
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        """End with status 2 and one line."""
+        self.exit(2, f"benchmarks: {message}\n")
 
-    The methods take turns in one process, and ratios compare paired rounds. Use it to check a claim about speed or
-    benefit on your machine.
-    """
-    from benchmarks import bench as run
-    from lifelore.app.console import print_json, progress_bar
 
-    with progress_bar("measuring") as progress:
-        result = run(name, repeats=repeats, map=map, progress=progress)
-    print_json(result) if as_json else _print(result)
+def main(arguments: list[str] | None = None) -> int:
+    """Status of the process: 0, or 2 after a mistake that one line on stderr names."""
+    parser = _Parser(prog="python -m benchmarks", description="Measure speed beside other programs.")
+    parser.add_argument("name", nargs="?", help="the benchmark; without it, all are listed")
+    parser.add_argument("--repeats", type=int, default=7, help="interleaved rounds; medians are reported")
+    parser.add_argument("--json", action="store_true", help="one JSON document on stdout and nothing else")
+    parser.add_argument(
+        "--out", type=Path, metavar="FOLDER", nargs="?", const=STORED,
+        help="also write FOLDER/NAME.json; default benchmarks/results",
+    )  # fmt: skip
+    asked = parser.parse_args(arguments)
+    if asked.name is None:
+        print("\n".join(f"{name:10} {what}" for name, what in BENCHES.items()))
+        return 0
+    try:
+        with progress_bar("measuring") as progress:
+            result = bench(asked.name, repeats=asked.repeats, progress=progress)
+    except LifeloreError as error:
+        print(f"benchmarks: {error}", file=sys.stderr)
+        return 2
+    if asked.out:
+        asked.out.mkdir(parents=True, exist_ok=True)
+        (asked.out / f"{asked.name}.json").write_text(json.dumps(result, indent=2) + "\n", encoding="utf-8")
+    print_json(result) if asked.json else _print(result)
+    return 0
 
 
 def _print(result: dict) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    console = Console()
-    rows = Table("measure", "value", "unit", "ratio", "to", title=f"bench {result['bench']}")
+    rows = Table("measure", "value", "unit", "ratio", "to", title=result["bench"])
     for row in result["rows"]:
         rows.add_row(row["name"], _number(row["value"]), row["unit"], _number(row["ratio"]), row["ratio_to"] or "")
     goals = Table("condition", "goal", "measured", "met")
     for goal in result["goals"]:
         met = "–" if goal["met"] is None else "yes" if goal["met"] else "no"
         goals.add_row(goal["name"], str(goal["goal"]), _number(goal["measured"]), met)
-    console.print(rows)
-    console.print(goals)
-    for note in result.get("notes", ()):
-        console.print(note)
+    Console().print(rows, goals)
 
 
 def _number(value) -> str:
     return "–" if value is None else f"{value:,.3g}" if isinstance(value, float) else str(value)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,13 +1,31 @@
-"""Interleaved rounds: everyone is measured in every round, so that a busy machine is busy for all alike."""
+"""Interleaved rounds: all contenders are measured in every round, so that a busy machine is busy for all alike."""
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from statistics import median
 from typing import Any
 
-from lifelore.core.metrics import Estimate
+from lifelore.core.protocols import Progress
 
 Rates = dict[str, list[float]]
+Part = tuple[list[dict[str, Any]], list[dict[str, Any]]]
+"""Rows and goals of a part of a benchmark."""
+
+
+def joined(*parts: Part) -> dict[str, list[dict[str, Any]]]:
+    """Rows and goals of all parts."""
+    return {name: [line for part in parts for line in part[i]] for i, name in enumerate(("rows", "goals"))}
+
+
+def counted(progress: Progress, total: int) -> Callable[[str], None]:
+    """A function of a label that reports one more of `total` pieces as done."""
+    done = 0
+
+    def after(label: str) -> None:
+        nonlocal done
+        done += 1
+        progress(done, total, label)
+
+    return after
 
 
 def interleaved(
@@ -32,21 +50,10 @@ def row(name: str, value: float | None, unit: str, ratio_to: str | None = None, 
     return {"name": name, "value": value, "unit": unit, "ratio_to": ratio_to, "ratio": ratio}
 
 
-def estimated_row(
-    name: str, estimate: Estimate, unit: str, ratio_to: str | None = None, ratio: Estimate | None = None
-) -> dict[str, Any]:
-    """One line of the table from an estimate, with its interval and the number of values behind it.
-
-    Where there was nothing to measure (the value is not finite), value and interval are None. `ratio` is this
-    row's value over that of the row `ratio_to`; its interval is ``ratio_ci95``. Without a ratio, `ratio_to`
-    does not count.
-    """
-    if not math.isfinite(estimate.value):
-        return row(name, None, unit) | {"ci95": None, "n": estimate.n}
-    line = row(name, estimate.value, unit) | {"ci95": estimate.to_dict()["ci95"], "n": estimate.n}
-    if ratio is None:
-        return line
-    return line | {"ratio_to": ratio_to, "ratio": ratio.value, "ratio_ci95": ratio.to_dict()["ci95"]}
+def row_beside(name: str, rates: Rates, unit: str, beside: str | None = None) -> dict[str, Any]:
+    """One line of the table from what `interleaved` measured; the ratio is that of paired rounds."""
+    ratio = None if beside is None else paired_ratio(rates[name], rates[beside])
+    return row(name, median(rates[name]), unit, beside, ratio)
 
 
 def at_least(name: str, goal: float, measured: float | None) -> dict[str, Any]:

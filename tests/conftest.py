@@ -15,7 +15,12 @@ from hypothesis import HealthCheck, settings
 Places = Callable[[str], str]
 SLOW = ("reproduction", "benchmarks", "app", "figures")
 """Folders whose tests run claims and processes or draw pictures: `make test-fast` leaves them out."""
-QUICK = ("reproduction/test_predicate.py", "app/test_console.py", "figures/test_heat_grid.py")
+QUICK = (
+    "reproduction/test_predicate.py",
+    "benchmarks/test_rounds.py",
+    "app/test_console.py",
+    "figures/test_heat_grid.py",
+)
 """Quick files of these folders, a file a room."""
 
 # As the program itself does: imported modules and collected tests all stay, so the collector finds little garbage.

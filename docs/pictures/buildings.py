@@ -67,11 +67,11 @@ def ward() -> dict:
 def walk() -> dict:
     """What Figure 3.17 shows: a walk of claim C3.18, of a goal-seeking bug in an advice maze."""
     settings = claim_of("C3.18").settings("full")
-    maze = mazes.maze_of(settings, {"loops": settings["default"]["loops"], "maze": MAZE}, seed=0)
-    models = mazes.goal_models_of(settings, maze, settings["default"]["experts"])
+    maze = mazes.maze_of(settings, {"loops": settings["loops"][0], "maze": MAZE}, seed=0)
+    models = mazes.goal_models_of(maze, **mazes.choices_of(settings)[0])
     found = mazes.errands_of(maze, settings["tasks"])[ERRAND]
     policy = mazes.policy_of(maze.world, "bug", found)
-    done = mazes.walk(maze, found, policy, mazes.thesis_advisor(settings, models), ERRAND, settings["max_steps"])
+    done = mazes.walk(maze, found, policy, mazes.thesis_advisor(models), ERRAND, settings["max_steps"])
     shown = int(np.flatnonzero(done.advised)[0])
     world = maze.world
     return {

@@ -72,7 +72,7 @@ class Claim:
     run_cell, measure, draw, cells, readings, rows : callable
         The functions of the claim's modules, see above. `run_cell` is pure, and picklable by name.
     figure : tuple of str
-        Numbers of the thesis's figures or tables that it reproduces, such as ``3.7``.
+        The thesis's figures and tables that it reproduces, such as ``3.7`` and ``Table 3.1``.
     erratum : str
         The erratum that shows the thesis's formula or proof to be wrong; empty where there is none.
     limits : mapping

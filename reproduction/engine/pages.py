@@ -112,7 +112,7 @@ def _others(results: Sequence[Mapping]) -> Iterator[str]:
 def section(result: Mapping) -> str:
     """A claim on its chapter's page: its sentence, a row a statement, its figure, and what decides it."""
     claim, measured = claim_of(result["claim"]), result["measured"]
-    where = f" (Figure {', '.join(claim.figure)})" if claim.figure else ""
+    where = f" ({', '.join(map(figure_name, claim.figure))})" if claim.figure else ""
     folder = f"{LINK}/{claim.id}"
     lines = [
         f"## {claim.id}", "",
@@ -143,7 +143,7 @@ def gallery(results: Sequence[Mapping]) -> str:
             found.setdefault(number, (file, words))
         if not claim.figure:
             rest[claim.id] = (file, words)
-    shown = [(f"Figure {number}", *found[number]) for number in sorted(found, key=_place)]
+    shown = [(figure_name(number), *found[number]) for number in sorted(found, key=_place)]
     return "\n".join([
         "# Gallery", "", FIRST, "",
         "Figures and tables as the thesis numbers them: the thesis's axes and curves, our numbers.", "",
@@ -151,8 +151,15 @@ def gallery(results: Sequence[Mapping]) -> str:
     ])  # fmt: skip
 
 
-def _place(number: str) -> tuple[int, ...]:
-    return tuple(int(part) for part in number.split(".") if part.isdigit())
+def figure_name(number: str) -> str:
+    """``Figure 3.7`` of ``3.7``; a table has its full name already."""
+    return number if number.startswith("Table") else f"Figure {number}"
+
+
+def _place(number: str) -> tuple[int, int, bool]:
+    """Where a figure (``3.7``) or table (``Table 3.1``) stands: by chapter and number, a figure before a table."""
+    chapter, _, place = number.removeprefix("Table ").partition(".")
+    return int(chapter), int(place), number.startswith("Table")
 
 
 def _pairs(shown: Sequence[tuple[str, str, str]]) -> list[str]:

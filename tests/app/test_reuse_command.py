@@ -290,7 +290,7 @@ print(status, *sorted(sys.modules), file=sys.stderr)
 HEAVY = {
     "numba", "scipy", "sklearn", "matplotlib", "networkx", "pandas", "gymnasium", "sqlalchemy", "psycopg",
     "joblib", "rich.console", "lifelore.agent.live", "lifelore.agent.reuse.fit", "lifelore.agent.reuse.log",
-    "lifelore.agent.reuse.report", "lifelore.domains", "reproduction", "lifelore.figures",
+    "lifelore.agent.reuse.report", "lifelore.domains", "reproduction.engine", "lifelore.figures",
     "lifelore.interaction.selection.tie_kernels", "lifelore.perception",
 }  # fmt: skip
 """Modules that cost a start time and that a choice does not need."""

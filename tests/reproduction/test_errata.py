@@ -1,6 +1,5 @@
 """What the errata page says, shown; the entries' numbers are those of docs/errata.md."""
 
-import json
 import re
 from pathlib import Path
 
@@ -111,27 +110,3 @@ def test_e11_summed_over_actions_the_printed_terms_are_the_entropy():
     assert terms.sum() == 1.5
     assert prior.entropy([0])[0] == pytest.approx(1.5 * np.log(2))
     assert terms[0] != -(0.5 * np.log2(0.5) + 0.5 * np.log2(0.5))  # not the entropy of taking the action or not
-
-
-def test_e33_and_e34_tell_the_committed_numbers_of_c3_15():
-    result = json.loads((ROOT / "results" / "C3.15" / "result.json").read_text(encoding="utf-8"))
-    text = " ".join((ROOT / "docs" / "errata.md").read_text(encoding="utf-8").split())
-
-    def reach(agent, way):
-        found = [row["reward"] for row in result["rows"] if (row.get("agent"), row.get("way")) == (agent, way)]
-        return f"{min(found):.0f}–{max(found):.0f}"
-
-    names = {"random": "random motion", "avoid": "obstacle avoidance", "left": "always left", "bug": "the bug"}
-    for agent, name in names.items():
-        assert f"{name} from {reach(agent, 'none')} to {reach(agent, 'thesis')}" in text
-    assert result["measured"]["grid_all_raised"]["value"] == 0
-    left = {
-        row["loops"]: row["reward"]
-        for row in result["rows"]
-        if row.get("agent") == "left" and row["way"] == "none"
-    }
-    assert f"always-left from {left[0.0]:.0f} (none) to {left[0.4]:.0f} (four in ten" in text
-    advised = result["measured"]["q_learning_thesis"]["value"]
-    alone = advised - result["measured"]["q_learning_gain"]["value"]
-    assert f"gets {alone:.0f} of 1000 without advice and {advised:.0f} with" in text
-    assert f"± {1000 * 1.96 * (0.25 / 20) ** 0.5:.0f} (binomial)" in text

@@ -47,10 +47,10 @@ def test_every_claim_has_its_section_and_its_place_on_the_first_page():
 
 
 def test_the_gallery_is_in_the_thesis_s_order():
-    numbers = re.findall(r"\*\*Figure (\d)\.(\d+)", PAGES["gallery.md"])
-    places = [(int(chapter), int(number)) for chapter, number in numbers]
+    names = re.findall(r"\*\*(Figure|Table) (\d)\.(\d+)", PAGES["gallery.md"])
+    places = [(int(chapter), int(number), kind) for kind, chapter, number in names]
     assert places == sorted(set(places))
-    assert {(3, 3), (3, 7), (4, 8), (4, 10), (4, 16)} <= set(places)
+    assert {(3, 3), (3, 7), (4, 8), (4, 10), (4, 16)} <= {place[:2] for place in places}
 
 
 def test_marks_of_a_claim_are_those_of_its_central_statements(monkeypatch):

@@ -1,36 +1,29 @@
-"""Confusion matrices beside the printed matrix, and below them how often each method is exact (Figure 2.5)."""
+"""The printed confusion matrix beside ours, of simulated and of real pairs (Figure 2.5)."""
 
 from collections.abc import Mapping
 
 import numpy as np
 
 from lifelore.core.relations import CORE_RELATIONS
-from lifelore.figures.style import BLUE, GREY, INK, PAPER, VERMILION, house_style, new_figure, two_rows
-from reproduction.chapter2.scoring.method_panels import draw_method_panels
+from lifelore.figures.style import BLUE, GREY, INK, PAPER, VERMILION, Axes, Figure, house_style, new_figure
 
 PRINTED = [[64, 6, 13, 0], [2, 20, 5, 0], [4, 5, 12, 0], [0, 1, 0, 0]]
 """Figure 2.5: predicted by actual, in the order of `CORE_RELATIONS`."""
 
 
-def draw(result: Mapping):
+@house_style()
+def draw(result: Mapping) -> Figure:
+    """The matrices side by side."""
     matrices = {"thesis, printed": PRINTED}
-    panels: dict[str, dict[str, Mapping]] = {}
-    for row in result["rows"]:
-        if "confusion" in row:
-            matrices[f"{row['confusion']}, A and B given"] = row["predicted_by_actual"]
-        elif "method" in row:
-            panels.setdefault(f"{row['scenes']}, direction inferred", {})[row["method"]] = row["exact"]
-    with house_style():
-        figure = new_figure(9.6, 6.3)
-        top, bottom = two_rows(figure, (3.3, 2.5))
-        every = top.subplots(1, len(matrices), squeeze=False)[0]
-        for axes, (title, matrix) in zip(every, matrices.items(), strict=True):
-            draw_confusion(axes, np.asarray(matrix), title)
-        draw_method_panels(bottom, panels)
+    matrices |= {f"here, {row['confusion']} pairs": row["predicted_by_actual"] for row in result["rows"]}
+    figure = new_figure(9.6, 3.5)
+    every = figure.subplots(1, len(matrices), squeeze=False)[0]
+    for axes, (title, matrix) in zip(every, matrices.items(), strict=True):
+        draw_confusion(axes, np.asarray(matrix), title)
     return figure
 
 
-def draw_confusion(axes, counts: np.ndarray, title: str) -> None:
+def draw_confusion(axes: Axes, counts: np.ndarray, title: str) -> None:
     """A matrix, its diagonal blue and the rest vermilion, by the share of the column."""
     from matplotlib.colors import LinearSegmentedColormap
 
@@ -44,9 +37,7 @@ def draw_confusion(axes, counts: np.ndarray, title: str) -> None:
         weight = "bold" if row == column else "normal"
         axes.text(column, row, f"{count:g}", ha="center", va="center", color=colour, fontweight=weight)
     recalls = [f"{100 * share[k, k]:.0f} %" if n else "–" for k, n in enumerate(actual)]
-    axes.set_xticks(
-        range(len(labels)), [f"{label}\n{recall}" for label, recall in zip(labels, recalls, strict=True)]
-    )
+    axes.set_xticks(range(len(labels)), [f"{label}\n{part}" for label, part in zip(labels, recalls, strict=True)])
     axes.set_yticks(range(len(labels)), labels)
     axes.set(xlabel="actual, with its recall", ylabel="predicted")
     axes.set_title(f"{title}\n{np.trace(counts):g} of {counts.sum():g} right", fontsize=9)

@@ -1,67 +1,57 @@
-"""Displacements between contact points, seen from the front and coloured by relation (thesis Fig 2.4)."""
+"""Displacements between contact points, seen from the front and coloured by relation (Figure 2.4)."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from lifelore.core.relations import ADJACENT, ON
+from lifelore.core.relations import ADJACENT
 from lifelore.figures.scatter import draw_scatter
 from lifelore.figures.scenes.object_palette import RELATION_MARKERS, mixed, relation_palette
-from lifelore.figures.style import GREY, INK, PAPER, house_style, new_figure
-from reproduction.chapter2.c2_03_displacements_by_relation.measure import EDGE
+from lifelore.figures.style import INK, PAPER, Axes, Figure, house_style, new_figure
+from reproduction.chapter2.c2_03_displacements_by_relation.run import EDGE
 
-CLOSE = 25
-"""Millimetres; how far the figure's second view reaches."""
+CLOSE = 20
+"""Millimetres; how far the second view reaches."""
 
 
-def draw(result: Mapping):
-    found: dict[str, list[Mapping]] = {}
-    for row in result["rows"]:
-        if "mm" in row:
-            found.setdefault(row["scenes"], []).append(row)
-    with house_style():
-        figure = new_figure(10.0, 1.3 + 3.9 * len(found))
-        panels = figure.subplots(len(found), 2, squeeze=False)
-        for (whole, close), (kind, rows) in zip(panels, found.items(), strict=True):
-            draw_displacements(whole, rows, f"{kind} pairs")
-            draw_displacements(close, rows, f"{kind} pairs, within {CLOSE} mm", reach=CLOSE)
+@house_style()
+def draw(result: Mapping) -> Figure:
+    """All displacements, and those close to the origin."""
+    rows = result["rows"]
+    figure = new_figure(9.6, 4.6)
+    whole, close = figure.subplots(1, 2)
+    furthest = 1.05 * max(np.abs(row["mm"]).max() for row in rows)
+    draw_displacements(whole, rows, "all displacements", furthest)
+    draw_displacements(close, rows, f"within {CLOSE} mm", CLOSE)
+    whole.legend(loc="upper right")
+    right, down = (place + 0.0 for place in rows[0]["middle_of_on"])
+    close.plot(right, down, "+", ms=13, mew=2, color=INK, zorder=5)
+    words = f"+ middle of on ({right:.1f}, {down:.1f}) mm\nthesis: (0, −0.5), no unit".replace("-", "−")
+    box = {"facecolor": PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 2}
+    close.annotate(words, (0.03, 0.03), xycoords="axes fraction", fontsize=8, color=INK, bbox=box, zorder=6)
+    close.annotate("band of adjacent (thesis: above y = −0.1)", (0.04, 0.95), xycoords="axes fraction", fontsize=8)
     return figure
 
 
-def draw_displacements(axes, rows: Sequence[Mapping], title: str, reach: float | None = None) -> None:
-    """The displacements of each relation, the middle of *on*, and the band of *adjacent*, shaded.
+def draw_displacements(axes: Axes, rows: Sequence[Mapping], title: str, reach: float) -> None:
+    """The displacements of each relation within `reach` mm, and the band of *adjacent*, shaded.
 
-    `rows` are ``{"relation", "mm", "middle_of_on"}``; `reach` is the distance from the origin that is shown, mm
-    (default: all).
+    `rows` are ``{"relation", "mm", "middle_of_on"}``.
     """
-    palette = relation_palette([])
-    groups = {f"{row['relation']} ({len(row['mm'])})": row for row in rows}
+    palette, down = relation_palette([]), rows[0]["middle_of_on"][1]
+    groups = {row["relation"]: np.array(row["mm"]).reshape(-1, 2) for row in rows}
     draw_scatter(
         axes,
-        {label: np.array(row["mm"]).reshape(-1, 2) for label, row in groups.items()},
-        colours={label: palette[row["relation"]] for label, row in groups.items()},
-        markers={label: RELATION_MARKERS[row["relation"]] for label, row in groups.items()},
+        groups,
+        colours={name: palette[name] for name in groups},
+        markers={name: RELATION_MARKERS[name] for name in groups},
         size=20,
-        legend=None if reach else {"loc": "upper left", "bbox_to_anchor": (1.0, 1.0)},
         title=title,
-        xlabel="to the right of b (mm)",
-        ylabel="above b (mm)",
+        xlabel="x (mm to the right)",
+        ylabel="y (mm, down is positive, as in a picture)",
     )
-    if reach:
-        axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
-    axes.set_aspect("equal", adjustable="box" if reach else "datalim")
-    right, up = rows[0]["middle_of_on"]
-    if right is None:
-        return
-    low, high = axes.get_ylim()
-    beyond = 100 * (high - low)
-    band = (-beyond, EDGE * up) if up > 0 else (EDGE * up, beyond)
-    axes.axhspan(*band, color=mixed(palette[ADJACENT], PAPER, 0.85), lw=0, zorder=-1)
-    axes.set_ylim(low, high)
-    centre = right + 0.0, up + 0.0  # no minus before a zero
-    axes.plot(*centre, "+", ms=17, mew=5, color=PAPER, zorder=4)
-    axes.plot(*centre, "+", ms=15, mew=2.2, color=mixed(palette[ON], INK, 0.45), zorder=5)
-    axes.annotate(
-        f"({centre[0]:.2g}, {centre[1]:.2g})", centre, (9, -3), textcoords="offset points", fontsize=7.5, va="top",
-        color=INK, zorder=5, bbox={"facecolor": PAPER, "alpha": 0.75, "edgecolor": GREY, "lw": 0.4, "pad": 1.5},
-    )  # fmt: skip
+    if down is not None:
+        ends = sorted((EDGE * down, -np.sign(down) * 2 * reach))
+        axes.axhspan(ends[0], ends[1], color=mixed(palette[ADJACENT], PAPER, 0.85), lw=0, zorder=-1)
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
+    axes.set_aspect("equal")

@@ -1,181 +1,179 @@
-"""Cells of claim C2.5: scenes whose clouds get worse step by step, with relations, displacements and networks.
+"""C2.5: relations of the thesis's method when points of the clouds are discarded at random (§2.4.1).
 
-A cell perceives some held-out scenes, whole and perturbed in every way of the settings. It stores the relations of
-the shipped model with scene logic, and the displacements χ_a - χ_b of two readings of the thesis's method, which
-neighbours from other scenes (cells of lessons) classify later: *thesis* with contacts of clouds thinned to one
-spacing, the strongest never dropped; *literal* with contacts of the clouds as they come, at a fixed cost, each
-below 7 support vectors dropped. The table's points are left out, as the thesis's background was (§2.3.2).
-Thesis: §2.4.1.
+Contacts are found in two ways. *Thinned*: clouds are thinned to one spacing, which scales the separator's cost and
+the threshold of 7 support vectors with resolution; an object's strongest contact stays. *Raw*: all points as they
+come, at a fixed cost, with the threshold scaled by the share of points that is left, or fixed at 7. Displacements
+between contacts are classified by neighbours that learnt from whole clouds of other scenes.
 """
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.core.relations import PairLabel
+from lifelore.core.metrics import Estimate
+from lifelore.core.relations import CORE_RELATIONS, SYMMETRIC, PairLabel
 from lifelore.core.streams import stream
-from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
+from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
 from lifelore.perception.contacts.contact_points import contact_clusters
-from lifelore.perception.contacts.contact_settings import ContactSettings
-from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, Interface, interfaces
+from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, interfaces
 from lifelore.perception.contacts.near_pairs import near_pairs, split_objects
-from lifelore.perception.pairs.scene_pairs import scene_pairs
-from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
-from lifelore.perception.relations.relation_classifier import shipped_model
+from lifelore.perception.pairs.pair_features import PairFeatures
+from lifelore.perception.pairs.scene_pairs import ScenePairs
+from lifelore.perception.relations.relation_classifier import RelationClassifier
 from lifelore.perception.separation.separator import separate
-from reproduction.chapter2.scenes.perturbation import (
-    fewer_points,
-    grown_masks,
-    noisier_depth,
-    swapped_border,
-)
-from reproduction.chapter2.scenes.real_scenes import real_scenes
-from reproduction.chapter2.scenes.scene_lots import lots, numbers_of, real_lots
-from reproduction.chapter2.scenes.skeletons import shipped_model_digest
-from reproduction.chapter2.scenes.tabletop_pairs import without_table
-from reproduction.chapter2.scoring.network_stability import contact_nodes, stability
+from reproduction.chapter2.scenes.perturbation import fewer_points, without_table
+from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scoring.pair_validation import THRESHOLD
+from reproduction.chapter2.scoring.relation_scoring import (
+    JudgedPair,
+    difference,
+    judged_scene,
+    less_rate,
+    share,
+)
+from reproduction.engine.estimates import UNMEASURED
+from reproduction.engine.results_table import computed_once
 
-DISCARDED, NOISE, BORDER, MASKS = "discarded", "noise", "border", "masks"
-WAYS = {
-    DISCARDED: fewer_points,
-    NOISE: noisier_depth,
-    BORDER: lambda cloud, level, rng: swapped_border(cloud, rng, probability=level),
-    MASKS: lambda cloud, level, rng: grown_masks(cloud, rng, width=level),
-}
-"""Way by name: takes a cloud, how much, and a generator. Shares for *discarded* and *border*, else metres."""
-WHOLE = "whole"
-LESSON_LOT, LOT, REAL_LOT = 10, 4, 2
-
-
-def key_of(way: str, level: float) -> str:
-    """The name of a perturbed view: ``discarded 0.7``."""
-    return f"{way} {level:g}"
+THINNED, SCALED, FIXED = METHODS = ("thinned, threshold scaled", "raw, threshold scaled", "raw, 7 fixed")
+LOT = 6
+Pairs = list[list]
+"""``[a, b, gap, displacements]`` of each near pair with displacements."""
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Lots of lessons, of held-out scenes, and of real scenes where the settings ask for them and they are there.
-
-    Cells name the shipped model, so that cells of another model are run anew.
-    """
-    model = shipped_model_digest()
-    lessons = [{"lessons": k} for k in range(0, settings["lessons"], LESSON_LOT)]
-    held_out = lots(settings["scenes"], LOT, model=model)
-    return lessons + held_out + real_lots(settings, REAL_LOT, "real", model=model)
+    """Lots of lessons, then of held-out scenes."""
+    return lots(settings["lessons"], LOT, kind="lessons") + lots(settings["scenes"], LOT, kind="scenes")
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """``{"kind": "lesson" | "simulated" | "real", "scenes": […]}``."""
-    if "lessons" in cell:
-        numbers = range(cell["lessons"], min(cell["lessons"] + LESSON_LOT, settings["lessons"]))
-        return {"kind": "lesson", "scenes": [_lesson(settings, seed, number) for number in numbers]}
-    if "real" in cell:
-        scenes = [scene for scene in real_scenes() if scene.name in cell["real"]]
-        return {"kind": "real", "scenes": [_seen(settings, s.name, s.cloud, s.truth, {}) for s in scenes]}
-    found = []
-    for number in numbers_of(cell, LOT, settings["scenes"]):
-        scene = _drawn(settings, seed, "held-out", number)
-        gaps = {(gap.a, gap.b): gap.visible for gap in scene.gaps}
-        found.append(_seen(settings, scene.name, scene.cloud, scene.truth, gaps))
-    return {"kind": "simulated", "scenes": found}
-
-
-def _drawn(settings: Mapping, seed: int, shapes: str, number: int):
+    """``{"kind", "scenes": […]}``: truth, gaps, and displacements by share discarded and method of each scene."""
+    kind, shapes = cell["kind"], {"lessons": "training", "scenes": "held-out"}[cell["kind"]]
     own = int(stream(seed, "spoilt scenes", shapes).integers(2**31))
-    return sample_scene(own, number, TabletopSettings(shapes=shapes, camera=settings["camera"]))
+    levels = levels_of(settings) if kind == "scenes" else [0.0]
+    found = []
+    for number in numbers_of(cell, LOT, settings[kind]):
+        scene = sample_scene(own, number, TabletopSettings(shapes=shapes, camera=settings["camera"]))
+        found.append(seen(scene, levels))
+    return {"kind": kind, "scenes": found}
 
 
-def _lesson(settings: Mapping, seed: int, number: int) -> dict:
-    scene = _drawn(settings, seed, "training", number)
-    bare = without_table(scene.cloud)
-    return {
-        "name": scene.name,
-        "truth": _truth_rows(scene.truth),
-        "view": {"thesis": _contact_rows(interfaces(bare)), "literal": literal_rows(bare)},
-    }
+def levels_of(settings: Mapping) -> list[float]:
+    """The shares discarded, none first."""
+    return [0.0, *(level for level in settings["discarded"] if level > 0)]
 
 
-def _seen(settings: Mapping, name: str, cloud: LabelledCloud, truth: Sequence[PairLabel], gaps: Mapping) -> dict:
-    """A scene whole and perturbed; gaps of all views are those of the whole scene."""
-    whole, found = _view(cloud, literal=True)
-    nodes = contact_nodes(found, truth)
-    views, networks = {WHOLE: whole}, {}
-    for way, levels in settings["levels"].items():
-        for level in levels:
-            key = key_of(way, level)
-            worse = WAYS[way](cloud, level, stream(0, "spoilt", name, key))
-            views[key], found = _view(worse, literal=way == DISCARDED)
-            if way == DISCARDED:
-                fared = stability(nodes, contact_nodes(found, truth))
-                shifts = [round(shift, 6) for shift in fared.shifts]
-                networks[key] = {"same": [int(same) for same in fared.same_count], "shifts": shifts}
-    rows = [[a, b, round(gap, 6)] for (a, b), gap in gaps.items()]
-    return {"name": name, "truth": _truth_rows(truth), "gaps": rows, "views": views, "networks": networks}
+def seen(scene: TabletopScene, levels: Sequence[float]) -> dict:
+    """A scene at each share discarded; gaps are those of the whole scene."""
+    views = []
+    for level in levels:
+        cloud = fewer_points(scene.cloud, level, stream(0, "spoilt", scene.name, f"discarded {level:g}"))
+        views.append(view(without_table(cloud), 1 - level))
+    truth = [[t.a, t.b, t.relation, t.confidence] for t in scene.truth if TABLE not in (t.a, t.b)]
+    gaps = [[gap.a, gap.b, round(gap.visible, 6)] for gap in scene.gaps]
+    return {"name": scene.name, "truth": truth, "gaps": gaps, "views": views}
 
 
-def _truth_rows(truth: Sequence[PairLabel]) -> list[list]:
-    """Labels of pairs of objects without the table."""
-    return [[t.a, t.b, t.relation, t.confidence] for t in truth if TABLE not in (t.a, t.b)]
+def view(bare: LabelledCloud, left: float) -> dict[str, Pairs]:
+    """The displacements of a cloud by method; `left` is the share of points that is left, in (0, 1]."""
+    thinned = []
+    for pair in interfaces(bare):
+        places = ([contact.position for contact in side] for side in (pair.contacts_a, pair.contacts_b))
+        thinned.append(row(pair.a, pair.b, pair.gap, *places))
+    return {THINNED: thinned, **raw_rows(bare, {SCALED: THRESHOLD * left, FIXED: THRESHOLD})}
 
 
-def _view(cloud: LabelledCloud, literal: bool) -> tuple[dict[str, Any], tuple[Interface, ...]]:
-    """The relations and displacements of a cloud, and its interfaces."""
-    bare = without_table(cloud)
-    found = interfaces(bare)
-    beliefs = shipped_model().beliefs_of(scene_pairs(bare, found))
-    relations = most_likely_scene(alternatives(beliefs), cloud.objects).relations
-    view: dict[str, Any] = {
-        "lifelore": [[r.a, r.b, r.relation, round(r.gap, 6)] for r in relations if TABLE not in (r.a, r.b)],
-        "thesis": _contact_rows(found),
-    }
-    if literal:
-        view["literal"] = literal_rows(bare)
-    return view, found
-
-
-def _contact_rows(found: Sequence[Interface]) -> list[list]:
-    """``[a, b, gap, displacements]`` of each pair."""
-    rows = []
-    for pair in found:
-        first, second = ([contact.position for contact in side] for side in (pair.contacts_a, pair.contacts_b))
-        rows.append(_row(pair.a, pair.b, pair.gap, np.array(first), np.array(second)))
-    return rows
-
-
-def _row(a: int, b: int, gap: float, first: NDArray[np.float64], second: NDArray[np.float64]) -> list:
-    moved = (first[:, None] - second[None]).reshape(-1, 3)
-    return [a, b, round(gap, 6), np.round(moved, 6).tolist()]
-
-
-def literal_rows(bare: LabelledCloud, settings: ContactSettings = DEFAULT_CONTACT_SETTINGS) -> list[list]:
-    """By the thesis's literal text: all points, a cost for each point, contacts below 7 support vectors dropped.
-
-    Pairs without a contact on either side have no row.
-    """
-    rows = []
+def raw_rows(bare: LabelledCloud, thresholds: Mapping[str, float]) -> dict[str, Pairs]:
+    """Displacements from all points at a fixed cost a point, by threshold; pairs without a contact have no row."""
+    settings, found = DEFAULT_CONTACT_SETTINGS, {name: [] for name in thresholds}
     for pair in near_pairs(split_objects(bare), settings.near, settings.table_margin):
         a, b = pair.first.points, pair.second.points
-        found = separate(a, b, length=settings.length, cost=settings.cost)
-        first = strong_places(a[found.support_first], found.alpha_first, settings.linkage)
-        second = strong_places(b[found.support_second], found.alpha_second, settings.linkage)
-        if len(first) and len(second):
-            rows.append(_row(pair.first.label, pair.second.label, pair.gap, first, second))
-    return rows
+        parted = separate(a, b, length=settings.length, cost=settings.cost)
+        for name, least in thresholds.items():
+            first = strong_places(a[parted.support_first], parted.alpha_first, settings.linkage, least)
+            second = strong_places(b[parted.support_second], parted.alpha_second, settings.linkage, least)
+            if len(first) and len(second):
+                found[name].append(row(pair.first.label, pair.second.label, pair.gap, first, second))
+    return found
 
 
 def strong_places(
-    points: NDArray[np.float64], alpha: NDArray[np.float64], linkage: float, least: int = THRESHOLD
+    points: NDArray[np.float64], alpha: NDArray[np.float64], linkage: float, least: float = THRESHOLD
 ) -> NDArray[np.float64]:
     """Contact points of at least `least` support vectors, ``(m, 3)``, none where there are none."""
     clusters = [rows for rows in contact_clusters(points, alpha, linkage, least) if len(rows) >= least]
-    places = [alpha[rows] @ points[rows] / alpha[rows].sum() for rows in clusters]
-    return np.array(places).reshape(-1, 3)
+    return np.array([alpha[rows] @ points[rows] / alpha[rows].sum() for rows in clusters]).reshape(-1, 3)
 
 
-def check(settings: Mapping) -> None:
-    if set(settings["levels"]) - set(WAYS) or not settings["levels"]:
-        raise InputError(f"levels must name some of {', '.join(WAYS)}, got {', '.join(settings['levels'])}")
+def row(a: int, b: int, gap: float, first: Sequence | NDArray, second: Sequence | NDArray) -> list:
+    """``[a, b, gap, displacements]`` of a pair."""
+    moved = np.asarray(first)[:, None] - np.asarray(second)[None]
+    return [a, b, round(gap, 6), np.round(moved.reshape(-1, 3), 5).tolist()]
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The measures of the thinned method."""
+    return measures(judged(settings, results)[THINNED])
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """The measures of each method."""
+    for method, views in judged(settings, results).items():
+        yield {"contacts": method}, measures(views)
+
+
+def measures(views: Mapping[float, Sequence[JudgedPair]]) -> dict[str, Estimate]:
+    """Exact share lost at each share discarded; and that of the most discarded less the majority's rate."""
+    lost = {f"lost_{100 * level:g}": difference(views[0.0], views[level]) for level in views if level}
+    worst = views[max(views)]
+    truths = [pair.truth.relation for pair in worst]
+    rate = max(map(truths.count, CORE_RELATIONS)) / max(len(truths), 1)
+    return lost | {
+        "less_majority": less_rate(share(worst, lambda pair: pair.exact), rate) if worst else UNMEASURED
+    }
+
+
+@computed_once
+def judged(settings: Mapping, results: Sequence[Mapping]) -> dict[str, dict[float, list[JudgedPair]]]:
+    """By method and share discarded, each labelled pair of the held-out scenes beside its predicted relation.
+
+    Pairs whose gap is so near the limit of *adjacent* that the gap alone decides are left out.
+    """
+    lessons, scenes = (
+        [scene for result in results if result["kind"] == kind for scene in result["scenes"]]
+        for kind in ("lessons", "scenes")
+    )
+    found: dict[str, dict[float, list[JudgedPair]]] = {method: {} for method in METHODS}
+    for method, of_level in found.items():
+        model = RelationClassifier("displacement", symmetric=SYMMETRIC)
+        model.fit_pairs([scene_of(own["views"][0][method]) for own in lessons], list(map(labels_of, lessons)))
+        for scene in scenes:
+            gaps = {frozenset((a, b)): gap for a, b, gap in scene["gaps"]}
+            for level, views in zip(levels_of(settings), scene["views"], strict=True):
+                predicted = model.predict_pairs(scene_of(views[method])) if views[method] else ()
+                own = judged_scene(scene["name"], labels_of(scene), predicted, gaps)
+                of_level.setdefault(level, []).extend(pair for pair in own if not pair.border)
+    return found
+
+
+def labels_of(scene: Mapping) -> list[PairLabel]:
+    """The true labels of a scene's row."""
+    return [PairLabel(*row) for row in scene["truth"]]
+
+
+def scene_of(pairs: Pairs) -> ScenePairs:
+    """Rows ``[a, b, gap, displacements]`` as the thesis's classifier sees a scene."""
+    both = np.array([[[a, b], [b, a]] for a, b, *_ in pairs], np.int64).reshape(-1, 2)
+    gaps = np.repeat([float(gap) for _, _, gap, _ in pairs], 2)
+    features = PairFeatures((), np.empty((len(both), 0)), both, gaps)
+    return ScenePairs(features, tuple(np.array(moved, float).reshape(-1, 3) for *_, moved in pairs))
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """The exact share by method and share discarded."""
+    return [
+        {"method": method, "discarded": level, **share(pairs, lambda pair: pair.exact).to_dict()}
+        for method, views in judged(settings, results).items()
+        for level, pairs in views.items()
+    ]

@@ -1,28 +1,30 @@
-"""Cells of claim C2.6: holes found in scenes that have a hole (thesis Fig. 2.6) and in controls without a hole.
+"""C2.6: holes found in scenes that have a hole (thesis Fig. 2.6) and in controls without a hole.
 
 With a hole: an L-block that carries one of two *hinged* blocks, or an *other* object (an arch, a toy on legs, a
 plank). Without: a *long* contact; the same *split* in two where points are missing in the middle; a block in the
 L-block's *corner*, which touches it below and beside. Contacts with the ground take no part. Thesis: §2.4.2.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopScene
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.scene import Scene
-from lifelore.perception.topology.holes import Hole, contact_loops, find_holes
+from lifelore.perception.topology.holes import Hole, find_holes
 from reproduction.chapter2.c2_06_same_hole.passage import passages
 from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.perturbation import part_of
-from reproduction.chapter2.scenes.real_scenes import real_scenes
 from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import lots, numbers_of, uses_real
+from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of
+from reproduction.engine.estimates import exact_share
+from reproduction.engine.results_table import ResultsTable
 
 ARRANGEMENTS = {
     "hinged": "hole-hinged",
@@ -36,49 +38,26 @@ LOWER, UPPER = 2, 3
 _BAND = (0.03, 0.06)
 """Metres of a long contact from which points are missing: more than what links support vectors."""
 _CLOSE = 0.025
-CAPTIONS = {
-    "hinged": "hinged blocks",
-    "animal": "a toy on legs",
-    "arch": "an arch",
-    "box": "a plank",
-    "long": "a long contact",
-    "split": "the same, split",
-    "corner": "a block in the corner",
-}
-PICTURES = {"other": 2}
-"""Number of pictures of a kind, where more than one."""
+WITH_HOLE = CAPTIONS = {"hinged": "hinged blocks", "other": "another object"}
+"""Kinds that have a hole, and captions of their pictures."""
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Scenes in lots, by kind; then the real scenes, where the settings ask for them and they are there."""
-    real = real_scenes() if uses_real(settings) else ()
-    simulated = [lot for kind in ARRANGEMENTS for lot in lots(settings["scenes"], LOT, kind=kind)]
-    return simulated + [{"kind": "real", "scene": scene.name} for scene in real]
+    """Scenes in lots, by kind."""
+    return [lot for kind in ARRANGEMENTS for lot in lots(settings["scenes"], LOT, kind=kind)]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Findings of a lot of scenes of a kind, or of a real scene, and a picture from the first lot."""
-    kind = cell["kind"]
-    if kind == "real":
-        scene = next(scene for scene in real_scenes() if scene.name == cell["scene"])
-        found = find_holes(objects_only(scene.cloud))
-        return {"kind": kind, "scenes": [{"scene": scene.name, "holes": len(found)}], "examples": []}
-    rows, pictures = [], {}
+    """Findings of a lot of scenes of a kind, and a picture of a scene with a hole from the first lot."""
+    kind, rows, examples = cell["kind"], [], []
     for number in numbers_of(cell, LOT, settings["scenes"]):
         world = arranged(ARRANGEMENTS[kind], seed, number)
         cloud = split_contact(world.cloud, stream(seed, "split", number)) if kind == "split" else world.cloud
         scene = objects_only(cloud)
-        rows.append({"scene": number, **findings(scene, world)})
-        shape = world.shapes[-1].kind
-        if cell["first"] == 0 and shape not in pictures and len(pictures) < PICTURES.get(kind, 1):
-            pictures[shape] = scene_row(scene, f"{CAPTIONS.get(kind) or CAPTIONS[shape]}: {_outcome(rows[-1])}")
-    return {"kind": kind, "scenes": rows, "examples": list(pictures.values())}
-
-
-def _outcome(row: Mapping) -> str:
-    if row["holes"]:
-        return f"a hole, {row['opening']:.0f} mm wide"
-    return "a cycle, no hole" if row["loops"] else "no cycle"
+        rows.append(findings(scene, world))
+        if number == 0 and kind in CAPTIONS:
+            examples = [scene_row(scene, CAPTIONS[kind])]
+    return {"kind": kind, "scenes": rows, "examples": examples}
 
 
 def objects_only(cloud: LabelledCloud) -> Scene:
@@ -87,22 +66,20 @@ def objects_only(cloud: LabelledCloud) -> Scene:
 
 
 def findings(scene: Scene, world: TabletopScene) -> dict:
-    """Numbers of loops and holes; of the smallest hole its form, size and opening in mm; the true passages.
+    """Whether a hole is found; of the smallest hole its form, and whether it lies at a true passage.
 
-    `form` is the number of contact points on the lower and the upper object, `passages` the number of ways through
-    the true scene along the L-block's foot, `real` whether a passage lies where a hole was found.
+    `form` is the number of contact points on the lower and the upper object, `true` whether a way for a straight
+    stick along the L-block's foot passes through the true scene where a hole was found.
     """
     holes = find_holes(scene)
-    ways = passages(world.shapes, world.poses, world.poses[0].rotation[:, 1])
-    row = {"thing": world.shapes[-1].kind, "loops": len(contact_loops(scene)), "holes": len(holes)}
-    row["passages"] = len(ways)
     if not holes:
-        return row
-    return row | {
-        "form": [sum(label == own for label, _ in holes[0].nodes) for own in (LOWER, UPPER)],
-        "size": round(1000 * holes[0].size, 1),
-        "opening": round(1000 * holes[0].opening, 1),
-        "real": any(lies_between(way, hole, scene) for way in ways for hole in holes),
+        return {"hole": False}
+    ways = passages(world.shapes, world.poses, world.poses[0].rotation[:, 1])
+    form = [sum(label == own for label, _ in holes[0].nodes) for own in (LOWER, UPPER)]
+    return {
+        "hole": True,
+        "form": form,
+        "true": any(lies_between(way, hole, scene) for way in ways for hole in holes),
     }
 
 
@@ -135,3 +112,21 @@ def split_contact(cloud: LabelledCloud, rng: np.random.Generator) -> LabelledClo
     if rng.random() < 0.5:
         gone &= np.abs(cloud.points[:, 2] - middle[2]) < _CLOSE
     return part_of(cloud, ~(gone & (cloud.labels > TABLE)))
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Shares of scenes by kind with a hole found; form and place of the holes."""
+    table = ResultsTable.nested(results, "scenes", keys=(), outer=("kind",))
+    found = {
+        f"hole_found_{kind}": exact_share(scene["hole"] for scene in table.select(kind=kind).records)
+        for kind in ARRANGEMENTS
+    }
+    holes = [scene for kind in WITH_HOLE for scene in table.select(kind=kind).records if scene["hole"]]
+    found["found_where_the_passage_is"] = exact_share(scene["true"] for scene in holes)
+    found["two_contacts_on_either_side"] = exact_share(scene["form"] == [2, 2] for scene in holes)
+    return found
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """The pictures."""
+    return examples_in(results)

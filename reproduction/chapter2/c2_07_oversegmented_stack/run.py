@@ -1,4 +1,4 @@
-"""Cells of claim C2.7: skeletons of stacks of three, of two objects segmented into three, and of controls.
+"""C2.7: skeletons of stacks of three, of two objects segmented into three, and of controls.
 
 Findings are of three objects of each scene: the middle one and its two neighbours. *stack*: three blocks (thesis
 Fig. 2.7, left). *cut*: a block on a slab or a ball on a block, of which one is cut level into two (right).
@@ -6,11 +6,12 @@ Controls: a *row* of three neighbours, and *two on one*. *real stack*, *real cut
 other objects removed. Thesis: §2.4.3.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
 from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ON
 from lifelore.core.streams import stream
 from lifelore.perception.scene import Scene
@@ -18,10 +19,8 @@ from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.perturbation import cut_object
 from reproduction.chapter2.scenes.real_scenes import real_scenes
 from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import lots, numbers_of, uses_real
+from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of, uses_real
 from reproduction.chapter2.scenes.skeletons import (
-    NEAR,
-    RELATED,
     Three,
     carried_pairs,
     only,
@@ -31,12 +30,15 @@ from reproduction.chapter2.scenes.skeletons import (
     real_stacks,
     standing,
 )
+from reproduction.engine.estimates import exact_share
+from reproduction.engine.results_table import ResultsTable
 
 KINDS = ("stack", "cut", "row", "two-on-one")
 REAL = ("real stack", "real cut")
 LOT = 15
 LOW_CUT, HIGH_CUT = 0.35, 0.65
 """Where an object is cut, of its visible height."""
+CAPTIONS = {"stack": "three objects", "cut": "two objects, segmented into three"}
 TALL = 0.04
 """Metres: the lower of two real objects is cut if its visible height reaches this, else the upper."""
 
@@ -48,7 +50,7 @@ def cells(settings: Mapping) -> list[dict]:
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Findings of a lot, and a picture from the first lot of each kind."""
+    """Findings of a lot, and a picture from the first lot of the thesis's two kinds."""
     if cell["kind"] in REAL:
         threes = real_stacks() if cell["kind"] == REAL[0] else real_cuts(seed)
     else:
@@ -57,8 +59,8 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     for number, three in enumerate(threes):
         scene = perceived(three.cloud)
         rows.append(findings(scene, three))
-        if number == 0 and cell.get("first", 0) == 0:
-            examples.append(scene_row(reading(scene), cell["kind"]))
+        if number == 0 and cell.get("first") == 0 and cell["kind"] in CAPTIONS:
+            examples.append(scene_row(reading(scene), CAPTIONS[cell["kind"]]))
     return {"kind": cell["kind"], "scenes": rows, "examples": examples}
 
 
@@ -95,22 +97,15 @@ def real_cuts(seed: int) -> Iterator[Three]:
 
 
 def findings(scene: Scene, three: Three) -> dict:
-    """The networks of the three.
+    """Whether the middle one has two contact points towards related objects, and whether the three are a stack.
 
-    `nodes`, `near`: contact points of (below, middle, above) towards objects, of related and of all near pairs;
-    `grounded`: of the middle, the ground's contacts included; `path`: whether the related skeleton is one point,
-    two points, one point, in contact in this order; `stacked`: whether the predicates among the three are *on*
-    twice.
+    A stack has the skeleton of one, two and one points, see `is_path`, and its predicates are *on* twice.
     """
-    related, near = reading(scene), reading(scene, NEAR)
-    labels = (three.below, three.middle, three.above)
-    grounded = reading(scene, RELATED, ground=True)
+    related = reading(scene)
+    stacked = predicates(related) == {(ON, three.above, three.middle), (ON, three.middle, three.below)}
     return {
-        "nodes": [len(related.networks[label].nodes) for label in labels],
-        "near": [len(near.networks[label].nodes) for label in labels],
-        "grounded": len(grounded.networks[three.middle].nodes),
-        "path": is_path(related, three),
-        "stacked": predicates(related) == {(ON, three.above, three.middle), (ON, three.middle, three.below)},
+        "two_points": len(related.networks[three.middle].nodes) == 2,
+        "stack": is_path(related, three) and stacked,
     }
 
 
@@ -124,3 +119,18 @@ def is_path(scene: Scene, three: Three) -> bool:
     )
     two_edges = len(scene.contact_edges) == 2
     return counts == [1, 2, 1] and two_edges and set(faced.values()) == {three.below, three.above}
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Shares by kind of two points in the middle, and of the stack's structure."""
+    table, found = ResultsTable.nested(results, "scenes", keys=(), outer=("kind",)), {}
+    for kind in (*KINDS, *REAL):
+        scenes, name = table.select(kind=kind).records, kind.replace(" ", "_").replace("-", "_")
+        found[f"structure_{name}"] = exact_share(scene["stack"] for scene in scenes)
+        found[f"two_points_{name}"] = exact_share(scene["two_points"] for scene in scenes)
+    return found
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """The pictures."""
+    return examples_in(results)

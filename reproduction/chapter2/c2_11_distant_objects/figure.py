@@ -1,54 +1,31 @@
-"""Support vectors and contact points of objects moved apart: a column for each cost, a line for each length."""
+"""Support vectors, and pairs with a contact point, of objects moved apart (§2.4.1)."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
-from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import BLUE, GREEN, LIGHT, ORANGE, VERMILION, house_style, new_figure
-from reproduction.chapter2.scenes.tabletop_pairs import kernel_name
+from lifelore.figures.style import BLUE, GREEN, LIGHT, ORANGE, VERMILION, Figure, house_style, new_figure
+from reproduction.chapter2.c2_11_distant_objects.run import DEFAULT
 
 COLOURS = (BLUE, ORANGE, GREEN, VERMILION)
-QUANTITIES = {
-    "support": "support vectors\nan object",
-    "contacts": "contact points an object,\nall",
-    "contacts_of_7": "contact points an object,\nof 7 support vectors",
-}
 
 
-def draw(result: Mapping):
-    rows = [row for row in result["rows"] if row.get("unit") in ("as seen", "metres")]
-    lengths, costs = result["settings"]["lengths"], result["settings"]["costs"]
-    with house_style():
-        figure = new_figure(1.3 + 2.5 * len(costs), 6.6)
-        grid = figure.subplots(3, len(costs), squeeze=False, sharex=True, sharey="row")
-        for column, cost in enumerate(costs):
-            for place, (key, label) in enumerate(QUANTITIES.items()):
-                axes = grid[place, column]
-                for length, colour in zip(lengths, COLOURS * 3, strict=False):
-                    own = [row for row in rows if row["kernel"] == kernel_name(length, cost)]
-                    name = f"{1000 * length:g} mm"
-                    look = {"color": colour, "marker": "o", "markersize": 3.2, "linewidth": 1.5}
-                    simulated = {name: quartiles(own, "simulated", key)}
-                    draw_curves(axes, None, simulated, looks={name: look}, legend=False)
-                    real = quartiles(own, "real", key)
-                    axes.plot(real["x"], real["mean"], "x", markersize=3.2, color=colour)
-                axes.grid(axis="y", color=LIGHT)
-                if column == 0:
-                    axes.set_ylabel(label)
-            grid[0, column].set_yscale("log")
-            grid[0, column].set_title(f"C = {cost:g}" if cost < 1000 else f"C = {cost:g}, nearly hard")
-            for axes in grid[1:, column]:
-                axes.set_ylim(bottom=0)
-            grid[2, column].set_xlabel("gap (m)")
-            grid[2, column].set_xscale("log")
-            grid[2, column].xaxis.set_major_formatter("{x:g}")
-        handles, names = grid[0, 0].get_legend_handles_labels()
-        title = "length of the kernel (line: simulated, median and quartiles; cross: real, median)"
-        figure.legend(handles, names, loc="outside upper center", ncols=6, title=title)
+@house_style()
+def draw(result: Mapping) -> Figure:
+    """A line for each length of the kernel at the default cost, ours in bold."""
+    figure = new_figure(8.4, 3.2)
+    left, right = figure.subplots(1, 2, sharex=True)
+    lines = sorted((row for row in result["rows"] if row["cost"] == DEFAULT[1]), key=lambda row: row["length"])
+    for number, row in enumerate(lines):
+        look = {
+            "color": COLOURS[number % len(COLOURS)], "marker": "o", "markersize": 3.2,
+            "lw": 2.4 if row["length"] == DEFAULT[0] else 1.3, "label": f"{1000 * row['length']:g} mm",
+        }  # fmt: skip
+        left.plot(row["gap"], row["support"], **look)
+        right.plot(row["gap"], [100 * share for share in row["with_contact"]], **look)
+    left.set(ylabel="support vectors an object (median)", xlabel="gap (m)")
+    right.set(ylabel="pairs with a contact point (%)", xlabel="gap (m)")
+    left.set_ylim(bottom=0)
+    right.set_ylim(-2, 102)
+    for axes in (left, right):
+        axes.grid(axis="y", color=LIGHT)
+    right.legend(title="length of the kernel", title_fontsize=8)
     return figure
-
-
-def quartiles(rows: Sequence[Mapping], scenes: str, key: str) -> dict[str, list[float]]:
-    """A quantity over the gap: its median and quartiles."""
-    own = [row for row in rows if row["scenes"] == scenes]
-    middle, low, high = ([row[key][k] for row in own] for k in range(3))
-    return {"x": [row["gap"] for row in own], "mean": middle, "low": low, "high": high}

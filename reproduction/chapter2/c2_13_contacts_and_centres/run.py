@@ -1,67 +1,105 @@
-"""Cells of claim C2.13: a ball on top of an L-block's upright (thesis Fig. 2.1), and pairs to learn from.
+"""C2.13: a ball on top of an L-block's upright: the block's nodes, and what centres of mass tell (Figure 2.1).
 
-Scenes and lessons are rows of `tabletop_pairs`: contacts under a grid of kernels, none dropped, features, and the
-descriptors of peers. Block and ball have the labels 2 and 3; the table's points are left out.
+Contact points and centres of mass classify the pair by the pairs of C2.1. Half of the scenes are of a ball on a
+post beside the upright: the centres are as far apart, but the ball is not on the block.
 """
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
 
-from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings
-from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, interfaces
-from lifelore.perception.scene import Scene
+import numpy as np
+
+from lifelore.core.metrics import Estimate
 from reproduction.chapter2.scenes import tabletop_pairs
-from reproduction.chapter2.scenes.arranged_scenes import arranged
-from reproduction.chapter2.scenes.perturbation import without_table
-from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
-from reproduction.chapter2.scenes.tabletop_pairs import STANDARD, Row, loose_settings, pair_rows
-from reproduction.chapter2.scoring.pair_validation import THRESHOLD
+from reproduction.chapter2.scenes.scene_lots import lots
+from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES, STANDARD, Row, data_sets
+from reproduction.chapter2.scoring.pair_validation import (
+    THRESHOLD,
+    Reading,
+    votes_of_neighbours,
+    votes_on,
+)
+from reproduction.chapter2.scoring.relation_scoring import CARRIED
+from reproduction.engine.estimates import exact_share, mean_or_unmeasured
 
-BLOCK, BALL = 2, 3
+ON_BLOCK, ON_POST = ARRANGEMENTS = "ball-at-l-block", "ball-on-post"
 LOT = 15
-LESSON, SCENE = "lesson", "scene"
 NODES = 3
 """Of the L-block in the thesis's figure, without the threshold."""
+run_cell, shared = tabletop_pairs.run_cell, tabletop_pairs.SETTINGS_OF_A_CELL
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Lots of lessons, then of scenes, camera by camera."""
-    sizes = ((LESSON, settings["lessons"], tabletop_pairs.LOT), (SCENE, settings["scenes"], LOT))
-    return [
-        lot
-        for camera in settings["cameras"]
-        for kind, n, size in sizes
-        for lot in lots(n, size, kind=kind, camera=camera)
+    """Lots of pairs to learn from, the first data set of C2.1; then of scenes, by arrangement."""
+    numbers = range(settings["scenes"])
+    scenes = [
+        {"arrangement": name, "numbers": list(numbers[first : first + LOT])}
+        for name in ARRANGEMENTS
+        for first in numbers[::LOT]
     ]
+    return lots(settings["pairs"], tabletop_pairs.LOT, data_set=0) + scenes
 
 
-def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """The rows of a lot, ``{"kind", "camera", "rows", "examples"}``; pictures from the first lot of scenes."""
-    kind, camera, first = cell["kind"], cell["camera"], cell["first"]
-    head = {"kind": kind, "camera": camera}
-    if kind == LESSON:
-        asked = {"pairs": settings["lessons"], "camera": camera}
-        found = tabletop_pairs.run_cell(asked, {"data_set": 0, "first": first}, seed)
-        return {**head, "rows": found["rows"], "examples": []}
-    drawn = replace(TabletopSettings(), camera=camera)
-    worlds = [arranged("ball-at-l-block", seed, k, drawn) for k in numbers_of(cell, LOT, settings["scenes"])]
-    rows = [row for world in worlds for row in pair_rows(world.name, world.cloud, world.truth)]
-    examples = pictures(worlds, rows) if first == 0 else []
-    return {**head, "rows": rows, "examples": examples}
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The measures at the standard kernel."""
+    return measures(results, STANDARD)
 
 
-def pictures(worlds: list[TabletopScene], rows: list[Row]) -> list[dict]:
-    """The scene whose block comes nearest to the thesis's number of nodes: every contact, and strong ones."""
-    at = min(range(len(rows)), key=lambda k: abs(len(rows[k]["contacts"][STANDARD]["a"]) - NODES))
-    world = next(world for world in worlds if world.name == rows[at]["scene"])
-    found = []
-    for words, settings in (
-        ("every contact", loose_settings(DEFAULT_CONTACT_SETTINGS.length, DEFAULT_CONTACT_SETTINGS.cost)),
-        (f"of at least {THRESHOLD}", DEFAULT_CONTACT_SETTINGS),
-    ):
-        between = interfaces(without_table(world.cloud), settings)
-        n = len(between[0].contacts_a)
-        caption = f"{words}: {n} node{'s' * (n != 1)}"
-        found.append(scene_row(Scene(world.cloud, between), caption))
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """The measures for every kernel."""
+    for kernel in KERNEL_NAMES:
+        yield {"kernel": kernel}, measures(results, kernel)
+
+
+def measures(results: Sequence[Mapping], kernel: str) -> dict[str, Estimate]:
+    """Shares of scenes by the block's nodes, with *on* by contact points, and told right by either method."""
+    sets = data_sets(results)
+    found = [nodes(row, kernel) for row in sets[ON_BLOCK]]
+    told = told_right(sets, kernel)
+    return {
+        "rank_of_three_nodes": mean_or_unmeasured((len(own) < NODES) + 0.5 * (len(own) == NODES) for own in found),
+        "topmost_alone_remains": exact_share(map(topmost_alone_remains, found)),
+        "on_by_contacts": exact_share(told["contacts"][ON_BLOCK]),
+        **{f"told_by_{name}": exact_share(chain(*own.values())) for name, own in told.items()},
+    }
+
+
+def nodes(row: Row, kernel: str = STANDARD) -> np.ndarray:
+    """Height (metres) and support vectors of each of the block's nodes, none dropped, ``(n, 2)``."""
+    contacts = row["contacts"].get(kernel, {"b": []})["b"]
+    return np.array(contacts, float).reshape(-1, 4)[:, 2:]
+
+
+def topmost_alone_remains(found: np.ndarray) -> bool:
+    """Whether one node has at least `THRESHOLD` support vectors and no other is higher."""
+    strong = found[found[:, 1] >= THRESHOLD]
+    return len(strong) == 1 and bool(strong[0, 0] >= found[:, 0].max())
+
+
+def told_right(sets: Mapping, kernel: str) -> dict[str, dict[str, list[bool]]]:
+    """By *contacts* and *centres*, and by arrangement: whether *on* is predicted where it holds, not elsewhere."""
+    rows = [*sets[0], *sets[ON_BLOCK], *sets[ON_POST]]
+    train = np.arange(len(rows)) < len(sets[0])
+    centres = np.array([row["centres"] for row in rows])
+    votes = {
+        "contacts": votes_of_neighbours(rows, Reading(kernel), train),
+        "centres": votes_on(centres, np.arange(len(rows)), rows, Reading(), train),
+    }
+    found: dict[str, dict[str, list[bool]]] = {}
+    for name, own in votes.items():
+        said = [relation in CARRIED for relation in own.relations(len(rows))[len(sets[0]) :]]
+        first = len(sets[ON_BLOCK])
+        found[name] = {ON_BLOCK: said[:first], ON_POST: [not on for on in said[first:]]}
     return found
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Scenes told right by method and arrangement, and the pictures of a scene."""
+    told = told_right(data_sets(results), STANDARD)
+    found: list[dict] = [
+        {"told by": name, "arrangement": arrangement, **exact_share(answers).to_dict()}
+        for name, own in told.items()
+        for arrangement, answers in own.items()
+    ]
+    pictures = (r["examples"] for r in results if r["set"] == ON_BLOCK)
+    return found + list(chain(*pictures))

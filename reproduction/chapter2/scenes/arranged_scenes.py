@@ -1,7 +1,8 @@
 """Scenes in the thesis's arrangements, drawn by the tabletop, and arrangements of our own: controls to them.
 
 Controls: three blocks in a *row*, two blocks side by side on one (*two on one*), a block in the *corner* of an
-L-block, which touches it below and beside without leaving a hole.
+L-block, which touches it below and beside without leaving a hole, and a *ball on a post* beside an L-block's
+upright, as far from the block's centre of mass as a ball on the upright is.
 """
 
 from collections.abc import Callable
@@ -14,7 +15,7 @@ from lifelore.core.relations import ADJACENT, BOTH, ON
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.layout import Group, put_beside, stand, top
 from lifelore.domains.tabletop.pose import about
-from lifelore.domains.tabletop.shapes import box, l_block
+from lifelore.domains.tabletop.shapes import ball, box, l_block
 from lifelore.domains.tabletop.tabletop import (
     ATTEMPTS,
     TabletopScene,
@@ -97,9 +98,32 @@ def place_corner(rng: np.random.Generator) -> Group:
     return [placed.turned(yaw) for placed in (ell, block)]
 
 
+def place_ball_on_post(rng: np.random.Generator) -> Group:
+    """A ball on a post on an L-block's foot, not touching the block: the reverse of a ball on the upright.
+
+    From the block's centre of mass to the ball's leads the same displacement as for a ball on the upright of the
+    same block, turned half round. The objects are block, ball and post.
+    """
+    size = 0.024
+    while True:
+        length, width, height = rng.uniform((0.12, 0.05, 0.12), (0.2, 0.09, 0.2))
+        back, foot = float(rng.uniform(0.03, 0.05)), float(rng.uniform(0.025, 0.05))
+        upright = (back - length) / 2
+        volumes = length * foot, back * (height - foot)
+        at = 2 * upright * volumes[1] / sum(volumes) - upright
+        if at - size / 2 > back - length / 2 + 0.005 and at + size / 2 < length / 2:
+            break
+    post = stand(box(size, size, float(height) - foot), height=foot).moved(at, 0.0)
+    guest = stand(ball(float(rng.uniform(0.02, 0.035))), height=top([post])).moved(at, 0.0)
+    ell = stand(l_block(float(length), float(width), float(height), foot, back))
+    yaw = float(rng.normal(0, 0.3) + np.pi * rng.integers(2))
+    return [placed.turned(yaw) for placed in (ell, guest, post)]
+
+
 CONTROLS = {
     "row": Placement(place_row, frozenset({(2, 3, ADJACENT), (3, 4, ADJACENT)})),
     "two-on-one": Placement(place_two_on_one, frozenset({(3, 2, ON), (4, 2, ON)})),
     "corner": Placement(place_corner, frozenset({(3, 2, BOTH)})),
+    "ball-on-post": Placement(place_ball_on_post, frozenset({(3, 4, ON), (4, 2, ON)})),
 }
 """Arrangements of this module, by name."""

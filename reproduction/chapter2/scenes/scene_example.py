@@ -2,7 +2,7 @@
 
 import base64
 import zlib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from lifelore.perception.scene import Scene
 from lifelore.perception.scene_json import scene_document
 from reproduction.chapter2.scenes.perturbation import part_of
 
-MOST_POINTS = 5000
+MOST_POINTS = 4000
 _STEP = 0.0005
 """Metres: places are stored to half a millimetre."""
 _AROUND = 0.05
@@ -49,15 +49,14 @@ def scene_of_row(row: Mapping) -> PictureOfScene:
     return cloud, row["document"], row["example"]
 
 
-def examples_of(result: Mapping, captions: Mapping[str, str] | None = None) -> list[PictureOfScene]:
-    """The examples of a result as a gallery takes them; `captions` replaces the captions that it names."""
-    found = [scene_of_row(row) for row in result["rows"] if "example" in row]
-    return [(cloud, document, (captions or {}).get(caption, caption)) for cloud, document, caption in found]
+def examples_of(result: Mapping) -> list[PictureOfScene]:
+    """The examples of a result as a gallery takes them."""
+    return [scene_of_row(row) for row in result["rows"] if "example" in row]
 
 
-def draw_examples(result: Mapping, *, columns: int = 3, captions: Mapping[str, str] | None = None):
-    """The gallery of a result's examples, clouds with networks."""
-    return draw_gallery(examples_of(result, captions), columns=columns, layers=("cloud", "networks"))
+def draw_examples(result: Mapping, layers: Collection[str] = ("cloud", "networks")):
+    """The gallery of a result's examples, clouds with networks, two a row."""
+    return draw_gallery(examples_of(result), columns=2, layers=layers)
 
 
 def _packed(cloud: LabelledCloud) -> str:

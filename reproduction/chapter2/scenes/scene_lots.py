@@ -1,9 +1,8 @@
-"""Cells that are lots of scenes: simulated scenes by number, real scenes by name; and rows of their outcomes."""
+"""Cells that are lots of scenes: simulated scenes by number, real scenes by name; and their pictures."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from reproduction.chapter2.scenes.real_scenes import real_scenes, real_scenes_folder
-from reproduction.engine.results_table import tally
 
 
 def lots(n: int, size: int, **head) -> list[dict]:
@@ -18,21 +17,13 @@ def numbers_of(cell: Mapping, size: int, n: int) -> range:
 
 def uses_real(settings: Mapping) -> bool:
     """Whether the settings ask for the real scenes and they are there."""
-    return settings["real"] and real_scenes_folder() is not None
+    return settings.get("real", False) and real_scenes_folder() is not None
 
 
-def real_lots(settings: Mapping, size: int, key: str, **head) -> list[dict]:
-    """A cell ``{key: names, **head}`` for every `size` of the real scenes, if the settings use them."""
+def real_lots(settings: Mapping, size: int, key: str) -> list[dict]:
+    """A cell ``{key: names}`` for every `size` of the real scenes, if the settings use them."""
     names = [scene.name for scene in real_scenes()] if uses_real(settings) else []
-    return [{key: names[first : first + size], **head} for first in range(0, len(names), size)]
-
-
-def tally_and_examples(
-    results: Sequence[Mapping], within: str, outcome: Callable[[Mapping, Mapping], dict], label: str = "scenes"
-) -> list[dict]:
-    """How often each outcome ``outcome(result, row)`` of the rows `within` results came; then all examples."""
-    outcomes = (outcome(result, row) for result in results for row in result[within])
-    return tally(outcomes, label) + examples_in(results)
+    return [{key: names[first : first + size]} for first in range(0, len(names), size)]
 
 
 def examples_in(results: Sequence[Mapping]) -> list[dict]:

@@ -1,4 +1,4 @@
-"""Skeletons of perceived scenes: the contacts of all near pairs, of related pairs, or of pairs that support.
+"""Skeletons of perceived scenes: the contacts of all near pairs, or of related pairs.
 
 Perception gives every near pair contact points, also pairs whose relation is then *none* (a stack's top and the
 table far below it). The thesis's pictures show no such contacts, and no table: its background is taken off before
@@ -22,7 +22,6 @@ from reproduction.chapter2.scenes.real_scenes import real_scenes
 
 NEAR = (ON, BOTH, ADJACENT, NONE)
 RELATED = (ON, BOTH, ADJACENT)
-SUPPORT = (ON, BOTH)
 _model = cache(shipped_model)
 
 

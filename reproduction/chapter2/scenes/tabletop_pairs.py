@@ -1,9 +1,8 @@
 """Pairs of objects as the thesis photographed them, simulated and real, each as a row of numbers.
 
-A cell draws a lot of settled pairs in the thesis's class mix (or reads some real scenes), finds their contact
-points under a grid of kernels (the thesis states neither length nor cost) and stores places, support and features:
-all data that claims about displacements need. The table's points are left out, as the thesis's background was
-(§2.3.2). Thesis: §2.4.1, whose 128 stereo pictures are not published.
+A cell draws a lot of settled pairs in the thesis's class mix (or of another arrangement, or reads real scenes) and
+finds their contact points under a grid of kernels, since the thesis states neither length nor cost. The table's
+points are left out, as the thesis's background was (§2.3.2). Thesis: §2.4.1; its 128 pictures are not published.
 """
 
 from collections.abc import Mapping, Sequence
@@ -12,22 +11,24 @@ from itertools import chain
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import CORE_RELATIONS, PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
+from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.contacts.interface import (
     DEFAULT_CONTACT_SETTINGS,
     Interface,
+    interfaces,
     interfaces_by_settings,
 )
-from lifelore.perception.pairs.pair_features import pair_features
-from lifelore.perception.peers import PEERS
-from reproduction.chapter2.scenes.perturbation import without_table
+from lifelore.perception.scene import Scene
+from reproduction.chapter2.scenes.arranged_scenes import arranged
+from reproduction.chapter2.scenes.perturbation import only, without_table
 from reproduction.chapter2.scenes.real_scenes import real_scenes
+from reproduction.chapter2.scenes.scene_example import scene_row
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of, real_lots
 
 MIX: dict[str, float] = dict(zip(CORE_RELATIONS, (70, 32, 30, 0), strict=True))
@@ -45,30 +46,42 @@ Row = dict[str, Any]
 
 
 def kernel_name(length: float, cost: float) -> str:
-    """Name of a kernel in rows and tables: ``60 mm, C 10``."""
+    """Name of a kernel in rows and readings: ``60 mm, C 10``."""
     return f"{1000 * length:g} mm, C {cost:g}"
 
 
 STANDARD = kernel_name(DEFAULT_CONTACT_SETTINGS.length, DEFAULT_CONTACT_SETTINGS.cost)
 """The kernel of `ContactSettings`."""
-BESIDE_US = ("majority", "bounding-box rule", "centroid k-NN", "closest-point k-NN")
-"""The peers that describe each pair too."""
+KERNEL_NAMES = tuple(kernel_name(*kernel) for kernel in KERNELS)
 
 
 def pair_cells(settings: Mapping) -> list[dict]:
     """Lots of simulated pairs, data set by data set; then of real scenes, where asked for and present.
 
-    Settings read: ``data_sets``, ``pairs`` (of each), ``real`` (true or false).
+    Settings read: ``data_sets``, ``pairs`` (of each), ``real`` (true or false; may be missing).
     """
     sets = (lots(settings["pairs"], LOT, data_set=number) for number in range(settings["data_sets"]))
     return [*chain.from_iterable(sets), *real_lots(settings, REAL_LOT, "scenes")]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """The rows of a lot, ``{"set": …, "rows": […]}``; `set` is the number of the data set, or "real"."""
+    """The rows of a lot, ``{"set": …, "rows": […]}``.
+
+    `set` is the number of the data set, "real", or the name of another arrangement; of the latter, the rows are of
+    the objects 2 and 3 of the scenes ``cell["numbers"]``, with pictures of one.
+    """
     if "scenes" in cell:
         scenes = [scene for scene in real_scenes() if scene.name in cell["scenes"]]
         return {"set": "real", "rows": [row for s in scenes for row in pair_rows(s.name, s.cloud, s.truth)]}
+    if "arrangement" in cell:
+        drawn, name = TabletopSettings(camera=settings["camera"]), cell["arrangement"]
+        worlds = [arranged(name, seed, number, drawn) for number in cell["numbers"]]
+        rows = [row for w in worlds for row in pair_rows(w.name, only(w.cloud, (2, 3)), upper_first(w.truth))]
+        return {
+            "set": name,
+            "rows": rows,
+            "examples": network_pictures(worlds, rows) if 0 in cell["numbers"] else [],
+        }
     number = cell["data_set"]
     drawn = TabletopSettings(arrangement="pair", mix=MIX, camera=settings["camera"], shapes="all")
     rows = []
@@ -86,40 +99,66 @@ def _undoubted(rng: np.random.Generator, number: int, drawn: TabletopSettings) -
             return scene
 
 
+def upper_first(truth: Sequence[PairLabel]) -> list[PairLabel]:
+    """The label of the objects 2 and 3 with A = 3, the upper; their relation is symmetric or on(3, 2)."""
+    return [replace(label, a=3, b=2) for label in truth if {label.a, label.b} == {2, 3}]
+
+
 def pair_rows(name: str, cloud: LabelledCloud, truth: Sequence[PairLabel]) -> list[Row]:
-    """A row for each pair of objects with a label of confidence 2 or 3.
+    """A row for each pair of objects of the cloud with a label of confidence 2 or 3.
 
     Returns
     -------
     list of dict
-        ``scene``, ``a``, ``b``, ``relation``, ``confidence``: the truth. ``pair`` is (a, b) with a < b, and all
-        of the rest is in that order: ``gap`` (metres, None for a pair that is not near, which has nothing else);
-        ``contacts`` by kernel, on either side ``[x, y, z, support vectors]`` of each contact, none dropped;
-        ``features`` of both orders; ``peers``, the description of both orders by each of `BESIDE_US`.
+        ``scene``, ``a``, ``b``, ``relation``, ``confidence``: the truth, A and B in its order. ``centres`` leads
+        from B's centre of mass to A's, metres; ``gap``, metres, None for a pair that is not near; ``contacts`` by
+        kernel: of ``a`` and of ``b``, ``[x, y, z, support vectors]`` of each contact, strongest first, none
+        dropped; empty where the pair is not near.
     """
     bare = without_table(cloud)
-    loose = [loose_settings(*kernel) for kernel in KERNELS]
-    standard, *others = interfaces_by_settings(bare, [DEFAULT_CONTACT_SETTINGS, *loose])
-    found = {(near.a, near.b): near for near in standard}
-    contacts = {kernel_name(*k): _contacts_by_pair(own) for k, own in zip(KERNELS, others, strict=True)}
-    features = pair_features(bare, tuple(found.values())).matrix
-    peers = {name: {(p.a, p.b): p.rows for p in PEERS[name]().describe_pairs(bare)} for name in BESIDE_US}
+    found = interfaces_by_settings(bare, [loose_settings(*kernel) for kernel in KERNELS])
+    thin = voxelised(bare, DEFAULT_CONTACT_SETTINGS.voxel).cloud
     rows = []
     for label in truth:
         if TABLE in (label.a, label.b) or label.confidence < LEAST_CONFIDENCE:
             continue
-        pair = (min(label.a, label.b), max(label.a, label.b))
-        row = {"scene": name, **vars(label), "pair": list(pair), "gap": None}
-        if pair in found:
-            at = list(found).index(pair)
-            row |= {
-                "gap": round(found[pair].gap, 6),
-                "contacts": {kernel: by_pair[pair] for kernel, by_pair in contacts.items()},
-                "features": _rounded(features[2 * at : 2 * at + 2]),
-                "peers": {name: _rounded(by_pair[pair]) for name, by_pair in peers.items()},
-            }
+        centres = thin.of(label.a).mean(axis=0) - thin.of(label.b).mean(axis=0)
+        row = {"scene": name, **vars(label), "centres": np.round(centres, 6).tolist(), "gap": None, "contacts": {}}
+        for kernel, pairs in zip(KERNEL_NAMES, found, strict=True):
+            for pair in pairs:
+                if {pair.a, pair.b} == {label.a, label.b}:
+                    row["gap"] = round(pair.gap, 6)
+                    row["contacts"][kernel] = contacts_of(pair, label.a)
         rows.append(row)
     return rows
+
+
+def network_pictures(worlds: Sequence[TabletopScene], rows: Sequence[Row]) -> list[dict]:
+    """The scene whose lower object comes nearest to three nodes: with every contact, and with strong ones."""
+    row = min(rows, key=lambda row: abs(len(row["contacts"].get(STANDARD, {}).get("b", ())) - 3))
+    cloud = next(only(world.cloud, (2, 3)) for world in worlds if world.name == row["scene"])
+    found = []
+    for settings in (loose_settings(*DEFAULT_CONTACT_SETTINGS.scales[0]), DEFAULT_CONTACT_SETTINGS):
+        between = interfaces(without_table(cloud), settings)
+        n = sum(len(one.contacts_a) for one in between)
+        kept = f"of at least {settings.min_support:g} support vectors" if settings.min_support else "every contact"
+        found.append(scene_row(Scene(cloud, between), f"{kept}: {n} node{'s' * (n != 1)} of the block"))
+    return found
+
+
+def contacts_of(found: Interface, first: int) -> dict[str, list]:
+    """``{"a": [[x, y, z, support vectors], …], "b": …}``, strongest first; `a` is the object `first`."""
+    sides = {found.a: found.contacts_a, found.b: found.contacts_b}
+    second = found.b if first == found.a else found.a
+    return {
+        side: [[*np.round(contact.position, 6).tolist(), contact.n_support] for contact in sides[label]]
+        for side, label in (("a", first), ("b", second))
+    }
+
+
+def loose_settings(length: float, cost: float) -> ContactSettings:
+    """A kernel, and no contact dropped for want of support vectors: who reads the rows may drop them."""
+    return replace(DEFAULT_CONTACT_SETTINGS, length=length, cost=cost, min_support=0.0)
 
 
 def data_sets(results: Sequence[Mapping]) -> dict[int | str, list[Row]]:
@@ -130,23 +169,6 @@ def data_sets(results: Sequence[Mapping]) -> dict[int | str, list[Row]]:
     return found
 
 
-def contacts_of(found: Interface) -> dict[str, list]:
-    """``{"a": [[x, y, z, support vectors], …], "b": …}``, strongest first."""
-    sides = {"a": found.contacts_a, "b": found.contacts_b}
-    return {
-        side: [[*_rounded(contact.position), contact.n_support] for contact in contacts]
-        for side, contacts in sides.items()
-    }
-
-
-def loose_settings(length: float, cost: float) -> ContactSettings:
-    """A kernel, and no contact dropped for want of support vectors: who reads the rows may drop them."""
-    return replace(DEFAULT_CONTACT_SETTINGS, length=length, cost=cost, min_support=0.0)
-
-
-def _contacts_by_pair(found: Sequence[Interface]) -> dict[tuple[int, int], dict]:
-    return {(pair.a, pair.b): contacts_of(pair) for pair in found}
-
-
-def _rounded(values: NDArray[np.float64]) -> list:
-    return np.round(values, 6).tolist()
+def simulated_sets(results: Sequence[Mapping]) -> list[list[Row]]:
+    """The rows of each simulated data set."""
+    return [rows for name, rows in data_sets(results).items() if isinstance(name, int)]

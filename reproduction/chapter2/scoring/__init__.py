@@ -1,4 +1,4 @@
-"""Scores of perception: relations, networks and times, with the panels that draw them.
+"""Scores of perception: relations, segmentations, networks and times.
 
-Start with `relation_scoring`; `pair_validation` cross-validates, `method_panels` draws.
+Start with `relation_scoring`; `pair_validation` classifies pairs by the thesis's nearest neighbours.
 """

@@ -1,32 +1,28 @@
-"""Cross-validation of pairs: by the thesis's nearest neighbours with A and B given, and by any relation model.
+"""Relations of pairs by the thesis's nearest neighbours, A and B given as in its pictures.
 
-The thesis gave each picture's two objects an order; a robot has to infer the order. This module does both. No pair
-is ever classified by a model that saw its scene. Thesis: §2.3.5, §2.4.1.
+No pair is ever classified by displacements of its own scene. Thesis: §2.3.5, §2.4.1.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
-from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, NONE, ON, PairLabel
-from lifelore.perception.pairs.pair_features import PairFeatures, column_names
-from lifelore.perception.pairs.scene_pairs import ScenePairs
-from lifelore.perception.peers.peer import DescribedPair
-from lifelore.perception.relations.relation import Relation
-from reproduction.chapter2.scenes.tabletop_pairs import STANDARD, Row
-from reproduction.chapter2.scoring.relation_scoring import BESIDE, CARRIED, JudgedPair
+from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, NONE, ON
+from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES, STANDARD, Row
+from reproduction.chapter2.scoring.relation_scoring import BESIDE, CARRIED
 
 THRESHOLD = 7
 """Fewest support vectors of a contact, as the thesis used (§2.3.4)."""
-DROPS = ("all but one", "weak")
-"""Which contacts are dropped: those below `THRESHOLD` except an object's strongest, or all below it."""
+THRESHOLDS = SCALED, FIXED = "scaled", "7"
+"""Which contacts are dropped. The thesis's 7 "is somewhat dependent on the resolution". *Scaled*, it is 7 on
+points 3 mm apart, but never above the support of an object's strongest contact; a fixed 7 may drop all."""
 WEIGHTS = ("equal", "inverse distance")
 BLOCK = 4_000_000
-"""Distances held at a time: without the threshold there are tens of thousands of displacements."""
+"""Distances computed at once; more costs memory, not time."""
 Rows = NDArray[np.int64]
 Points = NDArray[np.float64]
 
@@ -35,38 +31,37 @@ Points = NDArray[np.float64]
 class Reading:
     """The choices that the thesis leaves open between a picture and its vote.
 
-    The kernel's name; a rule of `DROPS`; a weight of `WEIGHTS` (of equal votes the first relation by name wins);
-    the length above which displacements do not vote, metres; and the number of neighbours.
+    The kernel's name; a rule of `THRESHOLDS`; a weight of `WEIGHTS` (of equal votes the first relation by name
+    wins); the length above which displacements do not vote, metres; and the number of neighbours.
     """
 
     kernel: str = STANDARD
-    drop: str = "all but one"
+    threshold: str = SCALED
     votes: str = "equal"
     omega: float | None = None
     k: int = 4
 
 
-AS_PRINTED = Reading(drop="weak")
-"""Every contact of fewer than `THRESHOLD` support vectors is dropped, as the thesis says, whatever is left."""
+CONTACT_READINGS = [Reading(*choice) for choice in product(KERNEL_NAMES, THRESHOLDS)]
+"""Every kernel with every threshold."""
 
 
-def displacements(row: Row, kernel: str = STANDARD, drop: str = "all but one") -> Points:
-    """χ_a - χ_b between all contacts of a row in the truth's order, ``(m, 3)``, metres; none for far pairs."""
+def displacements(row: Row, kernel: str = STANDARD, threshold: str = SCALED) -> Points:
+    """χ_a - χ_b between all contacts of a row, ``(m, 3)``, metres; none for far pairs."""
     if row["gap"] is None:
         return np.empty((0, 3))
     places = []
     for side in ("a", "b"):
         contacts = row["contacts"][kernel][side]
         strong = [contact for contact in contacts if contact[3] >= THRESHOLD]
-        kept = strong or (contacts[:1] if drop == "all but one" else [])
+        kept = strong or (contacts[:1] if threshold == SCALED else [])
         places.append(np.array(kept).reshape(-1, 4)[:, :3])
-    moved = (places[0][:, None] - places[1][None]).reshape(-1, 3)
-    return moved if row["a"] == row["pair"][0] else -moved
+    return (places[0][:, None] - places[1][None]).reshape(-1, 3)
 
 
-def joined_displacements(rows: Sequence[Row], kernel: str, drop: str) -> tuple[Points, Rows]:
+def joined_displacements(rows: Sequence[Row], kernel: str, threshold: str) -> tuple[Points, Rows]:
     """The displacements of all rows, ``(m, 3)``, and the number of the row of each, ``(m,)``."""
-    each = [displacements(row, kernel, drop) for row in rows]
+    each = [displacements(row, kernel, threshold) for row in rows]
     return np.concatenate(each), np.repeat(np.arange(len(rows)), [len(moved) for moved in each])
 
 
@@ -104,11 +99,11 @@ def united(labels: set[str]) -> str:
 def votes_of_neighbours(
     rows: Sequence[Row], reading: Reading = Reading(), train: NDArray[np.bool_] | None = None
 ) -> Votes:
-    """The k nearest displacements of other scenes vote on each displacement, A and B given.
+    """The k nearest displacements of other scenes vote on each displacement.
 
     `train` ``(rows,)`` names the rows to learn from; only the others are classified. Default: leave one scene out.
     """
-    return votes_on(*joined_displacements(rows, reading.kernel, reading.drop), rows, reading, train)
+    return votes_on(*joined_displacements(rows, reading.kernel, reading.threshold), rows, reading, train)
 
 
 def votes_on(
@@ -150,79 +145,3 @@ def _nearest(moved: Points, asked: Rows, scene: Rows, known: NDArray[np.bool_], 
         nearest[start : start + lot] = np.take_along_axis(few, order, axis=1)
         away[start : start + lot] = np.take_along_axis(near, order, axis=1)
     return nearest, away
-
-
-def judged_row(row: Row, predicted: Relation | None) -> JudgedPair:
-    """A row beside its predicted relation."""
-    return JudgedPair(row["scene"], label_of(row), predicted, gap_of(row))
-
-
-def in_given_order(rows: Sequence[Row], relations: Sequence[str]) -> list[JudgedPair]:
-    """Predicted relations of pairs whose order was given, beside the true ones."""
-    pairs = zip(rows, relations, strict=True)
-    return [judged_row(row, Relation(row["a"], row["b"], name, 1.0, gap_of(row))) for row, name in pairs]
-
-
-def cross_validated(
-    rows: Sequence[Row], new_model: Callable[[], Any], look: Callable[[Row], Any], folds: int | None = None
-) -> list[JudgedPair]:
-    """Every row classified by a model that learnt from the scenes of the other folds; the direction is inferred.
-
-    ``new_model()`` is a fresh `RelationClassifier` or peer; ``look(row)`` is a row as the model sees a scene,
-    `as_scene` or `as_seen` of a peer's name. Scenes are dealt to the folds in turn; default: one scene a fold.
-    """
-    scene = np.unique([row["scene"] for row in rows], return_inverse=True)[1]
-    fold = scene if folds is None else scene % folds
-    views = [look(row) if row["gap"] is not None else None for row in rows]
-    found = {}
-    for number in np.unique(fold):
-        train, test = (np.flatnonzero(own).tolist() for own in (fold != number, fold == number))
-        lessons, asked = ([(rows[i], views[i]) for i in chosen] for chosen in (train, test))
-        found |= dict(zip(test, classified(new_model(), lessons, asked), strict=True))
-    return [found[i] for i in range(len(rows))]
-
-
-def classified(
-    model: Any, lessons: Sequence[tuple[Row, Any]], asked: Sequence[tuple[Row, Any]]
-) -> list[JudgedPair]:
-    """The rows `asked` as the model classifies them that learnt the lessons; far pairs are not predicted.
-
-    Each is a row and its view, as the model sees it; the view of a far pair is None.
-    """
-    near = [(view, [label_of(row)]) for row, view in lessons if view is not None]
-    if near and any(view is not None for _, view in asked):
-        model.fit_pairs(*map(list, zip(*near, strict=True)))
-        return [
-            judged_row(row, None if view is None else next(iter(model.predict_pairs(view)), None))
-            for row, view in asked
-        ]
-    return [judged_row(row, None) for row, _ in asked]
-
-
-def as_scene(row: Row, kernel: str = STANDARD) -> ScenePairs:
-    """A near row as `RelationClassifier` sees a scene; the order of its two objects is that of their numbers."""
-    a, b = row["pair"]
-    matrix = np.array(row["features"])
-    features = PairFeatures(column_names(2), matrix, np.array([[a, b], [b, a]]), np.full(2, row["gap"]))
-    moved = displacements(row, kernel)
-    return ScenePairs(features, (moved if row["a"] == a else -moved,))
-
-
-def as_seen(name: str) -> Callable[[Row], tuple[DescribedPair, ...]]:
-    """How the peer called `name` sees a near row."""
-
-    def look(row: Row) -> tuple[DescribedPair, ...]:
-        a, b = row["pair"]
-        return (DescribedPair(a, b, row["gap"], np.array(row["peers"][name])),)
-
-    return look
-
-
-def label_of(row: Mapping) -> PairLabel:
-    """The true label of a row."""
-    return PairLabel(row["a"], row["b"], row["relation"], row["confidence"])
-
-
-def gap_of(row: Mapping) -> float:
-    """Visible gap, metres; infinite for a pair that is not near."""
-    return np.inf if row["gap"] is None else row["gap"]

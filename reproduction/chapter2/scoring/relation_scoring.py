@@ -167,12 +167,6 @@ def less_rate(share: Estimate, rate: float) -> Estimate:
     return Estimate(share.value - rate, share.median - rate, ends, share.n)
 
 
-def score_row(scored: RelationScore, keys: Sequence[str] = ("exact", "on", "adjacent", "macro_f1")) -> dict:
-    """Estimates of a score as plain data, and its recalls."""
-    recall = {name: number.to_dict() for name, number in scored.recall.items()}
-    return {**{key: getattr(scored, key).to_dict() for key in keys}, "recall": recall}
-
-
 def wilson(right: int, n: int, z: float = 1.959964) -> tuple[float, float]:
     """Wilson's 95 % score interval of a share, within [0, 1]; n ≥ 1."""
     p = right / n

@@ -1,9 +1,9 @@
 """Mazes, experts, errands, agents and the thesis's advisor of claims C3.15 to C3.18, and estimates over mazes.
 
-The thesis draws one maze and does not say how its experts walked. The claims cross loop densities with kinds of
-experts, over many mazes; an interval is over mazes, since the errands of one maze share its experts. Experts take
-shortest paths, as converged policies do. Everything compared in an errand shares its start and its random numbers.
-Thesis: §3.7.2.
+The thesis draws one maze and prints neither how it loops nor where its experts began: readings cross loop
+densities with kinds of experts and α⁰, over many mazes. An interval is over mazes, since the errands of one maze
+share its experts. Experts take shortest paths, as converged policies do. There is one θ: it is advised, and it is
+M₁. Everything compared in an errand shares its start and its random numbers. Thesis: §3.7.2.
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,10 +24,15 @@ from lifelore.core.streams import stream
 from lifelore.domains.advice.advice_maze import advice_maze, errand, maze_goals
 from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
 from lifelore.domains.grids.grid_world import GridWorld
-from reproduction.engine.estimates import exact_value
 
-EXPERTS = ("walks", "few walks", "trips", "policies")
-"""Walks to each goal from anywhere, few of them, walks from other goals; or the best actions of every state."""
+EXPERTS = ("walks", "trips")
+"""Walks to each goal from anywhere, or from other goals."""
+NO_PSEUDO_COUNT = 1e-9
+"""α⁰ of M₁ where θ has none: an action that no expert took is next to impossible, not impossible."""
+EXPERT_WALKS = 20
+"""Walks of experts to each goal."""
+KAPPA, WINDOW = 0.5, 300
+"""The thesis's cost of advice, and the steps of H (§3.7.2.3)."""
 AGENTS = (*EXPLORERS, "optimal")
 ROUNDING = 12
 """Decimals of a maze's number: a difference that is only rounding must not pass for a certain gain."""
@@ -37,7 +42,7 @@ class Errand(NamedTuple):
     """One task of the maze: its goal, tables, the best moves of every state, and the steps left from there.
 
     best : (n_states, 4) bool, none at the goal
-    steps : (n_states,) float64, -1 where closed goals bar the way
+    steps : (n_states,) float64
     moves : (n_states, 4) int32, where each move leads, -1 where it is refused
     """
 
@@ -61,28 +66,33 @@ def maze_cells(settings: Mapping) -> list[dict]:
     return [{"loops": loops, "maze": number} for loops in settings["loops"] for number in range(settings["mazes"])]
 
 
-def grid_of(settings: Mapping) -> list[tuple[float, str]]:
-    """Loop densities crossed with kinds of experts."""
-    return list(product(settings["loops"], settings["experts"]))
+def choices_of(settings: Mapping) -> list[dict]:
+    """Kinds of experts crossed with α⁰, what is measured in one maze; the first makes the default."""
+    return [{"experts": e, "alpha0": a} for e, a in product(settings["experts"], settings["alpha0"])]
 
 
-def maze_of(settings: Mapping, cell: Mapping, seed: int, others: str = "pass") -> Maze:
-    """The maze of a cell; goals that closed other goals wall in have no errand."""
+def readings_of(settings: Mapping) -> list[tuple[dict, float, int]]:
+    """Every reading, its loop density and the place of its choice in `choices_of`; the default first."""
+    choices = choices_of(settings)
+    return [({"loops": n, **choice}, n, place) for n in settings["loops"] for place, choice in enumerate(choices)]
+
+
+def maze_of(settings: Mapping, cell: Mapping, seed: int) -> Maze:
+    """The maze of a cell."""
     names = (seed, "advice", f"{cell['loops']:g}", cell["maze"])
     world = advice_maze(stream(*names, "maze"), settings["size"], cell["loops"])
-    errands = [errand_to(world, int(goal), others) for goal in maze_goals(world)]
-    return Maze(world, {found.goal: found for found in errands if found.tables.starts.size}, names)
+    return Maze(world, {int(goal): errand_to(world, int(goal)) for goal in maze_goals(world)}, names)
 
 
-def errand_to(world: GridWorld, goal: int, others: str = "pass") -> Errand:
-    """The errand to a goal, from where it can be reached; equally good moves are all best."""
+def errand_to(world: GridWorld, goal: int) -> Errand:
+    """The errand to a goal; equally good moves are all best."""
     place = np.zeros(world.n_states, np.int8)
     place[goal] = GOAL
-    tables = errand(world, goal, others).tables()
-    moves = errand(world, goal, others).params[0]
+    task = errand(world, goal)
+    moves = task.params[0]
     steps = goal_distances(moves, place).astype(float)
     best = (moves >= 0) & (steps[moves] == steps[:, None] - 1) & (steps[:, None] > 0)
-    return Errand(goal, tables._replace(starts=tables.starts[steps[tables.starts] > 0]), best, steps, moves)
+    return Errand(goal, task.tables(), best, steps, moves)
 
 
 def errands_of(maze: Maze, n: int) -> list[Errand]:
@@ -92,17 +102,17 @@ def errands_of(maze: Maze, n: int) -> list[Errand]:
     return [maze.errands[goals[i]] for i in drawn]
 
 
-def goal_models_of(settings: Mapping, maze: Maze, experts: str) -> list[GoalModel]:
-    """The goal models of experts of a kind, one for each goal."""
-    if experts == "policies":
-        return [GoalModel.from_best_actions(e.best, [e.goal], e.steps) for e in maze.errands.values()]
-    n, models = settings["few_walks" if experts == "few walks" else "expert_walks"], []
+def goal_models_of(maze: Maze, experts: str, alpha0: float) -> list[GoalModel]:
+    """The goal models of experts of a kind, one for each goal; θ has `alpha0`, advised or not."""
+    models = []
     for goal, found in maze.errands.items():
         random = stream(*maze.names, "experts", experts, goal)
         others = np.array([other for other in maze.errands if other != goal])
-        starts = others if experts == "trips" else found.tables.starts
-        walks = [expert_walk(maze.world, found, int(start), random) for start in random.choice(starts, n)]
-        models.append(GoalModel.from_trajectories(walks, maze.world.n_states, 4, [goal]))
+        starts = random.choice(others if experts == "trips" else found.tables.starts, EXPERT_WALKS)
+        walks = [expert_walk(maze.world, found, int(start), random) for start in starts]
+        in_prior = max(alpha0, NO_PSEUDO_COUNT)
+        model = GoalModel.from_trajectories(walks, maze.world.n_states, 4, [goal], in_prior)
+        models.append(replace(model, advised_alpha0=alpha0))
     return models
 
 
@@ -116,13 +126,10 @@ def expert_walk(world: GridWorld, found: Errand, start: int, random: np.random.G
     return Trajectory(np.array(states), np.array(actions))
 
 
-def thesis_advisor(
-    settings: Mapping, purposes: Sequence[GoalModel], kappa: float | None = None, alpha0: float = 0.0
-) -> Advisor:
-    """M₁ pooled over all goals, M₂ uniform; `alpha0` is that of the advice."""
-    kappa = settings["kappa"] if kappa is None else kappa
-    pooled = replace(GoalModel.pooled(purposes), advised_alpha0=alpha0)
-    return Advisor([pooled], None, AdviceSettings(kappa, settings["window"]))
+def thesis_advisor(purposes: Sequence[GoalModel], kappa: float = KAPPA) -> Advisor:
+    """M₁ pooled over all goals, M₂ uniform."""
+    pooled = replace(GoalModel.pooled(purposes), advised_alpha0=purposes[0].advised_alpha0)
+    return Advisor([pooled], None, AdviceSettings(kappa, WINDOW))
 
 
 def policy_of(world: GridWorld, agent: str, found: Errand) -> NDArray[np.float64]:
@@ -157,15 +164,14 @@ def walks_of(
     settings: Mapping,
     maze: Maze,
     policies: Sequence[NDArray[np.float64]],
-    advisor: Advisor | Mapping[int, Advisor],
+    advisor: Advisor,
     heeds: bool = True,
 ) -> list[Walk]:
-    """An agent's walks on all errands, with a policy for each; `advisor` is the same for all, or by goal."""
-    walks = []
-    for number, found in enumerate(errands_of(maze, settings["tasks"])):
-        own = advisor[found.goal] if isinstance(advisor, Mapping) else advisor
-        walks.append(walk(maze, found, policies[number], own, number, settings["max_steps"], heeds))
-    return walks
+    """An agent's walks on all errands, with a policy for each."""
+    return [
+        walk(maze, found, policies[number], advisor, number, settings["max_steps"], heeds)
+        for number, found in enumerate(errands_of(maze, settings["tasks"]))
+    ]
 
 
 def maze_estimate(values: ArrayLike) -> Estimate:
@@ -175,8 +181,3 @@ def maze_estimate(values: ArrayLike) -> Estimate:
     if found.ci95 is None and len(values) >= 3:
         found = replace(found, ci95=(found.value, found.value))
     return found
-
-
-def grid_share(answers: Sequence[bool]) -> Estimate:
-    """Share of true answers among the cells of a grid."""
-    return exact_value(float(np.mean(answers)), len(answers))

@@ -84,7 +84,6 @@ def _counts(world: GridWorld, prior: ActionPrior, goals: NDArray[np.int64]) -> d
         "actions": useful.size,
         "useful": int(useful.sum()),
         "passable": int(passable.sum()),
-        "useful_collisions": int((useful & ~passable).sum()),
         "useful_with_goal_rows": int(with_goals.sum()),
     }
 

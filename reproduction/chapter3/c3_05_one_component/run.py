@@ -1,89 +1,157 @@
-"""Cells of C3.5, and of C3.6: a sequence of factory tasks, each learnt with the prior of all before it.
+"""C3.5, and C3.6: a sequence of factory tasks, each learnt with the prior of all before it.
 
-There are only nine tasks of one component, so that at the end all have been met. Thesis: §3.4.3, Figure 3.8.
+There are only nine tasks of one component, so that at the end all have been met. The thesis does not say whose
+policies count: exact optimal ones, or those that the learner ends with. Thesis: §3.4.3, Figures 3.8 and 3.9.
 """
 
-from collections.abc import Mapping
-from functools import cache
-from itertools import product
+from collections.abc import Iterator, Mapping, Sequence
+from math import comb
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.core.errors import InputError
-from lifelore.core.planning.planning import learnt_best_actions
-from reproduction.chapter3.factory import learning
-from reproduction.chapter3.factory.learning import LEARNT, PLAIN, learn_task, problem_of, tasks_of
+from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
+from reproduction.chapter3.factory import comparison, learning
+from reproduction.chapter3.factory.comparison import UNIFORM, is_default
+from reproduction.chapter3.factory.learning import LEARNT, problem_of, tasks_of, tried_actions, with_pseudo_count
 from reproduction.chapter3.learning.schedules import schedule_of
-from reproduction.engine.grid import run_grid
+from reproduction.engine.grid import Cell, Grid
+from reproduction.engine.results_table import ResultsTable, curve_of
 
-SOURCES = ("exact", "own")
-"""The policies that are counted: exact optimal ones, or those that the learner ends with."""
+SOURCES = ("exact", "learnt")
+N_COMPONENTS = 9
+shared = (
+    "discount", "prior_tasks", "episodes", "learning_rate", "late", "encoding", "schedule", "max_steps", "ties",
+    "alpha0", "source",
+)  # fmt: skip
+
+
+def grid_of(settings: Mapping) -> Grid:
+    """The grid: codes of states × schedules, every other choice alone."""
+    return comparison.grid_of(settings, ("encoding", "schedule"), ("max_steps", "ties", "alpha0", "source"))
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """The sequence of each run for each number of components; the grid for the first of them."""
-    runs = range(settings["runs"])
-    series = [{"kind": "series", "components": k, "run": run} for k in settings["components"] for run in runs]
-    return series + [{"kind": "grid", "run": run} for run in runs]
+    """A sequence for each run and number of components."""
+    return [{"components": k, "run": run} for k in settings["components"] for run in range(settings["runs"])]
+
+
+def windows(settings: Mapping) -> tuple[range, range]:
+    """The first tasks with a prior, and the last ones: at most ``late`` each."""
+    n = settings["prior_tasks"] + 1
+    length = min(settings["late"], n - 1)
+    return range(1, 1 + length), range(n - length, n)
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One run: the sequence at the default, or its last task with every choice left open."""
-    found = _series(settings, cell, seed) if cell["kind"] == "series" else _grid(settings, cell, seed)
-    return {**cell, **found}
+    """Mean reward of an episode in each task, by method and choices; task n has n tasks before it.
 
-
-def _series(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Mean reward of an episode in each task, (prior_tasks + 1,) a method; task n has n tasks before it."""
-    default, k, run = settings["default"], cell["components"], cell["run"]
-    schedule = schedule_of(settings, default["schedule"])
+    At the default every task is learnt, elsewhere those of the `windows`; the others are None.
+    """
+    k, run, grid = cell["components"], cell["run"], grid_of(settings)
     tasks = tasks_of(settings, seed, k, run, settings["prior_tasks"] + 1)
-    keys = product(SOURCES, settings["encodings"])
-    priors = {key: ActionPrior(learning.N_ACTIONS, default["alpha0"]) for key in keys}
-    rewards: dict[str, list[float]] = {PLAIN: [], **{" ".join(key): [] for key in priors}}
-    optimal, seen = [], []
+    asked = {n for window in windows(settings) for n in window}
+    found = [{"method": m, **how, "rewards": []} for m in (UNIFORM, LEARNT) for how in grid.cells_of(m)]
+    priors = {
+        (source, code): ActionPrior(learning.N_ACTIONS, 1.0) for source in SOURCES for code in settings["encoding"]
+    }
+    optimal = []
     for n, components in enumerate(tasks):
         problem = problem_of(settings, components, (seed, "factory", k, run, n))
-        rewards[PLAIN].append(float(learn_task(problem, None, schedule)[0].rewards.mean()))
         optimal.append(problem.solved.optimal_reward)
-        seen.append(components in tasks[:n])
-        for (source, encoding), prior in priors.items():
-            rows = learning.rows_of(problem, prior, encoding, default["ties"])
-            curve, learner = learn_task(problem, rows, schedule)
-            rewards[f"{source} {encoding}"].append(float(curve.rewards.mean()))
-            best = problem.solved.best if source == "exact" else learnt_best_actions(learner.q)
-            prior.update(learning.contexts_of(problem, encoding), best)
-    return {"rewards": rewards, "optimal": optimal, "seen": seen, "met": len(set(tasks[:-1]))}
-
-
-def _grid(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Mean reward of an episode in the sequence's last task, with priors of few and of all tasks before it."""
-    k, run, last = settings["components"][0], cell["run"], settings["prior_tasks"]
-    tasks = tasks_of(settings, seed, k, run, last + 1)
-    problem = problem_of(settings, tasks[last], (seed, "factory", k, run, last))
-
-    @cache
-    def prior_of(encoding: str, n: int) -> ActionPrior:
-        return learning.exact_prior([learning.solved(t, settings["discount"]) for t in tasks[:n]], encoding, 1.0)
-
-    def numbers(method: str, choice: Mapping) -> dict:
-        rewards = []
-        for n in settings["grid_tasks"]:
+        own = None
+        for record in found:
+            if not (n in asked or is_default(grid, record, but=["source"])):
+                record["rewards"].append(None)
+                continue
             rows = None
-            if method == LEARNT:
-                prior = learning.with_pseudo_count(prior_of(choice["encoding"], n), choice["alpha0"])
-                rows = learning.rows_of(problem, prior, choice["encoding"], choice["ties"])
-            curve, _ = learn_task(problem, rows, schedule_of(settings, choice["schedule"]))
-            rewards.append(float(curve.rewards.mean()))
-        return {"rewards": rewards}
+            if record["method"] == LEARNT:
+                prior = with_pseudo_count(priors[record["source"], record["encoding"]], record["alpha0"])
+                rows = learning.rows_of(problem, prior, record["encoding"], record["ties"])
+            schedule = schedule_of({**settings, "max_steps": record["max_steps"]}, record["schedule"])
+            curve, learner = learning.learn_task(problem, rows, schedule)
+            record["rewards"].append(float(curve.rewards.mean()))
+            if record["source"] == "learnt":
+                own = tried_actions(learner, problem.solved.task.completed)
+        for (source, encoding), prior in priors.items():
+            best = problem.solved.best if source == "exact" else own
+            if best is not None:
+                prior.update(learning.contexts_of(problem, encoding), best)
+    seen = [components in tasks[:n] for n, components in enumerate(tasks)]
+    return {**cell, "found": found, "optimal": optimal, "seen": seen, "met": len(set(tasks[:-1]))}
 
-    found = list(run_grid(learning.grid_of(settings), "prior", PLAIN, (LEARNT,), numbers))
-    return {"found": found, "optimal": problem.solved.optimal_reward}
+
+class Sequences(NamedTuple):
+    """The sequences of one number of components in one cell of the grid, arrays (n_runs, n_tasks)."""
+
+    gain: NDArray[np.float64]
+    """Reward of an episode beyond that from scratch."""
+    distance: NDArray[np.float64]
+    """From scratch to the optimum."""
+
+    @classmethod
+    def of(cls, results: Sequence[Mapping], grid: Grid, cell: Mapping) -> "Sequences":
+        """The sequences of `results`, all of the same number of components."""
+        table = ResultsTable.nested(results, "found", keys=("method", *grid.default))
+        learnt, uniform = (table.values("rewards", **grid.where(m, cell)) for m in (LEARNT, UNIFORM))
+        return cls(learnt - uniform, np.array([result["optimal"] for result in results]) - uniform)
+
+    def share(self, tasks: Sequence[int]) -> NDArray[np.float64]:
+        """The gain in some tasks as a share of the distance there, (n_runs,)."""
+        tasks = list(tasks)
+        return self.gain[:, tasks].sum(axis=1) / self.distance[:, tasks].sum(axis=1)
+
+    def numbers(self, settings: Mapping, seen: NDArray[np.bool_]) -> dict[str, Estimate]:
+        """Shares of the distance: the late gain, the late gain less the first, and the late gain in new tasks."""
+        first, late = map(list, windows(settings))
+        gain, room = self.gain[:, late].mean(axis=1), self.distance[:, late].mean(axis=1)
+        found = {
+            "gain_late": ratio_estimate(gain, room),
+            "growth": ratio_estimate(gain - self.gain[:, first].mean(axis=1), room),
+        }
+        late_of_runs = zip(self.gain[:, late], self.distance[:, late], ~seen[:, late], strict=True)
+        new = [(g[unseen].mean(), d[unseen].mean()) for g, d, unseen in late_of_runs if unseen.any()]
+        return {**found, "gain_new": ratio_estimate(*zip(*new, strict=True))} if new else found
 
 
-def check(settings: Mapping) -> None:
-    """Refuse late tasks that overlap the first ones, and numbers of tasks that do not rise."""
-    n_tasks, (few, many) = settings["prior_tasks"], settings["grid_tasks"]
-    if 2 * settings["late"] > n_tasks:
-        raise InputError(f"late must be at most half of prior_tasks ({n_tasks}), got {settings['late']}")
-    if few >= many:
-        raise InputError(f"grid_tasks must be two numbers, rising, got {settings['grid_tasks']}")
+def of_components(results: Sequence[Mapping], k: int) -> list[Mapping]:
+    """The results with a number of components."""
+    return [result for result in results if result["components"] == k]
+
+
+def seen_of(results: Sequence[Mapping]) -> NDArray[np.bool_]:
+    """Whether each task was met before, (n_runs, n_tasks)."""
+    return np.array([result["seen"] for result in results])
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Gains at the default, and how many tasks were met."""
+    k, grid = settings["components"][0], grid_of(settings)
+    own = of_components(results, k)
+    seen = seen_of(own)
+    return {
+        **Sequences.of(own, grid, grid.default).numbers(settings, seen),
+        "late_tasks_seen": mean_estimate(seen[:, list(windows(settings)[1])].mean(axis=1)),
+        "share_of_tasks_met": mean_estimate([result["met"] / comb(N_COMPONENTS, k) for result in own]),
+    }
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:
+    """The gains in every cell of the grid."""
+    own, grid = of_components(results, settings["components"][0]), grid_of(settings)
+    for cell in grid.cells:
+        yield cell, Sequences.of(own, grid, cell).numbers(settings, seen_of(own))
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Mean reward and its standard deviation by number of prior tasks."""
+    own, grid = of_components(results, settings["components"][0]), grid_of(settings)
+    table = ResultsTable.nested(own, "found", keys=("method", *grid.default))
+    found = {method: table.values("rewards", **grid.where(method, grid.default)) for method in (UNIFORM, LEARNT)}
+    found["optimal"] = np.array([result["optimal"] for result in own])
+    return [
+        {"curve_of": name, **curve_of(values, digits=1, parts=("mean", "deviation"))}
+        for name, values in found.items()
+    ]

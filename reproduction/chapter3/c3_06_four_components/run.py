@@ -3,17 +3,55 @@
 Thesis: §3.4.3, Figure 3.9.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.core.metrics import Estimate, mean_estimate
 from reproduction.chapter3.c3_05_one_component import run as one_component
-from reproduction.chapter3.c3_05_one_component.run import cells, run_cell
+from reproduction.chapter3.c3_05_one_component.run import (
+    Sequences,
+    cells,
+    grid_of,
+    of_components,
+    rows,
+    run_cell,
+    shared,
+    windows,
+)
+from reproduction.engine.grid import Cell
 
-__all__ = ["cells", "check", "run_cell"]
+__all__ = ["cells", "check", "measure", "readings", "rows", "run_cell", "shared"]
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The gains of C3.5 for four components, the late gain of one, and how the two differ."""
+    many, one = _late_shares(settings, results, grid_of(settings).default)
+    compared = {"gain_less_one_component": mean_estimate(many - one), "gain_of_one": mean_estimate(one)}
+    return {**one_component.measure(settings, results), **compared}
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:
+    """The same in every cell of the grid."""
+    for cell, found in one_component.readings(settings, results):
+        many, one = _late_shares(settings, results, cell)
+        yield cell, {**found, "gain_less_one_component": mean_estimate(many - one)}
+
+
+def _late_shares(
+    settings: Mapping, results: Sequence[Mapping], cell: Mapping
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The late gains as shares of the distance, (n_runs,): of four components, and of one."""
+    grid, late = grid_of(settings), windows(settings)[1]
+    many, one = (
+        Sequences.of(of_components(results, k), grid, cell).share(late) for k in settings["components"][:2]
+    )
+    return many, one
 
 
 def check(settings: Mapping) -> None:
-    """Refuse settings without one component to compare with."""
-    one_component.check(settings)
-    if settings["components"][1] != 1:
-        raise InputError(f"components must be a number and 1 to compare it with, got {settings['components']}")
+    """Refuse settings without a second number of components to compare with."""
+    if len(settings["components"]) < 2:
+        raise InputError(f"components must be two numbers to compare, got {settings['components']}")

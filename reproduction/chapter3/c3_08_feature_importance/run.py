@@ -1,11 +1,11 @@
-"""Cells of C3.8: how much entropy of the action prior each feature saves, in each of the sets φ1 to φ4.
+"""C3.8: how much entropy of the action prior each feature saves, in each of the sets φ1 to φ4.
 
 The thesis counts policies and does not say of which states. Counted here: every state of a task, or only those on
 an optimal way from the start to the end (what a demonstration shows); all tied-best actions (Eq. 3.1), or the
 first of them. Thesis: §3.3.2, Alg. 5, §3.4.5, Figure 3.12.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
 import numpy as np
@@ -14,18 +14,21 @@ from numpy.typing import NDArray
 from lifelore.action.features.counted_features import CountedFeatures
 from lifelore.action.features.feature_selection import independent_features
 from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.domains.factory.contexts import PHI
-from reproduction.chapter3.factory import modified_tasks
-from reproduction.chapter3.factory.modified_tasks import FULL_SET, Problem
-from reproduction.engine.grid import Grid
+from reproduction.chapter3.factory import comparison, modified_tasks
+from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET, Problem
+from reproduction.engine.grid import Cell, Grid
+from reproduction.engine.results_table import ResultsTable
 
 KEYS = ("policies", "over", "actions")
-"""The choices left open that make a cell of the grid."""
+GAPS = {"gap_phi4": ("phi4", "phi4"), "gap_phi3": ("phi3", "phi3"), "gap_phi2_to_phi1": ("phi2", "phi1")}
+"""Measures: the set with N, S, E and W, and that of the features they are compared with."""
 
 
 def grid_of(settings: Mapping) -> Grid:
     """The grid: number of policies × states that count × actions that count."""
-    return Grid.crossed(settings, KEYS, {key: key for key in KEYS})
+    return comparison.grid_of(settings, KEYS)
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
@@ -42,7 +45,7 @@ def _found(settings: Mapping, own: tuple) -> Iterator[dict]:
             states = counted_states(problem, over)
             prior.update(codes[states], counted_actions(problem.best[states], actions))
             if i + 1 in settings["policies"]:
-                yield {"policies": i + 1, "over": over, "actions": actions, **importance(prior)}
+                yield {"policies": i + 1, "over": over, "actions": actions, "increase": importance(prior)}
 
 
 def counted_states(problem: Problem, over: str) -> NDArray[np.int64]:
@@ -55,14 +58,60 @@ def counted_actions(best: NDArray[np.bool_], actions: str) -> NDArray[np.bool_]:
     return best & (best.cumsum(axis=1) == 1) if actions == "first" else best
 
 
-def importance(prior: ActionPrior) -> dict:
-    """Δ in bits of every feature of each set, H of the set, and what Alg. 5 chooses from it."""
-    found: dict[str, dict] = {"increase": {}, "entropy": {}, "chosen": {}}
+def importance(prior: ActionPrior) -> dict[str, dict[str, float]]:
+    """Δ in bits of every feature of each set, from Alg. 5."""
+    found = {}
     for name, names in PHI.items():
         codes = FULL_SET.coarser(prior.contexts, names)
         counted = CountedFeatures(FULL_SET.subset(names), codes, prior.counts(prior.contexts))
-        choice = independent_features(counted)
-        found["increase"][name] = {feature: round(delta, 6) for feature, delta in choice.increase.items()}
-        found["entropy"][name] = round(choice.full_entropy, 6)
-        found["chosen"][name] = list(choice.names)
+        increase = independent_features(counted).increase
+        found[name] = {feature: round(delta, 6) for feature, delta in increase.items()}
     return found
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Gaps at the default, and the least Δ of N, S, E and W and the largest other Δ in φ4, bits."""
+    default = grid_of(settings).default
+    ours, others = _least_and_largest(results, default, "phi4", "phi4")
+    return {
+        **_gaps(results, default),
+        "least_of_four": mean_estimate(ours),
+        "largest_other": mean_estimate(others),
+    }
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:
+    """The gaps in every cell of the grid."""
+    for cell in grid_of(settings).cells:
+        yield cell, _gaps(results, cell)
+
+
+def _gaps(results: Sequence[Mapping], cell: Mapping) -> dict[str, Estimate]:
+    """By how much the least of N, S, E, W exceeds the largest other, bits."""
+    compared = {name: _least_and_largest(results, cell, *sets) for name, sets in GAPS.items()}
+    return {name: mean_estimate(ours - others) for name, (ours, others) in compared.items()}
+
+
+def _least_and_largest(
+    results: Sequence[Mapping], cell: Mapping, ours: str, theirs: str
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The least Δ of N, S, E, W in a set, and the largest Δ of the other features of another, (n_runs,) each."""
+    increases = _increases(results, cell)
+    least = [min(run[ours][feature] for feature in CARDINALS) for run in increases]
+    others = [feature for feature in PHI[theirs] if feature not in CARDINALS]
+    return np.array(least), np.array([max(run[theirs][feature] for feature in others) for run in increases])
+
+
+def _increases(results: Sequence[Mapping], cell: Mapping) -> list[Mapping[str, Mapping[str, float]]]:
+    table = ResultsTable.nested(results, "found", keys=KEYS).select(**cell)
+    return [record["increase"] for record in table.records]
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Δ of each feature in each set at the default."""
+    increases = _increases(results, grid_of(settings).default)
+    return [
+        {"set": phi, "feature": name, **mean_estimate([run[phi][name] for run in increases]).to_dict()}
+        for phi, names in PHI.items()
+        for name in names
+    ]

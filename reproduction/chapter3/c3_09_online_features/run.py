@@ -1,97 +1,122 @@
-"""Cells of C3.9: rewards of the first and the last episode of each of thirty tasks, by the prior in use.
+"""C3.9, and C3.10: thirty tasks in modified factories, with all ten features and with features chosen anew.
 
-Nothing has converged by the last episode. The last tasks of each run are therefore also learnt on, to the end of
-``long_episodes`` and with ε annealed to zero, with the priors that the agents have by then.
-Thesis: §3.3.3, Alg. 6, §3.4.6, Figure 3.13.
+Kept of each task: rewards of the first and the last episode, by the prior in use, and the features chosen.
+Thesis: §3.3.3, Alg. 6, §3.4.6, Figures 3.13 and 3.14.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
-from reproduction.chapter3.factory import online_selection
-from reproduction.chapter3.factory.modified_tasks import learn_problem, problem_of
-from reproduction.chapter3.factory.online_selection import FULL, SELECTED, UNIFORM, Counting
+from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
+from reproduction.chapter3.factory import comparison
+from reproduction.chapter3.factory.comparison import UNIFORM
+from reproduction.chapter3.factory.modified_tasks import FULL_SET, learn_problem, problem_of
+from reproduction.chapter3.factory.online_selection import FULL, SELECTED, OnlineAgent
 from reproduction.chapter3.learning.schedules import schedule_of
-from reproduction.engine.curve_blocks import block_means
-from reproduction.engine.grid import READ_WITHOUT_PRIOR, Grid
+from reproduction.engine.grid import Cell, Grid
+from reproduction.engine.results_table import ResultsTable, curve_of
 
 METHODS = (UNIFORM, FULL, SELECTED)
-CHOICES = {"source": "sources", "schedule": "schedules", "ties": "ties", "max_steps": "max_steps"}
-"""The choices left open that make a cell of the grid, each with its setting."""
-KEYS = tuple(CHOICES)
-SOURCES = {
-    "learnt": Counting("learnt", "tried"),
-    "learnt, promising": Counting("learnt", "visited"),
-    "exact": Counting("exact", "all"),
+PARTS = ("first", "last")
+DRAWN = 10
+"""Runs in the figures, as many as in the thesis's; numbers rest on all runs."""
+PAIRS = {
+    "first_selected_minus_full": (SELECTED, FULL, "first"),
+    "first_full_minus_uniform": (FULL, UNIFORM, "first"),
+    "last_full_minus_uniform": (FULL, UNIFORM, "last"),
+    "last_selected_minus_uniform": (SELECTED, UNIFORM, "last"),
 }
-"""The policies that count, and the states in which they count."""
-ASKED = ("exact", "learnt")
-"""The sources that the first reading asks about."""
-OF_E4 = "learnt, promising"
-"""The source of the second reading's headlines: a learnt policy counts in states that promise a reward (E4)."""
+shared = (
+    "discount", "components", "tasks", "episodes", "learning_rate", "source", "schedule", "ties", "max_steps",
+    "alpha0",
+)  # fmt: skip
 
 
 def grid_of(settings: Mapping) -> Grid:
-    """All choices crossed: sources of policies × schedules of ε × ties × caps of an episode."""
-    return Grid.crossed(settings, KEYS, CHOICES, reads={UNIFORM: READ_WITHOUT_PRIOR})
+    """The grid: whose policies count × schedules, every other choice alone."""
+    return comparison.grid_of(settings, ("source", "schedule"), ("ties", "max_steps", "alpha0"))
 
 
-def first_grid_of(settings: Mapping) -> Grid:
-    """The first reading's part of the grid: the default, then every other choice one at a time."""
-    return Grid.crossed(settings, KEYS, {}, CHOICES, {UNIFORM: READ_WITHOUT_PRIOR})
+def table_of(settings: Mapping, results: Sequence[Mapping]) -> ResultsTable:
+    """The series of every method in every cell of the grid."""
+    return ResultsTable.nested(results, "found", keys=("method", *grid_of(settings).default))
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One run: rewards of first and last episodes, of every method in every cell of the grid."""
+    """One run: a series of tasks of every method in every cell of the grid."""
     grid = grid_of(settings)
-    found = [{"method": method, **choice} for method in METHODS for choice in grid.cells_of(method)]
-    agents = [_agent(settings, series) for series in found]
-    for series in found:
-        series |= {"first": [], "last": [], "n_features": []}
-    losses: dict[int, list] = {place: [] for place, series in enumerate(found) if learns_on(settings, series)}
+    found = [
+        {"method": method, **how, "first": [], "last": [], "completed": [], "chosen": []}
+        for method in METHODS
+        for how in grid.cells_of(method)
+    ]
+    agents = [
+        None
+        if how["method"] == UNIFORM
+        else OnlineAgent(how["method"] == SELECTED, how["source"], how["alpha0"], how["ties"])
+        for how in found
+    ]
     optimal = []
     for i in range(settings["tasks"]):
         problem = problem_of(settings, (seed, "C3.9", cell["run"], i))
         optimal.append(problem.optimal)
-        if i >= settings["tasks"] - settings["long_tasks"]:
-            for place, of_series in losses.items():
-                of_series.append(_loss_when_learnt_on(settings, problem, agents[place], found[place]["max_steps"]))
         for series, agent in zip(found, agents, strict=True):
             schedule = schedule_of({**settings, "max_steps": series["max_steps"]}, series["schedule"])
             curve = agent.learn(problem, schedule) if agent else learn_problem(problem, None, schedule)[0]
             series["first"].append(float(curve.rewards[0]))
             series["last"].append(float(curve.rewards[-1]))
-            series["n_features"].append(len(agent.chosen) if agent else 0)
-    for place, of_series in losses.items():
-        loss = np.mean(of_series, axis=0)
-        found[place] |= {"loss": block_means(loss), "loss_at_end": float(loss[-settings["long_last"] :].mean())}
+            series["completed"].append(float(curve.reached.mean()))
+            series["chosen"].append(mask_of(agent.chosen) if agent else 0)
     return {**cell, "optimal": optimal, "found": found}
 
 
-def learns_on(settings: Mapping, series: Mapping) -> bool:
-    """Whether a series is the default, whichever policies count; only these are learnt on."""
-    default = settings["default"]
-    return all(series[key] in (None, default[key]) for key in KEYS if key != "source")
+def mask_of(names: Sequence[str]) -> int:
+    """Chosen features as a number: bit i is set where the i-th of φ4 is chosen."""
+    return sum(1 << i for i, name in enumerate(FULL_SET.names) if name in names)
 
 
-def _loss_when_learnt_on(settings: Mapping, problem, agent, max_steps: int) -> np.ndarray:
-    """Reward below the optimum of each of ``long_episodes``, (long_episodes,); the agent counts nothing."""
-    rows = agent.rows(problem) if agent else None
-    how = {**settings, "episodes": settings["long_episodes"], "max_steps": max_steps}
-    curve, _ = learn_problem(problem, rows, schedule_of(how, settings["long_schedule"]))
-    return problem.optimal - curve.rewards
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The comparisons at the default, and the share of episodes that end by a completed task."""
+    grid, table = grid_of(settings), table_of(settings, results)
+    completed = [table.values("completed", **grid.where(m, grid.default)).mean(axis=1) for m in METHODS]
+    return {
+        **_numbers(results, grid, table, grid.default),
+        "completed": mean_estimate(np.mean(completed, axis=0)),
+    }
 
 
-def _agent(settings: Mapping, series: Mapping) -> online_selection.OnlineAgent | None:
-    if series["method"] == UNIFORM:
-        return None
-    counting, selects = SOURCES[series["source"]], series["method"] == SELECTED
-    return online_selection.OnlineAgent(selects, counting, settings["alpha0"], series["ties"])
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:
+    """The comparisons in every cell of the grid."""
+    grid, table = grid_of(settings), table_of(settings, results)
+    for cell in grid.cells:
+        yield cell, _numbers(results, grid, table, cell)
 
 
-def check(settings: Mapping) -> None:
-    """Refuse settings without the sources that the claim asks about."""
-    if not {*ASKED} <= {*settings["sources"]}:
-        raise InputError(f"sources must hold {' and '.join(ASKED)}, got {settings['sources']}")
+def _numbers(results: Sequence[Mapping], grid: Grid, table: ResultsTable, cell: Mapping) -> dict[str, Estimate]:
+    """Differences of rewards as shares of the distance from no prior's first episode to the optimum."""
+
+    def mean(method: str, part: str) -> NDArray[np.float64]:
+        """Over the tasks after the first, in which nobody has a prior; (n_runs,)."""
+        return table.values(part, **grid.where(method, cell))[:, 1:].mean(axis=1)
+
+    distance = np.array([np.mean(result["optimal"][1:]) for result in results]) - mean(UNIFORM, "first")
+    return {
+        name: ratio_estimate(mean(ours, part) - mean(theirs, part), distance)
+        for name, (ours, theirs, part) in PAIRS.items()
+    }
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Mean reward and its standard deviation in the first and the last episode of each task, by method."""
+    grid, table = grid_of(settings), table_of(settings, results[:DRAWN])
+    return [
+        {
+            "curve_of": method,
+            "part": part,
+            **curve_of(table.values(part, **grid.where(method, grid.default)), 1, ("mean", "deviation")),
+        }
+        for part in PARTS
+        for method in METHODS
+    ]

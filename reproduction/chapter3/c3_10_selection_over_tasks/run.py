@@ -1,60 +1,74 @@
-"""C3.10: features that Alg. 6 chooses after each of 30 tasks, by the policies and states that count.
+"""C3.10: the features that the agents of C3.9 choose after each of thirty tasks.
 
 Thesis: §3.3.3, Alg. 6, §3.4.6, Figure 3.14.
 """
 
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
 
-from reproduction.chapter3.factory.modified_tasks import FULL_SET, problem_of
-from reproduction.chapter3.factory.online_selection import Counting, OnlineAgent
-from reproduction.chapter3.learning.schedules import schedule_of
+import numpy as np
+from numpy.typing import NDArray
 
+from lifelore.core.metrics import Estimate, mean_estimate
+from reproduction.chapter3.c3_09_online_features.run import DRAWN, grid_of, mask_of, run_cell, shared, table_of
+from reproduction.chapter3.factory.comparison import is_default
+from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET
+from reproduction.chapter3.factory.online_selection import SELECTED
+from reproduction.engine.estimates import exact_share
+from reproduction.engine.grid import Cell
 
-class Series(NamedTuple):
-    """Counting and learning of one series of tasks.
+__all__ = ["measure", "readings", "rows", "run_cell", "shared"]
 
-    explores : whether it explores by its own prior; else uniformly
-    long : whether it learns each task for ``long_episodes`` rather than ``episodes``
-    """
-
-    counting: Counting
-    explores: bool = True
-    long: bool = False
+GOAL = mask_of(CARDINALS)
 
 
-SERIES = {
-    "exact": Series(Counting("exact", "all")),
-    "learnt": Series(Counting("learnt", "tried")),
-    "learnt, promising": Series(Counting("learnt", "visited")),
-    "exact, on the way": Series(Counting("exact", "way")),
-    "learnt, all states": Series(Counting("learnt", "all")),
-    "learnt longer": Series(Counting("learnt", "tried"), long=True),
-    "learnt, explored uniformly": Series(Counting("learnt", "tried"), explores=False),
-}
-"""The first reading reads the first two; the second the third, which counts as E4 says, and all as a grid."""
+def masks_of(settings: Mapping, results: Sequence[Mapping], cell: Mapping) -> NDArray[np.int64]:
+    """Sets chosen after each task in a cell of the grid as bit masks, (n_runs, n_tasks)."""
+    where = grid_of(settings).where(SELECTED, cell)
+    return table_of(settings, results).values("chosen", **where).astype(np.int64)
 
 
-def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One run: the features chosen after each task as a bit mask, and states counted of each policy."""
-    agents = {
-        name: OnlineAgent(True, use.counting, settings["alpha0"], settings["ties"]) for name, use in SERIES.items()
+def shares(masks: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Share of runs in which each feature is chosen, (10, n_tasks), from (n_runs, n_tasks) masks."""
+    bits = masks[:, :, None] >> np.arange(len(FULL_SET)) & 1
+    return bits.mean(axis=0).T
+
+
+def settled_after(masks: NDArray[np.int64]) -> list[int]:
+    """Number of tasks of each run after which the set is φ2 to the end; n_tasks + 1 where it never is."""
+    return [1 + max((np.flatnonzero(run != GOAL) + 1).tolist(), default=0) for run in masks]
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """How surely φ2 is chosen at the default, and after how many tasks."""
+    masks = masks_of(settings, results, grid_of(settings).default)
+    return {**numbers(masks, settings["last"]), "settled_after": mean_estimate(settled_after(masks))}
+
+
+def numbers(masks: NDArray[np.int64], last: int) -> dict[str, Estimate]:
+    """Shares of runs: φ2 after each of the `last` tasks; with its rarest feature; with the commonest other."""
+    at_end = dict(zip(FULL_SET.names, shares(masks)[:, -1], strict=True))
+    chosen = {name: (masks[:, -1] >> i & 1).tolist() for i, name in enumerate(FULL_SET.names)}
+    rarest = min(CARDINALS, key=at_end.__getitem__)
+    commonest = max((name for name in FULL_SET.names if name not in CARDINALS), key=at_end.__getitem__)
+    return {
+        "settled_share": exact_share((masks[:, -last:] == GOAL).all(axis=1).tolist()),
+        "rarest_of_four": exact_share(chosen[rarest]),
+        "commonest_other": exact_share(chosen[commonest]),
     }
-    chosen: dict[str, list[int]] = {name: [] for name in agents}
-    for i in range(settings["tasks"]):
-        problem = problem_of(settings, (seed, "C3.10", cell["run"], i))
-        for name, agent in agents.items():
-            series = SERIES[name]
-            if series.counting.source == "exact":
-                agent.count(problem, None)
-            else:
-                episodes = settings["long_episodes" if series.long else "episodes"]
-                schedule = schedule_of({**settings, "episodes": episodes}, settings["schedule"])
-                agent.learn(problem, schedule, explores=series.explores)
-            chosen[name].append(mask_of(agent.chosen))
-    return {**cell, "chosen": chosen}
 
 
-def mask_of(names) -> int:
-    """Chosen features as a number: bit i is set where the i-th of φ4 is chosen."""
-    return sum(1 << i for i, name in enumerate(FULL_SET.names) if name in names)
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:
+    """The same in every cell of the grid; an exact policy depends on no choice but which states count."""
+    grid = grid_of(settings)
+    for cell in grid.cells:
+        if cell["source"].startswith("learnt") or is_default(grid, cell, but=["source"]):
+            yield cell, numbers(masks_of(settings, results, cell), settings["last"])
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """The share of runs with each feature after each task at the default."""
+    found = shares(masks_of(settings, results[:DRAWN], grid_of(settings).default))
+    return [
+        {"feature": name, "shares": of_feature.tolist()}
+        for name, of_feature in zip(FULL_SET.names, found, strict=True)
+    ]

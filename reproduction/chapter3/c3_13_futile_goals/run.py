@@ -1,31 +1,32 @@
 """C3.13: how often exploration by a prior enters a goal that was futile in all tasks so far (Eq. 3.6).
 
 In a constructed world one action of one junction leads to the new goal, and all others are tied best there in
-every task: the worst case. Its tasks are goals along a chain, solved exactly. For a prior by percepts several
-junctions look alike, and only one of them has the new goal beside it. Random worlds, lattices and noise mazes
-have whatever their tasks make of them. Frequencies are those of the learner's own kernel, which learns nothing
-and starts again after every step. Thesis: §3.2.3, Eq. 3.6.
+every task: the worst case. Its tasks are goals along a chain, solved exactly. Random worlds, lattices and noise
+mazes have whatever their tasks make of them. Frequencies are those of the learner's own kernel, which learns
+nothing and starts again after every step. Thesis: §3.2.3, Eq. 3.6.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import binomtest
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import prior_rows
 from lifelore.action.priors.policy_counts import actions_to_count
 from lifelore.action.search.domain_reduction import domain_futile_states, futile_goal_probability
-from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import new_curve
-from lifelore.core.learning.q_learning import Rows, Schedule, learn, new_learner, uniform_rows
+from lifelore.core.learning.q_learning import Rows, Schedule, learn, new_learner
 from lifelore.core.mdp import TERMINAL, Tables
+from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.planning.planning import optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.grids.lattice import lattice
 from lifelore.domains.grids.noise_maze import noise_maze
+from reproduction.engine.estimates import exact_value, mean_or_unmeasured
 
 DISCOUNT = 0.95
 ROUNDING = 1e-12
@@ -40,20 +41,17 @@ class Constructed(NamedTuple):
     new_goal: int
 
 
-def constructed(n_actions: int, n_tasks: int, alike: int, leading: int) -> Constructed:
-    """Junctions 0 to `alike` - 1, a room after them, a chain of `n_tasks` goals, then the new goal.
+def constructed(n_actions: int, n_tasks: int, leading: int) -> Constructed:
+    """Junction 0, a room, a chain of `n_tasks` goals, then the new goal.
 
-    Action `leading` takes junction 0 to the new goal and keeps the other junctions where they are; every other
-    action of a junction leads to the room, and from there one way leads along the chain and back to junction 0.
+    Action `leading` takes the junction to the new goal, every other action to the room; from there one way leads
+    along the chain and back to the junction.
     """
-    room, new_goal = alike, alike + n_tasks + 1
-    follow = np.empty((new_goal + 1, n_actions), np.int32)
-    follow[:alike] = room
-    follow[:alike, leading] = np.arange(alike)
+    new_goal = n_tasks + 2
+    follow = np.repeat(np.arange(1, new_goal + 2, dtype=np.int32)[:, None], n_actions, axis=1)
     follow[0, leading] = new_goal
-    follow[room:new_goal] = np.arange(room + 1, new_goal + 1)[:, None]
     follow[[new_goal - 1, new_goal]] = 0
-    return Constructed(follow, list(range(room + 1, new_goal)), new_goal)
+    return Constructed(follow, list(range(2, new_goal)), new_goal)
 
 
 def goal_tables(follow: NDArray[np.int32], goal: int, starts) -> Tables:
@@ -78,35 +76,30 @@ def frequency(tables: Tables, rows: Rows, epsilon: float, draws: int, names: tup
 
 
 def constructed_cases(settings: Mapping, seed: int, run: int) -> Iterator[dict]:
-    """Every number of actions, α⁰, number of tasks and of junctions that look alike.
-
-    At the default also how often the action is taken where only a tenth of the steps explore and Q is 0.
-    """
-    default, draws = settings["default"], settings["draws"]
-    for n_actions, alike in product(settings["actions"], (1, *settings["alike"])):
+    """Every number of actions, α⁰ and number of tasks, none among them."""
+    draws, numbers = settings["draws"], sorted({0, *settings["tasks"]})
+    for n_actions in settings["actions"]:
         leading = int(stream(seed, "C3.13", run, "leading", n_actions).integers(n_actions))
-        world = constructed(n_actions, max(settings["tasks"]), alike, leading)
-        solved = [best_in(goal_tables(world.follow, goal, np.arange(alike)), goal) for goal in world.goals]
-        contexts = np.maximum(np.arange(len(world.follow)) - alike + 1, 0)  # junctions are one percept
-        tables = goal_tables(world.follow, world.new_goal, [0])
-        for alpha0, n_tasks in product(settings["alpha0"], sorted(settings["tasks"])):
+        world = constructed(n_actions, max(numbers), leading)
+        states, tables = np.arange(len(world.follow)), goal_tables(world.follow, world.new_goal, [0])
+        solved = [best_in(goal_tables(world.follow, goal, [0]), goal) for goal in world.goals]
+        for alpha0, n_tasks in product(settings["alpha0"], numbers):
             prior = ActionPrior(n_actions, alpha0)
             for best in solved[:n_tasks]:
-                prior.update(contexts, best)
-            names = (seed, "C3.13", run, alike, n_actions, str(alpha0), n_tasks)
-            case = {"actions": n_actions, "alike": alike, "alpha0": alpha0, "tasks": n_tasks}
-            case["formula"] = float(futile_goal_probability(n_actions, n_tasks * alike, alpha0))
-            case["prior"] = float(prior.probs(contexts[:1])[0, leading])
-            case["taken"] = frequency(tables, prior_rows(tables, contexts, prior.probs), 1.0, draws, names)
-            if alike == 1 and (n_actions, alpha0) == (default["actions"], default["alpha0"]):
-                for ties in ("uniform", "prior"):
-                    rows = prior_rows(tables, contexts, prior.probs, ties)
-                    case[f"taken_{ties}_ties"] = frequency(tables, rows, 0.1, draws, names)
-            yield case
+                prior.update(states, best)
+            names = (seed, "C3.13", run, n_actions, str(alpha0), n_tasks)
+            yield {
+                "actions": n_actions,
+                "alpha0": alpha0,
+                "tasks": n_tasks,
+                "formula": float(futile_goal_probability(n_actions, n_tasks, alpha0)),
+                "prior": float(prior.probs(states[:1])[0, leading]),
+                "taken": frequency(tables, prior_rows(tables, states, prior.probs), 1.0, draws, names),
+            }
 
 
-def world_of(kind: str, settings: Mapping, names: tuple) -> tuple[NDArray, NDArray, NDArray]:
-    """Successors, percepts and starts of a random world, a lattice or a noise maze.
+def world_of(kind: str, settings: Mapping, names: tuple) -> tuple[NDArray, NDArray]:
+    """Successors and starts of a random world, a lattice or a noise maze.
 
     It has few starts, so that much of it is futile.
     """
@@ -114,19 +107,18 @@ def world_of(kind: str, settings: Mapping, names: tuple) -> tuple[NDArray, NDArr
     if kind == "random":
         n_states, n_actions = settings["states"], int(random.choice([2, 4]))
         follow = random.integers(n_states, size=(n_states, n_actions)).astype(np.int32)
-        percepts = random.integers(max(2, n_states // 4), size=n_states)
     else:
         size = settings["size"]
         grid = lattice(size) if kind == "lattice" else noise_maze(random, size)
         here = np.arange(grid.n_states, dtype=np.int32)[:, None]
-        follow, percepts = np.where(grid.neighbour < 0, here, grid.neighbour).astype(np.int32), grid.percepts
+        follow = np.where(grid.neighbour < 0, here, grid.neighbour).astype(np.int32)
     starts = random.choice(len(follow), size=2, replace=False).astype(np.int32)
-    return follow, percepts, np.sort(starts)
+    return follow, np.sort(starts)
 
 
 def found_case(kind: str, settings: Mapping, names: tuple, n_tasks: int) -> dict | None:
-    """Actions that lead from kept states into goals futile so far, by both priors; None where there are none."""
-    (follow, percepts, starts), alpha0 = world_of(kind, settings, names), settings["default"]["alpha0"]
+    """Actions that lead from kept states into goals futile so far; None where there are none."""
+    (follow, starts), alpha0 = world_of(kind, settings, names), settings["alpha0"][0]
     n_states, n_actions = follow.shape
     goals = stream(*names, "goals").permutation(n_states)[:n_tasks].tolist()
     tasks = [goal_tables(follow, goal, starts) for goal in goals]
@@ -135,37 +127,14 @@ def found_case(kind: str, settings: Mapping, names: tuple, n_tasks: int) -> dict
     entering = ~futile[:, None] & futile[follow]
     if not entering.any():
         return None
-    probs = {}
-    for name, contexts in (("state", np.arange(n_states)), ("percept", percepts)):
-        prior = ActionPrior(n_actions, alpha0)
-        for best in policies:
-            prior.update(contexts, best)
-        probs[name] = prior.probs(contexts)
-    percept = np.unique(percepts, return_inverse=True)[1]
-    alike = np.bincount(percept)[percept]
+    prior = ActionPrior(n_actions, alpha0)
+    for best in policies:
+        prior.update(np.arange(n_states), best)
+    probs = prior.probs(np.arange(n_states))[entering]
     bound = float(futile_goal_probability(n_actions, n_tasks, alpha0))
-    pooled = futile_goal_probability(n_actions, n_tasks * alike, alpha0)[:, None]
-
-    def below(name, least):
-        return int((probs[name] < least * (1 - ROUNDING))[entering].sum())
-
-    s, a = map(int, np.unravel_index(np.where(entering, probs["state"], 2.0).argmin(), entering.shape))
-    # Steps from s that end where a leads, by whichever action.
-    step = goal_tables(follow, int(follow[s, a]), [s])
-    rows = uniform_rows(step, probs["state"])
-    return {
-        "kind": kind,
-        "tasks": n_tasks,
-        "entering": int(entering.sum()),
-        "below_states": below("state", bound),
-        "below_percepts": below("percept", bound),
-        "below_percepts_pooled": below("percept", pooled),
-        "bound": bound,
-        "least": float(probs["state"][s, a]),
-        "least_percepts": float(probs["percept"][entering].min()),
-        "expected": float(probs["state"][s][follow[s] == follow[s, a]].sum()),
-        "taken": frequency(step, rows, 1.0, settings["draws"], (*names, "taken")),
-    }
+    below = int((probs < bound * (1 - ROUNDING)).sum())
+    numbers = {"entering": len(probs), "below": below, "least": float(probs.min()) / bound}
+    return {"kind": kind, "tasks": n_tasks, **numbers}
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
@@ -180,6 +149,52 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     return {**cell, "constructed": cases, "found": [case for case in found if case]}
 
 
-def check(settings: Mapping) -> None:
-    if 0 not in settings["tasks"] or len([n for n in set(settings["tasks"]) if n]) < 2:
-        raise InputError(f"tasks must hold 0 and two other numbers, for the decay, got {settings['tasks']}")
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The prior and the measured frequency over Eq. 3.6, its decay, and actions of random worlds below it."""
+    cases = [case for result in results for case in result["constructed"]]
+    worlds = [world for result in results for world in result["found"]]
+    below, entering = (sum(world[key] for world in worlds) for key in ("below", "entering"))
+    return {
+        "prior_error": exact_value(max(abs(c["prior"] / c["formula"] - 1) for c in cases), len(cases)),
+        "frequency_ratio": mean_estimate(_ratios(settings, results, lambda n_tasks: n_tasks > 0)),
+        "frequency_ratio_no_task": mean_estimate(_ratios(settings, results, lambda n_tasks: n_tasks == 0)),
+        "slope": mean_or_unmeasured(_slopes(settings, results)),
+        "share_below": exact_value(below / max(1, entering), entering),
+    }
+
+
+def _ratios(settings: Mapping, results: Sequence[Mapping], wanted: Callable[[int], bool]) -> list[float]:
+    """For each run, the measured frequency over Eq. 3.6, a mean over the cases of the `wanted` tasks."""
+    cases = [[case for case in result["constructed"] if wanted(case["tasks"])] for result in results]
+    return [float(np.mean([c["taken"] / (settings["draws"] * c["formula"]) for c in of_run])) for of_run in cases]
+
+
+def _slopes(settings: Mapping, results: Sequence[Mapping]) -> list[float]:
+    """The measured slope for the first |A| and α⁰, run by run; without runs that had no hit after some tasks."""
+    first, slopes = (settings["actions"][0], settings["alpha0"][0]), []
+    for result in results:
+        cases = [c for c in result["constructed"] if c["tasks"] and (c["actions"], c["alpha0"]) == first]
+        if len(cases) > 1 and all(case["taken"] for case in cases):
+            slopes.append(slope([c["tasks"] for c in cases], [c["taken"] for c in cases]))
+    return slopes
+
+
+def slope(tasks: Sequence[int], frequencies: Sequence[float]) -> float:
+    """Least-squares slope of the logarithm of `frequencies` over that of `tasks`."""
+    return float(np.polyfit(np.log(tasks), np.log(frequencies), 1)[0])
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Cases with the first |A|, pooled over runs with exact intervals; least probabilities of worlds by kind."""
+    found, draws = [], settings["draws"] * len(results)
+    for place, case in enumerate(results[0]["constructed"]):
+        if case["actions"] == settings["actions"][0]:
+            taken = sum(result["constructed"][place]["taken"] for result in results)
+            low, high = binomtest(taken, draws).proportion_ci()
+            numbers = {"measured": taken / draws, "low": float(low), "high": float(high)}
+            found.append({key: case[key] for key in ("alpha0", "tasks", "formula")} | numbers)
+    worlds = [world for result in results for world in result["found"]]
+    for kind, n_tasks in product(settings["kinds"], settings["found_tasks"]):
+        least = [round(w["least"], 4) for w in worlds if (w["kind"], w["tasks"]) == (kind, n_tasks)]
+        found.append({"kind": kind, "of_tasks": n_tasks, "least": least})
+    return found

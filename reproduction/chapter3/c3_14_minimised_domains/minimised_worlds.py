@@ -33,14 +33,12 @@ KINDS = (
     "random, few starts",
     "slippery, few starts",
 )
-EVERY_START = tuple(kind for kind in KINDS if kind.endswith("every start"))
-WITH_SINKS = KINDS[-2:]
 GRID_DISCOUNT, FACTORY_DISCOUNT = 0.95, 0.99
 FACTORY_COMPONENTS = 3
 """Components of a factory's domain; tasks are the lists of one or of two of them."""
 GOAL, WALL = 100.0, -10.0
-WALL_SHARE, SINK_SHARE, FEW = 0.25, 0.15, 2
-"""Of a random world: refused moves, states without a way out, and starts."""
+WALL_SHARE, SINK_SHARE, FEW, RANDOM_ACTIONS = 0.25, 0.15, 2, 4
+"""Of a random world: refused moves, states without a way out, starts, and actions."""
 SLIP = (0.8, 0.2)
 
 
@@ -83,7 +81,7 @@ def _in_random(settings: Mapping, outcomes: Sequence[float], random, names: tupl
     """Goals that can be reached from every start; worlds with fewer than two are drawn again."""
     n_states = settings["random_states"]
     while True:
-        base = random_tables(n_states, settings["random_actions"], random, outcomes)
+        base = random_tables(n_states, RANDOM_ACTIONS, random, outcomes)
         order = random.permutation(n_states)
         starts, tasks = np.sort(order[:FEW]), []
         for goal in order[FEW:].tolist():

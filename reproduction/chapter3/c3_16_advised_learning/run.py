@@ -1,83 +1,114 @@
 """C3.16: Q-learning on errands of a maze, with advice in its ε branch and without.
 
-ε, its annealing and the start of a task's episodes are not printed: they are crossed with the maze's loops and the
-kinds of experts. Tasks of one maze are not independent: intervals are over mazes. Other
-buildings, and α⁰ in the advice, are run beside the default. Thesis: §3.7.2, Figure 3.22.
+Readings look at the first episodes alone, which show whether the goal is found in a handful; at the default all
+episodes are learnt. Tasks of one maze are not independent: intervals are over mazes. Thesis: §3.7.2, Figure 3.22.
 """
 
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.action.advice.advisor import exploration_rows
-from lifelore.action.advice.goal_model import GoalModel
-from reproduction.chapter3.advice import buildings
-from reproduction.chapter3.advice.learning import learn_errands
-from reproduction.chapter3.advice.mazes import Maze, goal_models_of, maze_cells, maze_of
-from reproduction.engine.curve_blocks import block_means
+from lifelore.action.advice.advisor import Advisor
+from lifelore.core.metrics import Estimate
+from reproduction.chapter3.advice.learning import (
+    errand_tables,
+    final_reward,
+    learner_schedule,
+    reached_by_learner,
+)
+from reproduction.chapter3.advice.mazes import (
+    Maze,
+    choices_of,
+    errands_of,
+    goal_models_of,
+    maze_cells,
+    maze_estimate,
+    maze_of,
+    thesis_advisor,
+)
+from reproduction.chapter3.learning.grid_tasks import block_curve, even_blocks
+from reproduction.chapter3.learning.schedules import Epsilon
 
+cells = maze_cells
 HANDFUL = 10
 """Episodes within which a goal must be found."""
-
-
-def cells(settings: Mapping) -> list[dict]:
-    """The mazes of the grid, then those of the buildings beside it."""
-    return maze_cells(settings) + buildings.building_cells(settings)
-
-
-def check(settings: Mapping) -> None:
-    """Refuse buildings that limits cannot describe."""
-    buildings.check_buildings(settings["buildings"], settings)
+DRAWN = 20
+"""Tasks of the figure, those of the first mazes."""
+WAYS = ("plain", "advised")
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One maze: every start and schedule, without advice and with that of each kind of experts."""
-    if "building" in cell:
-        return _in_building(settings, cell, seed)
+    """One maze: goals found in a handful of episodes by reading; at the default all episodes of both learners."""
     maze = maze_of(settings, cell, seed)
-    advice: dict[str | None, NDArray | None] = {None: None}
-    for experts in settings["experts"]:
-        pooled = GoalModel.pooled(goal_models_of(settings, maze, experts))
-        advice[experts] = exploration_rows(pooled, settings["kappa"])
-    learners = []
-    for starts, schedule, experts in product(settings["starts"], settings["schedules"], advice):
-        reached, numbers = _learnt(settings, maze, starts, schedule, advice[experts])
-        numbers["curve"] = block_means(np.mean([1000 * of_task.astype(float) for of_task in reached], axis=0))
-        learners.append({"starts": starts, "schedule": schedule, "experts": experts, **numbers})
-    return {**cell, "learners": learners}
+    advisors = [thesis_advisor(goal_models_of(maze, **choice)) for choice in choices_of(settings)]
+    silent = thesis_advisor(goal_models_of(maze, **choices_of(settings)[0]), float("inf"))
+
+    def found_by(advisor: Advisor) -> list[float]:
+        return [
+            float(np.mean(_reached(settings, maze, advisor, starts, epsilon, HANDFUL).any(axis=1)))
+            for starts, epsilon in product(settings["starts"], settings["schedule"])
+        ]
+
+    found = {"plain": found_by(silent), "advised": [found_by(advisor) for advisor in advisors]}
+    if cell["loops"] == settings["loops"][0]:
+        default = settings["starts"][0], settings["schedule"][0]
+        curves = [_reached(settings, maze, advisor, *default) for advisor in (silent, advisors[0])]
+        drawn = cell["maze"] * settings["tasks"] < DRAWN
+        for way, reached in zip(WAYS, curves, strict=True):
+            found[f"final_{way}"] = float(np.mean([final_reward(of_task) for of_task in reached]))
+            found[f"curve_{way}"] = np.round(1000 * even_blocks(reached)).tolist() if drawn else []
+    return {**cell, **found}
 
 
-def _in_building(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One maze of a building at the default schedule, without advice (α⁰ None) and with it by α⁰."""
-    maze, schedule = buildings.building_of(settings, cell, seed), settings["default"]["schedule"]
-    pooled = GoalModel.pooled(goal_models_of(settings, maze, settings["default"]["experts"]))
-    found = []
-    for alpha0 in (None, *buildings.advised_alpha0(settings, cell)):
-        rows = None
-        if alpha0 is not None:
-            rows = exploration_rows(replace(pooled, advised_alpha0=alpha0), settings["kappa"])
-        found.append({"alpha0": alpha0, **_learnt(settings, maze, buildings.STARTS, schedule, rows)[1]})
-    return {**cell, "beside": found}
+def _reached(
+    settings: Mapping, maze: Maze, advisor: Advisor, starts: str, epsilon: Epsilon, first: int | None = None
+) -> NDArray[np.bool_]:
+    """Which episodes of each task reached its goal, (n_tasks, n_episodes); only the `first` ones."""
+    schedule = learner_schedule(settings, maze, epsilon, first)
+    return np.array([
+        reached_by_learner(maze, errand_tables(maze, errand, number, starts), number, schedule, advisor)
+        for number, errand in enumerate(errands_of(maze, settings["tasks"]))
+    ])  # fmt: skip
 
 
-def _learnt(
-    settings: Mapping, maze: Maze, starts: str, schedule: Sequence[float], advice: NDArray | None
-) -> tuple[list[NDArray[np.bool_]], dict[str, list]]:
-    """Which episodes of each task reached its goal, and the numbers of `summary` by task."""
-    reached = [curve.reached for _, curve in learn_errands(settings, maze, starts, schedule, advice)]
-    tasks = [summary(settings, of_task) for of_task in reached]
-    return reached, {key: [task[key] for task in tasks] for key in tasks[0]}
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """At the default: goals found in a handful of episodes, and the reward at the end."""
+    own = [result for result in results if result["loops"] == settings["loops"][0]]
+    final = {f"final_{way}": maze_estimate([result[f"final_{way}"] for result in own]) for way in WAYS}
+    return _found(own, 0, 0) | final
 
 
-def summary(settings: Mapping, reached: NDArray[np.bool_]) -> dict:
-    """A task's numbers: the episode (from 1) that found the goal, the cap if none did; the reward at the end."""
-    found = np.flatnonzero(reached)
+def _found(results: Sequence[Mapping], place: int, use: int) -> dict[str, Estimate]:
+    plain, advised = (
+        np.array([by_use[use] for by_use in values])
+        for values in ([r["plain"] for r in results], [r["advised"][place] for r in results])
+    )
     return {
-        "first": int(found[0]) + 1 if found.size else settings["episodes"],
-        "ever": bool(found.size),
-        "in_ten": bool(found.size and found[0] < HANDFUL),
-        "final": float(1000 * reached[-settings["last"] :].mean()),
+        "found_plain": maze_estimate(plain),
+        "found_advised": maze_estimate(advised),
+        "found_gain": maze_estimate(advised - plain),
     }
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """Goals found in a handful by loops, experts, α⁰, starts and schedule."""
+    uses = [
+        dict(zip(("starts", "schedule"), use, strict=True))
+        for use in product(settings["starts"], settings["schedule"])
+    ]
+    for loops in settings["loops"]:
+        own = [result for result in results if result["loops"] == loops]
+        for (place, choice), (number, use) in product(enumerate(choices_of(settings)), enumerate(uses)):
+            yield {"loops": loops, **choice, **use}, _found(own, place, number)
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """The learning curves of the first tasks at the default."""
+    own = [result for result in results if result["loops"] == settings["loops"][0]]
+    return [
+        {"curve_of": way, **block_curve(np.array(blocks), settings["episodes"])}
+        for way in WAYS
+        if (blocks := [blocks for result in own for blocks in result[f"curve_{way}"]])
+    ]

@@ -1,79 +1,81 @@
-"""C3.17: advice given in 100 steps as its cost κ grows, and as Q-learning learns.
+"""C3.17: advice given in 100 steps as its cost κ grows, and to Q-learning before and after it has learnt.
 
 The gain of advice has a ceiling in each state, above which no κ can be met, whoever walks there:
 
-    KL[θ, p M₁ + (1 - p) / 4] ≤ KL[θ, 1/4] = log 4 - H(θ)
+    KL[θ, p θ + (1 - p) / 4] ≤ KL[θ, 1/4] = log 4 - H(θ)
 
-M₁ is θ with α⁰ in it, itself a mixture of θ and the uniform distribution, and a divergence is convex. Whether the
-agents of Figure 3.23 followed the advice is not printed: both are measured. A walk that reaches its goal ends.
+Whether the agents of Figure 3.23 followed the advice is not printed. A walk that reaches its goal ends.
 Thesis: §3.7.2.3, Figure 3.23.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.action.advice.advised_walk import Walk
-from lifelore.action.advice.goal_model import GoalModel
-from lifelore.core.errors import InputError
-from lifelore.core.metrics import entropy
-from reproduction.chapter3.advice import mazes
-from reproduction.chapter3.advice.learning import learn_errands
-from reproduction.chapter3.advice.mazes import AGENTS, Maze, thesis_advisor, walks_of
-from reproduction.chapter3.advice.mazes import maze_cells as cells
+from lifelore.core.metrics import Estimate
+from reproduction.chapter3.advice.learning import learner_schedule
+from reproduction.chapter3.advice.mazes import (
+    AGENTS,
+    KAPPA,
+    Maze,
+    choices_of,
+    errands_of,
+    goal_models_of,
+    maze_cells,
+    maze_estimate,
+    maze_of,
+    policies_of,
+    readings_of,
+    thesis_advisor,
+    walks_of,
+)
+from reproduction.chapter3.learning.schedules import PRINTED
+from reproduction.engine.learning_run import learnt
 
-__all__ = ["cells", "check", "run_cell"]
-COUNTS = ("steps", "known", "advised")
+cells = maze_cells
+EARLY, LATE = "q_early", "q_late"
+"""Q-learning after one episode, and after all."""
+
+
+def kappas_of(settings: Mapping) -> list[float]:
+    """The values of κ, rising, 0 and the thesis's among them."""
+    return sorted({0.0, KAPPA, *settings["kappas"]})
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One maze: advised steps of every agent by κ, heeded and not, for each kind of experts."""
-    maze = mazes.maze_of(settings, cell, seed)
-    policies = agent_policies(settings, maze)
-    kappas, amounts, ceilings = settings["kappas"], [], []
-    for kind in settings["experts"]:
-        purposes = mazes.goal_models_of(settings, maze, kind)
-        pooled, above = GoalModel.pooled(purposes), 0
-        top, known = ceiling(pooled), np.array(pooled.theta.any(axis=1))
-        advisors = {kappa: thesis_advisor(settings, purposes, kappa) for kappa in kappas}
+    """One maze: advised steps in 100 of every agent by κ, for each choice and heeded or not; the walks drawn."""
+    maze, kappas = maze_of(settings, cell, seed), kappas_of(settings)
+    policies, amounts, drawn = agent_policies(settings, maze), [], {}
+    for choice, heeds in product(choices_of(settings), settings["heeds"]):
+        purposes = goal_models_of(maze, **choice)
+        advisors = [thesis_advisor(purposes, kappa) for kappa in kappas]
+        known = np.array(advisors[0].guide.theta[0].any(axis=1))
+        of_agents = {}
         for agent, policy in policies.items():
-            alone = walks_of(settings, maze, policy, advisors[0.0], heeds=False)
-            above += sum(int((w.gain > top[w.states] + 1e-9).sum()) for w in alone)
-            watched = [advised_steps(alone, known, kappa) for kappa in kappas]
-            heeded = [advised_steps(walks_of(settings, maze, policy, advisors[k]), known) for k in kappas]
-            for heeds, counts in ((False, watched), (True, heeded)):
-                numbers = dict(
-                    zip(("steps", "known", "advised"), map(list, zip(*counts, strict=True)), strict=True)
-                )
-                amounts.append({"experts": kind, "agent": agent, "heeds": heeds, **numbers})
-        states = (top[known, None] >= np.array(kappas) - 1e-12).mean(axis=0)
-        ceilings.append({"experts": kind, "states": states.tolist(), "above": above})
-    return {**cell, "amounts": amounts, "ceilings": ceilings}
-
-
-def advised_steps(walks: Sequence[Walk], known: NDArray[np.bool_], kappa: float | None = None) -> list[int]:
-    """`COUNTS` of walks: all steps, those in `known` states, and advised; with `kappa`, what it would advise."""
-    advised = [w.advised if kappa is None else known[w.states] & (w.gain >= kappa) for w in walks]
-    counts = [(len(w.states), known[w.states].sum(), a.sum()) for w, a in zip(walks, advised, strict=True)]
-    return np.sum(counts, axis=0).tolist()
-
-
-def ceiling(pooled: GoalModel) -> NDArray[np.float64]:
-    """The greatest gain possible in each state (n_states,), nats; 0 where the advisor is silent."""
-    theta = pooled.theta
-    known = theta.any(axis=1)
-    return np.where(known, np.log(theta.shape[1]) - entropy(theta), 0.0)
+            if heeds:
+                walked = [[w.advised for w in walks_of(settings, maze, policy, advisor)] for advisor in advisors]
+            else:
+                alone = walks_of(settings, maze, policy, advisors[0], heeds=False)
+                walked = [[known[w.states] & (w.gain >= kappa) for w in alone] for kappa in kappas]
+            of_agents[agent] = [100 * float(np.concatenate(at_kappa).mean()) for at_kappa in walked]
+            if not amounts and cell == cells(settings)[0] and agent in AGENTS:
+                drawn[agent] = [[100 * float(advised.mean()) for advised in at_kappa] for at_kappa in walked]
+        amounts.append(of_agents)
+    return {**cell, "amounts": amounts, "drawn": drawn}
 
 
 def agent_policies(settings: Mapping, maze: Maze) -> dict[str, list]:
-    """The policy of each agent on each errand; ``q N`` is Q-learning after N episodes, as it would go on."""
-    found = {agent: mazes.policies_of(settings, maze, agent) for agent in AGENTS}
-    first, decay, floor = settings["schedule"]
-    for episodes in settings["snapshots"]:
-        learnt = learn_errands(settings, maze, settings["q_starts"], settings["schedule"], None, episodes)
-        epsilon = max(floor, first * decay**episodes)
-        found[f"q {episodes}"] = [greedy_policy(learner.q, epsilon) for learner, _ in learnt]
+    """The policy of each agent on each errand; those of Q-learning as it would go on."""
+    found = {agent: policies_of(settings, maze, agent) for agent in AGENTS}
+    for name, episodes in ((EARLY, 1), (LATE, settings["episodes"])):
+        schedule = learner_schedule(settings, maze, PRINTED, episodes)
+        learners = [
+            learnt(errand.tables, (*maze.names, "learner", number), None, schedule)[1]
+            for number, errand in enumerate(errands_of(maze, settings["tasks"]))
+        ]
+        found[name] = [greedy_policy(learner.q, float(schedule.epsilon[-1])) for learner in learners]
     return found
 
 
@@ -83,11 +85,51 @@ def greedy_policy(q: NDArray[np.float64], epsilon: float) -> NDArray[np.float64]
     return (1 - epsilon) * best / best.sum(axis=1, keepdims=True) + epsilon / q.shape[1]
 
 
-def check(settings: Mapping) -> None:
-    kappas, snapshots = settings["kappas"], settings["snapshots"]
-    if kappas[:1] != [0.0] or settings["kappa"] not in kappas or sorted(set(kappas)) != kappas:
-        raise InputError(f"kappas must rise from 0 and contain kappa ({settings['kappa']}), got {kappas}")
-    if sorted(set(snapshots)) != snapshots:
-        raise InputError(f"snapshots must be rising numbers of episodes, got {snapshots}")
-    if not isinstance(settings["default"].get("heeds"), bool):
-        raise InputError(f"default must say whether agents heed, true or false, got {settings['default']}")
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """At the default: how advice falls, its largest rise, and Q-learning's two ends."""
+    own = [result for result in results if result["loops"] == settings["loops"][0]]
+    at_kappa = kappas_of(settings).index(KAPPA)
+    random = maze_estimate([result["amounts"][0]["random"][at_kappa] for result in own])
+    return _numbers(settings, own, 0) | {"random_at_kappa": random}
+
+
+def _numbers(settings: Mapping, results: Sequence[Mapping], place: int) -> dict[str, Estimate]:
+    """The least fall and the largest rise of any agent, and what parts Q-learning from random and optimal."""
+    amounts = {
+        agent: np.array([result["amounts"][place][agent] for result in results])
+        for agent in (*AGENTS, EARLY, LATE)
+    }
+    at_kappa = {agent: amount[:, kappas_of(settings).index(KAPPA)] for agent, amount in amounts.items()}
+    falls = [amount[:, 0] - amount[:, -1] for amount in amounts.values()]
+    return {
+        "least_fall": maze_estimate(min(falls, key=np.mean)),
+        "largest_rise": maze_estimate(max(map(steepest_rise, amounts.values()), key=np.mean)),
+        "early_minus_random": maze_estimate(at_kappa[EARLY] - at_kappa["random"]),
+        "late_minus_optimal": maze_estimate(at_kappa[LATE] - at_kappa["optimal"]),
+    }
+
+
+def steepest_rise(amounts: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Each maze's rise between the two κ where the mean (n_mazes, n_kappas) rises most; 0 where it never does."""
+    mean = amounts.mean(axis=0)
+    last = int((mean - np.minimum.accumulate(mean)).argmax())
+    first = int(mean[: last + 1].argmin())
+    return amounts[:, last] - amounts[:, first]
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """The same by loops, experts, α⁰ and whether advice is heeded."""
+    heeds = settings["heeds"]
+    for reading, loops, place in readings_of(settings):
+        own = [result for result in results if result["loops"] == loops]
+        for number, heeded in enumerate(heeds):
+            yield {**reading, "heeds": heeded}, _numbers(settings, own, place * len(heeds) + number)
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Advice by κ to every agent of fixed policy, over the walks of the first maze."""
+    return [
+        {"curve_of": agent, "mean": np.mean(walks, axis=1).tolist(), "deviation": np.std(walks, axis=1).tolist()}
+        for result in results
+        for agent, walks in result["drawn"].items()
+    ]

@@ -1,46 +1,54 @@
 """C3.18: P(M₁ | H), the probability that an explorer acts as the experts do, with advice and without.
 
-The rise is partly by construction: an advised step is drawn from θ, which is M₁. It is therefore measured three
-times: with all steps in H, as the thesis does; with the agent's own steps alone in H; and with all steps in H, but
-only at steps without advice. The last selects what it measures: no advice is given where P(M₁ | H) is high.
-Thesis: §3.7.2.3, Figure 3.21.
+The rise is partly by construction: an advised step is drawn from θ, which is M₁. It is therefore also measured
+with the agent's own steps alone in H. Thesis: §3.7.2.3, Figure 3.21.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
 from lifelore.action.advice.advised_walk import Walk
 from lifelore.action.advice.advisor import Advisor
-from lifelore.core.errors import InputError
+from lifelore.core.metrics import Estimate
 from lifelore.domains.advice.explorers import EXPLORERS
-from reproduction.chapter3.advice import mazes
-from reproduction.chapter3.advice.mazes import maze_cells as cells
+from reproduction.chapter3.advice.mazes import (
+    choices_of,
+    goal_models_of,
+    maze_cells,
+    maze_estimate,
+    maze_of,
+    policies_of,
+    readings_of,
+    thesis_advisor,
+    walks_of,
+)
 
-__all__ = ["cells", "check", "run_cell"]
+cells = maze_cells
+BLOCKS = 50
+"""Points of a drawn curve."""
+WAYS = ("alone", "advised")
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One maze: P(M₁ | H) of each explorer, alone and advised by the thesis's advisor of each kind of experts."""
-    maze, found = mazes.maze_of(settings, cell, seed), []
-    n_blocks, length = settings["blocks"], settings["max_steps"] // settings["blocks"]
-    for experts in settings["experts"]:
-        advisor = mazes.thesis_advisor(settings, mazes.goal_models_of(settings, maze, experts))
+    """One maze: what advice adds to the mean P(M₁ | H) of each explorer, by choice; own steps and curves once."""
+    maze, gains, own, curves = maze_of(settings, cell, seed), [], {}, []
+    for choice in choices_of(settings):
+        advisor, of_agents = thesis_advisor(goal_models_of(maze, **choice)), {}
         for agent in EXPLORERS:
-            policies = mazes.policies_of(settings, maze, agent)
-            alone, advised = (mazes.walks_of(settings, maze, policies, advisor, heeds) for heeds in (False, True))
-            found.append({
-                "experts": experts,
-                "agent": agent,
-                "alone": [float(w.p_normal.mean()) for w in alone],
-                "told": [float(w.p_normal.mean()) for w in advised],
-                "own": [own_normalcy(advisor, w) for w in advised],
-                "unadvised": [unadvised_normalcy(w) for w in advised],
-                "advised_share": [float(w.advised.mean()) for w in advised],
-                "curve_alone": block_curve(alone, n_blocks, length),
-                "curve_told": block_curve(advised, n_blocks, length),
-            })  # fmt: skip
-    return {**cell, "explorers": found}
+            policies = policies_of(settings, maze, agent)
+            walks = [walks_of(settings, maze, policies, advisor, heeds) for heeds in (False, True)]
+            alone, advised = (np.array([w.p_normal.mean() for w in of_way]) for of_way in walks)
+            of_agents[agent] = float((advised - alone).mean())
+            if not gains:
+                own[agent] = float(np.mean([own_normalcy(advisor, w) for w in walks[1]] - alone))
+                if cell == cells(settings)[0]:
+                    curves += [
+                        {"curve_of": agent, "way": way, **block_curve(of_way, settings["max_steps"])}
+                        for way, of_way in zip(WAYS, walks, strict=True)
+                    ]
+        gains.append(of_agents)
+    return {**cell, "gains": gains, "own": own, "curves": curves}
 
 
 def own_normalcy(advisor: Advisor, walked: Walk) -> float:
@@ -48,24 +56,43 @@ def own_normalcy(advisor: Advisor, walked: Walk) -> float:
     return float(advisor.assess(walked.states, np.where(walked.advised, -1, walked.actions)).p_normal.mean())
 
 
-def unadvised_normalcy(walked: Walk) -> float | None:
-    """Mean P(M₁ | H), advised steps in H, over the steps that were not advised; None where all were."""
-    kept = walked.p_normal[~walked.advised]
-    return float(kept.mean()) if kept.size else None
-
-
-def block_curve(walks: Sequence[Walk], n_blocks: int, length: int) -> dict:
-    """By blocks of steps: the sum of P(M₁ | H), the steps still walked, and the walks at their goal by then."""
-    p, n, reached = np.zeros(n_blocks), np.zeros(n_blocks, int), np.zeros(n_blocks, int)
+def block_curve(walks: Sequence[Walk], max_steps: int) -> dict:
+    """By even blocks of steps, which end at `x`: mean P(M₁ | H) of walks still under way, and reward so far."""
+    length = -(-max_steps // BLOCKS)
+    n_blocks = -(-max_steps // length)
+    p, n, reached = np.zeros(n_blocks), np.zeros(n_blocks, int), np.zeros(n_blocks)
     for walked in walks:
         block = np.arange(len(walked.states)) // length
         p += np.bincount(block, walked.p_normal, n_blocks)
         n += np.bincount(block, minlength=n_blocks)
         if walked.reached:
-            reached[block[-1] :] += 1
-    return {"p": np.round(p, 6).tolist(), "n": n.tolist(), "reached": reached.tolist()}
+            reached[block[-1] :] += 1000 / len(walks)
+    return {
+        "x": [length * (block + 1) for block in range(n_blocks)],
+        "normal": [round(float(a / b), 4) if b else None for a, b in zip(p, n, strict=True)],
+        "reward": np.round(reached, 1).tolist(),
+    }
 
 
-def check(settings: Mapping) -> None:
-    if settings["max_steps"] % settings["blocks"]:
-        raise InputError(f"blocks must divide max_steps ({settings['max_steps']}), got {settings['blocks']}")
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Each explorer's gain in P(M₁ | H) at the default, and the explorers' mean gain by own steps."""
+    at_default = [result for result in results if result["loops"] == settings["loops"][0]]
+    own = maze_estimate([np.mean(list(result["own"].values())) for result in at_default])
+    return _gains(at_default, 0) | {"gain_own": own}
+
+
+def _gains(results: Sequence[Mapping], place: int) -> dict[str, Estimate]:
+    gains = [result["gains"][place] for result in results]
+    each = {f"gain_{agent}": maze_estimate([of_maze[agent] for of_maze in gains]) for agent in EXPLORERS}
+    return each | {"gain": maze_estimate([np.mean(list(of_maze.values())) for of_maze in gains])}
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """The gains by loops, experts and α⁰."""
+    for reading, loops, place in readings_of(settings):
+        yield reading, _gains([result for result in results if result["loops"] == loops], place)
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """The curves of the first maze's walks."""
+    return [curve for result in results for curve in result["curves"]]

@@ -13,29 +13,20 @@ from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import prior_rows
-from lifelore.core.learning.curve import Curve, new_curve
-from lifelore.core.learning.q_learning import QLearner, Rows, Schedule, learn, new_learner, uniform_rows
+from lifelore.action.priors.policy_counts import actions_to_count
+from lifelore.core.learning.curve import Curve
+from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning.planning import best_actions, greedy_policy, policy_values
 from lifelore.core.streams import stream
 from lifelore.domains.factory.contexts import state_contexts
 from lifelore.domains.factory.factory import ACTION_NAMES, Factory, FactoryTask
 from lifelore.domains.factory.layout import factory
-from reproduction.engine.grid import Grid
 from reproduction.engine.learning_run import learnt
 
 N_ACTIONS = len(ACTION_NAMES)
-PLAIN, LEARNT = "uniform", "learnt"
-"""Q-learning, and ε-QSAP with a prior from policies."""
-KEYS = ("encoding", "alpha0", "ties", "schedule")
-"""The choices left open that make a cell of the grid."""
-ENCODINGS = {
-    "global": "stage of every component",
-    "left": "what is left to do",
-    "listed": "stages in the list's order",
-    "phase": "procuring or assembling",
-}
-"""Encodings of a configuration in words."""
+LEARNT = "learnt"
+"""ε-QSAP with a prior from policies."""
 
 
 class Solved(NamedTuple):
@@ -65,16 +56,6 @@ def tasks_of(settings: Mapping, seed: int, k: int, run: int, n_tasks: int) -> li
     """The first tasks of a run's sequence: lists of `k` components, drawn with replacement."""
     random = stream(seed, "factory", k, run, "tasks")
     return [floor(settings["discount"]).draw_components(random, k) for _ in range(n_tasks)]
-
-
-def grid_of(settings: Mapping, hand_made: Iterable[str] = ()) -> Grid:
-    """The grid: encoding × α⁰ × ties × schedule of ε.
-
-    Hand-made priors do not read the encoding; Q-learning reads the schedule alone.
-    """
-    crossed = {"encoding": "encodings", "alpha0": "alpha0", "ties": "ties", "schedule": "schedules"}
-    reads = {PLAIN: ("schedule",), **dict.fromkeys(hand_made, KEYS[1:])}
-    return Grid.crossed(settings, KEYS, crossed, reads=reads)
 
 
 def problem_of(settings: Mapping, components: tuple[int, ...], stream_of: tuple) -> Problem:
@@ -138,6 +119,15 @@ def with_pseudo_count(prior: ActionPrior, alpha0: float) -> ActionPrior:
     return ActionPrior.from_fixed_point_counts(*prior.fixed_point_counts(), alpha0, prior.key)
 
 
+def tried_actions(learner: QLearner, ended: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Actions of a learnt policy that count: the best of those tried, in every state where any was.
+
+    The rule of mazes asks for a value above zero (erratum E4). Moves cost here, and few states have one; a shift
+    grants it to every action tried. `ended`: completed states, which never count.
+    """
+    return actions_to_count(learner.q - learner.q.min() + 1.0, "visited", ended=ended, visits=learner.visits)
+
+
 def contexts_of(problem: Problem, encoding: str | None) -> NDArray[np.int64]:
     """Codes of all states, (n_states,): by an encoding, or the task's own states for a hand-made prior (None)."""
     known = problem.solved
@@ -152,24 +142,6 @@ def rows_of(problem: Problem, prior: ActionPrior, encoding: str | None, ties: st
 def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[Curve, QLearner]:
     """The curve and the learner after all episodes; without `rows` it is plain Q-learning."""
     return learnt(problem.tables, problem.stream, rows, schedule)
-
-
-def learn_in_stages(
-    problem: Problem, rows: Rows | None, schedule: Schedule, stages: Iterable[int], first_q: float = 0.0
-) -> tuple[Curve, list[float]]:
-    """The curve of a task learnt to the end, and the greedy policy's return after each of `stages` episodes.
-
-    Every value of Q starts at `first_q`.
-    """
-    tables, own, world = problem.tables, stream(*problem.stream, "learner"), stream(*problem.stream, "world")
-    learner = new_learner(tables.n_states, tables.n_actions, world, own)
-    learner.q.fill(first_q)
-    curve, greedy = new_curve(schedule.epsilon.size), []
-    for stage in stages:
-        so_far = schedule._replace(epsilon=schedule.epsilon[:stage], alpha=schedule.alpha[:stage])
-        learn(tables, rows or uniform_rows(tables), so_far, learner, curve, stage * schedule.max_steps)
-        greedy.append(greedy_return(problem, learner.q))
-    return curve, greedy
 
 
 def greedy_return(problem: Problem, q: NDArray[np.float64]) -> float:

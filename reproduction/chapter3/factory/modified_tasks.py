@@ -4,7 +4,7 @@ All methods meet a task with the same layout, list and random numbers, so that d
 paired. Thesis: §3.4.4.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +21,7 @@ from lifelore.core.streams import stream
 from lifelore.domains.factory import contexts
 from lifelore.domains.factory.contexts import FEATURE_NAMES, FEATURE_SIZES, PHI
 from lifelore.domains.factory.factory import ACTION_NAMES, FactoryTask
-from lifelore.domains.factory.modified_factory import INNER_WALLS, modified_factory
+from lifelore.domains.factory.modified_factory import modified_factory
 from reproduction.chapter3.factory.learning import optimal_way
 from reproduction.engine.learning_run import learnt
 
@@ -30,9 +30,7 @@ FULL_SET = FeatureSet(FEATURE_NAMES, FEATURE_SIZES)
 """φ4: the ten features of the modified factory."""
 CARDINALS = PHI["phi2"]
 """N, W, E and S of the robot's cell: the features that the thesis selects."""
-DIAGONALS = ("PosUL", "PosUR", "PosDL", "PosDR")
-OWN_CELL, ITEMS = "PosMM", "Items"
-FEATURES = (*CARDINALS, OWN_CELL, *DIAGONALS, ITEMS)
+FEATURES = (*CARDINALS, "PosMM", "PosUL", "PosUR", "PosDL", "PosDR", "Items")
 """All ten: first the four that the thesis finds to matter, then the others."""
 
 
@@ -54,13 +52,10 @@ class Problem(NamedTuple):
     stream: tuple
 
 
-def problem_of(settings: Mapping, names: tuple, walls: Sequence[int] = INNER_WALLS) -> Problem:
-    """The problem that the streams of `names` draw: a layout, then a list of ``components`` components.
-
-    `walls` are the least and the most inner walls of a zone.
-    """
+def problem_of(settings: Mapping, names: tuple) -> Problem:
+    """The problem that the streams of `names` draw: a layout, then a list of ``components`` components."""
     random = stream(*names, "factory")
-    factory = modified_factory(random, settings["discount"], inner_walls=(walls[0], walls[1]))
+    factory = modified_factory(random, settings["discount"])
     task = factory.task(factory.draw_components(random, settings["components"]))
     tables = task.tables()
     q = task.optimal_q(tables)
@@ -77,18 +72,16 @@ def contexts_of(problem: Problem, conditioned_on: str) -> NDArray[np.int64]:
     return contexts.state_contexts(problem.task, conditioned_on.removeprefix("state "))
 
 
-def problems_of(settings: Mapping, names: tuple, n: int, walls: Sequence[int] = INNER_WALLS) -> list[Problem]:
+def problems_of(settings: Mapping, names: tuple, n: int) -> list[Problem]:
     """`n` problems; more of them leave the first ones as they are."""
-    return [problem_of(settings, (*names, i), walls) for i in range(n)]
+    return [problem_of(settings, (*names, i)) for i in range(n)]
 
 
-def exact_priors(
-    settings: Mapping, names: tuple, conditions: Iterable[str], walls: Sequence[int] = INNER_WALLS
-) -> dict[tuple[str, int], ActionPrior]:
+def exact_priors(settings: Mapping, names: tuple, conditions: Iterable[str]) -> dict[tuple[str, int], ActionPrior]:
     """Priors with α⁰ = 1 from exact policies, by what they are conditioned on and how many ``policies`` count."""
     counting, found = {name: ActionPrior(N_ACTIONS, 1.0) for name in conditions}, {}
     for i in range(max(settings["policies"])):
-        problem = problem_of(settings, (*names, i), walls)
+        problem = problem_of(settings, (*names, i))
         for name, prior in counting.items():
             prior.update(contexts_of(problem, name), problem.best)
             if i + 1 in settings["policies"]:
@@ -106,13 +99,15 @@ def learn_problem(problem: Problem, rows: Rows | None, schedule: Schedule) -> tu
     return learnt(problem.tables, problem.stream, rows, schedule)
 
 
+def curves_of(
+    problems: Iterable[Problem], rows_for: Callable[[Problem], Rows | None], schedule: Schedule
+) -> list[Curve]:
+    """The curve of each problem."""
+    return [learn_problem(problem, rows_for(problem), schedule)[0] for problem in problems]
+
+
 def rewards_of(
     problems: Iterable[Problem], rows_for: Callable[[Problem], Rows | None], schedule: Schedule
 ) -> NDArray[np.float64]:
     """Reward of each episode of each problem, (n_problems, n_episodes)."""
-    return np.array([learn_problem(problem, rows_for(problem), schedule)[0].rewards for problem in problems])
-
-
-def curve_across(rewards: NDArray[np.float64]) -> dict[str, list[float]]:
-    """Mean and standard deviation across problems of (n_problems, n_episodes) rewards, episode by episode."""
-    return {"mean": rewards.mean(axis=0).tolist(), "deviation": rewards.std(axis=0, ddof=1).tolist()}
+    return np.array([curve.rewards for curve in curves_of(problems, rows_for, schedule)])

@@ -5,6 +5,7 @@ methods are paired. Thesis: §3.4.1, Alg. 2 and 4.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -16,17 +17,22 @@ from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.learning.learning_metrics import episodes_to_threshold
 from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
 from lifelore.core.mdp import Tables
-from lifelore.core.planning.planning import best_actions, optimal_q
+from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
+from lifelore.core.planning.planning import best_actions, mean_start_value, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
+from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.learning_run import learnt
 
 STATE, PLACE, PERCEPT = "state", "place", "percept"
 """What a prior may be conditioned on; a place is row and column, the same number in every world of a size."""
-ESCAPE = 0.02
-"""Mass that the form ``support`` spreads over all actions."""
-READ_ALPHA0 = ("proportion", "dirichlet", "tempered")
-"""Forms that α⁰ enters; the others are measured once, with α⁰ None."""
+CHOICES = ("schedule", "ties", "form", "alpha0")
+"""Settings with the values of the choices that the thesis leaves open; a reading has a value of each."""
+PLAIN = "q_learning"
+WINDOW = 10
+"""Episodes of the moving mean that must reach a percentage of the optimum."""
+BLOCKS = 100
+"""Points of a drawn learning curve."""
 
 
 class Problem(NamedTuple):
@@ -45,11 +51,11 @@ class Problem(NamedTuple):
     contexts: dict[str, NDArray[np.int64]]
 
 
-class Tasks(NamedTuple):
-    """The tasks of a run by the world they lie in: those whose policies make the prior, and those learnt."""
+class Trained(NamedTuple):
+    """A prior's `kind` (`STATE`, `PLACE` or `PERCEPT`) and the problems whose policies make it."""
 
-    training: dict[str, list[Problem]]
-    testing: list[Problem]
+    kind: str
+    problems: Sequence[Problem]
 
 
 def problem_of(world: GridWorld, goal: int, names: tuple) -> Problem:
@@ -63,14 +69,9 @@ def problem_of(world: GridWorld, goal: int, names: tuple) -> Problem:
     return Problem(goal, tables, names, q.max(axis=1), best, contexts)
 
 
-def prior_choices(settings: Mapping) -> list[dict]:
-    """Uses of a prior: form × α⁰ × ties; α⁰ is None where the form does not read it."""
-    return [
-        {"ties": ties, "alpha0": alpha0, "form": form}
-        for form in settings["forms"]
-        for alpha0 in (settings["alpha0"] if form in READ_ALPHA0 else [None])
-        for ties in settings["ties"]
-    ]
+def choices_of(settings: Mapping) -> list[dict]:
+    """Every combination of the choices left open, `CHOICES`; the first values make the default."""
+    return [dict(zip(CHOICES, values, strict=True)) for values in product(*(settings[key] for key in CHOICES))]
 
 
 def exact_prior(problems: Sequence[Problem], alpha0: float, kind: str = STATE) -> ActionPrior:
@@ -86,7 +87,7 @@ def rows_of(problem: Problem, prior: ActionPrior, form: str, ties: str, kind: st
     random = stream(*problem.stream, "dirichlet")
 
     def probs_of(codes):
-        return prior.probs(codes, form, generator=random, escape=ESCAPE)
+        return prior.probs(codes, form, generator=random)
 
     return prior_rows(problem.tables, problem.contexts[kind], probs_of, ties)
 
@@ -97,11 +98,11 @@ def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple
     return curve.returns, learner
 
 
-def mean_returns(
+def returns_of(
     problems: Sequence[Problem], rows_for: Callable[[Problem], Rows | None], schedule: Schedule
 ) -> NDArray[np.float64]:
-    """Mean learning curve over problems, (n_episodes,)."""
-    return np.mean([learn_task(p, rows_for(p), schedule)[0] for p in problems], axis=0)
+    """Learning curves of problems, (n_problems, n_episodes)."""
+    return np.array([learn_task(p, rows_for(p), schedule)[0] for p in problems])
 
 
 def drawn_starts(tables: Tables, names: tuple, n_episodes: int) -> list[int]:
@@ -119,17 +120,88 @@ def start_values(problem: Problem, n_episodes: int) -> NDArray[np.float64]:
     return problem.values[drawn_starts(problem.tables, problem.stream, n_episodes)]
 
 
-def summary(settings: Mapping, returns: NDArray[np.float64], best: NDArray[np.float64]) -> dict:
+def summary(returns: NDArray[np.float64], best: NDArray[np.float64]) -> dict:
     """A run's numbers from its mean curve and the best it could have been, both (n_episodes,).
 
     Percent of optimal are of the best from the same starts, over a moving window of episodes; a run that never
     reaches them enters at the cap.
     """
-    found = {"first": float(returns[0]), "first_ten": float(returns[:10].mean())}
+    episodes = len(returns)
+    found = {"first": float(returns[0]), "first_ten": float(returns[:10].mean()), "mean": float(returns.mean())}
     for percent in (50, 80):
-        reached = episodes_to_threshold(returns - percent / 100 * best, 0.0, settings["window"])
-        found[f"to_{percent}"] = settings["episodes"] if reached is None else reached
-        found[f"never_{percent}"] = reached is None
-    last = settings["last"]
-    found["final"] = float(returns[-last:].sum() / best[-last:].sum())
+        reached = episodes_to_threshold(returns - percent / 100 * best, 0.0, min(WINDOW, episodes))
+        found[f"to_{percent}"] = episodes if reached is None else reached
     return found
+
+
+def learnt_by_choice(
+    settings: Mapping, testing: Sequence[Problem], trained: Mapping[str, Trained], number: int
+) -> dict:
+    """Numbers of Q-learning (`PLAIN`) and of learners with each prior, a list over the choices left open.
+
+    Runs from ``reading_runs`` on have the default alone; run 0 also has its curves at the default.
+    """
+    choices = choices_of(settings)
+    best = np.mean([start_values(p, settings["episodes"]) for p in testing], axis=0)
+    found, plain, curves = [], {}, {}
+    for choice in choices if number < settings["reading_runs"] else choices[:1]:
+        schedule, key = schedule_of(settings, choice["schedule"]), str(choice["schedule"])
+        if key not in plain:
+            plain[key] = returns_of(testing, lambda _: None, schedule)
+        returns = {PLAIN: plain[key]}
+        for name, one in trained.items():
+            returns[name] = _returns_with(testing, one, choice, schedule)
+        if not curves:
+            curves = {name: block_curve(even_blocks(r), settings["episodes"]) for name, r in returns.items()}
+        found.append({name: summary(r.mean(axis=0), best) for name, r in returns.items()})
+    optimal = float(np.mean([mean_start_value(p.tables, p.values) for p in testing]))
+    return {"optimal": optimal, "choices": found, "curves": curves if number == 0 else {}}
+
+
+def _returns_with(
+    testing: Sequence[Problem], trained: Trained, choice: Mapping, schedule: Schedule
+) -> NDArray[np.float64]:
+    kind, prior = trained.kind, exact_prior(trained.problems, choice["alpha0"], trained.kind)
+    return returns_of(testing, lambda p: rows_of(p, prior, choice["form"], choice["ties"], kind), schedule)
+
+
+def even_blocks(curves: NDArray) -> NDArray[np.float64]:
+    """Means of curves (n, n_episodes) over at most `BLOCKS` even blocks of episodes, (n, n_blocks)."""
+    ends = _block_ends(curves.shape[1])
+    return np.add.reduceat(curves.astype(float), ends[:-1], axis=1) / np.diff(ends)
+
+
+def _block_ends(n_episodes: int) -> NDArray[np.int64]:
+    return np.linspace(0, n_episodes, min(BLOCKS, n_episodes) + 1).astype(np.int64)
+
+
+def block_curve(blocks: NDArray[np.float64], n_episodes: int) -> dict[str, list[float]]:
+    """Mean and deviation over tasks of `even_blocks` (n_tasks, n_blocks), at their middle episodes `x`."""
+    ends = _block_ends(n_episodes)
+    numbers = {"x": (ends[:-1] + ends[1:] + 1) / 2, "mean": blocks.mean(axis=0), "deviation": blocks.std(axis=0)}
+    return {name: np.round(of_blocks, 2).tolist() for name, of_blocks in numbers.items()}
+
+
+def compared(results: Sequence[Mapping], place: int, ours: str, theirs: str) -> dict[str, Estimate]:
+    """A learner against another at a choice, paired by run: returns as differences, episodes as ratios."""
+    runs = [result["choices"][place] for result in results if place < len(result["choices"])]
+
+    def pair(measure: str) -> tuple[list[float], list[float]]:
+        return [run[ours][measure] for run in runs], [run[theirs][measure] for run in runs]
+
+    return {
+        "first_gain": difference_estimate(*pair("first")),
+        "mean_gain": difference_estimate(*pair("mean")),
+        "to_50_ratio": ratio_estimate(*pair("to_50")),
+        "to_80_ratio": ratio_estimate(*pair("to_80")),
+    }
+
+
+def at_default(results: Sequence[Mapping], measure: str, name: str) -> Estimate:
+    """A learner's number at the default."""
+    return mean_estimate([result["choices"][0][name][measure] for result in results])
+
+
+def curve_rows(results: Sequence[Mapping]) -> list[dict]:
+    """What the figure draws: the curves of run 0."""
+    return [{"curve_of": name, **curve} for result in results for name, curve in result["curves"].items()]

@@ -27,11 +27,3 @@ def schedule_of(settings: Mapping, epsilon: Epsilon) -> Schedule:
         return schedule
     left = FIRST * (1 - np.arange(n) / n)
     return schedule._replace(epsilon=left, alpha=left)
-
-
-def schedule_in_words(epsilon: Epsilon) -> str:
-    """A schedule as a panel's title."""
-    if isinstance(epsilon, str):
-        return "ε = α = 0.5, less 0.5/N an episode"
-    first, decay, floor = epsilon
-    return f"ε = {first:g}" if decay == 1 else f"ε = {first:g}, × {decay:g} an episode to {floor:g}"

@@ -1,50 +1,47 @@
-"""C4.2: golf by shot on unknown holes: rules, single clubs and the dynamic program. Thesis: §4.6.1, Figure 4.4."""
+"""C4.2: golf by shot on unknown holes: greedy selection and single clubs. Thesis: §4.6.1, Figure 4.4."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 
 import numpy as np
 
-from lifelore.core.errors import InputError
-from lifelore.domains.golf.golf import CLUBS, Golf
-from lifelore.interaction.selection.belief_program import best_plan, value_of_rule
-from reproduction.chapter4.golf import rounds
-from reproduction.chapter4.golf.rounds import WOOD
-from reproduction.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
-from reproduction.chapter4.reuse.rules import RULES_SHOWN
+from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.core.streams import stream
+from lifelore.domains.golf.golf import Golf
+from reproduction.chapter4.golf.rounds import (
+    WOOD,
+    draw_group,
+    errors_of,
+    exact_library,
+    learnt_library,
+    play_greedily,
+)
+from reproduction.engine.results_table import ResultsTable
 
-GREEDY = "greedy"
-DOUBTING = (GREEDY, "EI", "IDS", "sampling")
-"""Rules that also run with a belief over types and the parameters of their models."""
-
-
-def check(settings: Mapping) -> None:
-    if settings["yards"][0] > settings["yards"][1]:
-        raise InputError(f"yards must rise, got {settings['yards']}")
+FIRST = {None: "greedy", WOOD: "club 1"}
+"""The first club: the rule's choice, or club 1 as in the worked example."""
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Each rule on each kind of model, greedy also with the 3-wood first, single clubs, and the program."""
-    ways = [(m, name, None) for m in (LEARNT, EXACT) for name in RULES_SHOWN]
-    ways += [(m, GREEDY, WOOD) for m in (LEARNT, EXACT)]
-    ways += [(UNCERTAIN, name, None) for name in DOUBTING] + [(UNCERTAIN, GREEDY, WOOD)]
-    played = [{"part": "rule", "model": model, "rule": name, "first": first} for model, name, first in ways]
-    return [*played, {"part": "clubs"}, {"part": "program"}]
+    """Greedy selection with exact and with learnt models, freely and after club 1; and single clubs."""
+    ways = product((None, *settings["samples"]), FIRST)
+    return [*({"samples": n, "first": first} for n, first in ways), {"part": "clubs"}]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """Means of each group of holes: error by shot, entropy before each shot and after the last."""
-    if cell["part"] == "program":
-        return {**cell, "found": program_gaps(settings["horizon"])}
-    play = _play_clubs if cell["part"] == "clubs" else _play_rule
+    play = _play_clubs if "part" in cell else _play
     groups = [play(settings, cell, seed, group) for group in range(settings["groups"])]
     return {**cell, **{key: [group[key] for group in groups] for key in groups[0]}}
 
 
-def _play_rule(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
-    distance, luck = rounds.draw_group(settings, seed, group)
-    library = rounds.library_of(settings, cell["model"], seed, group)
-    rule = RULES_SHOWN[cell["rule"]]
-    found = rounds.play_holes(rule, library, distance, luck, seed + group, cell["first"], cell["model"])
+def _play(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
+    library = exact_library()
+    if cell["samples"]:
+        training = stream(seed, "training shots", cell["samples"], group)
+        library = learnt_library(training, cell["samples"], settings["pseudo_count"])
+    holes = draw_group(settings, seed, group)
+    found = play_greedily(library, *holes, stream(seed, "golfer", group), cell["first"])
     return {
         "error": np.abs(found.error).mean(axis=0).round(5).tolist(),
         "entropy": found.entropy.mean(axis=0).round(6).tolist(),
@@ -53,26 +50,42 @@ def _play_rule(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
 
 def _play_clubs(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
     """Mean misses of single clubs, and of the best club for each hole, with the second shot's luck."""
-    distance, luck = rounds.draw_group(settings, seed, group)
+    distance, luck = draw_group(settings, seed, group)
 
     def miss(clubs: np.ndarray) -> float:
-        return round(float(np.abs(rounds.errors_of(clubs, distance, luck[:, 1])).mean()), 5)
+        return round(float(np.abs(errors_of(clubs, distance, luck[:, 1])).mean()), 5)
 
     golf = Golf()
     best = golf.mean_at(distance).argmax(axis=1)
     return {"club": [miss(np.full(len(luck), j)) for j in range(golf.n_clubs)], "best": miss(best)}
 
 
-def program_gaps(horizon: int) -> dict[str, dict]:
-    """By rule: yards missed a round in expectation, and how many more than under the dynamic program (Eq. 4.3).
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Exact models and greedy's own first club; beside it the error after club 1."""
+    found = {tuple(reading.values()): numbers for reading, numbers in readings(settings, results)}
+    forced = found["exact", FIRST[WOOD]]["error_shot_2"]
+    return found["exact", FIRST[None]] | {"error_shot_2_club_1": forced}
 
-    "dynamic program" is the optimum itself; "hole known" plays the best club for the hole from the first shot.
-    """
-    library, mean = rounds.exact_library(), Golf().mean
-    plan = best_plan(library, horizon)
-    values = {"hole known": horizon * float(mean.max(axis=1).mean())}
-    values |= {name: value_of_rule(library, rule, horizon) for name, rule in RULES_SHOWN.items()}
-    values |= {f"only the {club}": horizon * float(mean[:, j].mean()) for j, club in enumerate(CLUBS)}
-    best = {"yards": round(-plan.value, 6), "gap": 0.0, "first_club": CLUBS[plan.first]}
-    others = {name: {"yards": round(-v, 6), "gap": round(plan.value - v, 6)} for name, v in values.items()}
-    return {"dynamic program": best, **others}
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """Each kind of models with each first club; intervals are over groups of holes."""
+    clubs = np.array(results[-1]["club"])
+    single = clubs[:, clubs.mean(axis=0).argmin()]
+    for result in results[:-1]:
+        error, entropy = np.array(result["error"]), np.array(result["entropy"])
+        models = f"{result['samples']} shots" if result["samples"] else "exact"
+        yield (
+            {"models": models, "first_club": FIRST[result["first"]]},
+            {
+                "error_shot_2": mean_estimate(error[:, 1]),
+                "entropy_fall": mean_estimate(entropy[:, 0] - entropy[:, -1]),
+                "gain_over_single_club": mean_estimate(single - error[:, 1]),
+            },
+        )
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """The default's curves, and the misses of single clubs and of the best club."""
+    greedy = ResultsTable(results, ("samples", "first", "part")).record(samples=None, first=None, part=None)
+    kept = {"error": greedy["error"], "entropy": greedy["entropy"], **results[-1]}
+    return [{key: np.mean(kept[key], axis=0).round(4).tolist() for key in ("error", "entropy", "club", "best")}]

@@ -1,17 +1,18 @@
 """C4.3: a telephone service that learns from calls, their rewards, or their sum. Thesis: §4.6.2, Figure 4.6.
 
 The service samples the belief. It knows for each caller's type and language model the distribution of the signal
-and of the utility, exactly or learnt from `samples` calls a pair. A caller's uniform numbers are the same whatever
+and of the utility, exactly or learnt from so many calls a pair. A caller's uniform numbers are the same whatever
 is signalled, so that the signals are compared on the same luck. Callers come in groups; where models are learnt
 each group has a library of its own.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
+from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
 from lifelore.domains.telephone import telephone
 from lifelore.domains.telephone.telephone import PATHS, REWARDS_OF_PATH, UTILITIES, UTILITY_OF_PATH, Telephone
@@ -20,15 +21,7 @@ from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcom
 from lifelore.interaction.reuse.regret import library_regret
 from lifelore.interaction.selection import BeliefSampling
 from lifelore.interaction.signals.category_signal import CategorySignal
-from reproduction.chapter4.reuse.many_tasks import (
-    EXACT,
-    LEARNT,
-    SETTLED,
-    UNCERTAIN,
-    converged_after,
-    play_doubting,
-    play_rule,
-)
+from reproduction.chapter4.reuse.many_tasks import LAST, converged_after, grouped_mean, play_rule
 
 SIGNAL_OF_PATH: dict[str, tuple[int, ...]] = {
     "(s, a, s′)": tuple(range(len(PATHS))),
@@ -37,82 +30,55 @@ SIGNAL_OF_PATH: dict[str, tuple[int, ...]] = {
 }
 """The signal of each call, by kind of signal: the whole path, its rewards, or their sum."""
 N_SIGNALS = {"(s, a, s′)": len(PATHS), "(s, a, r)": len(telephone.REWARD_SEQUENCES), "U": len(UTILITIES)}
-MIDDLE_SAMPLES = 30
-"""Calls of a pair between `samples` and `more_samples`."""
-SIGNALS, DEFAULT_READING = tuple(SIGNAL_OF_PATH), "A"
+SHORT = dict(zip(SIGNAL_OF_PATH, ("sas", "sar", "u"), strict=True))
 
 
-def check(settings: Mapping) -> None:
-    if settings["default_models"] not in settings["models"] or DEFAULT_READING not in settings["readings"]:
-        raise InputError(f"models must include default_models ({settings['default_models']}), readings A")
-    if not settings["samples"] < MIDDLE_SAMPLES < settings["more_samples"]:
-        given = f"{settings['samples']} and {settings['more_samples']}"
-        raise InputError(f"samples and more_samples must have {MIDDLE_SAMPLES} between them, got {given}")
+def ways(settings: Mapping) -> list[dict]:
+    """Readings: reading A with each number of language models and calls a pair, None for exact models; B exact.
 
-
-def samples_of(settings: Mapping) -> tuple[int, int, int]:
-    """Calls of each pair from which models are learnt: few, some, many."""
-    return settings["samples"], MIDDLE_SAMPLES, settings["more_samples"]
-
-
-def doubting_groups(settings: Mapping, samples: int) -> int:
-    """Groups of callers of a service that doubts its models: a tenth, or a twentieth unless samples are few."""
-    return max(1, settings["groups"] // (10 if samples == settings["samples"] else 20))
+    The first is the default.
+    """
+    numbers = settings["models"]
+    found = [{"system": "A", "models": n, "samples": k} for n in numbers for k in (None, *settings["samples"])]
+    return [*found, {"system": "B", "models": numbers[0], "samples": None}]
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Every signal, by number of models and kind of model under reading A, and for the default number under B.
-
-    A service that doubts its models has fewer groups of callers, and sees the utility beside the signal.
-    """
-    numbers, default = samples_of(settings), settings["default_models"]
-    kinds = [*((LEARNT, samples) for samples in numbers), (EXACT, None)]
-    ways = [(DEFAULT_READING, n, *kind) for n in settings["models"] for kind in kinds]
-    ways += [(DEFAULT_READING, default, UNCERTAIN, samples) for samples in numbers]
-    ways += [("B", default, *kind) for kind in (kinds[0], kinds[-1]) if "B" in settings["readings"]]
-    return [
-        {"reading": reading, "models": n, "model": model, "samples": samples, "signal": signal}
-        for reading, n, model, samples in ways
-        for signal in SIGNALS
-    ]
+    """Every signal in each of the `ways`."""
+    return [{**way, "signal": signal} for way in ways(settings) for signal in SIGNAL_OF_PATH]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """All callers of one cell: regret by call, and of each caller its sum and when it ended.
+    """All callers of one cell: mean regret by call, and of each caller its sum and when it ended.
 
-    Regret is expected (Definition 4.3.1), so that it is 0 exactly when the preferred model is used. ``free``:
-    callers without regret in call `by_call`; ``ended``: the first call from which on there is none.
+    Regret is expected (Definition 4.3.1), so that it is 0 exactly when the preferred model is used. ``ended``: the
+    first call from which on there is none.
     """
-    phone, signal = Telephone(cell["models"], settings["eta"], cell["reading"]), cell["signal"]
-    n_groups, n_calls = settings["groups"], settings["calls"]
+    phone, signal, samples = (
+        Telephone(cell["models"], settings["eta"], cell["system"]),
+        cell["signal"],
+        cell["samples"],
+    )
+    n_groups = settings["groups" if samples is None else "learnt_groups"]
     luck = stream(seed, "callers", cell["models"])
     types = luck.integers(phone.n_models, size=(n_groups, settings["users"]))
-    uniforms = luck.random((*types.shape, n_calls))
-    if cell["model"] == UNCERTAIN:
-        n_groups = doubting_groups(settings, cell["samples"])
-        types, uniforms = types[:n_groups], uniforms[:n_groups]
-    if cell["model"] == EXACT:
+    uniforms = luck.random((*types.shape, settings["calls"]))
+    if samples is None:
         libraries = [exact_library(phone, signal)]
-        types, uniforms = types.reshape(1, -1), uniforms.reshape(1, -1, n_calls)
+        types, uniforms = types.reshape(1, -1), uniforms.reshape(1, -1, settings["calls"])
     else:
-        name = ("training calls", cell["models"], cell["reading"], cell["samples"])
-        known = (cell["samples"], settings["pseudo_count"])
-        libraries = [learnt_library(phone, signal, stream(seed, *name, g), *known) for g in range(n_groups)]
+        streams = (stream(seed, "training calls", cell["models"], samples, g) for g in range(n_groups))
+        libraries = [learnt_library(phone, signal, own, samples, settings["pseudo_count"]) for own in streams]
     parts = [
-        _serve(
-            phone, library, types[group], uniforms[group], signal, (seed, "service", group),
-            cell["model"] == UNCERTAIN,
-        )
+        _serve(phone, library, types[group], uniforms[group], signal, stream(seed, "service", group))
         for group, library in enumerate(libraries)
-    ]  # fmt: skip
+    ]
     regret = np.concatenate(parts)
     return {
         **cell,
-        "mean": regret.mean(axis=0).round(5).tolist(),
-        "deviation": regret.std(axis=0).round(5).tolist(),
+        "mean": regret.mean(axis=0).round(4).tolist(),
         "sums": regret.sum(axis=1).round(3).tolist(),
         "ended": converged_after(regret).tolist(),
-        "free": int((regret[:, settings["by_call"] - 1] <= SETTLED).sum()),
     }
 
 
@@ -137,20 +103,58 @@ def learnt_library(
 
 
 def _serve(
-    phone: Telephone, library: PolicyLibrary, types, uniforms, signal: str, stream_of: tuple, doubting: bool
+    phone: Telephone, library: PolicyLibrary, types: NDArray, uniforms: NDArray, signal: str, generator
 ) -> NDArray:
     """Regret of each call, (n_users, n_calls)."""
-    signal_of, paid = np.array(SIGNAL_OF_PATH[signal]), np.array(UTILITIES)[np.array(UTILITY_OF_PATH)]
+    signal_of = np.array(SIGNAL_OF_PATH[signal])
 
     def signals(call: int, models: NDArray[np.int64]) -> NDArray[np.int64]:
         return signal_of[phone.path_of(uniforms[:, call], types, models)]
 
-    def outcomes(call: int, models: NDArray[np.int64]) -> NDArray[np.float64]:
-        return paid[phone.path_of(uniforms[:, call], types, models)]
-
-    rule, size = BeliefSampling(), (len(types), uniforms.shape[1])
-    if doubting:
-        played = play_doubting(rule, library, signals, *size, stream_of, outcomes=outcomes)
-    else:
-        played = play_rule(rule, library, signals, *size, stream(*stream_of))
+    n_users, n_calls = uniforms.shape
+    played = play_rule(BeliefSampling(), library, signals, n_users, n_calls, generator)
     return library_regret(phone.mean[types], played.policies)
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Exact models, reading A, the first number of language models; sums beside differences."""
+    (_, found), *_ = by_way(settings, results)
+    sums = {f"sum_{SHORT[name]}": grouped_mean(_grouped(settings, one, "sums")) for name, one in found.items()}
+    return sums | compared(settings, found)
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """Each of the `ways`."""
+    for way, found in by_way(settings, results):
+        yield {**way, "samples": way["samples"] or "exact"}, compared(settings, found)
+
+
+def by_way(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Mapping]]]:
+    """Each of the `ways` with its results by signal."""
+    for way in ways(settings):
+        yield way, {result["signal"]: result for result in results if way.items() <= result.items()}
+
+
+def compared(settings: Mapping, found: Mapping[str, Mapping]) -> dict[str, Estimate]:
+    """How much more regret a poorer signal has, and how much more it varies; callers without regret at the end."""
+    sums = {name: _grouped(settings, one, "sums") for name, one in found.items()}
+    measured = {}
+    for better, worse in pairwise(SIGNAL_OF_PATH):
+        pair = f"{SHORT[worse]}_minus_{SHORT[better]}"
+        spread = [(sums[name] - sums[name].mean()) ** 2 for name in (worse, better)]
+        measured[f"regret_{pair}"] = grouped_mean(sums[worse] - sums[better])
+        measured[f"variance_{pair}"] = grouped_mean(spread[0] - spread[1])
+    last = max(settings["calls"] - LAST + 1, 1)
+    for name, one in found.items():
+        measured[f"ended_{SHORT[name]}"] = grouped_mean(_grouped(settings, one, "ended") <= last)
+    return measured
+
+
+def _grouped(settings: Mapping, result: Mapping, key: str) -> NDArray[np.float64]:
+    return np.array(result[key], float).reshape(-1, settings["users"])
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """The default's mean regret by call."""
+    (_, found), *_ = by_way(settings, results)
+    return [{"signal": name, "regret": one["mean"]} for name, one in found.items()]

@@ -86,8 +86,8 @@ def greedy(q: Array) -> Array:
 
 def trained_policies(settings: Mapping, here: Sequence[Arena], stream_of: tuple) -> Array:
     """The policy learnt for each type, (n_types, n_observations, n_actions)."""
-    names = ("training_epsilon", "training_rate", "training_episodes", "training_discount")
-    schedule, policies = falling_schedule(*(settings[name] for name in names)), []
+    names, policies = ("epsilon", "rate", "training_episodes", "training_discount"), []
+    schedule = falling_schedule(*(settings[name] for name in names))
     for arena in here:
         learner = arena.begin((*stream_of, "training", arena.task.strategy))
         arena.learn(learner, schedule)

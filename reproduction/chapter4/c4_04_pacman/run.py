@@ -1,190 +1,164 @@
 """C4.4: policy reuse, PRQ and Q-learning on Pacman. Thesis: §4.6.3, Figure 4.8.
 
-A task is a layout of foods and a ghost's strategy, which no method knows. The counts differ a little: reuse must
-last (`first_lasting`), a learner must reach the target once (`first_stretch`).
+A task is a layout of foods and a ghost's strategy, which no method knows. Policy reuse and PRQ are given a policy
+for each ghost, policy reuse also the returns of each policy against each ghost, Q-learning nothing.
 """
 
-from collections.abc import Mapping
-from itertools import pairwise
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
+from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.pacman.pacman import STRATEGIES, PacmanMaze
 from lifelore.interaction.baselines.probabilistic_policy_reuse import ProbabilisticPolicyReuse
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.selection import BeliefSampling, ExpectedImprovement, InformationDirected
+from lifelore.interaction.selection import BeliefSampling
 from reproduction.chapter4.c4_04_pacman import pacman_library
-from reproduction.chapter4.c4_04_pacman.pacman_library import GREATEST, Arena, falling_schedule, greedy
-from reproduction.engine.curve_blocks import block_means
+from reproduction.chapter4.c4_04_pacman.pacman_library import GREATEST, Arena, falling_schedule
+from reproduction.chapter4.reuse.many_tasks import play_rule
 
 Array = NDArray[np.float64]
-MIDDLE_SAMPLES = 30
-"""Samples a pair between `samples` and `more_samples`."""
-BPR, BPR_EI, BPR_MIDDLE, BPR_MORE, BPR_EXACT = "bpr", "bpr_ei", "bpr_middle", "bpr_more", "bpr_exact"
-"""Belief sampling; expected improvement; sampling with models of some and of many samples; with exact models."""
-BPR_DOUBTING, BPR_IDS_DOUBTING = "bpr_doubting", "bpr_ids_doubting"
-"""Sampling, and information-directed selection, with a belief over types and the parameters of their models."""
-BPR_MIDDLE_DOUBTING, BPR_MORE_DOUBTING = "bpr_middle_doubting", "bpr_more_doubting"
-"""Sampling with such a belief, and models of some and of many samples."""
-REUSERS = {
-    BPR: ("learnt", BeliefSampling()),
-    BPR_EI: ("learnt", ExpectedImprovement(of="outcome")),
-    BPR_MIDDLE: ("middle", BeliefSampling()),
-    BPR_MORE: ("more", BeliefSampling()),
-    BPR_EXACT: ("exact", BeliefSampling()),
-    BPR_DOUBTING: ("learnt", BeliefSampling()),
-    BPR_IDS_DOUBTING: ("learnt", InformationDirected()),
-    BPR_MIDDLE_DOUBTING: ("middle", BeliefSampling()),
-    BPR_MORE_DOUBTING: ("more", BeliefSampling()),
-}
-"""The models and the rule of each form of reuse."""
-PRQ, PRQ_SCALED, Q = "prq", "prq_scaled", "q"
-"""PRQ with returns as they are; with returns in units of the greatest; Q-learning."""
-DISCOUNTED = "_discounted"
-"""Added to a learner's name where it discounts as the library's training does."""
-LEARNERS = tuple(name + extra for extra in ("", DISCOUNTED) for name in (PRQ, PRQ_SCALED, Q))
+RETURNS, LASTING = "a hundred returns", "every policy from then on"
+"""What convergence is: the mean of a hundred returns is good, or BPR's every expected return."""
+UNITS = {"PRQ in [0, 1]": GREATEST, "PRQ as paid": 1.0}
+"""Unit of the returns that PRQ's temperature multiplies: Fernandez and Veloso's lie in [0, 1] (E61)."""
+Q = "Q-learning"
 LEAST_DEVIATION = 1e-3 * 240
 """Least deviation of exact models: a thousandth of the range of returns, as with learnt models."""
+DRAWN = 5
+"""Layouts of Figure 4.8: twenty tasks with four ghosts each."""
+BLOCKS = 100
+"""Points of a drawn curve, each the mean of as many episodes."""
 
 
 def check(settings: Mapping) -> None:
-    checkpoints = [0, *settings["checkpoints"], settings["episodes"]]
-    if any(not isinstance(place, int) for place in checkpoints) or (np.diff(checkpoints) < 1).any():
-        raise InputError(f"checkpoints must rise between 0 and episodes, got {settings['checkpoints']}")
-    if not settings["samples"] <= MIDDLE_SAMPLES <= settings["more_samples"]:
-        given = f"{settings['samples']} and {settings['more_samples']}"
-        raise InputError(f"samples and more_samples must have {MIDDLE_SAMPLES} between them, got {given}")
+    """Refuse a maze that cannot be a figure eight."""
     PacmanMaze(settings["rows"], settings["columns"])
 
 
 def cells(settings: Mapping) -> list[dict]:
+    """The layouts of foods."""
     return [{"layout": layout} for layout in range(settings["layouts"])]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One layout: its library, each type's tasks, and tasks whose foods lie elsewhere."""
+    """One layout's four tasks: episodes until each method has converged, and returns in blocks of episodes.
+
+    ``reuse``: by kind of models and meaning of convergence; ``learners``: by learner; None where it never has.
+    """
     maze, here = PacmanMaze(settings["rows"], settings["columns"]), (seed, "pacman", cell["layout"])
     foods = maze.draw_foods(stream(*here, "foods"))
-    at_home = pacman_library.arenas(maze, foods)
-    policies = pacman_library.trained_policies(settings, at_home, here)
-    mean, deviation = pacman_library.exact_moments(at_home, policies)
-    samples = pacman_library.sampled_returns(at_home, policies, settings["more_samples"], (*here, "samples"))
-    known = {
-        "learnt": PolicyLibrary.from_samples(samples[..., : settings["samples"]], STRATEGIES, STRATEGIES),
-        "middle": PolicyLibrary.from_samples(samples[..., :MIDDLE_SAMPLES], STRATEGIES, STRATEGIES),
-        "more": PolicyLibrary.from_samples(samples, STRATEGIES, STRATEGIES),
-        "exact": PolicyLibrary.from_means(mean, np.maximum(deviation, LEAST_DEVIATION), STRATEGIES, STRATEGIES),
-    }
-    tasks = [
-        _task(settings, arena, policies, mean[number], known, (*here, "task", arena.task.strategy))
-        for number, arena in enumerate(at_home)
+    arenas = pacman_library.arenas(maze, foods)
+    policies = pacman_library.trained_policies(settings, arenas, here)
+    moments = pacman_library.exact_moments(arenas, policies)
+    target = moments[0].max(axis=1) - settings["tolerance"] * GREATEST
+    window = min(settings["window"], settings["reuse_episodes"], settings["episodes"])
+    drawn = np.array([
+        arena.returns_of_each(policies, settings["episodes"], (*here, "task", arena.task.strategy, "reuse"))
+        for arena in arenas
+    ])  # fmt: skip
+    tasks: list[dict] = [
+        {"reuse": {}, "learners": {}, "curves": {}, "best": best} for best in moments[0].max(axis=1)
     ]
-    moved = [
-        _moved(settings, arena, policies, known, (*here, "moved", arena.task.strategy))
-        for arena in pacman_library.arenas(maze, maze.draw_foods(stream(*here, "other foods")))
-    ]
-    plain = {"foods": list(foods), "mean": mean.round(2).tolist(), "deviation": deviation.round(2).tolist()}
-    return {**cell, **plain, "tasks": tasks, "moved": moved}
+    for number, (kind, library) in enumerate(libraries(settings, arenas, policies, moments, here).items()):
+        returns = drawn if number == 0 else drawn[..., : settings["reuse_episodes"]]
+        chosen = reused(library, returns, stream(*here, "reuse", kind))
+        for task, found in enumerate(tasks):
+            paid = returns[task, chosen[task], np.arange(returns.shape[-1])]
+            good = moments[0][task, chosen[task]] >= target[task]
+            found["reuse"][kind] = {
+                RETURNS: first_stretch(paid, target[task], window),
+                LASTING: first_stretch(good, 1.0, window),
+            }
+            if number == 0:
+                found["curves"]["BPR"] = in_blocks(paid)
+    for found, arena, goal in zip(tasks, arenas, target, strict=True):
+        for name in (*UNITS, Q):
+            returns = _learn(settings, name, arena, policies, (*here, "task", arena.task.strategy))
+            found["learners"][name] = first_stretch(returns, goal, window)
+            found["curves"][name] = in_blocks(returns)
+    return {**cell, "foods": list(foods), "tasks": tasks}
 
 
-def _task(settings: Mapping, arena: Arena, policies: Array, mean: Array, known: Mapping, stream_of: tuple) -> dict:
-    """All methods on one task: episodes needed, and their mean return in blocks of episodes."""
-    n, window, target = settings["episodes"], settings["window"], mean.max() - settings["tolerance"] * GREATEST
-    drawn = arena.returns_of_each(policies, n, (*stream_of, "reuse"))
-    needed, stretch, regret, first_greedy, curves = {}, {}, {}, {}, {}
-    for name, (model, rule) in REUSERS.items():
-        returns = drawn if name == BPR else drawn[:, : settings["peer_episodes"]]
-        chosen = reused(known[model], rule, returns, (*stream_of, name), doubting=name.endswith("doubting"))
-        needed[name] = first_lasting(mean[chosen], target, window)
-        curves[name] = returns[chosen, np.arange(len(chosen))]
-        stretch[name] = first_stretch(curves[name], target, window)
-        regret[name] = round(float((mean.max() - mean[chosen[: settings["peer_episodes"]]]).sum()), 1)
-    for name in LEARNERS:
-        curves[name], first_greedy[name] = _learn(settings, name, arena, policies, target, stream_of)
-        needed[name] = first_stretch(curves[name], target, window)
-    return {
-        "type": arena.task.strategy,
-        "best": float(mean.max()),
-        "needed": needed,
-        "stretch": stretch,
-        "regret": regret,
-        "greedy": first_greedy,
-        "curves": {name: np.round(block_means(curves[name]), 1).tolist() for name in (BPR, PRQ, Q)},
-    }
+def libraries(
+    settings: Mapping, arenas: Sequence[Arena], policies: Array, moments: tuple[Array, Array], here: tuple
+) -> dict[str, PolicyLibrary]:
+    """Models of returns by kind: learnt from each number of samples a pair, the default first, and exact ones."""
+    names = (STRATEGIES, STRATEGIES)
+    samples = pacman_library.sampled_returns(arenas, policies, max(settings["samples"]), (*here, "samples"))
+    found = {f"{n} returns": PolicyLibrary.from_samples(samples[..., :n], *names) for n in settings["samples"]}
+    return found | {"exact": PolicyLibrary.from_means(moments[0], np.maximum(moments[1], LEAST_DEVIATION), *names)}
 
 
-def _moved(settings: Mapping, arena: Arena, policies: Array, known: Mapping, stream_of: tuple) -> dict:
-    """Final returns of reuse and of learners on a task whose foods lie elsewhere than in training."""
-    mean, n = np.array([arena.moments(policy)[0] for policy in policies]), settings["peer_episodes"]
-    drawn = arena.returns_of_each(policies, n, (*stream_of, "reuse"))
-    chosen = reused(known["learnt"], BeliefSampling(), drawn, (*stream_of, BPR))
-    found = {"best": mean.max(), BPR: mean[chosen[-(n // 2) :]].mean()}
-    for name in LEARNERS:
-        rewards, _ = _learn(settings, name, arena, policies, None, stream_of)
-        found[name] = rewards[-settings["window"] :].mean()
-    return {"type": arena.task.strategy} | {name: round(float(value), 2) for name, value in found.items()}
-
-
-def reused(
-    library: PolicyLibrary, rule, returns: Array, stream_of: tuple, doubting: bool = False
-) -> NDArray[np.int64]:
-    """The policies that BPR selects, given the return of each in each episode, (n_policies, n_episodes)."""
-    models = "uncertain" if doubting else "plug-in"
-    agent = BayesianPolicyReuse(
-        library, rule, dynamics=TypeDynamics.static(), seed=stream(*stream_of), models=models
-    )
-    chosen = np.empty(returns.shape[1], np.int64)
-    for episode in range(returns.shape[1]):
-        policy = chosen[episode] = agent.select()
-        agent.update(policy, float(returns[policy, episode]))
-    return chosen
-
-
-def first_lasting(expected: Array, target: float, window: int) -> int | None:
-    """First episode, counted from 1, of a stretch of `window` whose every expected return reaches the target."""
-    return first_stretch((expected >= target).astype(float), 1.0, window)
+def reused(library: PolicyLibrary, returns: Array, generator: np.random.Generator) -> NDArray[np.int64]:
+    """The policies that belief sampling selects, (n_tasks, n_episodes), of `returns` (n_tasks, n_policies, …)."""
+    every = np.arange(len(returns))
+    return play_rule(
+        BeliefSampling(), library, lambda episode, chosen: returns[every, chosen, episode],
+        len(returns), returns.shape[-1], generator,
+    ).policies  # fmt: skip
 
 
 def first_stretch(returns: Array, target: float, window: int) -> int | None:
-    """First episode, counted from 1, of a stretch of `window` whose *mean* return reaches the target.
-
-    Chance may lift a mean over it, and the episodes before the stretch need not be as good.
-    """
+    """First episode, counted from 1, of a stretch of `window` whose mean return reaches the target."""
     # Summed before divided: a hundred returns of 140 have the mean 140.
     reached = np.flatnonzero(np.convolve(returns, np.ones(window), mode="valid") / window >= target)
     return int(reached[0]) + 1 if reached.size else None
 
 
-def _learn(settings: Mapping, name: str, arena: Arena, policies: Array, target: float | None, stream_of: tuple):
-    """A learner's rewards by episode, and the episode from which its greedy policy stays as good as the target.
-
-    The greedy policy's exact value is computed at the `checkpoints` and at the end. The episode is the checkpoint
-    *before* the first from which all values are good enough, so that no episode too many is counted; None where
-    the last value is not, or without a target.
-    """
-    n = settings["episodes"]
-    discount = settings["training_discount"] if name.endswith(DISCOUNTED) else 1.0
-    plan = falling_schedule(settings["epsilon"], settings["rate"], n, discount)
-    learn, q = _learner(name.removesuffix(DISCOUNTED), arena, policies, stream_of)
-    rewards, good_since = [], None
-    for begin, end in pairwise([0, *settings["checkpoints"], n]):
-        rewards.append(learn(plan._replace(epsilon=plan.epsilon[begin:end], alpha=plan.alpha[begin:end])).rewards)
-        good = target is not None and arena.moments(greedy(q))[0] >= target
-        good_since = (good_since or max(begin, 1)) if good else None
-    return np.concatenate(rewards), good_since
+def in_blocks(returns: Array) -> list[float]:
+    """Mean returns of even blocks of episodes."""
+    parts = np.array_split(returns, min(BLOCKS, len(returns)))
+    return [round(float(part.mean()), 1) for part in parts]
 
 
-def _learner(name: str, arena: Arena, policies: Array, stream_of: tuple):
-    """A learner that goes on for the episodes of a schedule, and its table of values, changed in place."""
+def _learn(settings: Mapping, name: str, arena: Arena, policies: Array, stream_of: tuple) -> Array:
+    """A learner's returns by episode."""
+    plan = falling_schedule(settings["epsilon"], settings["rate"], settings["episodes"], 1.0)
     if name == Q:
-        learner = arena.begin(stream_of)
-        return lambda plan: arena.learn(learner, plan), learner.q
-    prq = ProbabilisticPolicyReuse(gain_unit=GREATEST if name == PRQ_SCALED else 1.0)
+        return arena.learn(arena.begin(stream_of), plan).rewards
+    prq = ProbabilisticPolicyReuse(gain_unit=UNITS[name])
     world, own = stream(*stream_of, "world"), stream(*stream_of, "learner")
     reuser = prq.begin(arena.task.n_observations, policies, world, own)
-    return lambda plan: prq.learn(arena.tables, arena.rows, policies, plan, reuser)[0], reuser.q
+    return prq.learn(arena.tables, arena.rows, policies, plan, reuser)[0].rewards
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The first reading is the default: the first number of samples, mean returns, and PRQ's returns in [0, 1]."""
+    return next(readings(settings, results))[1]
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """Each kind of models, meaning of convergence and unit of PRQ's returns; intervals are over layouts."""
+    every = settings["episodes"]
+
+    def orders(kind: str, meaning: str, learner: str) -> Estimate:
+        # All episodes where they were not enough.
+        def power(task: Mapping) -> float:
+            return np.log10((task["learners"][learner] or every) / (task["reuse"][kind][meaning] or every))
+
+        return mean_estimate([np.mean([power(task) for task in result["tasks"]]) for result in results])
+
+    for kind, meaning, prq in product(results[0]["tasks"][0]["reuse"], (RETURNS, LASTING), UNITS):
+        yield (
+            {"models": kind, "converged": meaning, "temperature": prq},
+            {
+                "orders_q": orders(kind, meaning, Q),
+                "orders_prq": orders(kind, meaning, prq),
+            },
+        )
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Curves of twenty tasks, by block of episodes; the library's best and a layout of foods."""
+    tasks = [task for result in results[:DRAWN] for task in result["tasks"]]
+    found = []
+    for name, label in (("BPR", "BPR"), (next(iter(UNITS)), "PRQ"), (Q, Q)):
+        curves = np.array([task["curves"][name] for task in tasks])
+        mean, deviation = (of.round(1).tolist() for of in (curves.mean(axis=0), curves.std(axis=0)))
+        found.append({"method": label, "tasks": len(tasks), "mean": mean, "deviation": deviation})
+    best = round(float(np.mean([task["best"] for task in tasks])), 2)
+    return [*found, {"best": best, "foods": results[0]["foods"]}]

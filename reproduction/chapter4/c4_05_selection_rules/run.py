@@ -1,19 +1,57 @@
-"""C4.5: ways to select among 68 policies in the surveillance reserve. Thesis: §4.6.4, Figures 4.9 and 4.10."""
+"""C4.5: ways to select among 68 policies in the surveillance reserve. Thesis: §4.6.4, Figure 4.10."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
-from reproduction.chapter4.reuse.rules import STANDARD
-from reproduction.chapter4.surveillance.runs import CASES, DOUBTING, RULES, reserve_cells
-from reproduction.chapter4.surveillance.runs import check_reserves as check
+from lifelore.core.metrics import Estimate
+from reproduction.chapter4.reuse.many_tasks import grouped_mean, grouped_quantile
+from reproduction.chapter4.reuse.rules import FORMS, PI_PRINTED, RULES, STANDARD, in_form
+from reproduction.chapter4.surveillance.runs import DEFAULT, READ, by_group, by_method, each_place, reserve_cells
 from reproduction.chapter4.surveillance.runs import run_method as run_cell
 
-__all__ = ["cells", "check", "run_cell"]
+__all__ = ["cells", "measure", "readings", "rows", "run_cell", "shared"]
+shared = READ
+SHOWN = (*STANDARD, "PI, printed")
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Every rule in every case of the default reserve, and with exact models on targets in every other.
+    """Every rule in both forms: learnt models in the default reserve, exact ones in every reserve."""
+    return reserve_cells(settings, RULES)
 
-    Of rules that doubt their models the standard forms.
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Standard forms and learnt models."""
+    return convergence(by_method(results, DEFAULT), "standard")
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """Each form of the rules in each reserve, with exact models; learnt ones in the default.
+
+    PI as printed beside standard rules is a reading of PI's statement alone.
     """
-    trusting = [case for case in CASES if case not in DOUBTING]
-    return [*reserve_cells(settings, trusting, RULES, RULES), *reserve_cells(settings, DOUBTING, STANDARD, ())]
+    for place, found in each_place(settings, results):
+        for form in FORMS:
+            numbers = convergence(found, form)
+            yield {"form": form, **place}, {"late_PI": numbers["late_PI"]} if form == PI_PRINTED else numbers
+
+
+def convergence(found: Mapping[str, Mapping], form: str) -> dict[str, Estimate]:
+    """When regret ended, how much was left, and how much more the next best rule has than EI, paired by task."""
+    of = {name: found[in_form(name, form)] for name in STANDARD}
+    sums = {name: by_group(result, "sums") for name, result in of.items()}
+    best_other = min((name for name in of if name != "EI"), key=lambda name: sums[name].mean())
+    ended = ("BE", "KG", "sampling", "EI", "PI")
+    late = {"late_PI": "PI", "late_eps_greedy": "ε-greedy"}
+    return {
+        **{f"ended_{name}": grouped_quantile(by_group(of[name], "ended"), 0.5) for name in ended},
+        **{key: grouped_quantile(by_group(of[name], "late"), 0.5) for key, name in late.items()},
+        "next_minus_EI": grouped_mean(sums[best_other] - sums["EI"]),
+    }
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Curves of ten tasks with learnt models."""
+    found = by_method(results, DEFAULT)
+    return [
+        {"method": name, "entropy": found[name]["entropy"], "regret": found[name]["curves"][0]["mean"]}
+        for name in SHOWN
+    ]

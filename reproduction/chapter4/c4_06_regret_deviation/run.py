@@ -1,38 +1,84 @@
 """C4.6: how much regret varies over ten surveillance tasks, by rule and episode. Thesis: §4.6.4, Table 4.3."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 
-from lifelore.core.errors import InputError
-from lifelore.domains.surveillance.surveillance import NOISES
-from reproduction.chapter4.reuse.rules import RULES_SHOWN
-from reproduction.chapter4.surveillance.runs import DEFAULT_WORLD, run_method
+import numpy as np
 
-AFTER = (5, 10, 20, 50)
-DOUBTING = ("EI", "IDS", "sampling")
-"""Rules that also run with a belief over types and the parameters of their models."""
-METHODS = (*RULES_SHOWN, "BE, κ 30")
+from lifelore.core.metrics import Estimate, mean_estimate
+from reproduction.chapter4.reuse.rules import FORMS, PI_PRINTED, RULES, STANDARD, in_form
+from reproduction.chapter4.surveillance.runs import DEFAULT, READ, by_method, each_place, reserve_cells
+from reproduction.chapter4.surveillance.runs import run_method as run_cell
+from reproduction.engine.estimates import share_of
 
-
-def check(settings: Mapping) -> None:
-    if tuple(settings["after"]) != AFTER:
-        raise InputError(f"after must be {list(AFTER)}, as printed, got {settings['after']}")
+__all__ = ["cells", "measure", "readings", "rows", "run_cell", "shared"]
+shared = READ
+PRINTED = {
+    "ε-greedy": (72.193, 97.999, 83.21, 86.172),
+    "sampling": (103.07, 86.469, 18.834, 10.897),
+    "KG": (76.577, 75.268, 7.1152, 18.489),
+    "BE": (96.529, 91.288, 17.74, 13.813),
+    "PI": (15.695, 62.4, 72.173, 101.69),
+    "EI": (27.801, 33.112, 16.011, 11.142),
+}
+"""After 5, 10, 20 and 50 episodes."""
+CONVERGE = ("sampling", "KG", "BE", "EI")
+REGRETS = ("size of realised", "realised", "against mean", "expected")
+"""Regret of one pay against another in size or with its sign, of one pay against the best mean, and expected."""
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Every rule with exact and with learnt models, and with exact ones under the other reading of the noise.
+    """Every rule in both forms: learnt models in the default reserve, exact ones in every reserve."""
+    return reserve_cells(settings, RULES)
 
-    Three rules also doubt their models.
-    """
-    noises = [("exact", noise) for noise in NOISES] + [("headline", DEFAULT_WORLD["noise"])]
-    ways = [*product(noises, METHODS), *product([("uncertain, with unseen", DEFAULT_WORLD["noise"])], DOUBTING)]
+
+def deviations(result: Mapping, regret: str) -> np.ndarray:
+    """Standard deviation over the tasks of each group, (n_groups, 4); with n − 1, as of a sample."""
+    values = np.array(result["after"][regret], float)
+    return values.reshape(result["groups"], -1, values.shape[1]).std(axis=1, ddof=1)
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Standard forms, learnt models, and the size of the difference of two pays; late deviations beside it."""
+    found = by_method(results, DEFAULT)
+    late = {f"late_{name}": mean_estimate(deviations(found[name], REGRETS[0])[:, -1]) for name in ("PI", "EI")}
+    return pattern(found, "standard", REGRETS[0]) | late
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """Each form of the rules and meaning of regret in each reserve; PI as printed for PI's statement alone."""
+    for place, found in each_place(settings, results):
+        for form, regret in product(FORMS, REGRETS):
+            numbers = pattern(found, form, regret)
+            numbers = {"more_PI": numbers["more_PI"]} if form == PI_PRINTED else numbers
+            yield {"form": form, "regret": regret, **place}, numbers
+
+
+def pattern(found: Mapping[str, Mapping], form: str, regret: str) -> dict[str, Estimate]:
+    """What the table shows, of the deviations of groups, paired: which fall, and which stay above the others."""
+    of = {name: deviations(found[in_form(name, form)], regret) for name in STANDARD}
+
+    def above_the_four(name: str) -> Estimate:
+        differences = [mean_estimate(of[name][:, -1] - of[other][:, -1]) for other in CONVERGE]
+        return min(differences, key=lambda difference: difference.value)
+
+    inside = []
+    for name, printed in PRINTED.items():
+        low, high = np.quantile(of[name], [0.025, 0.975], axis=0)
+        inside.append((low <= printed) & (printed <= high))
+    return {
+        **{f"fall_{name}": mean_estimate(of[name][:, 0] - of[name][:, -1]) for name in CONVERGE},
+        "more_eps_greedy": above_the_four("ε-greedy"),
+        "more_PI": above_the_four("PI"),
+        "agree": share_of(np.ravel(inside)),
+    }
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Median and middle 95 % of the groups' deviations, of each rule and of PI as printed."""
+    found = by_method(results, DEFAULT)
     return [
-        {"method": name, "case": case, **DEFAULT_WORLD, "noise": noise, "groups": settings["groups"]}
-        for (case, noise), name in ways
+        {"method": name, "quantiles": np.quantile(of, [0.025, 0.5, 0.975], axis=0).round(2).tolist()}
+        for name in (*PRINTED, "PI, printed")
+        for of in [deviations(found[name], REGRETS[0])]
     ]
-
-
-def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Regret after the printed episodes, task by task."""
-    found = run_method(settings, cell, seed)
-    return {key: found[key] for key in (*cell, "at", "against_mean", "realised")}

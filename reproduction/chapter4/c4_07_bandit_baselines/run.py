@@ -3,25 +3,48 @@
 The settings of tuned peers are those of least regret on these very tasks; nothing of policy reuse is tuned.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 
-from reproduction.chapter4.surveillance.peers import GP_PEERS, PEERS
-from reproduction.chapter4.surveillance.runs import check_reserves as check
-from reproduction.chapter4.surveillance.runs import reserve_cells
+from lifelore.core.metrics import Estimate
+from reproduction.chapter4.reuse.many_tasks import grouped_mean
+from reproduction.chapter4.surveillance.peers import PEERS
+from reproduction.chapter4.surveillance.runs import DEFAULT, READ, by_group, by_method, each_place, reserve_cells
 from reproduction.chapter4.surveillance.runs import run_method as run_cell
 
-__all__ = ["cells", "check", "run_cell"]
-REUSE = ("EI", "EI, printed", "IDS", "sampling")
-DOUBTING = ("EI", "IDS", "sampling")
-"""Rules that also run with a belief over types and the parameters of their models."""
-CASES_SHOWN = ("headline", "exact", "learnt")
-IN_GRID = ("EI", "UCB1", "UCB1, tuned", *GP_PEERS, "interval estimation", "eps-greedy on means")
+__all__ = ["cells", "measure", "readings", "rows", "run_cell", "shared"]
+shared = READ
+SHOWN = ("EI", "UCB1", "GP-UCB", "interval estimation")
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Every method in the default reserve, learnt and exact; in the other reserves the methods of the thesis.
+    """BPR-EI and its peers: learnt models in the default reserve, exact ones in every reserve."""
+    return reserve_cells(settings, ("EI", *PEERS))
 
-    Rules that doubt their models run in the default reserve, with every second task unseen.
-    """
-    doubting = reserve_cells(settings, ["uncertain, with unseen"], DOUBTING, ())
-    return [*reserve_cells(settings, CASES_SHOWN, (*REUSE, *PEERS), IN_GRID), *doubting]
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Learnt models and untuned peers; sums of regret beside differences."""
+    found = by_method(results, DEFAULT)
+    sums = {f"sum_{name.replace('-', '_')}": grouped_mean(by_group(found[name], "sums")) for name in SHOWN[:3]}
+    return sums | more_regret(found)
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """Each reserve with UCB1 and GP-UCB as published and tuned."""
+    for place, found in each_place(settings, results):
+        for ucb, gp in product(("UCB1", "UCB1, tuned"), ("GP-UCB", "GP-UCB, tuned")):
+            yield {"UCB1": ucb, "GP-UCB": gp, **place}, more_regret(found, ucb, gp)
+
+
+def more_regret(found: Mapping[str, Mapping], ucb: str = "UCB1", gp: str = "GP-UCB") -> dict[str, Estimate]:
+    """How much more summed regret peers have than reuse, and UCB1 than GP-UCB, paired by task."""
+    names = {"EI": "EI", "UCB1": ucb, "GP_UCB": gp, "interval_estimation": "interval estimation"}
+    sums = {key: by_group(found[name], "sums") for key, name in names.items()}
+    pairs = [(peer, "EI") for peer in sums if peer != "EI"] + [("UCB1", "GP_UCB")]
+    return {f"{worse}_minus_{better}": grouped_mean(sums[worse] - sums[better]) for worse, better in pairs}
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Mean and deviation of regret by episode over fifty tasks with learnt models."""
+    found = by_method(results, DEFAULT)
+    return [{"method": name, **found[name]["curves"][1]} for name in SHOWN]

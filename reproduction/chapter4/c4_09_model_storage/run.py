@@ -1,27 +1,85 @@
-"""C4.9: entries, and bytes of arrays, of the observation models of §4.7.6, once learnt. Thesis: §4.7.6."""
+"""C4.9: entries of the tables of three observation models, once learnt. Thesis: §4.7.6.
 
-from collections.abc import Mapping
+From the same random episodes three models are learnt: of the return (a histogram with as many bins as there are
+rewards, as §4.7.6 counts), of (s, a, r) and of (s, a, s′), each with a table for every type and policy.
+"""
 
-from reproduction.chapter4.c4_09_model_storage.applications import RANDOM, application
-from reproduction.chapter4.c4_09_model_storage.stored_models import stored
+from collections.abc import Mapping, Sequence
+from itertools import product
+
+import numpy as np
+
+from lifelore.core.metrics import Estimate
+from lifelore.core.streams import stream
+from lifelore.interaction.library.storage_cost import StorageSizes, storage_cost
+from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
+from lifelore.interaction.outcomes.outcome_model import rows_of_samples
+from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
+from lifelore.interaction.signals.transition_signal import TransitionSignal
+from reproduction.engine.estimates import UNMEASURED, share_of
+
+SIGNALS = ("performance", "reward", "state_action_state")
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Random applications by their sizes, and each of the thesis's own."""
-    random = [
-        {"kind": RANDOM, "states": s, "rewards": r, "rewards_of": of}
-        for of in settings["rewards_of"]
-        for s in settings["states"]
-        for r in settings["rewards"]
-    ]
-    phones = [{"kind": "telephone", "models": n} for n in settings["models"]]
-    reserves = [{"kind": "surveillance", "targets": n, "resolution": step} for n, step in settings["reserves"]]
-    mazes = [{"kind": "pacman", "rows": rows, "columns": columns} for rows, columns in settings["mazes"]]
-    return random + phones + reserves + mazes
+    """Applications by their numbers of states and rewards."""
+    return [{"states": s, "rewards": r} for s, r in product(settings["states"], settings["rewards"])]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Every draw of an application, learnt and counted; the thesis's own are drawn once."""
-    draws = settings["draws"] if cell["kind"] == RANDOM else 1
-    found = [stored(application(settings, cell, number, seed)) for number in range(draws)]
-    return {"cell": dict(cell), "stored": found}
+    """Entries of the learnt tables, and what the formulas give, put right and as printed."""
+    sizes = StorageSizes(
+        settings["policies"], settings["types"], cell["states"], settings["actions"], cell["rewards"], bits=1
+    )
+    generator = stream(seed, "C4.9", cell["states"], cell["rewards"])
+    right, printed = storage_cost(sizes), storage_cost(sizes, "thesis")
+    return {
+        **cell,
+        "table": table_sizes(sizes, settings["episodes"], settings["horizon"], generator),
+        "right": {name: getattr(right, name) for name in SIGNALS},
+        "printed": {name: getattr(printed, name) for name in SIGNALS},
+    }
+
+
+def table_sizes(
+    sizes: StorageSizes, n_episodes: int, horizon: int, generator: np.random.Generator
+) -> dict[str, int]:
+    """Entries of the three models' tables, learnt from random walks whose steps pay random rewards."""
+    n_pairs = (sizes.n_types, sizes.n_policies)
+    states = generator.integers(sizes.n_states, size=(*n_pairs, n_episodes, horizon + 1))
+    acts = generator.integers(sizes.n_actions, size=(*n_pairs, n_episodes, horizon))
+    paid = generator.integers(sizes.n_rewards, size=acts.shape).astype(float)
+    steps = np.stack([states[..., :-1], acts, states[..., 1:]], axis=-1)
+    every = list(np.ndindex(*n_pairs, n_episodes))
+    axes = (sizes.n_types, sizes.n_states, sizes.n_actions, sizes.n_policies)
+    performance = HistogramOutcomes.from_rows(rows_of_samples(paid.sum(axis=-1)), sizes.n_rewards)
+    pays = ((t, p, np.column_stack([steps[t, p, k][:, :2], paid[t, p, k]]).tolist()) for t, p, k in every)
+    rewards = StepRewardSignal.from_sequences(pays, np.arange(float(sizes.n_rewards)), *axes)
+    transitions = TransitionSignal.from_sequences(((t, p, steps[t, p, k]) for t, p, k in every), *axes)
+    return dict(zip(SIGNALS, (performance.counts.size, rewards.n_entries, transitions.n_entries), strict=True))
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Shares of the applications with more rewards than states; of formulas the share of all tables."""
+    more = [one["table"] for one in results if one["rewards"] > one["states"]]
+
+    def share_below(first: str, second: str) -> Estimate:
+        return share_of([table[first] < table[second] for table in more]) if more else UNMEASURED
+
+    every = [(one, name) for one in results for name in SIGNALS]
+    return {
+        "performance_below_reward": share_below("performance", "reward"),
+        "reward_below_transition": share_below("reward", "state_action_state"),
+        "printed_formulas_bound": share_of([one["table"][name] <= one["printed"][name] for one, name in every]),
+        "right_formulas": share_of([one["table"][name] == one["right"][name] for one, name in every]),
+    }
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Each application's tables and printed formulas, of the middle number of states."""
+    states = sorted(settings["states"])[len(settings["states"]) // 2]
+    return [
+        {key: one[key] for key in ("states", "rewards", "table", "printed")}
+        for one in results
+        if one["states"] == states
+    ]

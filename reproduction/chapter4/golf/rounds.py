@@ -1,10 +1,7 @@
 """Golf played by rules that know four training holes, for C4.1 and C4.2.
 
-Rules know the performance and the categories of each club on each training hole, exactly or learnt from `samples`
+Rules know the performance and the categories of each club on each training hole, exactly or learnt from so many
 shots a pair. They never know the distance of the hole, the clubs' yardage, or an error in yards.
-
-Holes come in groups of the thesis's size. A group has holes and luck of its own, and where models are learnt a
-library of its own; all rules and models play the same holes with the same luck.
 """
 
 from collections.abc import Mapping
@@ -17,9 +14,9 @@ from lifelore.core.streams import stream
 from lifelore.domains.golf.golf import CATEGORIES, CLUBS, DEVIATIONS, YARDS, Golf, category_of
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
-from lifelore.interaction.selection import SelectionRule
+from lifelore.interaction.selection import Greedy
 from lifelore.interaction.signals.category_signal import CategorySignal
-from reproduction.chapter4.reuse.many_tasks import EXACT, UNCERTAIN, play_doubting, play_rule
+from reproduction.chapter4.reuse.many_tasks import play_rule
 
 Array = NDArray[np.float64]
 WOOD, IRON = CLUBS.index("3-wood"), CLUBS.index("3-iron")
@@ -56,26 +53,12 @@ def learnt_library(generator: np.random.Generator, samples: int, pseudo_count: f
     return PolicyLibrary(GaussianOutcomes.from_samples(-np.abs(errors)), signal, policies=CLUBS)
 
 
-def library_of(settings: Mapping, model: str, seed: int, group: int) -> PolicyLibrary:
-    """A group's library; of the exact model the same for all."""
-    if model == EXACT:
-        return exact_library()
-    generator = stream(seed, "training shots", group)
-    return learnt_library(generator, settings["samples"], settings["pseudo_count"])
-
-
-def play_holes(
-    rule: SelectionRule,
-    library: PolicyLibrary,
-    distance: Array,
-    luck: Array,
-    seed: int,
-    first: int | None = None,
-    model: str = EXACT,
+def play_greedily(
+    library: PolicyLibrary, distance: Array, luck: Array, generator: np.random.Generator, first: int | None = None
 ) -> Round:
-    """Play holes at `distance` (n_holes,) with `luck` (n_holes, n_shots), standard normal.
+    """Greedy selection at holes of `distance` (n_holes,) with `luck` (n_holes, n_shots), standard normal.
 
-    A golfer who doubts its models learns from the error in yards beside the category.
+    `first`, if given, is the club of the first shot; `generator` chooses among equally good clubs.
     """
     n_holes, n_shots = luck.shape
     error = np.empty((n_holes, n_shots))
@@ -84,14 +67,7 @@ def play_holes(
         error[:, shot] = errors_of(clubs, distance, luck[:, shot])
         return category_of(error[:, shot])
 
-    def outcomes(shot: int, clubs: NDArray[np.int64]) -> Array:
-        return -np.abs(error[:, shot])
-
-    stream_of = (seed, "golfer", rule.name)
-    if model == UNCERTAIN:
-        played = play_doubting(rule, library, signals, n_holes, n_shots, stream_of, outcomes=outcomes, first=first)
-    else:
-        played = play_rule(rule, library, signals, n_holes, n_shots, stream(*stream_of), first)
+    played = play_rule(Greedy(), library, signals, n_holes, n_shots, generator, first)
     return Round(played.policies, error, played.entropy)
 
 
@@ -101,7 +77,7 @@ def errors_of(clubs: NDArray[np.int64], distance: Array, luck: Array) -> Array:
 
 
 def draw_group(settings: Mapping, seed: int, group: int) -> tuple[Array, Array]:
-    """Distances (n_holes,) and luck (n_holes, n_shots) of one group."""
+    """Distances (n_holes,) and luck (n_holes, n_shots) of one group of holes."""
     generator = stream(seed, "holes", group)
-    distance = Golf().draw_holes(generator, settings["holes"], *settings["yards"])
+    distance = Golf().draw_holes(generator, settings["holes"], *sorted(settings["yards"]))
     return distance, generator.standard_normal((settings["holes"], settings["shots"]))

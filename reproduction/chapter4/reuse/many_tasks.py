@@ -5,8 +5,8 @@ before any method chooses. Regret is expected library regret (Definition 4.3.1):
 pays on average than the best of the library.
 """
 
-from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -86,7 +86,6 @@ def play_doubting(
     stream_of: tuple,
     *,
     outcomes: Signals | None = None,
-    first: int | None = None,
 ) -> Played:
     """`play_rule` with a belief over types and the parameters of their models, task by task.
 
@@ -102,8 +101,7 @@ def play_doubting(
     entropies = np.empty((n_tasks, n_episodes + 1))
     for t in range(n_episodes):
         entropies[:, t] = [entropy(agent.belief) for agent in agents]
-        selected = [agent.select() for agent in agents]
-        policies[:, t] = first if t == 0 and first is not None else selected
+        policies[:, t] = [agent.select() for agent in agents]
         shown = signals(t, policies[:, t])
         paid = None if outcomes is None else outcomes(t, policies[:, t])
         for task, agent in enumerate(agents):
@@ -143,43 +141,11 @@ def grouped_mean(values: ArrayLike) -> Estimate:
 
 
 def grouped_quantile(values: ArrayLike, q: float) -> Estimate:
-    """Quantile of all `values` (n_groups, n_each), with a bootstrap interval over groups."""
-    values = np.asarray(values, float)
-    interval = _group_interval(values, lambda some: np.quantile(some, q, axis=1), "bootstrap of a quantile")
+    """Quantile of all `values` (n_groups, n_each), with a bootstrap interval over groups; none below three."""
+    values, interval = np.asarray(values, float), None
+    n = len(values)
+    if n >= 3:
+        draws = stream(n, "bootstrap of a quantile").integers(0, n, size=(RESAMPLES, n))
+        low, high = np.quantile(np.quantile(values[draws].reshape(RESAMPLES, -1), q, axis=1), [0.025, 0.975])
+        interval = (float(low), float(high))
     return Estimate(float(np.quantile(values, q)), float(np.median(values)), interval, values.size)
-
-
-def grouped_deviation(values: ArrayLike) -> Estimate:
-    """Standard deviation of all `values` (n_groups, n_each), with a bootstrap interval over groups."""
-    values = np.asarray(values, float)
-    interval = _group_interval(values, lambda some: some.std(axis=1), "bootstrap of a deviation")
-    return Estimate(float(values.std()), float(values.std()), interval, values.size)
-
-
-def _group_interval(values: Array, statistic: Callable, name: str) -> tuple[float, float] | None:
-    """95 % bootstrap interval of a statistic over groups; None below three groups."""
-    n = len(values)
-    if n < 3:
-        return None
-    draws = stream(n, name).integers(0, n, size=(RESAMPLES, n))
-    low, high = np.quantile(statistic(values[draws].reshape(RESAMPLES, -1)), [0.025, 0.975])
-    return float(low), float(high)
-
-
-def curve(values: Array, digits: int = 3) -> dict[str, list[float]]:
-    """Mean over tasks (n_tasks, n_episodes) and its standard error, episode by episode."""
-    n = len(values)
-    error = values.std(axis=0, ddof=1) / n**0.5 if n > 1 else np.zeros(values.shape[1])
-    return {"mean": values.mean(axis=0).round(digits).tolist(), "error": error.round(digits).tolist()}
-
-
-def plain(estimates: Mapping[str, Estimate]) -> dict[str, Any]:
-    """Estimates as rows keep them: value, interval and number, to four places."""
-    return {
-        name: {
-            "value": round(estimate.value, 4),
-            "ci95": None if estimate.ci95 is None else [round(bound, 4) for bound in estimate.ci95],
-            "n": estimate.n,
-        }
-        for name, estimate in estimates.items()
-    }

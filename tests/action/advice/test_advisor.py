@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.action.advice.advisor import BETTER, TRACE, AdviceSettings, Advisor, exploration_rows
+from lifelore.action.advice.advisor import BETTER, TRACE, AdviceSettings, Advisor
 from lifelore.action.advice.behaviour_models import Tabulated, Uniform
 from lifelore.action.advice.goal_model import GoalModel, Trajectory
 from lifelore.core.errors import InputError
@@ -234,14 +234,7 @@ def test_at_once_is_step_by_step(seed):
         advisor.observe(watch, states[t], actions[t])
 
 
-# ---- advice for learners; mistakes -----------------------------------------------------------------
-
-
-def test_exploration_rows_by_hand():
-    best = np.array([[1, 0, 0, 0], [1, 1, 0, 0], [1, 1, 1, 0], [0, 0, 0, 0]], bool)
-    rows = exploration_rows(GoalModel.from_best_actions(best), 0.5)
-    assert rows.tolist() == [[1, 0, 0, 0], [0.5, 0.5, 0, 0], [0.25] * 4, [0.25] * 4]
-    assert exploration_rows(GoalModel.from_best_actions(best), 0)[2] == pytest.approx([1 / 3, 1 / 3, 1 / 3, 0])
+# ---- mistakes -----------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

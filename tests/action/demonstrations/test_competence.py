@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.action.demonstrations.competence import competence_by_paths, competence_by_steps
+from lifelore.action.demonstrations.competence import competence_by_steps
 from lifelore.action.demonstrations.demonstrations import Demonstration
 from lifelore.action.demonstrations.simulated_person import person_policy, simulated_demonstration
 from lifelore.core.errors import InputError
@@ -74,32 +74,6 @@ def test_by_steps_recovers_the_skill_of_simulated_people(skill):
         told.append(one)
     n = sum(len(one.states) for one in told)
     assert competence_by_steps(told, lambda task: best)["ann"] == pytest.approx(skill, abs=4 / np.sqrt(n))
-
-
-# ---- w(π) by ways --------------------------------------------------------------------------------------------
-
-
-def test_by_ways_by_hand():
-    # Ann goes 0 1 2 and out: three steps. Bob goes 0 5 1 4 1 2 and out: six, though he could have gone her way.
-    ann = demonstration("ann", [(0, 0), (1, 0), (2, 0)])
-    bob = demonstration("bob", [(0, 1), (5, 0), (1, 1), (4, 0), (1, 0), (2, 0)])
-    assert competence_by_paths([ann, bob]) == {"ann": 1.0, "bob": 0.5}
-    # Alone he is only charged for his circle 1 4 1: nothing shorter is known.
-    assert competence_by_paths([bob]) == {"bob": pytest.approx(4 / 6)}
-    elsewhere = demonstration("ann", [(9, 0)] * 4, "u")  # one step would have done
-    assert competence_by_paths([ann, bob, elsewhere])["ann"] == pytest.approx((1 + 1 / 4) / 2)
-
-
-def test_both_estimators_rank_people_alike():
-    tables, best = grid(8)
-    told = [
-        simulated_demonstration(tables, best, skill, stream(1, i), task="t", agent=str(skill), most_steps=10**5)
-        for i in range(10)
-        for skill in (0.1, 0.5, 0.95)
-    ]
-    told = [one for one in told if one is not None]
-    for found in (competence_by_steps(told, lambda task: best), competence_by_paths(told)):
-        assert found["0.1"] < found["0.5"] < found["0.95"] <= 1.0
 
 
 # ---- simulated people ----------------------------------------------------------------------------------------

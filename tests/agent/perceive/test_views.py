@@ -15,7 +15,7 @@ from lifelore.core.streams import stream
 from lifelore.domains.tabletop.depth_camera import KINECT
 from lifelore.domains.tabletop.pose import Pose
 from lifelore.domains.tabletop.tabletop import sample_scene
-from lifelore.domains.tabletop.views import views_around
+from tests.agent.perceive.views_around import views_around
 
 pytest.importorskip("mujoco")
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from benchmarks.lives.resaved_maps import padded, shifted, turned
 from lifelore.domains.buildings.building import building_from_map
 from lifelore.domains.buildings.map_alignment import MapFrame, aligned_map
 from lifelore.domains.buildings.occupancy_map import FREE, UNKNOWN, OccupancyMap
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.registration import IDENTITY, moved
+from tests.domains.buildings.resaved_maps import padded, shifted, turned
 
 OFFICE = office_map(1, 20.0, 14.0)
 FRAME = MapFrame.of(OFFICE)

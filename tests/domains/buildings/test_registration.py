@@ -3,19 +3,26 @@
 import numpy as np
 import pytest
 
-from benchmarks.lives.recognition import recognised
-from benchmarks.lives.resaved_maps import cropped, noisy, padded, refurnished, shifted, turned
+from lifelore.agent.live.buildings.recognition import LEAST_MARGIN, LEAST_MATCH
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.registration import (
+    Registration,
     composed,
     inverse,
     moved,
     register,
     register_near,
 )
+from tests.domains.buildings.resaved_maps import cropped, noisy, padded, refurnished, shifted, turned
 
 OFFICE = office_map(1, 20.0, 14.0)
+
+
+def recognised(found: Registration) -> bool:
+    """Whether a registration would recognise the building, were it the only one in memory."""
+    clear = found.second is None or found.best.match - found.second.match >= LEAST_MARGIN
+    return found.best.match >= LEAST_MATCH and clear
 
 
 def hall(width: int = 200, height: int = 120) -> OccupancyMap:

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
 from lifelore.core.errors import InputError
 from lifelore.domains.factory.factory import Factory
-from lifelore.domains.factory.knowledge import distances
 from lifelore.domains.factory.layout import PLAN, factory
 
 
@@ -15,12 +15,13 @@ def test_what_the_thesis_names_is_there():
     assert len({*world.procure_at.tolist(), *world.assemble_at.tolist()}) == 18
     assert world.express.sum() == PLAN.count("+") + 1
     # Everything can be reached, and the regions lie apart.
-    assert distances(world, np.arange(world.n_cells) == world.start).max() < world.n_cells
+    assert ndimage.label(world.floor.state_of >= 0)[1] == 1  # type: ignore[index]
     assert not (world.procure_area & world.assemble_area).any()
     assert world.procure_area[world.procure_at].all()
     assert world.assemble_area[world.assemble_at].all()
     assert not world.procure_area[world.start]
-    assert distances(world, world.procure_area)[world.assemble_area].min() > 10
+    procure, assemble = (world.floor.cells[area] for area in (world.procure_area, world.assemble_area))
+    assert abs(procure[:, None] - assemble).sum(axis=2).min() > 10
 
 
 def test_signs_are_read_where_they_stand():

@@ -5,9 +5,9 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.domains.tabletop.furniture import Board, cast_boards
 from lifelore.perception.segmentation.poked_patches import Poke
 from lifelore.perception.segmentation.poking import PokedSegments
+from tests.perception.segmentation.boards import Board, cast_boards
 
 CAMERA = np.array([0.0, -0.7, 0.6])
 PUSH, BACK = np.array([0.025, 0.0, 0.0]), np.array([0.0, 0.025, 0.0])

@@ -1,29 +1,28 @@
-"""C2.5: what is lost is a paired difference over scenes, border pairs apart; all of it on rows made by hand."""
+"""C2.5: what is lost is a paired difference over scenes; displacements by method, on clouds made by hand."""
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
 from lifelore.perception.relations.relation import Relation
-from reproduction.chapter2.c2_05_discarded_points.measure import (
-    judged_views,
-    less_majority,
-    lost,
-    measure,
+from reproduction.chapter2.c2_05_discarded_points.run import (
+    FIXED,
+    METHODS,
+    SCALED,
+    THINNED,
+    judged,
+    levels_of,
+    measures,
+    raw_rows,
     rows,
-    scene_of,
-    taught,
+    seen,
+    strong_places,
+    view,
 )
-from reproduction.chapter2.scoring.relation_scoring import JudgedPair
-from reproduction.engine.registry import claim_of
-
-CLAIM = claim_of("C2.5")
-
-UP, ASIDE = [[0.0, 0.0, 0.01]] * 4, [[0.03, 0.0, 0.0]] * 4
-"""Displacements χ_2 - χ_3: of 2 on 3, and of 2 beside 3; four each, as many as neighbours vote."""
-SPOILT = "discarded 0.7"
-SETTINGS = {"levels": {"discarded": [0.7]}}
+from reproduction.chapter2.scoring.relation_scoring import JudgedPair, difference
 
 
 def answer(right: bool, scene: str, truth: str = "on") -> JudgedPair:
@@ -36,12 +35,12 @@ def test_what_is_lost_is_paired():
     names = [str(number) for number in range(8)]
     whole = [answer(name != "0", name) for name in names]
     spoilt = [answer(name != "1", name) for name in names]
-    found = lost({"whole": whole, SPOILT: spoilt}, SPOILT)
+    found = difference(whole, spoilt)
     assert (found.value, found.n) == (0.0, 8)
     assert found.ci95 is not None
     assert found.ci95[0] < 0 < found.ci95[1]
     # The very same ones wrong: nothing is lost for sure.
-    assert lost({"whole": whole, SPOILT: whole}, SPOILT).ci95 == (0.0, 0.0)
+    assert difference(whole, whole).ci95 == (0.0, 0.0)
 
 
 def test_a_loss_by_hand_and_its_interval():
@@ -49,7 +48,7 @@ def test_a_loss_by_hand_and_its_interval():
     names = [str(number) for number in range(20) for _ in range(2)]
     whole = [answer(True, name) for name in names]
     spoilt = [answer(number % 8 != 0, name) for number, name in enumerate(names)]
-    found = lost({"whole": whole, SPOILT: spoilt}, SPOILT)
+    found = difference(whole, spoilt)
     assert found.value == pytest.approx(5 / 40)
     assert found.n == 40
     assert found.ci95 is not None
@@ -64,7 +63,7 @@ def test_scenes_are_resampled_and_not_pairs():
     def width(names: list[str], gone: list[bool]) -> float:
         whole = [answer(True, name) for name in names]
         spoilt = [answer(not one, name) for name, one in zip(names, gone, strict=True)]
-        found = lost({"whole": whole, SPOILT: spoilt}, SPOILT)
+        found = difference(whole, spoilt)
         assert found.value == 0.5
         assert found.ci95 is not None
         return found.ci95[1] - found.ci95[0]
@@ -75,154 +74,99 @@ def test_scenes_are_resampled_and_not_pairs():
     assert together > 2 * apart
 
 
-def test_nothing_is_lost_where_nothing_was_asked():
-    assert lost({}, SPOILT).n == 0
-    assert lost({"whole": [answer(True, "a")]}, SPOILT).n == 0
+def test_measures_by_hand():
+    # Of five, three are on (two of them told) and two none (told): 4/5 - 3/5; whole, all are told.
+    worst = [answer(number != 0, str(number)) for number in range(3)]
+    worst += [answer(True, str(number), "none") for number in (3, 4)]
+    whole = [answer(True, pair.scene, pair.truth.relation) for pair in worst]
+    found = measures({0.0: whole, 0.3: whole, 0.7: worst})
+    assert {name: number.value for name, number in found.items()} == pytest.approx(
+        {"lost_30": 0, "lost_70": 0.2, "less_majority": 0.2}
+    )
 
 
-def test_above_the_commonest_relation_by_hand():
-    # Of five, three are on (two of them told) and two none (told): 4/5 - 3/5.
-    judged = [answer(number != 0, str(number)) for number in range(3)]
-    judged += [answer(True, str(number), "none") for number in (3, 4)]
-    found = less_majority(judged)
-    assert (found.value, found.n) == (pytest.approx(0.2), 5)
-    assert found.ci95 is not None
-    assert found.ci95[0] <= 0.2 <= found.ci95[1] <= 0.4
-    assert less_majority([]).n == 0
+def test_contacts_of_seven_are_kept_and_are_weighted_centroids():
+    seven = np.array([[0.001 * k, 0, 0] for k in range(7)])
+    six = np.array([[0.1 + 0.001 * k, 0, 0] for k in range(6)])
+    points, alpha = np.concatenate([seven, six]), np.array([1.0] * 6 + [3.0] + [9.0] * 6)
+    # (0 + 1 + … + 5 + 3 · 6) / 9 = 33 / 9 mm; the six, though stronger by far, are too few.
+    assert strong_places(points, alpha, 0.025) == pytest.approx(np.array([[33e-4 / 9 * 10, 0, 0]]), abs=1e-9)
+    both = strong_places(points, alpha, 0.025, least=6)
+    assert both[:, 0] == pytest.approx([0.1025, 33e-3 / 9])
+    assert strong_places(points[7:], alpha[7:], 0.025).shape == (0, 3)
 
 
-def lesson(name: str, relation: str, moved: list) -> dict:
-    row = [2, 3, 0.005, moved]
-    return {"name": name, "truth": [[2, 3, relation, 3]], "view": {"thesis": [row], "literal": [row]}}
+def plate(n: int, *corner: float, step: float = 0.004) -> np.ndarray:
+    x, y = np.meshgrid(np.arange(n) * step, np.arange(n) * step)
+    return np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1) + np.array(corner)
 
 
-LESSONS = [lesson("one", "on", UP), lesson("two", "adjacent", ASIDE)]
+def plates(n: int, step: float) -> LabelledCloud:
+    """Plates 2 and 3, 6 mm apart."""
+    points = np.concatenate([plate(n, 0, 0, 0, step=step), plate(n, 0, 0, 0.006, step=step)])
+    return LabelledCloud(points, np.repeat([2, 3], n * n))
 
 
-def test_the_thesiss_neighbours_by_hand():
-    model = taught(LESSONS, "thesis")
-    down = [[0.0, 0.0, -0.01]]
-    said = model.predict_pairs(scene_of([[2, 3, 0.004, UP[:1]], [2, 4, 0.005, down], [3, 4, 0.006, ASIDE[:1]]]))
-    assert [(one.a, one.b, one.relation, one.gap) for one in said] == [
-        (2, 3, "on", 0.004),
-        (4, 2, "on", 0.005),
-        (3, 4, "adjacent", 0.006),
+def test_displacements_of_two_plates_lead_from_one_to_the_other():
+    for method, pairs in view(plates(31, 0.002), 1.0).items():
+        (found,) = pairs
+        assert found[:3] == [2, 3, 0.006], method
+        moved = np.array(found[3])
+        assert moved[:, 2] == pytest.approx(-0.006, abs=1e-5)
+        # One pair of contact points faces one another, whatever the number of contacts.
+        assert np.hypot(*moved[:, :2].T).min() < 0.003
+
+
+def test_a_fixed_threshold_has_nothing_to_say_of_few_points():
+    # Four points a plate cannot be seven support vectors; of a tenth of the points 0.7 are enough.
+    found = raw_rows(plates(2, 0.004), {SCALED: 0.7, FIXED: 7.0})
+    assert (len(found[SCALED]), len(found[FIXED])) == (1, 0)
+
+
+def test_a_scene_is_seen_at_each_share_discarded():
+    cloud = plates(20, 0.003)
+    points = np.concatenate([plate(30, -0.02, -0.02, -0.01), cloud.points])
+    labels = np.concatenate([np.full(900, TABLE), cloud.labels])
+    truth = (PairLabel(3, 2, "on", 2), PairLabel(2, TABLE, "on"))
+    whole = LabelledCloud(points, labels, None, np.array([0.0, -1, 1]))
+    scene = SimpleNamespace(
+        name="made", cloud=whole, truth=truth, gaps=(SimpleNamespace(a=2, b=3, visible=0.006),)
+    )
+    found = seen(scene, levels_of({"discarded": [0.999]}))  # type: ignore[arg-type]
+    # The table takes no part.
+    assert (found["truth"], found["gaps"]) == ([[3, 2, "on", 2]], [[2, 3, 0.006]])
+    first, last = found["views"]
+    assert [row[:2] for row in first[THINNED]] == [[2, 3]]
+    # Of 800 points one or two are left.
+    assert last[FIXED] == []
+
+
+UP, ASIDE = [[0.0, 0.0, 0.01]] * 4, [[0.03, 0.0, 0.0]] * 4
+"""Displacements χ_2 - χ_3: of 2 on 3, and of 2 beside 3; four each, as many as neighbours vote."""
+
+
+def scene(name, truth, *views, gap=0.001):
+    rows = [dict.fromkeys(METHODS, [[2, 3, gap, moved]] if moved else []) for moved in views]
+    return {"name": name, "truth": [[2, 3, truth, 3]], "gaps": [[2, 3, gap]], "views": rows}
+
+
+def test_pairs_are_told_by_the_lessons_and_those_on_the_border_left_out():
+    lessons = [
+        scene("one", "on", UP),
+        scene("two", "adjacent", ASIDE),
+        scene("three", "both", [[0.5, 0.5, 0.5]] * 4),
     ]
-    # One contact above and one beside: the union.
-    both = [lesson("three", "both", [[0.5, 0.5, 0.5]] * 4)]
-    (one,) = taught(LESSONS + both, "thesis").predict_pairs(scene_of([[2, 3, 0.0, [UP[0], ASIDE[0]]]]))
-    assert one.relation == "both"
-    empty = scene_of([])
-    assert empty.features.pairs.shape == (0, 2)
-    assert empty.displacements == ()
-
-
-def seen(name: str, whole: list, spoilt: list, truth: list, gaps: list, same: list, shifts: list) -> dict:
-    return {
-        "name": name,
-        "truth": truth,
-        "gaps": gaps,
-        "views": {"whole": {**VIEW, "lifelore": whole}, SPOILT: {"thesis": [], "literal": [], "lifelore": spoilt}},
-        "networks": {SPOILT: {"same": same, "shifts": shifts}},
+    scenes = [
+        scene("a", "on", UP[:1], ASIDE[:1]),
+        scene("b", "adjacent", ASIDE[:1], []),
+        scene("c", "adjacent", ASIDE[:1], ASIDE[:1], gap=0.025),  # 2.5 mm from the limit of adjacent
+        scene("d", "both", [UP[0], ASIDE[0]], UP[:1]),
+    ]
+    results = [{"kind": "lessons", "scenes": lessons}, {"kind": "scenes", "scenes": scenes}]
+    settings = {"discarded": [0.7]}
+    found = judged(settings, results)[THINNED]
+    assert {level: [pair.relation for pair in pairs] for level, pairs in found.items()} == {
+        0.0: ["on", "adjacent", "both"],
+        0.7: ["adjacent", "none", "on"],
     }
-
-
-ROW = [2, 3, 0.005, UP]
-VIEW = {"thesis": [ROW], "literal": [ROW]}
-ON = [2, 3, "on", 0.001]
-
-
-def simulated() -> list[dict]:
-    """Four scenes: 2 on 3, told of all whole and of three spoilt; and in the first a pair on the border."""
-    plain = ([[2, 3, "on", 3]], [[2, 3, 0.001]])
-    # 2.5 mm from the limit of adjacent; whole it is told, spoilt another is.
-    border = ([*plain[0], [4, 5, "adjacent", 3]], [*plain[1], [4, 5, 0.025]])
-    return [
-        seen("a", [ON, [4, 5, "adjacent", 0.02]], [ON, [4, 5, "none", 0.04]], *border, [1, 1], [0.001, 0.003]),
-        seen("b", [ON], [ON], *plain, [0, 1], [0.002]),
-        seen("c", [ON], [ON], *plain, [], []),
-        seen("d", [ON], [[3, 2, "on", 0.001]], *plain, [0, 0], []),
-    ]
-
-
-def test_pairs_on_the_border_are_left_out_in_simulation_alone():
-    models = {reading: taught(LESSONS, reading) for reading in ("thesis", "literal")}
-    found = judged_views(simulated()[0], "simulated", models)
-    for views in found.values():
-        # By the whole scene's gap, whatever is seen when spoilt.
-        assert [pair.truth.relation for pair in views["whole"]] == ["on"]
-        assert [pair.truth.relation for pair in views[SPOILT]] == ["on"]
-    real = judged_views(simulated()[0], "real", models)
-    assert [pair.exact for pair in real["lifelore"]["whole"]] == [True, True]
-    assert [pair.exact for pair in real["lifelore"][SPOILT]] == [True, False]
-    assert {pair.scene for pair in real["lifelore"]["whole"]} == {"real a"}
-    # A relation with a direction is on no border.
-    scene = {**simulated()[1], "gaps": [[2, 3, 0.0225]]}
-    assert len(judged_views(scene, "simulated", models)["lifelore"]["whole"]) == 1
-
-
-def test_views_that_a_method_does_not_have_are_left_out():
-    scene = simulated()[1]
-    scene["views"]["noise 0.001"] = {"lifelore": [ON], "thesis": [ROW]}
-    models = {reading: taught(LESSONS, reading) for reading in ("thesis", "literal")}
-    found = judged_views(scene, "simulated", models)
-    assert "noise 0.001" in found["thesis"]
-    assert "noise 0.001" not in found["literal"]
-
-
-@pytest.fixture
-def results() -> list[dict]:
-    scenes = simulated()
-    return [
-        {"kind": "lesson", "scenes": LESSONS},
-        {"kind": "simulated", "scenes": scenes[:2]},
-        {"kind": "simulated", "scenes": scenes[2:]},
-    ]
-
-
-def test_measures_by_hand(results):
-    found = measure(SETTINGS, results)
-    values = {name: one.value for name, one in found.items()}
-    # The last of four is classified the wrong way round when perturbed.
-    assert values["lost_discarded_0.7_lifelore_simulated"] == 0.25
-    assert found["lost_discarded_0.7_lifelore_simulated"].n == 4
-    # The thesis's displacements classify all whole scenes and have none of the perturbed ones, which means none.
-    for method in ("thesis", "literal"):
-        assert values[f"lost_discarded_0.7_{method}_simulated"] == 1.0
-    # Always saying "on" is right of all.
-    assert values["less_majority_thesis_simulated"] == -1.0
-    # Of 30 and 50 % nothing is known, and at 70 % neither reading is robust.
-    assert (values["robust_readings_and_levels"], found["robust_readings_and_levels"].n) == (0, 6)
-    for scene in (scene for result in results[1:] for scene in result["scenes"]):
-        scene["views"][SPOILT]["literal"] = [ROW]
-    assert measure(SETTINGS, results)["robust_readings_and_levels"].value == pytest.approx(1 / 6)
-    # Measures of real scenes in a run without them.
-    assert np.isnan(values["lost_discarded_0.7_thesis_real"])
-
-
-def test_rows_and_figure_by_hand(results):
-    made = rows(SETTINGS, results)
-    # Three methods, whole and perturbed, of simulated scenes; then the networks.
-    *lines, networks = made
-    assert [(row["method"], row["way"], row["level"]) for row in lines] == [
-        (method, *view)
-        for method in ("lifelore", "thesis", "literal")
-        for view in (("whole", 0.0), ("discarded", 0.7))
-    ]
-    assert [row["exact"]["value"] for row in lines] == [1.0, 0.75, 1.0, 0.0, 1.0, 0.0]
-    assert [row["lost"]["value"] for row in lines[1::2]] == [0.25, 1.0, 1.0]
-    # The pair on the border is not among the four.
-    assert {row["pairs"] for row in lines} == {4}
-    # Three of six networks have as many nodes, in three scenes; the middle of 1, 2 and 3 mm.
-    assert (networks["same_nodes"]["value"], networks["same_nodes"]["n"]) == (pytest.approx(3 / 6), 6)
-    assert networks["median_shift"] == 0.002
-    (panel,) = CLAIM.draw({"rows": made}).axes
-    assert panel.get_title("left") == "points discarded\nsimulated, 4 pairs"
-    shown = {line.get_label(): line.get_xydata().tolist() for line in panel.lines}
-    assert shown["lifelore"] == [[0, 100], [70, 75]]
-
-
-@pytest.mark.parametrize("levels", [{}, {"fog": [1.0]}])
-def test_levels_that_cannot_be_run(levels):
-    with pytest.raises(InputError, match="levels must name"):
-        CLAIM.settings("quick", {"levels": levels})
+    assert [row["value"] for row in rows(settings, results)] == [1, 0] * len(METHODS)

@@ -6,10 +6,11 @@ import pytest
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import PairLabel
 from lifelore.perception.relations.relation import Relation
-from reproduction.chapter2.c2_08_oversegmented_object.measure import measure, rows, share_by_scene
 from reproduction.chapter2.c2_08_oversegmented_object.run import (
     free_standing,
+    measure,
     relation_in_words,
+    share_by_scene,
     simulated_cuts,
 )
 
@@ -45,7 +46,7 @@ def test_what_is_said_has_a_direction(relation, said):
 
 def test_parts_of_a_level_cut_lie_above_one_another():
     cuts = simulated_cuts(0, 0)
-    assert {row["kind"] for row, _ in cuts} <= {"level", "oblique", "upright"}
+    assert {row["kind"] for row, _ in cuts} <= {"level", "upright"}
     level = next(scene for row, scene in cuts if row["kind"] == "level")
     part = max(level.cloud.objects)
     others = [thing for thing in level.cloud.objects if thing != part]
@@ -53,9 +54,8 @@ def test_parts_of_a_level_cut_lie_above_one_another():
     assert any(abs(level.cloud.of(thing)[:, 2].max() - top) < 0.01 for thing in others)
 
 
-def row(scene, kind, said, tilt=0.0, boxes="on"):
-    table = ["none", "on"] if kind == "level" else ["on", "on"]
-    return {"scene": scene, "kind": kind, "tilt": tilt, "said": said, "boxes": boxes, "table": table}
+def row(scene, kind, said):
+    return {"scene": scene, "kind": kind, "said": said}
 
 
 ROWS = [
@@ -64,8 +64,6 @@ ROWS = [
     row("b", "level", "on, turned"),
     row("b", "upright", "on"),
     row("c", "level", "on"),
-    row("c", "oblique", "both", 30.0),
-    row("c", "oblique", "adjacent", 60.0),
 ]
 
 
@@ -73,15 +71,11 @@ def test_measures_by_hand():
     found = measure({}, [{"real": False, "rows": ROWS, "examples": []}])
     assert found["on_right_simulated"].value == pytest.approx(2 / 3)
     assert found["adjacent_right_simulated"].value == 0.5
-    assert found["table_right_simulated"].value == 1.0
     assert np.isnan(found["on_right_real"].value)
-    counted = rows({}, [{"real": False, "rows": ROWS, "examples": []}])
-    assert {"set": "simulated", "cut": "level", "said": "on", "boxes": "on", "cuts": 2} in counted
-    assert {row["cut"] for row in counted} == {"level", "upright", "30° to 45°", "60° to 75°"}
 
 
 def test_shares_by_scene_count_cuts_and_resample_scenes():
-    found = share_by_scene(ROWS[:5], [True, True, False, False, True])
-    assert (found.value, found.n) == (0.6, 5)
-    alike = share_by_scene(ROWS[:5], [True] * 5)
+    found = share_by_scene([*ROWS, row("c", "level", "on")], "on")
+    assert (found.value, found.n) == (pytest.approx(4 / 6), 6)
+    alike = share_by_scene([row(scene, "level", "on") for scene in "aabbc"], "on")
     assert alike.ci95 == pytest.approx((0.025 ** (1 / 5), 1.0))

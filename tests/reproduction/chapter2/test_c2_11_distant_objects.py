@@ -1,133 +1,166 @@
-"""C2.11: shares and means on rows made by hand; and what a separator of things far apart must have (errata)."""
+"""C2.11: pairs carried apart and counted, by hand; and what a separator of objects far apart must have (E20)."""
+
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from scipy.spatial import KDTree
 
-from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.relations import PairLabel
 from lifelore.perception.contacts.contact_points import linked
 from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS
 from lifelore.perception.separation.separator import separate
-from reproduction.chapter2.c2_11_distant_objects.measure import (
-    both_are_so,
-    findings,
+from reproduction.chapter2.c2_11_distant_objects import run as c2_11
+from reproduction.chapter2.c2_11_distant_objects.run import (
+    away,
+    bearing_pairs,
+    counts,
+    kernels,
     measure,
-    pair_counts,
-    pairs_table,
+    parted,
+    readings,
     rows,
+    shift_to,
 )
-from reproduction.engine.registry import claim_of
+from reproduction.chapter2.scenes.tabletop_pairs import STANDARD
 
-C2_11 = claim_of("C2.11")
-
-COUNTS = np.array(
-    [
-        # Support vectors and contacts of a and b, contacts of 7 of a and b, violation.
-        [8, 8, 8, 8, 0, 0, 0.0],
-        [20, 10, 2, 1, 1, 0, 0.0],
-        [14, 8, 2, 1, 2, 1, 0.0],
-        [3, 0, 1, 0, 0, 0, 0.0],
-    ]
-)
-SETTINGS = {"gaps": [0.1, 1.0], "sizes": [], "lengths": [0.06, 0.25], "costs": [10.0]}
+SETTINGS = {"gaps": [1.0, 0.1], "lengths": [0.25], "costs": [10.0]}
 
 
-def test_answers_of_pairs_by_hand():
-    found = [pair_counts(counts) for counts in COUNTS]
-    assert [one["none_of_7"] for one in found] == [True, False, False, True]
-    assert [one["both_of_7"] for one in found] == [False, False, True, False]
-    assert [one["no_support"] for one in found] == [False, False, False, True]
-    assert [one["support"] for one in found] == [8, 15, 11, 1.5]
-
-
-def pair(*found: tuple, size: float = 0.1) -> dict:
-    """A pair's row: by gap (as seen, 0.1 m, 1 m) and kernel (60 and 250 mm) what was counted."""
-    numbered = [[gap, kernel, *found[2 * gap + kernel]] for gap in range(3) for kernel in range(2)]
-    return {"relation": "on", "size": size, "gaps": [0.005, 0.1, 1.0], "found": numbered}
-
-
-BOTH_SIDES = (30, 10, 1, 1, 1, 1, 0.0)
-ONE_SIDE = (10, 6, 1, 1, 1, 0, 0.0)
-WEAK = (6, 4, 6, 4, 0, 0, 0.0)
-STRONG_UNFINISHED = (6, 4, 6, 4, 1, 0, 0.01)
-
-
-@pytest.fixture
-def results() -> list[dict]:
-    """Four pairs: under 60 mm contacts as seen of 3 and none far of 3; under 250 mm of 4 and of 1."""
-    # As seen, at 0.1 m and at 1 m; of each 60 mm, then 250 mm.
-    pairs = [
-        pair(BOTH_SIDES, BOTH_SIDES, WEAK, WEAK, WEAK, WEAK),
-        pair(BOTH_SIDES, BOTH_SIDES, WEAK, WEAK, WEAK, ONE_SIDE),
-        pair(BOTH_SIDES, BOTH_SIDES, WEAK, WEAK, WEAK, ONE_SIDE, size=0.2),
-        pair(ONE_SIDE, BOTH_SIDES, WEAK, WEAK, BOTH_SIDES, STRONG_UNFINISHED, size=0.2),
-    ]
-    return [{"kind": "simulated", "pairs": pairs[:3]}, {"kind": "simulated", "pairs": pairs[3:]}]
-
-
-def test_a_table_holds_every_pair_of_its_kind(results):
-    table = pairs_table(SETTINGS, [*results, {"kind": "real", "pairs": [pair(*[WEAK] * 6)]}])
-    assert table.values("support", kind="simulated", gap=0, kernel=0).tolist() == [20, 20, 20, 8]
-    assert table.values("support", kind="real", gap=2, kernel=1).tolist() == [5]
-    assert len(table) == 4 * 3 * 2 + 6
-
-
-def test_measures_by_hand(results):
-    found = measure(SETTINGS, results)
-    values = {name: one.value for name, one in found.items()}
-    assert values["no_contacts_far_standard_simulated"] == 3 / 4
-    assert values["contacts_as_seen_standard_simulated"] == 3 / 4
-    # Means of an object: weak 5 (three pairs), both sides 20; as seen 20 (three pairs), one side 8.
-    assert values["support_vectors_far_standard_simulated"] == pytest.approx((5 + 5 + 5 + 20) / 4)
-    assert values["far_over_seen_standard_simulated"] == pytest.approx((0.25 * 3 + 20 / 8) / 4)
-    # The best kernel is the one whose worse share is the better: 3/4 and 3/4 against 1 and 1/4.
-    assert values["contacts_as_seen_best_kernel_simulated"] == 3 / 4
-    assert values["no_contacts_far_best_kernel_simulated"] == 3 / 4
-    assert values["no_support_vectors_on_a_side_far_simulated"] == 0
-    assert found["no_support_vectors_on_a_side_far_simulated"].n == 8
-    interval = found["no_contacts_far_standard_simulated"].ci95
-    # Three in four is too few, whatever the kernel.
-    assert (values["kernels_in_which_both_are_so"], found["kernels_in_which_both_are_so"].n) == (0, 2)
-    # Clopper and Pearson of 3 in 4, from tables.
-    assert interval == pytest.approx((0.1941, 0.9937), abs=1e-4)
-    by_kernel = findings(SETTINGS, results)["simulated"]
-    assert by_kernel["250 mm, C 10"]["no_contacts_far"].value == 1 / 4
-    assert by_kernel["250 mm, C 10"]["contacts_as_seen"].value == 1.0
-    # 4 pairs, 3 gaps, 2 kernels; one of the 24 separators is not optimal.
-    assert (by_kernel["all"]["not_optimal"].value, by_kernel["all"]["not_optimal"].n) == (1 / 24, 24)
-    # 1 m is 10 sizes of two pairs and 5 of the others.
-    assert by_kernel["all"]["far_in_sizes"].value == pytest.approx(7.5)
+def plate(*corner: float) -> np.ndarray:
+    """A square of 5 × 5 points, 10 mm apart, lying flat: 40 mm × 40 mm × 0."""
+    x, y = np.meshgrid(np.arange(5) * 0.01, np.arange(5) * 0.01)
+    return np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1) + np.array(corner)
 
 
 @pytest.mark.parametrize(
-    ("none", "few", "so"),
+    ("relation", "place", "way"),
     [
-        ((0.95, 1), (1, 10), True),
-        ((0.949, 1), (1, 10), False),
-        ((0.95, 1), (1, 10.1), False),
-        (None, (1, 2), False),
+        ("on", (0.3, 0.4, 0.1), (0, 0, 1)),
+        # A 3-4-5 triangle, whatever the height.
+        ("adjacent", (0.3, 0.4, 0.1), (0.6, 0.8, 0)),
+        ("both", (-0.3, 0.4, -9.0), (-0.6, 0.8, 0)),
+        # One straight above the other leaves along x.
+        ("both", (0, 0, 0.1), (1, 0, 0)),
     ],
 )
-def test_both_are_so_by_whole_intervals(none, few, so):
-    ends = {"no_contacts_far": none, "support_vectors_far": few}
-    assert both_are_so({name: Estimate(1.0, 1.0, own, 9) for name, own in ends.items()}) is so
+def test_the_way_out(relation, place, way):
+    assert away(plate(*place), plate(0, 0, 0), relation) == pytest.approx(np.array(way, float))
 
 
-def test_rows_by_hand(results):
-    made = rows(SETTINGS, results)
-    assert len(made) == 6 + 3
-    first = made[0]
-    assert (first["kernel"], first["gap"], first["unit"], first["pairs"]) == ("60 mm, C 10", 0.005, "as seen", 4)
-    # Support as seen: 20, 20, 20, 8; its median 20, its lower quartile 8 + 3/4 of the way to 20.
-    assert first["support"] == [20, 17, 20]
-    assert first["none_of_7"] == 0
-    assert made[2]["none_of_7"] == 0.75
-    assert [row["estimates of kernel"] for row in made[6:]] == ["60 mm, C 10", "250 mm, C 10", "all"]
+def test_the_shift_to_a_gap_by_hand():
+    other = KDTree(np.zeros((1, 3)))
+    up, sideways = np.array([0.0, 0, 1]), np.array([1.0, 0, 0])
+    # 30 mm beside it and 40 mm up are 50 mm; seen from 30 mm along x, 50 mm are 20 mm further.
+    assert shift_to(np.array([[0.03, 0, 0]]), other, up, 0.05) == pytest.approx(0.04, abs=1e-4)
+    assert shift_to(np.array([[0.03, 0, 0]]), other, sideways, 0.05) == pytest.approx(0.02, abs=1e-4)
+    # Far beyond the first guess of the bisection.
+    assert shift_to(np.array([[0.03, 0, 0]]), other, sideways, 2.0) == pytest.approx(1.97, abs=1e-4)
+    # Further apart than asked for: it stays.
+    assert shift_to(np.array([[0.03, 0, 0]]), other, sideways, 0.01) <= 1e-4
 
 
-def test_gaps_must_hold_a_metre():
-    with pytest.raises(InputError, match="gaps must hold 1 m"):
-        C2_11.settings("quick", {"gaps": [0.1]})
+@pytest.mark.parametrize("seed", range(20))
+def test_whether_a_cloud_is_nearer_than_a_gap_as_by_all_distances(seed):
+    rng = np.random.default_rng(seed)
+    first, second = rng.normal(size=(30, 3)), rng.normal(size=(20, 3))
+    tree = KDTree(second)
+    for offset in np.linspace(0, 9, 10):
+        moved = first + np.array([offset, 0.0, 0.0])
+        distance = np.linalg.norm(moved[:, None] - second[None], axis=2).min()
+        for gap in (0.5 * distance, 0.999 * distance, 1.001 * distance, 3 * distance):
+            assert c2_11._is_nearer(moved, tree, gap) is bool(distance < gap)
+
+
+def test_one_object_alone_is_moved_and_no_gap_is_too_wide_to_be_asked(monkeypatch):
+    asked = []
+
+    def watched(a, b, length, cost):
+        asked.append((a, b, length))
+        every = np.arange(len(a))
+        return SimpleNamespace(support_first=every, support_second=every)
+
+    monkeypatch.setattr(c2_11, "separate", watched)
+    a, b = plate(0, 0, 0.02), plate(0, 0, 0)
+    found = parted(SETTINGS, a, b, "on")
+    assert found["gap"] == 0.02
+    assert [length for _, _, length in asked] == [0.06] * 3 + [0.25] * 3
+    for (one, other, _), gap in zip(asked, [0.02, 0.1, 1.0] * 2, strict=True):
+        assert (other == b).all()
+        # Every point of a went straight up by the same: its own 20 mm to the gap.
+        assert one - a == pytest.approx(np.tile([0, 0, gap - 0.02], (25, 1)), abs=2e-4)
+    # Points 10 mm apart are one contact of 25 (linked within 25 mm), on both sides, at every gap.
+    assert found["found"] == dict.fromkeys((STANDARD, "250 mm, C 10"), [[25, 2]] * 3)
+
+
+def test_counts_by_hand(monkeypatch):
+    # Of a: seven in a row 5 mm apart, and three 100 mm off. Of b: six.
+    a = np.array(
+        [[0.005 * k, 0, 0] for k in range(7)] + [[0.13 + 0.005 * k, 0, 0] for k in range(3)] + [[9, 9, 9]]
+    )
+    b = np.array([[0.005 * k, 1, 0] for k in range(6)])
+    found = SimpleNamespace(support_first=np.arange(10), support_second=np.arange(6))
+    monkeypatch.setattr(c2_11, "separate", lambda *clouds, **kernel: found)
+    assert counts(a, b, 0.06, 10.0) == [8, 1]
+
+
+def made() -> tuple[LabelledCloud, list[PairLabel]]:
+    """Three plates on a table; of six labels two are of things that bear a relation which nobody doubts."""
+    parts = {TABLE: plate(0, 0, -0.01), 2: plate(0, 0, 0), 3: plate(0, 0, 0.01), 4: plate(0.05, 0, 0)}
+    cloud = LabelledCloud(np.concatenate([*parts.values()]), np.repeat([*parts], 25))
+    truth = [
+        PairLabel(3, 2, "on"),
+        PairLabel(2, 4, "adjacent", 2),
+        PairLabel(3, 4, "adjacent", 1),
+        PairLabel(4, 3, "none"),
+        PairLabel(2, TABLE, "on"),
+    ]
+    return cloud, truth
+
+
+def test_pairs_that_bear_a_relation_in_the_labels_order():
+    cloud, truth = made()
+    found = list(bearing_pairs(cloud, truth))
+    assert [relation for *_, relation in found] == ["on", "adjacent"]
+    (upper, lower, _), (left, right, _) = found
+    # 10 mm apart, every point stays alone in its cell of 3 mm.
+    assert [len(points) for points in (upper, lower, left, right)] == [25] * 4
+    assert upper[:, 2] == pytest.approx(0.01)
+    assert lower[:, 2] == pytest.approx(0)
+    assert (left[:, 0].max(), right[:, 0].min()) == pytest.approx((0.04, 0.05))
+
+
+def test_points_are_thinned_to_three_millimetres():
+    dense = np.concatenate([plate(0, 0, 0), plate(0.0001, 0, 0), plate(0, 0.0001, 0.02)])
+    cloud = LabelledCloud(dense, np.repeat([2, 2, 3], 25))
+    a, b, _ = next(bearing_pairs(cloud, [PairLabel(3, 2, "on")]))
+    assert len(a) == 25
+    assert 25 <= len(b) < 50
+
+
+def test_the_default_kernel_is_among_the_kernels():
+    assert kernels(SETTINGS) == [(0.06, 10.0), (0.25, 10.0)]
+    assert kernels({"lengths": [0.03, 0.06], "costs": [10.0]}) == [(0.06, 10.0), (0.03, 10.0)]
+
+
+def test_measures_readings_and_rows_by_hand():
+    # As seen, at 0.1 m and at 1 m: support vectors of an object, contacts of both.
+    first = {
+        "gap": 0.004,
+        "found": {STANDARD: [[20, 2], [6, 0], [5, 0]], "250 mm, C 10": [[10, 2], [5, 0], [2, 0]]},
+    }
+    second = {
+        "gap": 0.006,
+        "found": {STANDARD: [[8, 1], [6, 0], [12, 1]], "250 mm, C 10": [[10, 2], [5, 0], [2, 0]]},
+    }
+    results = [{"pairs": [first]}, {"pairs": [second]}]
+    found = measure(SETTINGS, results)
+    assert (found["no_contacts_far"].value, found["support_vectors_far"].value) == (0.5, 8.5)
+    assert found["far_over_seen"].value == pytest.approx((5 / 20 + 12 / 8) / 2)
+    assert [numbers["no_contacts_far"].value for _, numbers in readings(SETTINGS, results)] == [0.5, 1]
+    line = rows(SETTINGS, results)[0]
+    assert (line["gap"], line["support"], line["with_contact"]) == ([0.005, 0.1, 1.0], [14, 6, 8.5], [1, 0, 0.5])
 
 
 # --- far apart there are support vectors all the same (errata) ---------------------------------------------

@@ -3,38 +3,27 @@
 import numpy as np
 import pytest
 
-from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, NONE, ON, SYMMETRIC, PairLabel
-from lifelore.perception.pairs.pair_features import column_names
-from lifelore.perception.peers import PEERS
-from lifelore.perception.relations.relation import Relation
-from lifelore.perception.relations.relation_classifier import RelationClassifier
+from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, NONE, ON
 from reproduction.chapter2.scenes.tabletop_pairs import STANDARD
 from reproduction.chapter2.scoring import pair_validation
 from reproduction.chapter2.scoring.pair_validation import (
+    FIXED,
+    SCALED,
     Reading,
     Votes,
-    as_scene,
-    as_seen,
-    cross_validated,
     displacements,
-    gap_of,
-    in_given_order,
-    label_of,
     united,
     votes_of_neighbours,
     votes_on,
 )
 
-COLUMNS = column_names(2)
 
-
-def pair(scene, relation, a=((0, 0, 0, 9),), b=((0, 0, 0, 9),), way=(2, 3), gap: float | None = 0.01) -> dict:
-    """A row of the things 2 and 3, with the contacts of 2 and of 3; `way` is the truth's order."""
-    row = {"scene": scene, "a": way[0], "b": way[1], "relation": relation, "confidence": 3}
-    if gap is None:
-        return {**row, "pair": [2, 3], "gap": None}
-    contacts = {STANDARD: {"a": [list(c) for c in a], "b": [list(c) for c in b]}}
-    return {**row, "pair": [2, 3], "gap": gap, "contacts": contacts}
+def pair(scene, relation, a=((0, 0, 0, 9),), b=((0, 0, 0, 9),), gap: float | None = 0.01) -> dict:
+    """A row of the things 2 and 3, with the contacts of 2 and of 3."""
+    row = {"scene": scene, "a": 2, "b": 3, "relation": relation, "confidence": 3, "gap": gap, "contacts": {}}
+    if gap is not None:
+        row["contacts"] = {STANDARD: {"a": [list(c) for c in a], "b": [list(c) for c in b]}}
+    return row
 
 
 def at(scene, relation, *places) -> dict:
@@ -53,9 +42,6 @@ def test_every_contact_of_one_meets_every_contact_of_the_other():
     row = pair("s", ON, a=[(1, 2, 3, 9), (5, 5, 5, 8)], b=[(1, 0, 0, 9), (0, 0, 4, 7)])
     expected = [[0, 2, 3], [1, 2, -1], [4, 5, 5], [5, 5, 1]]
     assert displacements(row).tolist() == expected
-    # Contacts are stored in the order of the numbers; the truth may say it the other way.
-    turned = {**row, "a": 3, "b": 2}
-    assert displacements(turned).tolist() == [[-x, -y, -z] for x, y, z in expected]
 
 
 def test_a_pair_that_is_not_near_has_no_displacement():
@@ -63,23 +49,23 @@ def test_a_pair_that_is_not_near_has_no_displacement():
 
 
 @pytest.mark.parametrize(
-    ("supports", "all_but_one", "weak"),
+    ("supports", "scaled", "fixed"),
     [
         ((9, 7, 6), [0, 1], [0, 1]),  # seven is enough
         ((6, 9), [1], [1]),  # the strongest of all is no exception where another has support
         ((6, 6), [0], []),  # nobody has enough: the strongest, which stands first, or nobody
     ],
 )
-def test_weak_contacts_are_dropped(supports, all_but_one, weak):
+def test_weak_contacts_are_dropped(supports, scaled, fixed):
     row = pair("s", ON, a=[(x, 0, 0, n) for x, n in enumerate(supports)])
-    assert displacements(row, drop="all but one")[:, 0].tolist() == all_but_one
-    assert displacements(row, drop="weak")[:, 0].tolist() == weak
+    assert displacements(row, threshold=SCALED)[:, 0].tolist() == scaled
+    assert displacements(row, threshold=FIXED)[:, 0].tolist() == fixed
 
 
 def test_weak_contacts_are_dropped_on_either_side():
     row = pair("s", ON, b=[(3, 0, 0, 2), (4, 0, 0, 2)])
-    assert displacements(row, drop="all but one").tolist() == [[-3, 0, 0]]
-    assert displacements(row, drop="weak").shape == (0, 3)
+    assert displacements(row, threshold=SCALED).tolist() == [[-3, 0, 0]]
+    assert displacements(row, threshold=FIXED).shape == (0, 3)
 
 
 def test_each_kernel_has_its_own_contacts():
@@ -178,7 +164,7 @@ def test_a_scene_on_both_sides_is_still_not_asked():
 
 def naive(rows, reading, train=None) -> list[tuple[int, dict[str, float]]]:
     """Every displacement against every other, sorted; the votes of each."""
-    every = [(i, d) for i, row in enumerate(rows) for d in displacements(row, reading.kernel, reading.drop)]
+    every = [(i, d) for i, row in enumerate(rows) for d in displacements(row, reading.kernel, reading.threshold)]
     said = []
     for i, mine in every:
         if train is not None and train[i]:
@@ -198,7 +184,7 @@ def naive(rows, reading, train=None) -> list[tuple[int, dict[str, float]]]:
 
 
 def some_rows(seed: int) -> list[dict]:
-    """30 rows of 20 scenes; up to three contacts a side, some weak, in either order, some not near."""
+    """30 rows of 20 scenes; up to three contacts a side, some weak, some not near."""
     rng = np.random.default_rng(seed)
 
     def contacts():
@@ -210,7 +196,6 @@ def some_rows(seed: int) -> list[dict]:
             CORE_RELATIONS[rng.integers(4)],
             contacts(),
             contacts(),
-            way=(2, 3) if rng.random() < 0.5 else (3, 2),
             gap=None if rng.random() < 0.1 else 0.01,
         )
         for _ in range(30)
@@ -222,9 +207,9 @@ def some_rows(seed: int) -> list[dict]:
     "reading",
     [
         Reading(),
-        Reading(drop="weak", k=1),
+        Reading(threshold=FIXED, k=1),
         Reading(votes="inverse distance", omega=2.0),
-        Reading(drop="weak", votes="inverse distance", k=7),
+        Reading(threshold=FIXED, votes="inverse distance", k=7),
         Reading(omega=0.3, k=5),
     ],
     ids=str,
@@ -284,118 +269,3 @@ def test_a_pair_with_two_contacts_is_both():
     assert told.relations(9)[8] == BOTH
     # Of the others each has three or more of its own kind beside it.
     assert told.relations(9)[:8] == [ON] * 4 + [ADJACENT] * 4
-
-
-def test_what_is_said_stands_beside_what_is_true():
-    rows = [pair("s", ON, way=(3, 2)), pair("t", NONE, gap=None)]
-    first, second = in_given_order(rows, [ON, ADJACENT])
-    assert first.truth == label_of(rows[0]) == PairLabel(3, 2, ON, 3)
-    assert first.predicted == Relation(3, 2, ON, 1.0, 0.01)
-    assert first.exact
-    assert (second.scene, second.exact, second.gap, gap_of(rows[1])) == ("t", False, np.inf, np.inf)
-    with pytest.raises(ValueError, match="zip"):
-        in_given_order(rows, [ON])
-
-
-# --- direction inferred -----------------------------------------------------------------------------------
-
-
-class Parrot:
-    """Says the one relation it was made with; remembers what it was given."""
-
-    def __init__(self, log, says=None):
-        self.log, self.says = log, says
-
-    def fit_pairs(self, scenes, truths):
-        self.log.append((list(scenes), [label for truth in truths for label in truth], []))
-        return self
-
-    def predict_pairs(self, scene):
-        self.log[-1][2].append(scene)
-        return [] if self.says is None else [self.says]
-
-
-def scenes_of(*names) -> list[dict]:
-    return [pair(name, ON) for name in names]
-
-
-@pytest.mark.parametrize(("folds", "times"), [(None, 4), (2, 2), (3, 3)])
-def test_no_scene_is_told_by_a_model_that_saw_it(folds, times):
-    log: list = []
-    rows = scenes_of("c", "a", "a", "d", "b", "c")
-    judged = cross_validated(rows, lambda: Parrot(log), lambda row: row["scene"], folds)
-    assert len(log) == times
-    assert sorted(scene for _, _, told in log for scene in told) == ["a", "a", "b", "c", "c", "d"]
-    for learnt, labels, told in log:
-        assert len(learnt) == len(labels)
-        assert not set(learnt) & set(told)
-        assert len(learnt) + len(told) == 6
-    # A model that says nothing says none.
-    assert [one.scene for one in judged] == ["c", "a", "a", "d", "b", "c"]
-    assert {one.relation for one in judged} == {NONE}
-
-
-def test_scenes_are_dealt_to_folds_in_turn():
-    log: list = []
-    cross_validated(scenes_of("c", "a", "d", "b"), lambda: Parrot(log), lambda row: row["scene"], 2)
-    assert [(learnt, told) for learnt, _, told in log] == [(["d", "b"], ["c", "a"]), (["c", "a"], ["d", "b"])]
-
-
-def test_pairs_that_are_not_near_are_neither_shown_nor_learnt_from():
-    log: list = []
-    rows = [pair("a", ON), pair("b", NONE, gap=None), pair("c", ADJACENT)]
-    said = Relation(2, 3, ON, 1.0, 0.01)
-    judged = cross_validated(rows, lambda: Parrot(log, said), lambda row: row["scene"])
-    assert [learnt for learnt, _, _ in log] == [["c"], ["a"]]
-    assert [labels for _, labels, _ in log] == [[PairLabel(2, 3, ADJACENT, 3)], [PairLabel(2, 3, ON, 3)]]
-    assert [one.predicted for one in judged] == [said, None, said]
-    assert [one.exact for one in judged] == [True, True, False]
-
-
-def test_the_direction_counts():
-    rows = [pair("a", ON, way=(3, 2)), pair("b", ON)]
-    judged = cross_validated(rows, lambda: Parrot([], Relation(2, 3, ON, 1.0, 0.01)), lambda row: row["scene"])
-    assert [one.exact for one in judged] == [False, True]
-
-
-def numbered(scene, relation, way, up) -> dict:
-    """A row whose displacement in the truth's order is (0, 0, up)."""
-    sign = 1 if way == (2, 3) else -1
-    row = pair(scene, relation, a=[(0, 0, sign * up, 9)], way=way)
-    return row | {"features": np.zeros((2, len(COLUMNS))).tolist()}
-
-
-def test_a_model_is_shown_the_order_of_the_numbers_only():
-    row = numbered("s", ON, (3, 2), 5)
-    features = np.arange(2.0 * len(COLUMNS)).reshape(2, -1)
-    scene = as_scene(row | {"features": features.tolist()})
-    assert scene.features.pairs.tolist() == [[2, 3], [3, 2]]
-    assert scene.features.gaps.tolist() == [0.01, 0.01]
-    np.testing.assert_array_equal(scene.features.matrix, features)
-    assert scene.displacements[0].tolist() == [[0, 0, -5]]
-    # The same picture under another truth looks the same.
-    other = as_scene({**row, "a": 2, "b": 3, "features": features.tolist()})
-    assert other.displacements[0].tolist() == [[0, 0, -5]]
-
-
-def test_the_thesiss_neighbours_infer_the_direction():
-    ways = [(2, 3), (3, 2), (3, 2), (2, 3), (3, 2), (2, 3)]
-    rows = [numbered(f"on {n}", ON, way, 1 + 0.01 * n) for n, way in enumerate(ways)]
-    rows += [numbered(f"beside {n}", ADJACENT, way, 0.01 * n) for n, way in enumerate(ways)]
-    judged = cross_validated(rows, lambda: RelationClassifier("displacement", symmetric=SYMMETRIC), as_scene)
-    assert all(one.exact for one in judged)
-    assert [(one.predicted.a, one.predicted.b) for one in judged[:6] if one.predicted] == ways
-
-
-def test_a_peer_sees_what_the_row_keeps_of_it():
-    up = [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]]
-    rows = [
-        pair("a", ON, way=(3, 2)) | {"peers": {"majority": up[::-1]}},
-        pair("b", ON) | {"peers": {"majority": up}},
-        pair("c", ON, way=(3, 2)) | {"peers": {"majority": up}},
-    ]
-    (seen,) = as_seen("majority")(rows[0])
-    assert (seen.a, seen.b, seen.gap, seen.rows.tolist()) == (2, 3, 0.01, up[::-1])
-    # The majority says on of the higher: true of the first two.
-    judged = cross_validated(rows, PEERS["majority"], as_seen("majority"))
-    assert [one.exact for one in judged] == [True, True, False]

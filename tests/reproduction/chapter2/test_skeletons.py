@@ -13,7 +13,7 @@ from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene
 from reproduction.chapter2.c2_07_oversegmented_stack.run import Three, is_path
 from reproduction.chapter2.scenes.scene_example import scene_of_row, scene_row
-from reproduction.chapter2.scenes.skeletons import NEAR, RELATED, SUPPORT, only, predicates, reading
+from reproduction.chapter2.scenes.skeletons import NEAR, RELATED, only, predicates, reading
 
 
 def contact(z, other, x=0.0):
@@ -44,7 +44,7 @@ def test_readings_by_hand():
     scene = tower()
     assert points_of(reading(scene, NEAR)) == {2: 2, 3: 2, 4: 2}
     assert points_of(reading(scene, RELATED)) == {2: 1, 3: 2, 4: 1}
-    assert points_of(reading(scene, SUPPORT, ground=True)) == {TABLE: 1, 2: 2, 3: 2, 4: 1}
+    assert points_of(reading(scene, (ON,), ground=True)) == {TABLE: 1, 2: 2, 3: 2, 4: 1}
     assert points_of(reading(scene, (ADJACENT,))) == {2: 0, 3: 0, 4: 0}
 
 

@@ -10,11 +10,10 @@ from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ADJACENT, CORE_RELATIONS, NONE, ON, PairLabel
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.contacts.interface import interfaces
-from lifelore.perception.pairs.pair_features import COLUMNS
 from lifelore.perception.separation.separator import separate
 from reproduction.chapter2.scenes import scene_lots, tabletop_pairs
+from reproduction.chapter2.scenes.arranged_scenes import place_ball_on_post
 from reproduction.chapter2.scenes.tabletop_pairs import (
-    BESIDE_US,
     KERNELS,
     LOT,
     MIX,
@@ -26,6 +25,7 @@ from reproduction.chapter2.scenes.tabletop_pairs import (
     pair_cells,
     pair_rows,
     run_cell,
+    upper_first,
     without_table,
 )
 
@@ -83,16 +83,19 @@ def test_a_far_pair_has_its_truth_alone(rows):
         "b": 4,
         "relation": NONE,
         "confidence": 2,
-        "pair": [2, 4],
+        "centres": rows[1]["centres"],
         "gap": None,
+        "contacts": {},
     }
+    # Middles at (50, 40, 25) and (525, 525, 25) mm; thinning moves them by less than a millimetre.
+    np.testing.assert_allclose(rows[1]["centres"], [-0.475, -0.485, 0], atol=1e-3)
 
 
-def test_a_near_pair_is_in_the_order_of_its_numbers(rows):
+def test_a_near_pair_is_in_the_order_of_the_truth(rows):
     row = rows[0]
-    assert row["pair"] == [2, 3]
     assert row["gap"] == 0.002
-    two, three = (row["contacts"][STANDARD][side] for side in "ab")
+    np.testing.assert_allclose(row["centres"], [-0.01, 0, 0.052], atol=1e-3)
+    three, two = (row["contacts"][STANDARD][side] for side in "ab")
     # Contacts of 2 lie on or in 2, up to its top at 50 mm; those of 3 start at 52 mm, over the same place.
     assert all(0 <= x <= 0.1 and 0 <= y <= 0.08 and 0 <= z <= 0.05 for x, y, z, _ in two)
     assert all(0.02 <= x <= 0.06 and 0.02 <= y <= 0.06 and z >= 0.052 for x, y, z, _ in three)
@@ -100,36 +103,14 @@ def test_a_near_pair_is_in_the_order_of_its_numbers(rows):
     assert three[0][2] < 0.057
 
 
-def test_features_are_of_both_orders(rows):
-    first, second = np.array(rows[0]["features"])
-    place = COLUMNS.index
-    assert first[place("gap")] == second[place("gap")] == 0.002
-    # Middles at 25 mm and 77 mm.
-    assert first[place("centre_rise")] == -second[place("centre_rise")] == pytest.approx(-0.052, abs=1e-6)
-    assert first[place("normal_up_0")] == pytest.approx(-1, abs=0.01)
-    assert second[place("normal_up_0")] == pytest.approx(1, abs=0.01)
-    assert second[place("a_over_b")] == 1
-    # Seen from y = -1 and x = 0.05 the upper one's middle is 10 mm to the left of the lower one's.
-    assert second[place("right")] == pytest.approx(-0.01, abs=1e-3)
-
-
-def test_peers_see_both_orders(rows):
-    seen = rows[0]["peers"]
-    assert tuple(seen) == BESIDE_US
-    # Centres: (50, 40, 25) and (40, 40, 77) mm.
-    for name in ("majority", "centroid k-NN"):
-        np.testing.assert_allclose(seen[name], [[0.01, 0, -0.052], [-0.01, 0, 0.052]], atol=1e-6)
-    np.testing.assert_allclose(seen["closest-point k-NN"], [[0, 0, -0.002], [0, 0, 0.002]], atol=1e-6)
-    np.testing.assert_allclose(np.array(seen["bounding-box rule"])[:, 4], 1)
-
-
 def test_each_kernel_finds_its_contacts_and_none_is_dropped(rows, blocks):
     contacts = rows[0]["contacts"]
     assert list(contacts) == [kernel_name(*kernel) for kernel in KERNELS]
     for length, cost in KERNELS:
         found = separate(blocks.of(2), blocks.of(3), length=length, cost=cost)
+        sides = (found.support_second, found.support_first)
         counted = [sum(n for *_, n in contacts[kernel_name(length, cost)][side]) for side in "ab"]
-        assert counted == [len(found.support_first), len(found.support_second)]
+        assert counted == list(map(len, sides))
     narrow, wide = (contacts[kernel_name(length, 10.0)]["a"] for length in (0.03, 0.12))
     assert narrow != wide
 
@@ -139,9 +120,32 @@ def test_a_row_is_plain_data_and_the_same_again(rows, blocks):
     assert pair_rows("by hand", blocks, TRUTH) == rows
 
 
-def test_the_truths_order_changes_nothing_but_itself(rows, blocks):
+def test_the_truths_order_turns_contacts_and_centres(rows, blocks):
     (turned,) = pair_rows("by hand", blocks, [PairLabel(2, 3, ON, 3)])
-    assert {key for key in turned if turned[key] != rows[0][key]} == {"a", "b"}
+    row = rows[0]
+    assert (turned["a"], turned["b"], turned["gap"]) == (2, 3, row["gap"])
+    assert turned["centres"] == [-x for x in row["centres"]]
+    for kernel, sides in turned["contacts"].items():
+        assert [sides["a"], sides["b"]] == [row["contacts"][kernel][side] for side in "ba"]
+
+
+def test_of_an_arrangement_the_upper_object_is_first():
+    truth = [PairLabel(2, 3, NONE, 2), PairLabel(3, 4, ON, 3), PairLabel(2, 1, ON, 3)]
+    assert upper_first(truth) == [PairLabel(3, 2, NONE, 2)]
+
+
+def test_a_ball_on_a_post_is_as_far_from_the_centre_as_one_on_the_upright():
+    for seed in range(5):
+        ell, guest, post = place_ball_on_post(np.random.default_rng(seed))
+        foot, upright = ell.shape.parts
+        volumes = [np.prod(part.size) for part in (foot, upright)]
+        places = [np.array(part.position) for part in (foot, upright)]
+        centre = ell.pose.apply(np.average(places, axis=0, weights=volumes)[None])[0]
+        above_upright = ell.pose.apply(places[1][None])[0]
+        # Turned half round about the block's centre of mass, the ball stands over the upright.
+        np.testing.assert_allclose((guest.pose.position - centre)[:2], (centre - above_upright)[:2], atol=1e-6)
+        assert guest.outline()[:, 2].min() == pytest.approx(ell.outline()[:, 2].max(), abs=0.003)
+        assert post.outline()[:, 2].max() < guest.outline()[:, 2].min()
 
 
 def test_without_the_table_there_are_things_alone(blocks):
@@ -157,10 +161,10 @@ def test_contacts_stand_strongest_first():
         return SimpleNamespace(position=np.array([x, 0, 1 / 3]), n_support=n, strength=strength)
 
     one = SimpleNamespace(contacts_a=(contact(1, 9.0, 4), contact(2, 5.0, 8)), contacts_b=(contact(3, 1.0, 2),))
-    assert contacts_of(one) == {  # pyright: ignore[reportArgumentType]
-        "a": [[1, 0, 0.333333, 4], [2, 0, 0.333333, 8]],
-        "b": [[3, 0, 0.333333, 2]],
-    }
+    one.a, one.b = 2, 3
+    two, three = [[1, 0, 0.333333, 4], [2, 0, 0.333333, 8]], [[3, 0, 0.333333, 2]]
+    assert contacts_of(one, 2) == {"a": two, "b": three}  # pyright: ignore[reportArgumentType]
+    assert contacts_of(one, 3) == {"a": three, "b": two}  # pyright: ignore[reportArgumentType]
 
 
 def test_loose_settings_change_the_kernel_and_drop_nothing(blocks):

@@ -8,19 +8,19 @@ from lifelore.core.planning.planning import best_actions, optimal_q
 from reproduction.chapter3.advice.mazes import (
     AGENTS,
     EXPERTS,
+    choices_of,
     errands_of,
     expert_walk,
     goal_models_of,
-    grid_of,
-    grid_share,
     maze_cells,
     maze_estimate,
     maze_of,
     policy_of,
+    readings_of,
     thesis_advisor,
     walk,
 )
-from reproduction.engine.estimates import exact_value, is_above
+from reproduction.engine.estimates import is_above
 from reproduction.engine.registry import claim_of
 
 SMALL = claim_of("C3.15").settings("quick")
@@ -32,27 +32,16 @@ def maze():
     return maze_of(SMALL, CELL, 0)
 
 
-def test_closed_goals_bar_the_way_and_their_errands_start_where_a_way_is_left():
-    found = maze_of({**SMALL, "size": 21}, {"loops": 0.4, "maze": 1}, 0, "wall")
-    passing = maze_of({**SMALL, "size": 21}, {"loops": 0.4, "maze": 1}, 0)
-    assert set(found.errands) <= set(passing.errands)
-    for goal, errand in found.errands.items():
-        others = [other for other in passing.errands if other != goal]
-        assert not np.isin(errand.moves, others).any()
-        assert (errand.steps[errand.tables.starts] > 0).all()
-        assert errand.best[errand.tables.starts].any(axis=1).all()
-        reached = errand.steps[errand.moves[errand.best]]
-        assert (reached >= 0).all()
-        assert (errand.steps[errand.tables.starts] >= passing.errands[goal].steps[errand.tables.starts]).all()
-
-
-def test_alpha0_in_the_advice_advises_other_actions_where_experts_passed(maze):
-    goal_models = goal_models_of(SMALL, maze, "walks")
-    plain, spread = (thesis_advisor(SMALL, goal_models, alpha0=a).guide.theta[0] for a in (0.0, 0.5))
-    passed = plain.any(axis=1)
-    counts = GoalModel.pooled(goal_models).prior.counts(np.arange(len(plain)))[passed]
-    np.testing.assert_allclose(spread[passed], (counts + 0.5) / (counts.sum(axis=1, keepdims=True) + 2))
-    assert not spread[~passed].any()
+@pytest.mark.parametrize("alpha0", [0.0, 0.5])
+def test_one_theta_is_advised_and_is_the_experts_model(maze, alpha0):
+    goal_models = goal_models_of(maze, "walks", alpha0)
+    guide = thesis_advisor(goal_models).guide
+    counts = GoalModel.pooled(goal_models).prior.counts(np.arange(maze.world.n_states)) + alpha0
+    passed = guide.theta[0].any(axis=1)
+    theta = counts[passed] / counts[passed].sum(axis=1, keepdims=True)
+    np.testing.assert_allclose(guide.theta[0][passed], theta)
+    np.testing.assert_allclose(np.exp(guide.log_models[0, passed, 0]), theta, atol=1e-8)
+    np.testing.assert_allclose(np.exp(guide.log_models[0, ~passed, 0]), 0.25)
 
 
 def test_cells_are_mazes_by_loop_density():
@@ -95,27 +84,25 @@ def test_experts_go_shortest_ways(maze):
 
 @pytest.mark.parametrize("experts", EXPERTS)
 def test_experts_leave_a_purpose_for_every_goal(maze, experts):
-    purposes = goal_models_of(SMALL, maze, experts)
+    purposes = goal_models_of(maze, experts, 0.0)
     assert [p.goals[0] for p in purposes] == list(maze.errands)
     for purpose, errand in zip(purposes, maze.errands.values(), strict=True):
-        told = np.any(purpose.theta > 0, axis=1)
-        assert not told[errand.goal]
+        shown = np.any(purpose.theta > 0, axis=1)
+        assert not shown[errand.goal]
         # What is advised is best there, and the steps left are those of the shortest way.
         assert not ((purpose.theta > 0) & ~errand.best).any()
-        assert (purpose.steps[told] == errand.steps[told]).all()
-    shown = np.mean([np.isfinite(p.steps).mean() for p in purposes])
-    assert (shown > 0.95) == (experts == "policies")
+        assert (purpose.steps[shown] == errand.steps[shown]).all()
 
 
 def test_trips_start_at_other_goals(maze):
-    for purpose in goal_models_of(SMALL, maze, "trips"):
+    for purpose in goal_models_of(maze, "trips", 0.1):
         farthest = np.argmax(np.where(np.isfinite(purpose.steps), purpose.steps, -1))
         assert farthest in set(maze.errands) - set(purpose.goals)
 
 
 def test_agents_have_policies_and_the_optimal_one_takes_no_step_too_many(maze):
     errand = errands_of(maze, 1)[0]
-    advisor = thesis_advisor(SMALL, goal_models_of(SMALL, maze, "walks"))
+    advisor = thesis_advisor(goal_models_of(maze, "walks", 0.1))
     for agent in AGENTS:
         np.testing.assert_allclose(policy_of(maze.world, agent, errand).sum(axis=-1), 1)
     found = walk(maze, errand, policy_of(maze.world, "optimal", errand), advisor, 0, 500, heeds=False)
@@ -125,7 +112,7 @@ def test_agents_have_policies_and_the_optimal_one_takes_no_step_too_many(maze):
 
 def test_told_or_not_a_walk_starts_alike(maze):
     errand = errands_of(maze, 1)[0]
-    advisor = thesis_advisor(SMALL, goal_models_of(SMALL, maze, "walks"))
+    advisor = thesis_advisor(goal_models_of(maze, "walks", 0.1))
     alone, told = (
         walk(maze, errand, policy_of(maze.world, "random", errand), advisor, 0, 200, heeds)
         for heeds in (False, True)
@@ -151,6 +138,7 @@ def test_a_gain_that_is_only_rounding_is_not_certain():
     assert not is_above(maze_estimate([2e-17, 1e-17, 3e-17]), 0.0)
 
 
-def test_shares_of_the_grid():
-    assert grid_of({"loops": [0.0, 0.1], "experts": ["walks", "trips"]})[1:3] == [(0.0, "trips"), (0.1, "walks")]
-    assert grid_share([True, False, False, False]) == exact_value(0.25, 4)
+def test_readings_cross_loops_experts_and_alpha0():
+    settings = {"loops": [0.1, 0.0], "experts": ["walks", "trips"], "alpha0": [0.1]}
+    assert choices_of(settings) == [{"experts": "walks", "alpha0": 0.1}, {"experts": "trips", "alpha0": 0.1}]
+    assert readings_of(settings)[3] == ({"loops": 0.0, "experts": "trips", "alpha0": 0.1}, 0.0, 1)

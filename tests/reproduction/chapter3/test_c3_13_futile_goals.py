@@ -1,43 +1,68 @@
-"""Measures of C3.13 from made-up cells, by hand."""
+"""Worlds of C3.13 by hand: the constructed worst case, its frequency, what is below the bound, and measures."""
 
+import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
-from reproduction.chapter3.c3_13_futile_goals.measure import measure, rows, slope
+from lifelore.action.search.domain_reduction import domain_futile_states
+from lifelore.core.learning.q_learning import uniform_rows
+from reproduction.chapter3.c3_13_futile_goals.run import (
+    best_in,
+    constructed,
+    constructed_cases,
+    found_case,
+    frequency,
+    goal_tables,
+    measure,
+    rows,
+    slope,
+)
 from reproduction.engine.registry import claim_of
 
-CLAIM = claim_of("C3.13")
-QUICK = dict(claim_of("C3.13").sizes["quick"])
-
-SETTINGS = {
-    **QUICK, "runs": 3, "draws": 1000, "actions": [2], "alpha0": [1.0], "tasks": [0, 1, 10], "alike": [2],
-    "kinds": ["random"], "found_tasks": [1], "default": {"actions": 2, "alpha0": 1.0},
-}  # fmt: skip
-# Eq. 3.6 for two actions and α⁰ 1: 1/2, 1/3 and 1/12; of two states alike 1/2, 1/4 and 1/22.
-STATES, PERCEPTS = {0: 1 / 2, 1: 1 / 3, 10: 1 / 12}, {0: 1 / 2, 1: 1 / 4, 10: 1 / 22}
+QUICK = claim_of("C3.13").sizes["quick"]
+SETTINGS = {**QUICK, "draws": 4000, "actions": [4, 2], "alpha0": [0.5], "tasks": [1, 3]}
 
 
-def made_up(scale=1.0, below=0):
-    """Three runs in which `scale` times what is expected was taken, a bit apart by run."""
-    cells = []
-    for run in range(3):
-        cases = []
-        for alike, formulas in ((1, STATES), (2, PERCEPTS)):
-            for tasks, formula in formulas.items():
-                taken = round(1000 * formula * scale * (1 + 0.01 * (run - 1)))
-                case = {"actions": 2, "alike": alike, "alpha0": 1.0, "tasks": tasks, "formula": formula}
-                case |= {"prior": formula, "taken": taken}
-                if alike == 1:
-                    case |= {"taken_uniform_ties": 500, "taken_prior_ties": taken}
-                cases.append(case)
-        world = {"kind": "random", "tasks": 1, "entering": 4, "below_states": below, "below_percepts": 1}
-        world |= {"below_percepts_pooled": 0, "bound": 0.25, "least": 0.5, "least_percepts": 0.2 - 0.01 * run}
-        cells.append({"run": run, "constructed": cases, "found": [{**world, "expected": 0.5, "taken": 499 + run}]})
-    return cells
+def test_the_constructed_world_by_hand():
+    # Junction 0, room 1, goals 2 and 3, new goal 4; action 1 of three leads to it.
+    world = constructed(3, 2, 1)
+    assert world.follow.tolist() == [[1, 4, 1], [2, 2, 2], [3, 3, 3], [0, 0, 0], [0, 0, 0]]
+    assert (world.goals, world.new_goal) == ([2, 3], 4)
+    tasks = [goal_tables(world.follow, goal, [0]) for goal in world.goals]
+    policies = [best_in(task, goal) for task, goal in zip(tasks, world.goals, strict=True)]
+    for best in policies:
+        assert best[0].tolist() == [True, False, True]
+    assert np.flatnonzero(domain_futile_states(tasks, policies)).tolist() == [4]
 
 
-def plain(measured):
-    return {name: number.to_dict() for name, number in measured.items()}
+def test_constructed_cases_by_hand():
+    cases = {(c["actions"], c["tasks"]): c for c in constructed_cases(SETTINGS, 0, 0)}
+    assert set(cases) == {(actions, tasks) for actions in (2, 4) for tasks in (0, 1, 3)}
+    # 0.5 / (3 (1 + 0.5) + 0.5) and 0.5 / (1 (3 + 0.5) + 0.5).
+    assert cases[4, 1]["formula"] == cases[4, 1]["prior"] == pytest.approx(0.1)
+    assert cases[2, 3]["formula"] == cases[2, 3]["prior"] == pytest.approx(1 / 8)
+    assert cases[4, 0]["prior"] == 0.25
+    for case in cases.values():
+        expected = 4000 * case["formula"]
+        assert abs(case["taken"] - expected) < 5 * np.sqrt(expected)
+
+
+def test_frequency_counts_steps_into_the_goal():
+    tables = goal_tables(np.array([[1, 0], [1, 1]], np.int32), 1, [0])
+    certain = uniform_rows(tables, np.array([[1.0, 0.0], [0.5, 0.5]]))
+    never = uniform_rows(tables, np.array([[0.0, 1.0], [0.5, 0.5]]))
+    assert frequency(tables, certain, 1.0, 50, (0, "a")) == 50
+    assert frequency(tables, never, 1.0, 50, (0, "a")) == 0
+
+
+@pytest.mark.parametrize("kind", ["random", "lattice", "noise"])
+def test_found_worlds_keep_to_the_bound(kind):
+    cases = [found_case(kind, QUICK, (1, "test", kind, i), 3) for i in range(4)]
+    cases = [case for case in cases if case]
+    assert cases
+    for case in cases:
+        assert case["entering"] > 0
+        assert case["below"] == 0
+        assert case["least"] >= 1 - 1e-12
 
 
 def test_slopes_by_hand():
@@ -46,55 +71,20 @@ def test_slopes_by_hand():
 
 
 def test_numbers_by_hand():
-    found = measure(SETTINGS, made_up())
-    assert found["prior_error_states"].value == 0
-    assert found["frequency_ratio_states"].value == pytest.approx(1, abs=0.01)
-    assert found["frequency_ratio_no_task"].value == pytest.approx(1, abs=0.01)
-    # 1/3 to 1/12 over a decade: the logarithm of 4 over that of 10.
-    assert found["slope_default"].value == pytest.approx(-0.602, abs=0.005)
-    assert found["unlearnt_ratio_uniform_ties"].value == pytest.approx(500 / (1000 / 12))
-    assert found["share_below_percepts"].value == 0.25
-    assert found["frequency_ratio_random"].value == pytest.approx(1)
-
-
-def test_verdicts():
-    # With one task and ten at α⁰ 1 the decay is not yet that of 1/|T_s|; all else holds.
-    measured = plain(measure(SETTINGS, made_up()))
-    assert CLAIM.predicate.verdict(measured) == "holds in part"
-    measured["slope_default"] = {"value": -0.98, "median": -0.98, "ci95": [-0.99, -0.97], "n": 3}
-    assert CLAIM.predicate.verdict(measured) == "holds"
-    measured["share_below_states"]["value"] = 0.25
-    assert CLAIM.predicate.verdict(measured) == "holds in part"
-    poor = plain(measure(SETTINGS, made_up(scale=1.2, below=1))) | {
-        "prior_error_states": {"value": 0.1, "median": 0.1, "ci95": None, "n": 3}
-    }
-    assert CLAIM.predicate.verdict(poor) == "does not hold"
-
-
-def test_rows_and_figure():
-    cells = made_up()
-    found = rows(SETTINGS, cells)
-    case = next(row for row in found if row.get("alike") == 1 and row["tasks"] == 1)
-    assert case["measured"] == pytest.approx(1 / 3, abs=1e-3)
-    assert case["low"] < 1 / 3 < case["high"]
-    world = next(row for row in found if "kind" in row)
-    assert (world["worlds"], world["entering"], world["below_percepts"]) == (3, 12, 3)
-    assert world["least"] == [2.0] * 3
-    assert world["least_percepts"] == [0.8, 0.76, 0.72]
-    result = {"settings": SETTINGS, "measured": plain(measure(SETTINGS, cells)), "rows": found}
-    states, percepts, worlds = CLAIM.draw(result).axes
-    assert states.get_legend_handles_labels()[1] == ["α⁰ = 1"]
-    assert percepts.get_legend_handles_labels()[1] == ["|T| · 1", "|T| · 2"]
-    assert [tick.get_text() for tick in worlds.get_yticklabels()] == ["random, 1"]
-
-
-@pytest.mark.parametrize(
-    ("overrides", "rule"),
-    [
-        ({"tasks": "[1, 3, 10]"}, "tasks must hold 0"),
-        ({"tasks": "[0, 1]"}, "two other numbers"),
-    ],
-)
-def test_settings_that_limits_cannot_describe(overrides, rule):
-    with pytest.raises(InputError, match=rule):
-        CLAIM.settings("quick", overrides)
+    # Eq. 3.6 for two actions and α⁰ 1: 1/2, 1/3 and 1/12.
+    settings = {**QUICK, "draws": 1200, "actions": [2], "alpha0": [1.0], "kinds": ["random"], "found_tasks": [1]}
+    cases = [
+        {"actions": 2, "alpha0": 1.0, "tasks": n, "formula": p, "prior": p, "taken": taken}
+        for n, p, taken in ((0, 1 / 2, 600), (1, 1 / 3, 400), (10, 1 / 12, 110))
+    ]
+    world = {"kind": "random", "tasks": 1, "entering": 4, "below": 1, "least": 0.8}
+    results = [{"constructed": cases, "found": [world]}] * 3
+    found = measure(settings, results)
+    assert found["prior_error"].value == 0
+    assert found["frequency_ratio"].value == pytest.approx((1 + 1.1) / 2)
+    assert found["frequency_ratio_no_task"].value == pytest.approx(1)
+    assert found["slope"].value == pytest.approx(np.log10(110 / 400))
+    assert found["share_below"].value == 0.25
+    case, *_, last = rows(settings, results)
+    assert (case["measured"], last["least"]) == (0.5, [0.8] * 3)
+    assert case["low"] < 0.5 < case["high"]

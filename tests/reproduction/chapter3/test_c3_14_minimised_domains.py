@@ -1,125 +1,197 @@
-"""Measures of C3.14 from made-up cells, by hand."""
+"""Claim C3.14: what minimised domains keep, by hand in corridors and the errata's counterexamples; measures."""
 
+import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
+from lifelore.action.search.domain_reduction import minimised_domain, tables_within
+from lifelore.core.learning.q_learning import Schedule
+from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 from lifelore.core.metrics import Estimate
-from reproduction.chapter3.c3_14_minimised_domains.measure import measure, rows, worst
-from reproduction.chapter3.c3_14_minimised_domains.run import FORMS, WHOLE, WITHIN
+from lifelore.core.planning.planning import best_actions, optimal_q
+from reproduction.chapter3.c3_14_minimised_domains.minimised_worlds import (
+    Solved,
+    TaskSet,
+    random_tables,
+    task_set,
+    with_goal,
+)
+from reproduction.chapter3.c3_14_minimised_domains.run import (
+    best_returns,
+    domain_of,
+    exact,
+    kept,
+    learn_within,
+    measure,
+    readings,
+    rows,
+    traps,
+    values_within,
+    worst,
+)
 from reproduction.engine.registry import claim_of
 
-CLAIM = claim_of("C3.14")
-QUICK = dict(claim_of("C3.14").sizes["quick"])
-
-FIRST, LAST = "lattice, every start", "random, few starts"
-SETTINGS = {**QUICK, "kinds": [FIRST, LAST], "runs": 4}
+SETTINGS = {**claim_of("C3.14").sizes["quick"], "size": 7, "tasks": 3, "random_states": 12, "max_steps": 40}
+DISCOUNT = 0.9
 
 
-def task(traps, left, within):
-    return {
-        "return_kept": True, "policy_kept": True, "traps": traps, "traps_left": left, "traps_within": within,
-        "states": 9,
-    }  # fmt: skip
+def corridor(goal: int, n: int = 5, start: int = 2) -> Solved:
+    """States in a row, left and right; the ends are walls that refuse and cost 10; the goal pays 100."""
+    here = np.arange(n)
+    follow = np.column_stack([np.maximum(here - 1, 0), np.minimum(here + 1, n - 1)]).astype(np.int32)
+    event = np.where(follow == here[:, None], COLLISION, 0).astype(np.uint8)
+    reward = np.where(event > 0, -10.0, 0.0)
+    base = Tables(follow[:, :, None], reward[:, :, None], event[:, :, None], np.ones(1), np.zeros(1, np.int32))
+    return solved(with_goal(base, goal, [start]), goal)
 
 
-def made_up(repaired=(6, 2), to_80=40, undefined=1):
-    """Four runs: in the lattice no traps; in random worlds four in the domain, `repaired` in the repaired one."""
-    cells = []
-    for run in range(4):
-        for kind in SETTINGS["kinds"]:
-            here = {"repaired": repaired, "printed": (2, 0), "closed": (1, 0)} if kind == LAST else {}
-            exact = {}
-            for form in FORMS:
-                within = here.get(form, (0, 0))
-                each = [task(4, 1, within[0] + run % 2), task(0, 0, within[1])] if here else [task(0, 0, 0)]
-                found = undefined if form == "printed" and here else 0
-                exact[form] = {"tasks": each, "undefined": found}
-            learning = []
-            for schedule in SETTINGS["schedules"]:
-                for form, ends in ((WHOLE, ""), *WITHIN):
-                    episodes = 50 + run if form == WHOLE else to_80 + run
-                    collisions = 0.4 + 0.01 * run if form == WHOLE else 0.1
-                    learning.append({
-                        "form": form, "dead_ends": ends, "schedule": schedule, "to_80": episodes,
-                        "never_80": False, "first_ten": 1.0 + run, "regret": 0.1, "collisions": 5.0,
-                        "explored_collisions": collisions, "explored_reached": 0.5,
-                    })  # fmt: skip
-            cells.append({"kind": kind, "run": run, "exact": [exact], "learning": learning})
-    return cells
+def solved(tables: Tables, goal: int) -> Solved:
+    q = optimal_q(tables, DISCOUNT)
+    best = best_actions(q)
+    best[goal] = False
+    return Solved(tables, q, best, (0, "test", goal))
 
 
-def plain(measured):
-    return {name: number.to_dict() for name, number in measured.items()}
+def ends_of_a_corridor() -> TaskSet:
+    return TaskSet("by hand", [corridor(0), corridor(4)], DISCOUNT, 20)
 
 
-def test_numbers_by_hand():
-    found = measure(SETTINGS, made_up())
-    # A set in four kinds of cells: of eight sets four are undefined as printed.
-    assert found["theorem_printed"].value == found["theorem_repaired"].value == 1
-    assert found["undefined_printed"].value == 0.5
-    # Twelve tasks: eight of random worlds have more in the repaired form (6 or 7 for 4, and 2 for none).
-    assert found["more_traps"].value == pytest.approx(8 / 12)
-    assert found["more_traps_printed"].value == 0
-    assert found["trap_difference_with_traps"].value == pytest.approx(2.5)
-    assert found["trap_difference_with_traps_printed"].value == pytest.approx(-1.5)
-    assert found["own_traps_left"].value == 0.25
-    assert found["traps_where_none"].value == 0.5
-    assert found["traps_where_none_closed"].value == 0
-    assert found["to_80_ratio_worst"].value == pytest.approx(166 / 206)
-    assert found["collisions_ratio_worst"].value == pytest.approx(0.4 / 1.66)
+def test_a_corridor_by_hand():
+    tasks = ends_of_a_corridor()
+    domain = domain_of(tasks)
+    # Each task's policy is kept where only the other comes: nothing is lost but the walls.
+    everything = [[0, 1], [1, 0], [1, 1], [2, 0], [2, 1], [3, 0], [3, 1], [4, 0]]
+    assert np.argwhere(domain.pairs).tolist() == everything
+    assert traps(tasks.tasks[0], domain) == [0, 0]
+    # By pairs of one and the same task, a step to the other end cannot be taken back (errata E36).
+    repaired = minimised_domain([t.tables for t in tasks.tasks], [t.best for t in tasks.tasks], "repaired")
+    assert traps(tasks.tasks[0], repaired) == [0, 2]
+
+
+def test_what_is_kept_in_a_corridor_by_hand():
+    tasks = ends_of_a_corridor()
+    repaired = minimised_domain([t.tables for t in tasks.tasks], [t.best for t in tasks.tasks], "repaired")
+    q = values_within(tasks.tasks[0].tables, repaired, DISCOUNT)
+    assert q[2, 0] == pytest.approx(90)
+    assert q[1].tolist() == [pytest.approx(100), -np.inf]
+    # Straying to the right ends at the other goal, stuck: the wall's 10 for ever, two steps off.
+    assert q[2, 1] == pytest.approx(-10 / 0.1 * 0.9**2)
+    for domain in (repaired, domain_of(tasks)):
+        assert kept(tasks.tasks[0], domain, DISCOUNT)
+    only_right = minimised_domain([tasks.tasks[1].tables], [tasks.tasks[1].best])
+    assert not kept(tasks.tasks[0], only_right, DISCOUNT)
+
+
+def errata_e8(outcomes=(1.0,), odd: int | None = None) -> TaskSet:
+    """Task 1: 0 -a-> 1; from 2, where it never comes, 2 -b-> 3 -a-> 1. Task 2: goal 4 by 0 -b-> 2 -a-> 4."""
+    follow = np.array([(1, 2), (1, 1), (4, 3), (1, 1), (4, 4)], np.int32)[:, :, None].repeat(len(outcomes), axis=2)
+    if odd is not None:
+        follow[2, 1, 1] = odd
+    cum = np.cumsum(outcomes)
+    event = np.zeros(follow.shape, np.uint8)
+    base = Tables(follow, np.zeros(follow.shape), event, cum, np.zeros(1, np.int32))
+    return TaskSet("by hand", [solved(with_goal(base, goal, [0]), goal) for goal in (1, 4)], DISCOUNT, 20)
+
+
+def test_the_printed_domain_is_undefined_where_a_policy_never_comes():
+    found = exact(errata_e8())
+    assert found["defined"] is False
+    assert exact(ends_of_a_corridor())["defined"] is True
+
+
+def test_renormalised_outcomes_change_the_printed_values():
+    # 2 -b-> leads to 3 (3/4) or 4 (1/4); without 3 it leads to 4 for certain, which pays task 2 as well as a does.
+    tasks = errata_e8((0.75, 0.25), odd=4)
+    domain = domain_of(tasks)
+    assert np.argwhere(domain.leading_out).tolist() == [[2, 1]]
+    second = tasks.tasks[1]
+    assert second.q[2].tolist() == [pytest.approx(100), pytest.approx(25)]
+    assert values_within(second.tables, domain, DISCOUNT)[2].tolist() == [pytest.approx(100)] * 2
+
+
+def test_values_where_nothing_leads_out_are_those_of_the_exact_planner():
+    for i in range(10):
+        tasks = task_set("slippery, few starts", SETTINGS, (i, "twin"))
+        domain = minimised_domain([t.tables for t in tasks.tasks], [t.best for t in tasks.tasks], "repaired")
+        stuck = ~domain.pairs.any(axis=1)
+        for task in tasks.tasks:
+            within = tables_within(task.tables, domain.pairs, "stay")
+            lowest = min(0.0, float(task.tables.reward.min())) / (1 - tasks.discount)
+            within.reward[stuck], within.event[stuck] = lowest, TERMINAL
+            q = optimal_q(within, tasks.discount)
+            q[~domain.pairs] = -np.inf
+            np.testing.assert_allclose(values_within(task.tables, domain, tasks.discount), q, atol=1e-6)
+
+
+def test_learners_within_take_kept_actions_alone():
+    task = corridor(0)
+    pairs = np.zeros((5, 2), bool)
+    pairs[1:, 0] = True  # left, and nothing in the goal
+    once = Schedule(np.ones(4), np.full(4, 0.5), 10, DISCOUNT)
+    curve = learn_within(task, pairs, once, "test")
+    assert curve.steps.tolist() == [2, 2, 2, 2]
+    assert curve.reached.all()
+    assert curve.collisions.sum() == 0
+    greedy = Schedule(np.zeros(4), np.full(4, 0.5), 10, DISCOUNT)
+    assert learn_within(task, pairs, greedy, "test").steps.tolist() == [2, 2, 2, 2]
+    # Right only: stuck at the other end, where it stays for nothing.
+    pairs = np.zeros((5, 2), bool)
+    pairs[:4, 1] = True
+    assert learn_within(task, pairs, once, "test").rewards.tolist() == [0.0] * 4
+
+
+def test_best_returns_are_of_the_starts_drawn():
+    task = corridor(0, start=2)
+    assert best_returns(task, 3).tolist() == [pytest.approx(90)] * 3
+    anywhere = task._replace(tables=task.tables._replace(starts=np.arange(1, 5, dtype=np.int32)))
+    assert set(np.round(best_returns(anywhere, 200), 6)) == {100.0, 90.0, 81.0, 72.9}
 
 
 def test_the_worst_is_what_reaches_highest():
-    low, high = Estimate(0.9, 0.9, (0.8, 1.0), 4), Estimate(0.8, 0.8, (0.5, 1.4), 4)
-    assert worst([low, high]) is high
-    same = Estimate(1.5, 1.5, None, 4)
-    assert worst([low, same, high]) == Estimate(1.5, 1.5, (1.5, 1.5), 4)
-    assert worst([low, Estimate(float("nan"), 0.0, None, 4)]).n == 4
+    wide, high = Estimate(0.5, 0.5, (0.2, 1.3), 5), Estimate(1.1, 1.1, (1.0, 1.2), 5)
+    assert worst([wide, high]) == wide
+    assert worst([high, Estimate(1.5, 1.5, None, 5)]).ci95 == (1.5, 1.5)
 
 
-def test_verdicts():
-    # The repaired form mends what is undefined and adds traps; the printed one is undefined.
-    assert CLAIM.predicate.verdict(plain(measure(SETTINGS, made_up()))) == "holds in part"
-    # Either would do: the repaired one without new traps, or the printed one if it were defined.
-    assert CLAIM.predicate.verdict(plain(measure(SETTINGS, made_up((2, 0))))) == "holds"
-    assert CLAIM.predicate.verdict(plain(measure(SETTINGS, made_up(undefined=0)))) == "holds"
-    slow = plain(measure(SETTINGS, made_up((2, 0), to_80=80)))
-    assert CLAIM.predicate.verdict(slow) == "holds in part"
-    nothing = {name: {"value": 9.0, "median": 9.0, "ci95": [9.0, 9.0], "n": 4} for name in slow}
-    for form in ("printed", "repaired"):
-        nothing[f"theorem_{form}"] = {"value": 0.5, "median": 0.5, "ci95": None, "n": 4}
-    assert CLAIM.predicate.verdict(nothing) == "does not hold"
+def test_numbers_by_hand():
+    settings = {**SETTINGS, "kinds": ["lattice, every start", "random, few starts"]}
+
+    def cell(kind, run, traps, collisions):
+        found = {"kept": [True, run > 0], "traps": traps, "defined": run == 0}
+        costs = {"collisions": collisions, "to_80": [[100, 50 + run], [100, 150]]}
+        return {"kind": kind, "run": run, "exact": [found], **costs}
+
+    results = [
+        cell(kind, run, traps, collisions)
+        for run in range(3)
+        for kind, traps, collisions in (
+            ("lattice, every start", [[0, 0], [0, 1]], [0.4, 0.0]),
+            ("random, few starts", [[4, 1], [0, 0]], [0.2, 0.1 + 0.01 * run]),
+        )
+    ]
+    found = measure(settings, results)
+    assert found["theorem"].value == pytest.approx(10 / 12)
+    assert found["defined"].value == pytest.approx(1 / 3)
+    assert found["trap_difference"].value == -3
+    assert found["new_traps"].value == pytest.approx(3 / 9)
+    assert found["collisions_ratio"].value == pytest.approx(0.33 / 0.6)
+    assert found["to_80_ratio"].value == pytest.approx(0.51)
+    each = {(cell["kind"], str(cell["schedule"])): numbers for cell, numbers in readings(settings, results)}
+    assert "trap_difference" not in each["lattice, every start", "printed"]
+    assert each["lattice, every start", "printed"]["new_traps"].value == 0.5
+    assert set(each["random, few starts", "[0.1, 1.0, 0.1]"]) == {"to_80_ratio"}
+    assert each["random, few starts", "[0.1, 1.0, 0.1]"]["to_80_ratio"].value == pytest.approx(1.5)
+    first = rows(settings, results)[0]
+    assert [number["value"] for number in first["traps"]] == [0, 0.5]
+    assert [number["value"] for number in first["to_80"]] == [100, 51]
 
 
-def test_every_condition_asks_of_something_measured():
-    assert {c.measure for c in CLAIM.predicate.conditions} <= set(measure(SETTINGS, made_up()))
-
-
-def test_rows_and_figure():
-    cells = made_up()
-    found = rows(SETTINGS, cells)
-    random = next(row for row in found if row.get("kind") == LAST)
-    assert random["printed"]["defined"] == 0
-    assert random["repaired"]["traps_within"] == pytest.approx((6.5 + 2) / 2)
-    assert random["repaired"]["no_more_traps"] == 0
-    assert len([row for row in found if "learnt_in" in row]) == 2 * 2 * (1 + len(WITHIN))
-    result = {"settings": SETTINGS, "measured": plain(measure(SETTINGS, cells)), "rows": found}
-    kept, walks, learning = CLAIM.draw(result).axes
-    assert [tick.get_text() for tick in kept.get_yticklabels()] == SETTINGS["kinds"]
-    assert kept.texts[0].get_text() == "100"
-    assert walks.texts[0].get_text() == "42"
-    assert learning.texts[0].get_text() == "0.81"
-
-
-@pytest.mark.parametrize(
-    ("overrides", "rule"),
-    [
-        ({"kinds": '["random, few starts"]'}, "kinds must hold one of lattice, every start"),
-        ({"kinds": '["lattice, every start"]'}, "kinds must hold one of random, few starts"),
-        ({"size": 8}, "size must be odd"),
-        ({"random_states": 5}, "random_states must be at least"),
-    ],
-)
-def test_settings_that_limits_cannot_describe(overrides, rule):
-    with pytest.raises(InputError, match=rule):
-        CLAIM.settings("quick", overrides)
+def test_random_tables_have_walls_and_sinks():
+    tables = random_tables(200, 4, np.random.default_rng(0), (0.8, 0.2))
+    refused = tables.event[:, :, 0] == COLLISION
+    assert 0.2 < refused.mean() < 0.3
+    here = np.arange(200)[:, None, None]
+    assert (tables.next_state[refused] == np.broadcast_to(here, tables.next_state.shape)[refused]).all()
+    assert 0.08 < (tables.next_state == here).all(axis=(1, 2)).mean() < 0.25
+    goal = with_goal(tables, 7, [0])
+    entered = (tables.next_state == 7) & (np.arange(200) != 7)[:, None, None]
+    assert ((goal.event & TERMINAL > 0) == entered).all()

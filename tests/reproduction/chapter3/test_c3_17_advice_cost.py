@@ -1,99 +1,88 @@
-"""Measures of C3.17 from made-up cells, by hand."""
+"""Claim C3.17: policies learnt so far, the ceiling of κ, and measures from made-up mazes, by hand."""
 
+from math import log
+
+import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
-from reproduction.chapter3.c3_17_advice_cost.measure import agents_of, measure, rows
+from lifelore.action.advice.advisor import Advisor
+from lifelore.action.advice.goal_model import GoalModel
+from reproduction.chapter3.advice.mazes import errands_of, maze_of, policy_of
+from reproduction.chapter3.c3_17_advice_cost.run import (
+    EARLY,
+    LATE,
+    agent_policies,
+    greedy_policy,
+    kappas_of,
+    measure,
+    readings,
+    rows,
+    steepest_rise,
+)
 from reproduction.engine.registry import claim_of
 
-CLAIM = claim_of("C3.17")
-FULL = dict(claim_of("C3.17").sizes["full"])
-QUICK = dict(claim_of("C3.17").sizes["quick"])
-
-SETTINGS = {**QUICK, "kappas": [0.0, 0.5, 1.4]}
-FALLING = {
-    "random": [80, 40, 0],
-    "avoid": [60, 20, 0],
-    "left": [60, 10, 0],
-    "bug": [60, 30, 0],
-    "optimal": [50, 2, 0],
-    "q 1": [80, 40, 0],
-    "q 50": [50, 5, 0],
-}
+SETTINGS = {
+    **claim_of("C3.17").sizes["quick"], "kappas": [0.5, 1.4], "loops": [0.1], "experts": ["walks"],
+    "alpha0": [0.1], "heeds": [True, False],
+}  # fmt: skip
 
 
-def made_up(changed=None):
-    """Three mazes of 100 steps, 80 of them where experts passed; one step more advised in each maze at κ = 0.5."""
-    cells = []
-    for maze in range(3):
-        amounts = []
-        for experts in SETTINGS["experts"]:
-            for agent, advised in {**FALLING, **(changed or {})}.items():
-                for heeds in (True, False):
-                    counts = [80, advised[1] + maze, advised[2]] if agent in ("random", "q 1") else list(advised)
-                    known = [advised[0], 80, 80]
-                    how = {"experts": experts, "agent": agent, "heeds": heeds}
-                    amounts.append({**how, "steps": [100] * 3, "known": known, "advised": counts})
-        ceilings = [
-            {"experts": e, "states": [1.0, 0.5 + 0.1 * maze, 0.0], "above": 0} for e in SETTINGS["experts"]
-        ]
-        cells.append({"loops": 0.1, "maze": maze, "amounts": amounts, "ceilings": ceilings})
-    return cells
+@pytest.mark.parametrize("alpha0", [0.0, 1.0])
+def test_an_agent_that_is_surely_lost_gains_the_ceiling_and_an_expert_nothing(alpha0):
+    models = [GoalModel.from_best_actions([[True, False, False, False]], alpha0=alpha0 or 1e-9)]
+    models = [GoalModel((), models[0].prior, models[0].steps, advised_alpha0=alpha0)]
+    theta = models[0].theta[0]
+    entropy = -sum(p * log(p) for p in theta if p)
+    for weights, gain in (([1e-12, 1], log(4) - entropy), ([1, 1e-12], 0.0)):
+        advisor = Advisor(models, weights=weights)
+        assert advisor.consider(advisor.watch(), 0).gain == pytest.approx(gain, abs=1e-8)
 
 
-def test_headline_by_hand():
-    found = measure(SETTINGS, made_up())
-    assert found["advice_at_zero"].value == 100.0
-    assert found["agents_falling"].value == 1.0
-    assert found["largest_rise"].value == 0.0
-    assert found["largest_rise_over_mazes"].ci95 == (0.0, 0.0)
-    assert (found["early_minus_random"].value, found["early_minus_random"].ci95) == (0.0, (0.0, 0.0))
-    assert found["late_minus_optimal"].value == 3.0
-    assert (found["grid_falling"].value, found["grid_falling"].n) == (1.0, 4)
+def test_greedy_policy_by_hand():
+    q = np.array([[0.0, 0.0, 0.0, 0.0], [3.0, 1.0, 3.0, 0.0]])
+    found = greedy_policy(q, 0.2)
+    assert found[0] == pytest.approx([0.25] * 4)
+    assert found[1] == pytest.approx([0.45, 0.05, 0.45, 0.05])
 
 
-def test_advice_that_rises_between_any_two_kappas_counts():
-    found = measure(SETTINGS, made_up({"bug": [60, 20, 33]}))
-    assert found["largest_rise"].value == 13.0
-    assert found["largest_rise_over_mazes"].ci95 == (13.0, 13.0)
-    assert found["agents_falling"].value == 1.0
-    assert found["grid_falling"].value == 0.0
+def test_q_learning_that_found_nothing_yet_is_random_motion():
+    settings = {**SETTINGS, "tasks": 2, "max_episode_steps": 1}
+    maze = maze_of(settings, {"loops": 0.1, "maze": 0}, 0)
+    for policy, errand in zip(agent_policies(settings, maze)[EARLY], errands_of(maze, 2), strict=True):
+        # One step that is not the last tells nothing: Q is 0 everywhere.
+        assert policy == pytest.approx(policy_of(maze.world, "random", errand)[:, 0])
 
 
-def test_the_largest_rise_has_an_interval_over_mazes():
-    # Advice to the bug rises by 5, to random motion by 10, 9 and 8 in the three mazes.
-    rise = measure(SETTINGS, made_up({"bug": [60, 20, 25], "random": [80, 40, 50]}))["largest_rise_over_mazes"]
-    assert rise.value == 9.0
-    assert 8.0 <= rise.ci95[0] < rise.ci95[1] <= 10.0
-    # The rise is counted from the lowest mean before it, wherever that is.
-    assert measure(SETTINGS, made_up({"bug": [20, 60, 0]}))["largest_rise_over_mazes"].value == 40.0
+def test_zero_and_the_printed_kappa_are_always_there():
+    assert kappas_of({"kappas": [1.4, 0.2]}) == [0.0, 0.2, 0.5, 1.4]
 
 
-def test_an_agent_that_is_told_as_often_at_the_end_does_not_fall():
-    assert measure(SETTINGS, made_up({"left": [60, 60, 60]}))["agents_falling"].value == pytest.approx(6 / 7)
+def test_the_steepest_rise_by_hand():
+    assert steepest_rise(np.array([[60.0, 20, 33], [60, 22, 31]])).tolist() == [13, 9]
+    assert steepest_rise(np.array([[60.0, 20, 10], [60, 22, 11]])).tolist() == [0, 0]
 
 
-def test_rows_hold_every_agent_and_the_ceilings():
-    found = rows(SETTINGS, made_up())
-    assert len(found) == 2 * (2 * len(agents_of(SETTINGS)) + 1)
-    random = found[0]
-    assert (random["agent"], random["mean"], random["deviation"]) == ("random", [80, 41, 0], [0, 1, 0])
-    assert found[-1]["ceiling"] == [1.0, 0.6, 0.0]
-
-
-def test_full_size_is_the_thesiss():
-    assert (FULL["tasks"], FULL["max_steps"], FULL["kappas"][0]) == (10, 1000, 0.0)
-
-
-@pytest.mark.parametrize(
-    ("overrides", "rule"),
-    [
-        ({"kappas": "[0.5, 1.0]"}, "kappas must rise from 0"),
-        ({"kappas": "[0.0, 1.0]"}, "contain kappa"),
-        ({"snapshots": "[5, 1]"}, "snapshots must be rising"),
-        ({"default": '{"loops": 0.1, "experts": "walks"}'}, "whether agents heed"),
-    ],
-)
-def test_settings_that_limits_cannot_describe(overrides, rule):
-    with pytest.raises(InputError, match=rule):
-        CLAIM.settings("quick", overrides)
+def test_numbers_by_hand():
+    falling = {
+        "random": [80, 40, 0], "avoid": [60, 20, 0], "left": [60, 10, 0], "bug": [60, 30, 5],
+        "optimal": [50, 2, 0], EARLY: [80, 41, 0], LATE: [50, 5, 0],
+    }  # fmt: skip
+    heeded = falling | {"bug": [60, 20, 33]}
+    results = [
+        {
+            "loops": 0.1,
+            "amounts": [falling, heeded],
+            "drawn": {"bug": [[50, 70], [20, 40], [0, 10]]} if not n else {},
+        }
+        for n in range(3)
+    ]
+    found = measure(SETTINGS, results)
+    assert found["least_fall"].value == 50
+    assert found["largest_rise"].value == 0
+    assert (found["early_minus_random"].value, found["late_minus_optimal"].value) == (1, 3)
+    assert found["random_at_kappa"].value == 40
+    (cell, same), (other, rising) = readings(SETTINGS, results)
+    assert (cell["heeds"], other["heeds"]) == (True, False)
+    assert same["least_fall"] == found["least_fall"]
+    assert (rising["least_fall"].value, rising["largest_rise"].value) == (27, 13)
+    assert rows(SETTINGS, results) == [{"curve_of": "bug", "mean": [60, 30, 5], "deviation": [10, 10, 5]}]

@@ -1,98 +1,51 @@
-"""Measures of C3.18 from made-up cells, by hand."""
+"""Claim C3.18: P(M₁ | H) of own steps, curves by blocks of steps, and measures, by hand."""
 
+import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
-from lifelore.domains.advice.explorers import EXPLORERS
-from reproduction.chapter3.c3_18_normalcy.measure import measure, rows
+from lifelore.action.advice.advised_walk import Walk
+from lifelore.action.advice.advisor import Advisor
+from lifelore.action.advice.goal_model import GoalModel
+from reproduction.chapter3.c3_18_normalcy import run
+from reproduction.chapter3.c3_18_normalcy.run import block_curve, measure, own_normalcy, readings
 from reproduction.engine.registry import claim_of
 
-CLAIM = claim_of("C3.18")
-QUICK = dict(claim_of("C3.18").sizes["quick"])
 
-SETTINGS = {**QUICK, "tasks": 2, "max_steps": 4, "blocks": 2}
-
-
-def made_up(unadvised: float | None = 0.8):
-    """Three mazes: told, P(M₁ | H) rises from 0.2 to 0.6; own steps raise only the bug's, by 0.1."""
-    cells = []
-    for maze in range(3):
-        entries = []
-        for experts in SETTINGS["experts"]:
-            for agent in EXPLORERS:
-                own = 0.3 if agent == "bug" else 0.2
-                curve = {"p": [2.0, 0.0], "n": [4, 0], "reached": [0, 1]}
-                entries.append(
-                    {
-                        "experts": experts,
-                        "agent": agent,
-                        "alone": [0.1, 0.3],
-                        "told": [0.5 + 0.01 * maze, 0.7 + 0.01 * maze],
-                        "own": [own - 0.1, own + 0.1],
-                        "unadvised": [None, unadvised],
-                        "curve_alone": curve,
-                        "curve_told": curve,
-                    }
-                )
-        cells.append({"loops": 0.1, "maze": maze, "explorers": entries})
-    return cells
+def walked(p_normal, advised, reached=False, actions=None):
+    n = len(p_normal)
+    actions = np.zeros(n, np.int8) if actions is None else np.array(actions, np.int8)
+    arrays = (np.zeros(n, np.int32), actions, np.array(advised, bool), np.array(p_normal), np.zeros(n))
+    return Walk(*arrays, reached=reached, reward=1000.0 * reached)
 
 
-def test_every_reading_by_hand():
-    found = {row["agent"]: row for row in rows(SETTINGS, made_up()) if row.get("experts") == "walks"}
-    assert found["random"]["alone"] == pytest.approx(0.2)
-    assert found["left"]["gain"]["told"] == pytest.approx(0.41)
-    assert found["bug"]["gain"]["own"] == pytest.approx(0.1)
-    assert found["random"]["gain"]["own"] == pytest.approx(0.0)
-    # The first errand was advised throughout: only the second is compared, with its own walk alone.
-    assert found["avoid"]["gain"]["unadvised"] == pytest.approx(0.5)
-    assert found["avoid"]["unadvised"] == pytest.approx(0.8)
+def test_own_steps_by_hand():
+    # One count and α⁰ = 0.1: P(0 | M₁) = 1.1/1.2, P(1 | M₁) = 0.1/1.2, against 1/2.
+    advisor = Advisor.of_thesis([GoalModel.from_best_actions([[True, False]])])
+    after = (0.1 / 1.2) / (0.1 / 1.2 + 0.5)
+    # It chose 1, was advised 0 twice, and chose 1: P(M₁ | H) before each step is 1/2, then that after one step.
+    found = own_normalcy(advisor, walked([0.5] * 4, [0, 1, 1, 0], actions=[1, 0, 0, 1]))
+    assert found == pytest.approx((0.5 + 3 * after) / 4)
+    # Advised steps count where they are not left out: then it seems an expert.
+    assert advisor.assess([0] * 4, [1, 0, 0, 1]).p_normal[-1] > after
 
 
-def test_explorers_raised_by_hand():
-    found = measure(SETTINGS, made_up())
-    raised = [found[f"explorers_raised{name}"].value for name in ("", "_own", "_unadvised")]
-    assert raised == [4, 1, 4]
-    assert found["grid_all_raised"].value == 1.0
-    assert found["grid_all_raised_own"].value == 0.0
+def test_curves_by_blocks_by_hand(monkeypatch):
+    monkeypatch.setattr(run, "BLOCKS", 3)
+    long, short = walked([0.5, 0.7, 0.1, 0.3], [0] * 4), walked([0.2, 0.4, 0.6], [0] * 3, reached=True)
+    found = block_curve([long, short], 6)
+    assert found["x"] == [2, 4, 6]
+    assert found["normal"] == [pytest.approx(1.8 / 4, abs=1e-4), pytest.approx(1.0 / 3, abs=1e-4), None]
+    assert found["reward"] == [0, 500, 500]
 
 
-def test_each_explorers_gain_is_a_headline():
-    found = measure(SETTINGS, made_up())
-    # 0.40, 0.41 and 0.42 in the three mazes.
-    gains = [found[f"gain_{agent}"] for agent in EXPLORERS]
-    assert [gain.value for gain in gains] == pytest.approx([0.41] * 4)
-    assert all(0.40 <= gain.ci95[0] < gain.ci95[1] <= 0.42 for gain in gains)
-    measured = {name: number.to_dict() for name, number in found.items()}
-    assert CLAIM.second.answers(measured, "headline") == ["yes"] * 4
-    measured["gain_left"] |= {"value": 0.1, "ci95": [-0.1, 0.3]}
-    assert CLAIM.second.verdict(measured) == "undecided"
-
-
-def test_where_all_was_advised_nothing_is_said_of_untold_steps():
-    found = measure(SETTINGS, made_up(unadvised=None))
-    assert found["explorers_raised_unadvised"].value == 0
-    row = rows(SETTINGS, made_up(unadvised=None))[0]
-    assert row["gain"]["unadvised"] is row["unadvised"] is None
-    assert row["certain"]["unadvised"] is False
-
-
-def test_rows_hold_the_grid_and_the_curves():
-    found = rows(SETTINGS, made_up())
-    assert len(found) == 2 * 4 + 4 * 2
-    assert found[0]["gain"] == {"told": 0.41, "own": 0.0, "unadvised": 0.5}
-    assert found[0]["certain"] == {"told": True, "own": False, "unadvised": True}
-    # Nobody walks in the second block; one of two errands in each maze has arrived by then.
-    assert found[-1]["normal"] == [0.5, None]
-    assert found[-1]["reward"] == [0.0, 500.0]
-
-
-@pytest.mark.parametrize(
-    ("overrides", "rule"),
-    [
-        ({"blocks": 7}, "blocks must divide max_steps"),
-    ],
-)
-def test_settings_that_limits_cannot_describe(overrides, rule):
-    with pytest.raises(InputError, match=rule):
-        CLAIM.settings("quick", overrides)
+def test_numbers_by_hand():
+    settings = {**claim_of("C3.18").sizes["quick"], "loops": [0.1], "experts": ["walks", "trips"], "alpha0": [0.1]}
+    gains = {"random": 0.1, "avoid": 0.2, "left": 0.0, "bug": 0.3}
+    others = dict.fromkeys(gains, 0.05)
+    results = [{"loops": 0.1, "gains": [gains, others], "own": dict.fromkeys(gains, 0.02)}] * 3
+    found = measure(settings, results)
+    assert (found["gain_bug"].value, found["gain_own"].value) == (0.3, 0.02)
+    assert found["gain"].value == pytest.approx(0.15)
+    (_, same), (cell, other) = readings(settings, results)
+    assert same["gain_left"].value == 0
+    assert (cell["experts"], other["gain_left"].value) == ("trips", pytest.approx(0.05))

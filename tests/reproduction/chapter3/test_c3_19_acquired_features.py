@@ -1,80 +1,54 @@
-"""Measures of C3.19 from made-up runs, by hand; doubt by hand; and one small run."""
+"""Claim C3.19: doubt and noise by hand, and measures from made-up runs."""
 
 import numpy as np
 import pytest
 
-from reproduction.chapter3.c3_19_acquired_features.measure import measure, rows
 from reproduction.chapter3.c3_19_acquired_features.run import (
     ACQUIRED,
     ALL,
     PLAIN,
     POOL,
     START,
-    STARTS,
     counted_task,
     doubt,
-    grid_of,
-    run_cell,
+    measure,
+    readings,
+    rows,
 )
-from reproduction.engine.grid import run_grid
 from reproduction.engine.registry import claim_of
 
-CLAIM = claim_of("C3.19")
-SETTINGS = dict(claim_of("C3.19").sizes["quick"])
-REWARDS = {PLAIN: 0.0, START: 10.0, ACQUIRED: 30.0, ALL: 32.0}
-ENTROPY = {START: 2.0, ACQUIRED: 1.2, ALL: 1.0}
+SETTINGS = claim_of("C3.19").sizes["quick"]
 FOUR = ["PosUM", "PosML", "PosMR", "PosDM"]
 
 
-def made_up(gains=(0, 1, -1, 2), kept=(*FOUR,)):
-    """Runs whose acquired rewards differ by `gains`; all agents end with `kept` and Items."""
-    grid = grid_of(SETTINGS)
-    results = []
-    for run, gain in enumerate(gains):
-
-        def numbers(method, choice, gain=gain):
-            reward = REWARDS[method] + gain * (method == ACQUIRED)
-            found = {"all": reward, "mean": [reward] * 3}
-            if method != PLAIN:
-                doubt_here = ENTROPY[method] - gain / 10 * (method == ACQUIRED)
-                found |= {"entropy": doubt_here, "surprise": doubt_here}
-            return found | ({"features": [*kept, "Items"], "trials": 10} if method == ACQUIRED else {})
-
-        found = list(run_grid(grid, "method", PLAIN, (START, ACQUIRED, ALL), numbers))
-        results.append({"run": run, "optimal": 100.0, "found": found})
-    return results
-
-
-def plain(measured):
-    return {name: number.to_dict() for name, number in measured.items()}
-
-
 def test_measures_by_hand():
-    found = measure(SETTINGS, made_up())
-    assert found["reward_acquired_minus_start"].value == pytest.approx(20.5)
-    assert found["entropy_start_minus_acquired"].value == pytest.approx(0.85)
-    assert found["acquired_minus_all_of_gain"].value == pytest.approx(-1.5 / 100)
+    def learner(reward, bits):
+        return {"rewards": [reward - 1, reward + 1], "entropy": bits, "surprise": 2 * bits}
+
+    results = [
+        {
+            "optimal": 100.0,
+            PLAIN: {"rewards": [0.0, 0.0]},
+            ALL: learner(32.0, 1.0),
+            START: [learner(10.0, 2.0), learner(12.0, 2.0)],
+            ACQUIRED: [learner(30.0 + run, 1.2), learner(11.0, 1.9)],
+            "features": [[*FOUR, "Items", *["Noise2"][:run]], []],
+        }
+        for run in range(3)
+    ]
+    found = measure(SETTINGS, results)
+    assert found["reward_gain"].value == 21.0
+    assert found["entropy_fall"].value == pytest.approx(0.8)
+    assert found["surprise_fall"].value == pytest.approx(1.6)
+    assert found["acquired_minus_all"].value == pytest.approx(-0.01)
     assert found["least_share_of_four"].value == 1.0
-    assert found["largest_share_of_noise"].value == 0.0
-    assert found["grid_falls_and_faster"].value == 1.0
-    assert measure(SETTINGS, made_up(kept=("PosUM", "Noise2")))["largest_share_of_noise"].value == 1.0
-    assert {c.measure for c in CLAIM.predicate.conditions} <= set(found)
-
-
-def test_rows_name_what_is_known_from_the_start():
-    found = rows(SETTINGS, made_up())
-    cells = [row for row in found if "shares" in row]
-    assert len(cells) == len(SETTINGS["starts"]) * len(SETTINGS["leasts"])
-    for row in cells:
-        assert {name for name, share in row["shares"].items() if share is None} == set(STARTS[row["start"]])
-    assert [row["curve_of"] for row in found[len(cells) :]] == [PLAIN, START, ACQUIRED, ALL]
-
-
-def test_verdicts():
-    assert CLAIM.predicate.verdict(plain(measure(SETTINGS, made_up()))) == "holds"
-    assert CLAIM.predicate.verdict(plain(measure(SETTINGS, made_up(kept=FOUR[:3])))) == "holds in part"
-    slower = made_up(gains=(-30, -29, -31, -28))
-    assert CLAIM.predicate.verdict(plain(measure(SETTINGS, slower))) == "does not hold"
+    assert found["largest_share_of_noise"].value == pytest.approx(2 / 3)
+    (first, at_first), (second, at_second), *_ = readings({**SETTINGS, "start": ["phi1"]}, results)
+    assert (first["least"], second["least"]) == (0.1, 0.05)
+    assert (at_first["reward_gain"].value, at_second["reward_gain"].value) == (21.0, -1.0)
+    drawn = rows(SETTINGS, results)
+    assert {row["feature"] for row in drawn if "feature" in row} == set(POOL.names) - {"PosMM", "Items"}
+    assert [row["mean"][0] for row in drawn if "curve_of" in row] == [0.0, 9.0, 30.0, 31.0]
 
 
 def test_doubt_by_hand():
@@ -91,13 +65,3 @@ def test_noise_is_independent_of_the_state():
     # About 1,000 states or more, four values each: within five standard deviations of a quarter.
     share = (columns[:, 10] == 2).mean()
     assert abs(share - 0.25) < 5 * (0.25 * 0.75 / len(columns)) ** 0.5
-
-
-@pytest.mark.slow
-def test_a_small_run_repeats_itself():
-    small = {**SETTINGS, "starts": ["phi1"], "leasts": [0.1], "tasks": 4}
-    first, second = (run_cell(small, {"run": 0}, 3) for _ in range(2))
-    assert first == second
-    (acquired,) = [found for found in first["found"] if found["method"] == ACQUIRED]
-    assert set(STARTS["phi1"]) <= set(acquired["features"])
-    assert acquired["trials"] == 1

@@ -6,17 +6,24 @@ import pytest
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.planning.planning import best_actions, greedy_policy, optimal_q
 from reproduction.chapter3.c3_02_lattice_prior.run import run_of
+from reproduction.chapter3.learning import grid_tasks
 from reproduction.chapter3.learning.grid_tasks import (
+    PLAIN,
+    STATE,
+    Trained,
+    block_curve,
+    choices_of,
+    compared,
+    even_blocks,
     exact_prior,
     learn_task,
-    mean_returns,
+    learnt_by_choice,
     rows_of,
     start_values,
     summary,
 )
 from reproduction.chapter3.learning.schedules import schedule_of
-from reproduction.engine import curve_blocks, learning_run
-from reproduction.engine.curve_blocks import block_edges, block_means
+from reproduction.engine import learning_run
 from reproduction.engine.registry import claim_of
 
 QUICK = dict(claim_of("C3.2").sizes["quick"])
@@ -37,7 +44,7 @@ def test_schedule_by_hand():
 
 def test_goals_do_not_repeat_and_runs_differ(run):
     goals = [p.goal for p in run.testing]
-    assert len(set(goals)) == SETTINGS["test_tasks"] == len(goals)
+    assert len(set(goals)) == SETTINGS["testing_tasks"] == len(goals)
     assert len({p.goal for p in run.training}) == 5
     again, other = run_of(SETTINGS, 3, 0), run_of(SETTINGS, 3, 1)
     assert [p.goal for p in again.testing] == goals
@@ -45,7 +52,7 @@ def test_goals_do_not_repeat_and_runs_differ(run):
 
 
 def test_more_training_tasks_leave_the_first_ones_and_the_test_tasks_alone(run):
-    more = run_of({**SETTINGS, "online_tasks": [0, 1, 5, 8]}, 3, 0)
+    more = run_of({**SETTINGS, "training_tasks": 8}, 3, 0)
     assert [p.goal for p in more.training][:5] == [p.goal for p in run.training]
     assert [p.goal for p in more.testing] == [p.goal for p in run.testing]
 
@@ -114,45 +121,72 @@ def test_learning_reaches_the_optimal_policy(run):
     assert problem.best[states, policy[states]].all()
 
 
-def test_mean_returns_is_the_mean_over_problems(run):
-    schedule = schedule_of(SETTINGS, [0.1, 1.0, 0.1])
-    curves = [learn_task(p, None, schedule)[0] for p in run.testing]
-    np.testing.assert_allclose(mean_returns(run.testing, lambda p: None, schedule), sum(curves) / 3)
+def test_every_combination_of_the_choices_and_the_default_first():
+    settings = {"schedule": ["printed", [0.1, 1.0, 0.1]], "ties": ["uniform"], "form": ["proportion"]}
+    found = choices_of({**settings, "alpha0": [0.1, 1.0]})
+    assert [(c["schedule"], c["alpha0"]) for c in found] == [
+        ("printed", 0.1), ("printed", 1.0), ([0.1, 1.0, 0.1], 0.1), ([0.1, 1.0, 0.1], 1.0),
+    ]  # fmt: skip
 
 
-def test_summary_by_hand():
-    settings = {"episodes": 20, "window": 2, "last": 4}
+def test_a_number_is_what_learning_alone_gives(run):
+    small = {**SETTINGS, "schedule": [[0.1, 1.0, 0.1]], "form": ["proportion", "dirichlet"], "alpha0": [0.1]}
+    trained = {"prior": Trained(STATE, run.training)}
+    found = learnt_by_choice(small, run.testing, trained, 0)
+    schedule, place = schedule_of(small, [0.1, 1.0, 0.1]), 3
+    assert choices_of(small)[place] == {
+        "schedule": [0.1, 1.0, 0.1], "ties": "prior", "form": "dirichlet", "alpha0": 0.1
+    }  # fmt: skip
+    prior = exact_prior(run.training, 0.1)
+    returns = [learn_task(p, rows_of(p, prior, "dirichlet", "prior"), schedule)[0] for p in run.testing]
+    plain = [learn_task(p, None, schedule)[0] for p in run.testing]
+    assert found["choices"][place]["prior"]["mean"] == pytest.approx(np.mean(returns))
+    assert found["choices"][place][PLAIN]["first"] == pytest.approx(np.mean([r[0] for r in plain]))
+    assert set(found["curves"]) == {PLAIN, "prior"}
+    later = learnt_by_choice(small, run.testing, trained, small["reading_runs"])
+    assert len(later["choices"]) == 1
+    assert later["choices"][0] == found["choices"][0]
+    assert not later["curves"]
+
+
+def test_comparison_by_hand():
+    def run(ours, theirs):
+        keys = ("first", "mean", "to_50", "to_80")
+        return {"a": dict(zip(keys, ours, strict=True)), "b": dict(zip(keys, theirs, strict=True))}
+
+    one, two = run((2, 30, 40, 90), (-60, 20, 80, 100)), run((4, 34, 60, 110), (-50, 20, 80, 100))
+    results = [{"choices": [one, two]}, {"choices": [two]}]  # a later run has the default alone
+    found = compared(results, 0, "a", "b")
+    assert {name: number.value for name, number in found.items()} == pytest.approx(
+        {"first_gain": 58, "mean_gain": 12, "to_50_ratio": 50 / 80, "to_80_ratio": 1.0}
+    )
+    assert compared(results, 1, "a", "b")["first_gain"].n == 1
+
+
+def test_summary_by_hand(monkeypatch):
+    monkeypatch.setattr(grid_tasks, "WINDOW", 2)
     best = np.full(20, 10.0)
     returns = np.array([-8.0] * 5 + [4.0, 6.0, 7.0] + [9.0] * 12)
-    found = summary(settings, returns, best)
+    found = summary(returns, best)
     assert found == {
         "first": -8.0,
         "first_ten": (5 * -8 + 4 + 6 + 7 + 9 + 9) / 10,
+        "mean": (5 * -8 + 4 + 6 + 7 + 12 * 9) / 20,
         "to_50": 7,  # the mean of the sixth and seventh return is 5
-        "never_50": False,
         "to_80": 9,  # the mean of 7 and 9 is 8
-        "never_80": False,
-        "final": 0.9,
     }
-    never = summary(settings, np.zeros(20), best)
-    assert (never["to_80"], never["never_80"]) == (20, True)
+    assert summary(np.zeros(20), best)["to_80"] == 20
 
 
-def test_percent_of_optimal_is_of_the_best_from_the_same_starts():
-    settings = {"episodes": 4, "window": 1, "last": 1}
-    lucky = summary(settings, np.array([0.0, 9.0, 40.0, 90.0]), np.array([10.0, 90.0, 90.0, 100.0]))
+def test_percent_of_optimal_is_of_the_best_from_the_same_starts(monkeypatch):
+    monkeypatch.setattr(grid_tasks, "WINDOW", 1)
+    lucky = summary(np.array([0.0, 9.0, 40.0, 90.0]), np.array([10.0, 90.0, 90.0, 100.0]))
     assert lucky["to_80"] == 4  # 9 of a possible 90 is not yet learning, whatever other starts would give
 
 
-def test_blocks_by_hand(monkeypatch):
-    monkeypatch.setattr(curve_blocks, "BLOCKS", 3)
-    assert block_edges(100).tolist() == [0, 1, 10, 100]
-    returns = np.concatenate([[5.0], np.full(9, 2.0), np.full(90, 1.0)])
-    assert block_means(returns) == [5.0, 2.0, 1.0]
-
-
-def test_blocks_hold_every_episode_once():
-    for n in (1, 7, 120, 1000):
-        edges = block_edges(n)
-        assert (edges[0], edges[-1]) == (0, n)
-        assert (np.diff(edges) > 0).all()
+def test_a_drawn_curve_has_even_blocks():
+    curve = block_curve(even_blocks(np.array([np.arange(200.0), np.arange(200.0) + 2])), 200)
+    assert len(curve["x"]) == 100
+    assert (curve["x"][:2], curve["mean"][:2]) == ([1.5, 3.5], [1.5, 3.5])
+    assert set(curve["deviation"]) == {1.0}
+    assert block_curve(even_blocks(np.zeros((2, 7))), 7)["x"] == [1, 2, 3, 4, 5, 6, 7]

@@ -1,119 +1,44 @@
-"""C4.6: agreement with print by hand, and a tiny run."""
-
-import json
+"""Deviations and their pattern by hand, and what the printed table can be."""
 
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.domains.surveillance.surveillance import NOISES
-from reproduction.chapter4.c4_06_regret_deviation.measure import (
-    PRINTED,
-    READINGS,
-    agreement,
-    deviations,
-    late_pattern,
-    measure,
-    rows,
-)
-from reproduction.chapter4.c4_06_regret_deviation.run import METHODS, run_cell
-from reproduction.chapter4.reuse.rules import OF_THESIS
-from reproduction.chapter4.surveillance.runs import DEFAULT_WORLD
-from reproduction.engine.registry import claim_of
-
-CLAIM = claim_of("C4.6")
-QUICK = dict(claim_of("C4.6").sizes["quick"])
-
-SMALL = {**QUICK, "tasks": 3, "groups": 3}
-SHOWN = ("sampling", "EI", "eps-greedy")
+from reproduction.chapter4.c4_06_regret_deviation.run import PRINTED, deviations, pattern
+from reproduction.chapter4.reuse.rules import RULES, STANDARD
 
 
-@pytest.fixture(scope="module")
-def cells():
-    """Three rules are run; the others stand in for them, so that the test stays short."""
-    found = []
-    for cell in CLAIM.cells(SMALL):
-        stand_in = {**cell, "method": cell["method"] if cell["method"] in SHOWN else "sampling"}
-        if cell["noise"] == "variance 20":
-            stand_in["noise"] = "deviation 20"
-        key = json.dumps(stand_in)
-        if key not in _KEPT:
-            _KEPT[key] = run_cell(SMALL, stand_in, 1)
-        found.append({**_KEPT[key], **cell})
-    return json.loads(json.dumps(found))
-
-
-_KEPT: dict[str, dict] = {}
+def of_groups(*by_episode):
+    """A result of three groups of two tasks with these deviations after each episode, 1 % apart."""
+    one = np.array(by_episode) / 2**0.5
+    values = [[sign * group * one for sign in (1, -1)] for group in (0.99, 1.0, 1.01)]
+    return {"groups": 3, "after": {"expected": np.reshape(values, (6, 4)).tolist()}}
 
 
 def test_deviations_by_hand():
-    result = {"groups": 2, "realised": {"5": [3.0, -3.0, 0.0, 2.0]}, "at": {"5": [0.0, 4.0, 1.0, 1.0]}}
-    # Sizes 3, 3 and 0, 2; with signs 3, -3.
-    assert deviations(result, "size of the difference of two pays", 5).tolist() == [0.0, 2**0.5]
-    assert deviations(result, "difference of two pays", 5) == pytest.approx([18**0.5, 2**0.5])
-    assert deviations(result, "expected", 5) == pytest.approx([8**0.5, 0.0])
+    result = {"groups": 2, "after": {"expected": [[0.0, 3.0], [4.0, 3.0], [1.0, 0.0], [1.0, 2.0]]}}
+    assert deviations(result, "expected") == pytest.approx(np.array([[8**0.5, 0.0], [0.0, 2**0.5]]))
 
 
-def test_agreement_by_hand():
-    spread = np.repeat(np.arange(101.0), 2)
-    spread[1::2] = 0
-    result = {"groups": 101, "at": {str(k): spread.tolist() for k in (5, 10, 20, 50)}}
-    # Deviations of (x, 0) are x / √2 for x from 0 to 100; the middle 95 % of x lies from 2.5 to 97.5.
-    printed = [2.4 / 2**0.5, 2.6 / 2**0.5, 97.4 / 2**0.5, 97.6 / 2**0.5]
-    assert agreement(result, printed, "expected") == [False, True, True, False]
+def test_pattern_by_hand():
+    results = {name: of_groups(80, 60, 20, 10) for name in RULES}
+    results |= {"ε-greedy": of_groups(70, 90, 80, 85), "EI": of_groups(30, 30, 20, 15)}
+    results["PI, printed"] = of_groups(16, 62, 72, 100)
+    found = pattern(results, "standard", "expected")
+    assert found["fall_sampling"].value == pytest.approx(70)
+    assert found["fall_EI"].value == pytest.approx(15)
+    # Of the four EI varies most.
+    assert found["more_eps_greedy"].value == pytest.approx(70)
+    assert found["more_PI"].value == pytest.approx(-5)
+    assert pattern(results, "PI as printed", "expected")["more_PI"].value == pytest.approx(85)
 
 
-@pytest.mark.parametrize(
-    ("changed", "holds"),
-    [
-        ({}, True),
-        ({"KG": 30.0}, False),
-        ({"PI": 40.0}, False),
-        ({"PI, printed": 20.0}, False),
-        ({"greedy": 90.0}, True),
-    ],
-)
-def test_late_pattern_by_hand(changed, holds):
-    wide = {"eps-greedy": 60.0, "PI": 60.0, "PI, printed": 60.0} | changed
-    results = []
-    for name in METHODS:
-        # Regret is the deviation or its opposite, but for one percent by group.
-        one = np.array([1.0, -1.0, 1.0, -1.0]) * wide.get(name, 10.0) * np.array([[1.0], [1.01], [0.99]])
-        found = {"groups": 3, "at": {"50": one.ravel().tolist()}}
-        results.append({"method": name, "case": "exact", **DEFAULT_WORLD, **found})
-    form = ", printed" if "PI, printed" in changed else ""
-    assert late_pattern(results, "exact", form, "expected") is holds
-
-
-def test_the_printed_table_has_six_rules_and_four_episodes():
-    assert set(PRINTED) == set(OF_THESIS)
-    assert {len(numbers) for numbers in PRINTED.values()} == {4}
-
-
-def test_a_tiny_run(cells):
-    found = measure(SMALL, cells)
-    # Two forms of three cases by four readings.
-    assert found["grid_late_pattern"].n == 24
-    assert {c.measure for c in CLAIM.predicate.conditions} <= set(found)
-    assert found["agree_all_exact"].n == 24
-    assert set(cells[0]) == {
-        "method",
-        "case",
-        "layout",
-        "metric",
-        "noise",
-        "groups",
-        "at",
-        "against_mean",
-        "realised",
-    }
-
-
-def test_the_figure_is_drawn_from_rows_alone(cells):
-    kept = json.loads(json.dumps(rows(SMALL, cells)))
-    assert len(kept) == len(cells) * len(READINGS)
-    figure = CLAIM.draw({"settings": SMALL, "rows": kept})
-    assert [axes.get_title("left") for axes in figure.axes] == list(PRINTED)
+def test_the_printed_table_agrees_with_itself():
+    results = {name: of_groups(*PRINTED[name.partition(",")[0]]) for name in RULES}
+    assert pattern(results, "standard", "expected")["agree"].value == 1
+    results["EI"] = of_groups(1, 1, 1, 1)
+    assert pattern(results, "standard", "expected")["agree"].value == pytest.approx(20 / 24)
+    assert set(PRINTED) == set(STANDARD)
 
 
 def test_only_the_size_of_a_difference_with_deviation_20_can_leave_what_is_printed():
@@ -131,8 +56,3 @@ def test_only_the_size_of_a_difference_with_deviation_20_can_leave_what_is_print
     # With its sign the difference varies by 20 √2, and groups of ten leave less than 15 seldom.
     signed = np.quantile((20 * (luck[:, 0] - luck[:, 1])).std(axis=1, ddof=1), 0.025)
     assert sum(n < signed for n in late) >= 3
-
-
-def test_settings_that_limits_cannot_describe():
-    with pytest.raises(InputError, match="after must be"):
-        CLAIM.settings("quick", {"after": "[5, 10]"})

@@ -1,12 +1,13 @@
 """What Pacman's learners and libraries are trained and counted by, and what the thesis leaves open there."""
 
+import json
+
 import numpy as np
 import pytest
 
 from lifelore.core.streams import stream
 from lifelore.domains.pacman.pacman import STRATEGIES, PacmanMaze
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.belief_sampling import BeliefSampling
 from reproduction.chapter4.c4_04_pacman.pacman_library import (
     arenas,
     exact_moments,
@@ -15,7 +16,7 @@ from reproduction.chapter4.c4_04_pacman.pacman_library import (
     sampled_returns,
     trained_policies,
 )
-from reproduction.chapter4.c4_04_pacman.run import first_lasting, first_stretch, reused, run_cell
+from reproduction.chapter4.c4_04_pacman.run import first_stretch, reused, run_cell
 from reproduction.engine.registry import claim_of
 
 QUICK = dict(claim_of("C4.4").sizes["quick"])
@@ -55,13 +56,13 @@ def test_trained_without_a_discount_policies_dither():
     values, maze = {}, PacmanMaze()
     for discount in (1.0, 0.97):
         found = []
-        for layout in range(3):
+        for layout in range(2):
             here = arenas(maze, maze.draw_foods(stream(layout, "foods")))
             policies = trained_policies({**TRAINED, "training_discount": discount}, here, (layout,))
             found.append([arena.moments(policy)[0] for arena, policy in zip(here, policies, strict=True)])
         values[discount] = np.array(found)
     assert values[0.97].min() > 80
-    assert (values[1.0] < 60).sum() >= 3
+    assert (values[1.0] < 60).sum() >= 2
 
 
 def test_samples_are_of_the_policies_on_the_types(at_home, library):
@@ -72,20 +73,6 @@ def test_samples_are_of_the_policies_on_the_types(at_home, library):
     assert (np.abs(samples.mean(axis=2) - mean) <= 5 * deviation / 20 + 1e-9).all()
     # Fewer samples are the first of more.
     assert np.array_equal(sampled_returns(at_home, library, 10, (1,)), samples[..., :10])
-
-
-def test_learning_in_parts_is_learning_at_once(at_home):
-    def learnt(parts):
-        learner, rewards = at_home[3].begin((2, "parts")), []
-        plan = falling_schedule(0.5, 0.5, 60, 1.0)
-        for part in parts:
-            schedule = plan._replace(epsilon=plan.epsilon[part], alpha=plan.alpha[part])
-            rewards.append(at_home[3].learn(learner, schedule).rewards)
-        return learner.q, np.concatenate(rewards)
-
-    whole, parted = learnt([slice(0, 60)]), learnt([slice(0, 7), slice(7, 60)])
-    assert np.array_equal(whole[0], parted[0])
-    assert np.array_equal(whole[1], parted[1])
 
 
 def test_rates_fall_as_printed():
@@ -99,9 +86,6 @@ def test_greedy_policy_shares_ties():
 
 def test_episodes_needed_by_hand():
     expected = np.array([0, 9, 9, 0, 9, 9, 9, 0.0])
-    assert first_lasting(expected, 9, 2) == 2
-    assert first_lasting(expected, 9, 3) == 5
-    assert first_lasting(expected, 9, 4) is None
     # A mean may be lifted by chance: 9, 9, 0 has the mean 6.
     assert first_stretch(expected, 6, 3) == 1
     assert first_stretch(expected, 9, 3) == 5
@@ -110,17 +94,14 @@ def test_episodes_needed_by_hand():
 
 def test_reuse_settles_on_the_right_policy():
     known = PolicyLibrary.from_means([[10.0, 0.0], [0.0, 10.0]], 1.0)
-    returns = np.array([[0.0] * 30, [10.0] * 30])
-    chosen = reused(known, BeliefSampling(), returns, (0, "reuse"))
-    assert (chosen[1:] == 1).all()
-    assert {reused(known, BeliefSampling(), returns, (0, run))[0] for run in range(20)} == {0, 1}
+    first, second = np.array([[10.0] * 30, [0.0] * 30]), np.array([[0.0] * 30, [10.0] * 30])
+    chosen = reused(known, np.array([first, second]), np.random.default_rng(0))
+    assert (chosen[:, 1:] == [[0], [1]]).all()
 
 
 def test_a_cell_is_the_same_whenever_it_is_run_and_plain_data():
-    import json
-
-    settings = {**QUICK, "training_episodes": 500, "episodes": 120, "peer_episodes": 100, "checkpoints": [50]}
+    settings = {**QUICK, "training_episodes": 500, "episodes": 120, "reuse_episodes": 100}
     first, again = (run_cell(settings, {"layout": 1}, 3) for _ in range(2))
     assert json.loads(json.dumps(first, allow_nan=False)) == again
-    assert [task["type"] for task in first["tasks"]] == list(STRATEGIES)
+    assert len(first["tasks"]) == len(STRATEGIES)
     assert first != run_cell(settings, {"layout": 2}, 3)

@@ -11,7 +11,6 @@ from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection import ExpectedImprovement, InformationDirected
 from reproduction.chapter4.reuse.many_tasks import (
     converged_after,
-    curve,
     grouped_mean,
     grouped_quantile,
     late_regret,
@@ -88,9 +87,3 @@ def test_quantile_over_all_values():
     assert found.ci95 is not None
     assert found.ci95[0] <= found.value <= found.ci95[1]
     assert grouped_quantile(np.ones((2, 3)), 0.5).ci95 is None
-
-
-def test_curve_by_hand():
-    found = curve(np.array([[1.0, 2.0], [3.0, 2.0]]))
-    # Deviation √2 over √2 tasks.
-    assert found == {"mean": [2.0, 2.0], "error": [1.0, 0.0]}

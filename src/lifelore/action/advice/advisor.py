@@ -286,19 +286,6 @@ def _assess(guide, rule, agent, states, actions, assessment):
         observe(guide, rule, agent, states[t], actions[t], False)
 
 
-def exploration_rows(goal_model: GoalModel, kappa: float = 0.5) -> NDArray[np.float64]:
-    """Exploration rows (n_states, n_actions) for the ε branch of a learner that follows advice (Alg. 2).
-
-    An exploring step without advice is uniform, so the gain of advice in a state is KL[θ_s, uniform], independent
-    of earlier steps. Rows with a gain below κ or without counts stay uniform.
-    """
-    theta = goal_model.theta
-    n_actions = theta.shape[1]
-    gain = (theta * (np.log(np.where(theta > 0, theta, 1.0)) + np.log(n_actions))).sum(axis=1)
-    advised = theta.any(axis=1) & (gain >= kappa)
-    return np.where(advised[:, None], theta, 1 / n_actions)
-
-
 def _per_goal(entry, n_goals: int) -> list[Behaviour]:
     if not isinstance(entry, Sequence):
         return [entry]

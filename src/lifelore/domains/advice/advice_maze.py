@@ -20,7 +20,6 @@ from lifelore.domains.grids.grid_world import MOVES, GridWorld
 MAX_SIZE = 201
 N_GOALS = 8
 LOOPS = 0.1
-OTHER_GOALS = ("pass", "wall")
 
 
 def advice_maze(
@@ -78,30 +77,14 @@ def maze_goals(world: GridWorld) -> NDArray[np.int32]:
     return np.asarray(world.about["goals"], np.int32)
 
 
-def errand(world: GridWorld, goal: int, others: str = "pass", starts: NDArray[np.int32] | None = None) -> Task:
-    """The task of reaching `goal`, one of `maze_goals`.
+def errand(world: GridWorld, goal: int, starts: NDArray[np.int32] | None = None) -> Task:
+    """The task of reaching `goal`, one of `maze_goals`; the other goals are cells like any other.
 
-    Parameters
-    ----------
-    world : GridWorld
-    goal : int
-    others : {"pass", "wall"}
-        Whether the other goals are cells like any other, or closed to who is not bound there. The thesis does
-        not say; ``pass`` is the default.
-    starts : (n,) int, optional
-        Default: every state that is no goal.
+    `starts` (n,) int are by default all states that are no goal.
     """
-    if others not in OTHER_GOALS:
-        raise InputError(f"others must be one of {', '.join(OTHER_GOALS)}, got '{others}'")
-    goals = maze_goals(world)
     if starts is None:
-        starts = np.setdiff1d(np.arange(world.n_states, dtype=np.int32), goals)
-    task = world.task(goal, starts)
-    if others == "pass":
-        return task
-    closed = np.isin(world.neighbour, goals[goals != goal])
-    neighbour = np.where(closed, -1, world.neighbour).astype(np.int32)
-    return replace(task, params=(neighbour, *task.params[1:]))
+        starts = np.setdiff1d(np.arange(world.n_states, dtype=np.int32), maze_goals(world))
+    return world.task(goal, starts)
 
 
 def _corridors(size: int, loops: float, generator: np.random.Generator) -> NDArray[np.bool_]:

@@ -198,9 +198,8 @@ class Factory:
 class FactoryTask(Task):
     """A list of components to assemble; made by `Factory.task`.
 
-    `tables()` serves the kernels up to about six components (16 MB; nine take 420 MB). Beyond, go by one
-    configuration at a time: `plan` solves, and ``LayeredLearning(task.configuration_tables, task.n_configurations,
-    task.factory.n_cells, …)`` of `core.layered_learning` learns with those it meets.
+    `tables()` serves the kernels up to about six components (16 MB; nine take 420 MB). Beyond, `plan` solves one
+    configuration at a time.
     """
 
     factory: Factory = field(kw_only=True)

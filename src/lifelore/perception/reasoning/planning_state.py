@@ -25,8 +25,7 @@ from lifelore.perception.scene import Scene
 
 CLEAR = "clear"
 PLAN_CONFIDENCE = 0.6
-"""Default threshold of planning problems: the smallest at which 95 % of the plans are valid in simulation (`bench
-plans`). A higher value gives fewer plans, of which more are valid."""
+"""Default threshold of planning problems: a higher value gives fewer plans, of which more are valid."""
 DOUBTFUL, HIDDEN = "doubtful", "hidden"
 """Reasons why a fact is unknown: its probability is below the threshold, or the place is out of sight."""
 

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.lives.resaved_maps import cropped, noisy, padded, shifted, turned
 from lifelore.agent.live.buildings.building_memory import buildings_in, forget_building
 from lifelore.agent.live.buildings.building_record import (
     Building,
@@ -23,6 +22,7 @@ from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.registration import IDENTITY
 from lifelore.domains.worlds import WorldSettings
 from lifelore.memory import open_memory
+from tests.domains.buildings.resaved_maps import cropped, noisy, padded, shifted, turned
 
 OFFICE = office_map(1, 14.0, 12.0)
 

@@ -1,1 +1,0 @@
-"""Benchmarks of priors: contexts, a factory task, and a prior in Stable-Baselines3."""

@@ -1,1 +1,0 @@
-"""Benchmarks of policy reuse, beside loops, MABWiser and BoTorch, and of a user with a long history."""

@@ -1,1 +1,0 @@
-"""Benchmarks of perception: whole scenes, their pictures, the separator and the relations."""

@@ -1,1 +1,0 @@
-"""Benchmark of the HTTP service under load, beside a bare FastAPI route."""

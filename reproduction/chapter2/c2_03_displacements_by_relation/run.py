@@ -1,0 +1,141 @@
+"""C2.3: where the displacements of each relation lie, seen from the front (§2.4.1, Figure 2.4).
+
+The printed plot has no unit, and its signs agree only if y points down (erratum E18): displacements are χ_A - χ_B
+with x to the camera's right and y down, and places are fractions of where the *on* cluster lies.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.metrics import Estimate
+from lifelore.core.relations import ADJACENT, CORE_RELATIONS, ON
+from lifelore.core.streams import stream
+from reproduction.chapter2.scenes import tabletop_pairs
+from reproduction.chapter2.scenes.tabletop_pairs import Row, simulated_sets
+from reproduction.chapter2.scoring.pair_validation import (
+    CONTACT_READINGS,
+    Reading,
+    displacements,
+)
+from reproduction.chapter2.scoring.relation_scoring import share_over_scenes
+from reproduction.engine.estimates import UNMEASURED
+
+EDGE = 0.2
+"""The printed band begins at y = -0.1, a fifth of the way to the printed cluster at y = -0.5."""
+CHOICES = ("all", "no longer than omega", "shortest")
+"""Which displacements of a pair are plotted; the thesis plots "the separation displacements"."""
+cells, run_cell, shared = tabletop_pairs.pair_cells, tabletop_pairs.run_cell, tabletop_pairs.SETTINGS_OF_A_CELL
+
+
+@dataclass(frozen=True, eq=False)
+class Plot:
+    """Displacements of some rows as Figure 2.4 shows them: places `at` ``(m, 2)`` to the right and down, metres.
+
+    Each has the number of its row, and its pair's relation and scene, all ``(m,)``.
+    """
+
+    at: NDArray[np.float64]
+    row: NDArray[np.int64]
+    relation: NDArray[np.str_]
+    scene: NDArray[np.str_]
+
+    @property
+    def middle_of_on(self) -> NDArray[np.float64]:
+        """Median place of the *on* displacements, ``(2,)``; NaN without any."""
+        on = self.at[self.relation == ON]
+        return np.median(on, axis=0) if len(on) else np.full(2, np.nan)
+
+    @property
+    def outside_band(self) -> NDArray[np.bool_]:
+        """Which lie on the *on* cluster's side of `EDGE` of the way to it, ``(m,)``."""
+        y = self.middle_of_on[1]
+        return self.at[:, 1] * np.sign(y) >= EDGE * abs(y)
+
+
+def plotted(rows: Sequence[Row], reading: Reading, choice: str, omega: float) -> Plot:
+    """The displacements of `rows` chosen by a rule of `CHOICES`."""
+
+    def chosen(moved: NDArray[np.float64]) -> NDArray[np.float64]:
+        length = np.linalg.norm(moved, axis=1)
+        if choice == "shortest":
+            return moved[np.argsort(length, kind="stable")[:1]]
+        return moved[length <= omega] if choice == "no longer than omega" else moved
+
+    each = [chosen(displacements(row, reading.kernel, reading.threshold)) for row in rows]
+    owner = np.repeat(np.arange(len(rows)), [len(moved) for moved in each])
+    relation, scene = (np.array([row[key] for row in rows], dtype=str)[owner] for key in ("relation", "scene"))
+    return Plot(np.concatenate(each)[:, [0, 2]] * (1, -1), owner, relation, scene)
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The measures of all displacements of the simulated pairs at the standard kernel."""
+    pairs = [row for rows in simulated_sets(results) for row in rows]
+    return measures(pairs, plotted(pairs, Reading(), CHOICES[0], settings["omega"]), settings["resamples"])
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """The measures for every kernel, threshold and choice of displacements."""
+    pairs = [row for rows in simulated_sets(results) for row in rows]
+    for reading, choice in product(CONTACT_READINGS, CHOICES):
+        plot = plotted(pairs, reading, choice, settings["omega"])
+        head = {"kernel": reading.kernel, "threshold": reading.threshold, "displacements": choice}
+        yield head, measures(pairs, plot, max(2, settings["resamples"] // 10))
+
+
+def measures(rows: Sequence[Row], plot: Plot, resamples: int) -> dict[str, Estimate]:
+    """|x| / |y| of the *on* cluster; shares of *on* outside, *adjacent* inside the band, and sides by sign."""
+    on, adjacent = plot.relation == ON, plot.relation == ADJACENT
+    return {
+        "on_sideways_of_its_rise": sideways_of_rise(plot, resamples),
+        "on_outside_band": _share(plot.scene[on], plot.outside_band[on]),
+        "adjacent_in_band": _share(plot.scene[adjacent], ~plot.outside_band[adjacent]),
+        "sign_of_x_tells_left_right": _share(*sign_answers(rows, plot)),
+    }
+
+
+def sign_answers(rows: Sequence[Row], plot: Plot) -> tuple[NDArray[np.str_], NDArray[np.bool_]]:
+    """Of every adjacent pair that stands sideways: its scene, and whether its mean x has the sign of its side."""
+    found = []
+    for number, row in enumerate(rows):
+        right, behind, _ = row["centres"]
+        own = plot.at[plot.row == number, 0]
+        if row["relation"] == ADJACENT and abs(right) > abs(behind) and len(own):
+            found.append((row["scene"], bool((own.mean() > 0) == (right > 0))))
+    return np.array([scene for scene, _ in found], dtype=str), np.array([right for _, right in found], dtype=bool)
+
+
+def _share(scene: NDArray[np.str_], right: NDArray[np.bool_]) -> Estimate:
+    at = np.unique(scene, return_inverse=True)[1]
+    return share_over_scenes(np.bincount(at, right), np.bincount(at))
+
+
+def sideways_of_rise(plot: Plot, resamples: int) -> Estimate:
+    """|x| / |y| of the middle of *on*; pairs resampled (percentiles)."""
+    on = plot.relation == ON
+    if not on.any():
+        return UNMEASURED
+    own = [plot.at[on & (plot.row == owner)] for owner in np.unique(plot.row[on])]
+    draws = stream(len(own), "C2.3", "pairs resampled").integers(0, len(own), (resamples, len(own)))
+    middles = [np.median(np.concatenate([own[i] for i in draw]), axis=0) for draw in draws]
+    low, high = np.quantile([_slope(middle) for middle in middles], [0.025, 0.975])
+    value = _slope(plot.middle_of_on)
+    return Estimate(value, value, (float(low), float(high)), int(on.sum()))
+
+
+def _slope(middle: NDArray[np.float64]) -> float:
+    return float(abs(middle[0]) / max(abs(middle[1]), 1e-9))
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """The displacements of the first data set by relation, as many pairs as the thesis plots, millimetres."""
+    plot = plotted(simulated_sets(results)[0], Reading(), CHOICES[0], settings["omega"])
+    middle = np.round(1000 * plot.middle_of_on, 1).tolist()
+    return [
+        {"relation": name, "middle_of_on": middle, "mm": np.round(1000 * plot.at[own], 1).tolist()}
+        for name in CORE_RELATIONS
+        if (own := plot.relation == name).any()
+    ]

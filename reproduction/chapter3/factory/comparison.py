@@ -1,0 +1,114 @@
+"""Rewards of learners with and without priors, compared over the choices that the thesis leaves open.
+
+The unit of every comparison is the distance from learning without a prior to the optimum: an optimal episode's
+moves cost about what its task pays, so that the optimal reward itself lies near 0 and is no scale.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.learning.curve import Curve
+from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
+from reproduction.engine.grid import READ_WITHOUT_PRIOR, Grid
+from reproduction.engine.results_table import ResultsTable, curve_of
+
+UNIFORM = "uniform"
+"""Q-learning without a prior."""
+POINTS = 100
+"""Most points of a stored learning curve; more make result files larger."""
+
+Pairs = Mapping[str, tuple[str, ...]]
+"""Name of a measure → the two methods compared, and the rewards: ``all`` unless it names others."""
+
+
+def grid_of(
+    settings: Mapping,
+    crossed: Sequence[str],
+    singly: Sequence[str] = (),
+    reads: Mapping[str, Sequence[str]] | None = None,
+) -> Grid:
+    """The grid of choices: all combinations of `crossed`, then every other value of `singly` alone.
+
+    Each choice is a setting with a list of values, the first of them the default. `reads` names the choices that a
+    method reads; `UNIFORM` reads those of a learner without a prior, and the number of episodes.
+    """
+    default = {key: settings[key][0] for key in (*crossed, *singly)}
+    combinations = product(*(settings[key] for key in crossed))
+    cells = [{**default, **dict(zip(crossed, values, strict=True))} for values in combinations]
+    cells += [{**default, key: value} for key in singly for value in settings[key][1:]]
+    return Grid(default, tuple(cells), {UNIFORM: (*READ_WITHOUT_PRIOR, "episodes"), **(reads or {})})
+
+
+def is_default(grid: Grid, cell: Mapping, but: Sequence[str] = ()) -> bool:
+    """Whether a cell, as any method meets it, is the default in all choices `but` some."""
+    return all(cell[key] in (None, value) for key, value in grid.default.items() if key not in but)
+
+
+def summary(curves: Sequence[Curve], early: int, drawn: bool) -> dict:
+    """A run's numbers from the curves of its tasks.
+
+    Returns mean rewards of ``all`` and of the first `early` episodes; the share of these that end by ``completed``
+    tasks; their ``spread``, the standard deviation across tasks (with several tasks); and, if `drawn`, the
+    ``rewards`` in even blocks of episodes, (n_tasks, at most `POINTS`).
+    """
+    rewards = np.array([curve.rewards for curve in curves])
+    first = rewards[:, :early]
+    found = {
+        "all": float(rewards.mean()),
+        "early": float(first.mean()),
+        "completed": float(np.mean([curve.reached[:early] for curve in curves])),
+    }
+    if len(curves) > 1:
+        found["spread"] = float(first.std(axis=0, ddof=1).mean())
+    return {**found, "rewards": in_blocks(rewards).tolist()} if drawn else found
+
+
+def in_blocks(rewards: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Means of (n, n_episodes) rewards in even blocks of episodes, (n, at most `POINTS`)."""
+    blocks = np.array_split(rewards, min(POINTS, rewards.shape[1]), axis=1)
+    return np.column_stack([block.mean(axis=1) for block in blocks])
+
+
+class Comparison:
+    """The records of every method in every cell of a grid, run by run; each result has its ``optimal`` reward."""
+
+    def __init__(self, results: Sequence[Mapping], grid: Grid) -> None:
+        self.grid = grid
+        self.table = ResultsTable.nested(results, "found", keys=("method", *grid.default))
+        self.optimal = np.array([result["optimal"] for result in results], float)
+
+    def values(self, method: str, cell: Mapping, number: str = "all") -> NDArray[np.float64]:
+        """A number of a method, run by run."""
+        return self.table.values(number, **self.grid.where(method, cell))
+
+    def distance(self, cell: Mapping, number: str = "all") -> NDArray[np.float64]:
+        """From learning without a prior to the optimum, run by run."""
+        return self.optimal - self.values(UNIFORM, cell, number)
+
+    def share(self, cell: Mapping, ours: str, theirs: str, number: str = "all") -> Estimate:
+        """Our reward less theirs, as a share of the distance from no prior to the optimum."""
+        difference = self.values(ours, cell, number) - self.values(theirs, cell, number)
+        return ratio_estimate(difference, self.distance(cell, number))
+
+    def shares(self, cell: Mapping, pairs: Pairs) -> dict[str, Estimate]:
+        """`share` of each pair for which the cell is a reading of its own."""
+        return {name: self.share(cell, *pair) for name, pair in pairs.items() if self.is_own(cell, *pair[:2])}
+
+    def is_own(self, cell: Mapping, *methods: str) -> bool:
+        """Whether a cell differs from the default in nothing but what one of the methods reads."""
+        read = {key for method in methods for key in self.grid.reads.get(method, self.grid.default)}
+        return all(cell[key] == value for key, value in self.grid.default.items() if key not in read)
+
+    def remarks(self, methods: Iterable[str]) -> dict[str, Estimate]:
+        """At the default: the optimal reward, and the share of early episodes that end by a completed task."""
+        completed = np.mean([self.values(method, self.grid.default, "completed") for method in methods], axis=0)
+        return {"optimal_reward": mean_estimate(self.optimal), "completed": mean_estimate(completed)}
+
+    def curve(self, method: str, cell: Mapping) -> dict:
+        """A row with a method's ``mean`` rewards and their standard ``deviation`` across the tasks of all runs."""
+        records = self.table.select(**self.grid.where(method, cell)).records
+        curves = [of_task for record in records for of_task in record["rewards"]]
+        return {"curve_of": method, **curve_of(curves, digits=1, parts=("mean", "deviation"))}

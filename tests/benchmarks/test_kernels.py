@@ -1,0 +1,84 @@
+"""The benchmark of kernels: its contract, like work by all, and what happens without gcc."""
+
+import numpy as np
+import pytest
+
+from benchmarks import kernels
+from benchmarks.kernels import alone_rate, bench_kernels, many_rate
+from benchmarks.lattice import lattice_task, new_case, run_kernel
+from benchmarks.peers import c_loop
+from benchmarks.peers.gymnasium_loop import TextbookLattice, short_textbook_rate, textbook_rate
+from benchmarks.peers.list_loop import short_tuned_rate, tuned_rate
+from lifelore.core.errors import InputError
+from tests.benchmarks.contract import checked
+
+
+@pytest.fixture
+def small(monkeypatch):
+    """The whole benchmark at a size for tests."""
+    monkeypatch.setattr(kernels, "textbook_rate", lambda: textbook_rate(2000))
+    monkeypatch.setattr(kernels, "short_textbook_rate", lambda: short_textbook_rate(2000))
+    monkeypatch.setattr(kernels, "tuned_rate", lambda: tuned_rate(2000))
+    monkeypatch.setattr(kernels, "short_tuned_rate", lambda: short_tuned_rate(2000))
+    monkeypatch.setattr(kernels, "alone_rate", lambda n=2: alone_rate(2))
+    monkeypatch.setattr(kernels, "many_rate", lambda threads: many_rate(threads, chunk=1000, learners=4))
+
+
+def test_the_answer_keeps_its_contract(small):
+    told = []
+    result = bench_kernels(1, lambda *at: told.append(at))
+    rows = checked(result, told)
+    assert sum("learners" in name for name in rows) == 3
+    for goal in result["goals"]:
+        if goal["name"].startswith("kernel / ") and goal["measured"] is not None:
+            expected = rows["kernel"]["value"] / rows[goal["name"].removeprefix("kernel / ")]["value"]
+            assert goal["measured"] == pytest.approx(expected)
+            assert goal["met"] == (expected >= float(goal["goal"].removeprefix(">= ")))
+
+
+def test_without_gcc_its_goal_is_left_open(small, monkeypatch):
+    monkeypatch.setattr(c_loop.shutil, "which", lambda name: None)
+    result = bench_kernels(1, lambda *at: None)
+    (goal,) = [goal for goal in result["goals"] if goal["name"].startswith("kernel / C")]
+    assert (goal["measured"], goal["met"]) == (None, None)
+    (line,) = [line for line in result["rows"] if line["name"].startswith("C ")]
+    assert line["name"].endswith("not measured, no gcc found")
+    assert (line["value"], line["ratio"]) == (None, None)
+
+
+@pytest.mark.skipif(c_loop.shutil.which("gcc") is None, reason="gcc is not installed")
+def test_the_c_twin_learns_the_same_bits():
+    loop = c_loop.built_c_loop()
+    assert loop is not None
+    ours, theirs = new_case(300, seed=4), new_case(300, seed=4)
+    assert run_kernel(ours) == loop.run(theirs) > 3000
+    for a, b in zip((*ours.learner[:4], *ours.curve), (*theirs.learner[:4], *theirs.curve), strict=True):
+        assert np.array_equal(a, b)
+    assert theirs.learner.q.any()
+    assert theirs.curve.collisions.any()
+
+
+@pytest.mark.skipif(c_loop.shutil.which("gcc") is None, reason="gcc is not installed")
+def test_a_twin_that_does_other_work_is_refused(tmp_path, monkeypatch):
+    source = c_loop.SOURCE.read_text()
+    other = tmp_path / "q_learning.c"
+    other.write_text(source.replace("w.visits[row + a]++;", ""))
+    monkeypatch.setattr(c_loop, "SOURCE", other)
+    with pytest.raises(InputError, match="must give the kernel's bits"):
+        c_loop.built_c_loop()
+    other.write_text("not C")
+    with pytest.raises(InputError, match=r"gcc must build q_learning\.c, got '.*error"):
+        c_loop.built_c_loop()
+
+
+def test_the_textbook_world_is_the_lattice():
+    env, tables = TextbookLattice(), lattice_task().tables()
+    assert len(env.cells) == tables.n_states == 341
+    for s, cell in enumerate(env.cells):
+        for a in range(4):
+            env.cell = cell
+            following, reward, terminated, truncated, _ = env.step(a)
+            assert following == tables.next_state[s, a, 0]
+            assert reward == tables.reward[s, a, 0]
+            assert terminated == (tables.event[s, a, 0] == 1)
+            assert not truncated

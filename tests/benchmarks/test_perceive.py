@@ -1,0 +1,98 @@
+"""The benchmark of perceiving: its contract at a small size, its stages, and points that are made up."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from benchmarks import perceive
+from benchmarks.perceive import AGAIN, PARTS, bench_perceive, process_parts
+from benchmarks.process import Cost, installed_environment, process_cost
+from lifelore.core.errors import LifeloreError
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.perception.perceived_scene import perceived_scene
+from lifelore.perception.relations.relation_classifier import shipped_model
+from lifelore.perception.scene_json import scene_document
+from reproduction.chapter2.scoring import perception_stages
+from reproduction.chapter2.scoring.perception_stages import STAGES, timed_stages
+from tests.benchmarks.contract import checked
+
+
+@pytest.fixture
+def cloud() -> LabelledCloud:
+    """Three slabs in a pile on a table."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.arange(0, 0.1, 0.004), np.arange(0, 0.1, 0.004)))
+    layers = [np.stack([x, y, np.full(len(x), z)], axis=1) for z in (0.02, 0.04, 0.06)]
+    floor = np.stack([3 * x - 0.1, 3 * y - 0.1, 0 * x], axis=1)
+    labels = np.repeat([TABLE, 2, 3, 4], len(x))
+    return LabelledCloud(np.concatenate([floor, *layers]), labels, None, np.array([0.0, -1, 1]))
+
+
+@pytest.fixture
+def small(monkeypatch, cloud, tmp_path):
+    cloud_file = tmp_path / "cloud.npz"
+    np.savez(cloud_file, points=cloud.points, labels=cloud.labels)
+    monkeypatch.setattr(perceive, "_crowded_scene", lambda: SimpleNamespace(cloud=cloud))
+    monkeypatch.setattr(perceive, "POINTS", 2000)
+    monkeypatch.setattr(perceive, "_shell_sources", lambda folder, scene: {"a cloud": cloud_file})
+    monkeypatch.setattr(
+        perceive, "process_cost", lambda arguments, environment, status=0: Cost(9.0, 5.0 / (1 + status))
+    )
+    parts = dict.fromkeys(PARTS, 0.1) | {AGAIN: 0.3}
+    monkeypatch.setattr(perceive, "process_parts", lambda source, environment: parts)
+
+
+def test_the_answer_keeps_its_contract(small):
+    told = []
+    result = bench_perceive(2, lambda *at: told.append(at))
+    assert len(checked(result, told)) == 2 * (1 + len(STAGES)) + (3 + len(PARTS) + 1) + 2 + 1
+    shares = [line["ratio"] for line in result["rows"][1 : 1 + len(STAGES)]]
+    assert all(0 < part < 1 for part in shares)
+    goals = {goal["name"]: goal for goal in result["goals"]}
+    assert goals["a cloud, in a program, s"]["met"] is True
+    assert goals["a cloud, from the shell, s"]["met"] is False  # 5 s
+    assert goals["a PCD that is cut off, from the shell, s"]["measured"] == pytest.approx(5 / 3)
+    assert next(line["ratio"] for line in result["rows"] if line["name"].endswith(": imports")) == pytest.approx(
+        1 / 9
+    )
+
+
+def test_stages_together_are_the_whole_way(cloud, monkeypatch):
+    documents = []
+    monkeypatch.setattr(
+        perception_stages, "scene_document", lambda scene, seconds: documents.append(scene_document(scene))
+    )
+    model = shipped_model()
+    assert set(timed_stages(cloud, model)) == set(STAGES)
+    assert documents == [scene_document(perceived_scene(cloud, model).without_unrelated_contacts)]
+
+
+@pytest.mark.parametrize("n", [500, 5000])
+def test_points_are_made_up_to_the_number(cloud, monkeypatch, n):
+    monkeypatch.setattr(perceive, "POINTS", n)
+    whole = perceive._with_points(cloud, of_things=False)
+    assert len(whole.points) == n
+    things = perceive._with_points(cloud, of_things=True)
+    assert (things.labels > TABLE).sum() == n
+    assert (things.of(TABLE) == cloud.of(TABLE)).all()
+    # No point is farther from one of the same label than a few deviations of the jitter.
+    for label in (2, 3, 4):
+        apart = np.linalg.norm(things.of(label)[:, None] - cloud.of(label)[None], axis=-1).min(axis=1)
+        assert apart.max() < 6 * perceive.JITTER
+
+
+def test_parts_are_those_of_a_real_process(cloud, tmp_path):
+    environment, source = installed_environment(tmp_path), tmp_path / "cloud.npz"
+    np.savez(source, points=cloud.points, labels=cloud.labels)
+    process_parts(source, environment)  # compiled and warm
+    cost, parts = process_cost(["perceive", source, "--json"], environment), process_parts(source, environment)
+    assert set(parts) == {*PARTS, AGAIN}
+    assert all(seconds > 0 for seconds in parts.values())
+    # Besides the parts, a process parses its arguments and ends; other programs disturb both processes.
+    assert 0.3 < sum(parts[part] for part in PARTS) / cost.cpu < 2
+    assert parts[AGAIN] < sum(parts[part] for part in PARTS) / 2
+
+
+def test_a_process_that_fails_is_told_in_a_line(tmp_path):
+    with pytest.raises(LifeloreError, match="must end well"):
+        process_parts(tmp_path / "none.pcd", installed_environment(tmp_path))

@@ -1,0 +1,69 @@
+"""The separator's benchmark at a size for tests, and the pairs it is run on."""
+
+import numpy as np
+import pytest
+from scipy.spatial import cKDTree
+
+from benchmarks import cloud_pairs, separator
+from benchmarks.cloud_pairs import DRAWN, cloud_pair, voxels
+from benchmarks.separator import FINE, WIDE, bench_separator
+from tests.benchmarks.contract import checked
+
+
+@pytest.fixture
+def small(monkeypatch):
+    monkeypatch.setattr(separator, "names", lambda: [DRAWN])
+    monkeypatch.setattr(separator, "GOALS", {(FINE, 1000): 0.0, (WIDE, 1200): 1e9})
+    monkeypatch.setattr(separator, "ROUNDS", {1000: 3, 1200: 1})
+    monkeypatch.setattr(separator, "EXACT_POINTS", 800)
+    monkeypatch.setattr(separator, "small_pairs", lambda: {DRAWN: cloud_pair(DRAWN, 600)})
+    monkeypatch.setattr(separator, "cold_and_warm", lambda source: (7.0, 0.1))
+
+
+def test_the_answer_keeps_its_contract(small):
+    told = []
+    result = bench_separator(2, lambda *at: told.append(at))
+    checked(result, told)
+    met = {goal["name"]: goal["met"] for goal in result["goals"]}
+    assert met["libsvm / ours, n = 1000, l = 60 mm, C₀ = 10"]
+    assert not met["libsvm / ours, n = 1200, l = 120 mm, C₀ = 1"]
+    assert met["support vectors that differ at tolerance 1e-5"]
+    assert met["greatest difference of f at tolerance 1e-5"]
+    assert not met["first separator in a fresh process, cold, s"]
+    assert met["first separator in a fresh process, warm, s"]
+
+
+def test_pairs_have_the_size_asked_for_and_touch():
+    for n in (500, 3001):
+        first, second = cloud_pair(DRAWN, n)
+        assert len(first) + len(second) == n
+        assert cKDTree(first).query(second)[0].min() < 0.01
+        assert np.array_equal(cloud_pair(DRAWN, n)[0], first)
+
+
+def test_more_points_lie_between_those_there_are():
+    random = np.random.default_rng(0)
+    grid = np.stack(np.meshgrid(np.arange(30), np.arange(30), 0), axis=-1).reshape(-1, 3) * 0.002
+    more = cloud_pairs._resampled(grid, 5000, random)
+    assert more.shape == (5000, 3)
+    assert np.array_equal(more[:900], grid)
+    assert np.abs(more[:, 2]).max() == 0
+    assert len(np.unique(cloud_pairs._resampled(grid, 100, random), axis=0)) == 100
+
+
+def test_voxels_are_centroids():
+    found = voxels(np.array([[0.0001, 0, 0], [0.0003, 0, 0], [0.004, 0, 0]]))
+    assert found == pytest.approx(np.array([[0.0002, 0, 0], [0.004, 0, 0]]))
+
+
+@pytest.mark.skipif(len(cloud_pairs.names()) == 1, reason="LIFELORE_DATA is not set")
+@pytest.mark.parametrize("name", cloud_pairs.REAL)
+@pytest.mark.parametrize("setting", [FINE, WIDE])
+def test_real_pairs_have_the_support_vectors_of_libsvm(name, setting):
+    first, second = cloud_pair(name, 4000)
+    found = separator.separate(first, second, length=setting.length, cost=setting.cost, tolerance=1e-5)
+    twin = separator._libsvm(first, second, setting.length, setting.cost, 1e-7)
+    support = np.concatenate([found.support_first, found.support_second + len(first)])
+    assert np.array_equal(support, np.sort(twin.support_))
+    points = np.concatenate([first, second])
+    assert np.abs(found.decision(points) - twin.decision_function(points)).max() <= 1e-4
