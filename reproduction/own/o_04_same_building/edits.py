@@ -13,10 +13,10 @@ from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMa
 from lifelore.domains.buildings.registration import composed
 
 
-def turned(occupancy: OccupancyMap, degrees: float) -> OccupancyMap:
-    """The same ground in a world frame that is turned, in pixels along its own axes."""
-    pixel, angle = occupancy.resolution, np.radians(degrees)
-    rows, columns = np.array(occupancy.state.shape) * pixel
+def turned(occupancy: OccupancyMap, degrees: float, resolution: float | None = None) -> OccupancyMap:
+    """The same ground in a world frame that is turned, in pixels along its own axes, perhaps of another size."""
+    pixel, angle = occupancy.resolution if resolution is None else resolution, np.radians(degrees)
+    rows, columns = np.array(occupancy.state.shape) * occupancy.resolution
     cos, sin = abs(np.cos(angle)), abs(np.sin(angle))
     width, height = cos * columns + sin * rows, sin * columns + cos * rows
     # The middle of the old picture becomes the middle of the new one.
@@ -26,7 +26,7 @@ def turned(occupancy: OccupancyMap, degrees: float) -> OccupancyMap:
     return replace(laid, origin=(0.0, 0.0, 0.0))
 
 
-def noisy(occupancy: OccupancyMap, seed: int, share: float = 0.2) -> OccupancyMap:
+def noisy(occupancy: OccupancyMap, seed: int = 0, share: float = 0.2) -> OccupancyMap:
     """`share` of the pixels on both sides of every wall are drawn anew, and a hundredth of it in open floor."""
     generator = stream(seed, "noisy map")
     state, around = occupancy.state.copy(), np.ones((3, 3))
@@ -47,7 +47,7 @@ def cropped(occupancy: OccupancyMap, share: float) -> OccupancyMap:
     return replace(occupancy, state=np.ascontiguousarray(occupancy.state[:, :columns]))
 
 
-def refurnished(occupancy: OccupancyMap, share: float, seed: int) -> OccupancyMap:
+def refurnished(occupancy: OccupancyMap, share: float, seed: int = 0) -> OccupancyMap:
     """`share` of the free-standing pieces of at most 4 m² stand elsewhere on free floor."""
     generator = stream(seed, "refurnished map")
     state = occupancy.state.copy()
