@@ -1,1 +1,1 @@
-"""Claims of our own: benefits that users were promised, filed and judged like the thesis's."""
+"""Claims of our own: benefits that the thesis does not claim, filed and judged as its claims are."""

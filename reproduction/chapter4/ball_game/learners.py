@@ -1,9 +1,9 @@
-"""The learners that are compared in the ball game: BEAT and EXP-3, as printed and tuned. Thesis: §4.8.5."""
+"""The learners that are compared in the ball game: BEAT and EXP-3. Thesis: §4.8.5."""
 
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from lifelore.domains.ball_game.simulated_player import Balls
 from lifelore.interaction.adaptation.beat import Exploration, epsilon_of
@@ -13,7 +13,7 @@ from reproduction.chapter4.ball_game.play import Floats, Ints, Learner, Moves
 
 
 class BeatLearner(Learner):
-    """BEAT for all players; ε may depend on the episode and on the player's own steps.
+    """BEAT for all players; it records the type that it names after each step of the first episode.
 
     Parameters
     ----------
@@ -22,9 +22,12 @@ class BeatLearner(Learner):
     n_players : int
     prior : (n_types,) or (n_players, n_types) float, optional
     epsilon : see `beat.Exploration`
-    command_table : (n_speeds, n_commands, n_types) float, optional
-        The second factor of the likelihood: probabilities of commands by place.
     seed : numpy generator
+
+    Attributes
+    ----------
+    named : list of (n_players,) int8
+        The most likely type after each step of the first episode; who has finished keeps hers.
     """
 
     watches: ClassVar[bool] = True
@@ -37,22 +40,28 @@ class BeatLearner(Learner):
         *,
         prior: ArrayLike | None = None,
         epsilon: Exploration = 0.0,
-        command_table: Floats | None = None,
         seed: int | np.random.Generator = 0,
     ) -> None:
         self.users = BeatUsers(value, signal_table, n_players, prior=prior, seed=seed)
-        self._commands = command_table
-        self._epsilon, self._step = epsilon_of(epsilon), 0
+        self.named: list[NDArray[np.int8]] = []
+        self._epsilon, self._step, self._first = epsilon_of(epsilon), 0, True
         self._every = np.arange(n_players)
 
     def select(self, balls: Balls, episode: int) -> Ints:
         return self.users.select(self._every, self._epsilon(self._step, episode))
 
     def observe(self, speed: Ints, moves: Moves) -> None:
-        rows = moves.rows
-        extra = None if self._commands is None else self._commands[speed[rows], moves.command[rows]]
-        self.users.update(rows, speed[rows], moves.signal[rows], extra)
+        self.users.update(moves.rows, speed[moves.rows], moves.signal[moves.rows])
         self._step += 1
+        if self._first:
+            self.named.append(self.users.log_belief.argmax(axis=1).astype(np.int8))
+
+    def end_episode(self, speed: Ints, loss: Floats) -> None:
+        self._first = False
+
+    def named_halfway(self, lengths: Ints) -> NDArray[np.int8]:
+        """The type named half-way through each player's first episode of `lengths` steps, (n_players,)."""
+        return np.array(self.named)[-(-lengths // 2) - 1, self._every]
 
 
 class PrintedExp3(Learner):
@@ -73,8 +82,8 @@ class PrintedExp3(Learner):
         self._arms.update(speed, -np.minimum(loss, self._worst))
 
 
-def exp3_by_episode(losses: Floats, gamma: float, worst: float, generator: np.random.Generator) -> Floats:
-    """EXP-3 whose pulls are whole episodes.
+def exp3_by_episode(losses: Floats, worst: float, generator: np.random.Generator) -> Floats:
+    """Losses of EXP-3 whose pulls are whole episodes, (n_players, episodes).
 
     A speed held for one episode has the same loss as when it is held throughout, so nothing is played again.
 
@@ -82,27 +91,15 @@ def exp3_by_episode(losses: Floats, gamma: float, worst: float, generator: np.ra
     ----------
     losses : (n_players, episodes, n_speeds) float
         At constant speeds.
-    gamma : float
-        Share of uniform play, in (0, 1].
     worst : float
         Loss that pays 0.
     generator : numpy generator
-
-    Returns
-    -------
-    lost : (n_players, episodes) float64
     """
     n, episodes, n_speeds = losses.shape
-    arms = EXP3(n_speeds, gamma=gamma, scale=(-worst, 0.0), n_tasks=n, seed=generator)
+    arms = EXP3(n_speeds, horizon=episodes, scale=(-worst, 0.0), n_tasks=n, seed=generator)
     lost = np.empty((n, episodes))
     for episode in range(episodes):
         speed = arms.select()
         lost[:, episode] = losses[np.arange(n), episode, speed]
         arms.update(speed, -np.minimum(lost[:, episode], worst))
     return lost
-
-
-def tuned_gamma(losses: Floats, gammas: list[float], worst: float, generator: np.random.Generator) -> float:
-    """The γ that loses least on `losses` of players set aside for tuning, (n, episodes, n_speeds)."""
-    mean = [exp3_by_episode(losses, gamma, worst, generator).mean() for gamma in gammas]
-    return gammas[int(np.argmin(mean))]

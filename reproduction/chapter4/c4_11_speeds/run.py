@@ -1,27 +1,69 @@
 """C4.11: losses of every ball size at every speed, in several games. Thesis: §4.8.5.2, Figure 4.15."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
+from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
-from reproduction.chapter4.ball_game.games import Setting
+from lifelore.domains.ball_game.ball_game import SPEEDS
+from reproduction.chapter4.ball_game.games import Game, choices
 from reproduction.chapter4.ball_game.games import check_games as check
-from reproduction.chapter4.ball_game.play import Players, play_speeds
+from reproduction.chapter4.ball_game.play import Players, play_speeds, scale_of
+from reproduction.engine.estimates import exact_value
 
-__all__ = ["cells", "check", "run_cell"]
+__all__ = ["cells", "check", "measure", "readings", "rows", "run_cell"]
+SLOW, FAST = [0, 1], [3, 4]
+"""Speeds 30 and 40, 60 and 70."""
 
 
 def cells(settings: Mapping) -> list[dict]:
     """A cell for each game; every normalisation uses the same episodes."""
-    return [{"game": list(game)} for game in settings["games"]]
+    return [{"game": game} for game in settings["games"]]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """Steps and collisions of every size at every speed, (n_types, n_speeds, episodes) as lists."""
-    game = Setting(*cell["game"]).game
+    game = Game.parsed(cell["game"]).game
     kinds = np.arange(game.n_types).repeat(settings["episodes"])
     played = np.array(play_speeds(game, Players.drawn(kinds, 1, stream(seed, "C4.11", "players"))))
     by_speed = played.reshape(game.n_speeds, 2, game.n_types, settings["episodes"])
     steps, hits = by_speed.transpose(1, 2, 0, 3).tolist()
-    return {"game": list(cell["game"]), "steps": steps, "hits": hits}
+    return {"game": cell["game"], "steps": steps, "hits": hits}
+
+
+def losses(result: Mapping, normalisation: str) -> NDArray[np.float64]:
+    """Losses (n_types, n_speeds, episodes); episodes of one number met the same noise at all speeds."""
+    steps, hits = np.array(result["steps"]), np.array(result["hits"])
+    return scale_of(normalisation, steps, hits).loss(steps, hits)
+
+
+def numbers(loss: NDArray[np.float64]) -> dict[str, Estimate]:
+    """Losses saved by fast small and slow large balls, and the fall of the best speed, for (types, speeds, n)."""
+    slow, fast = loss[:, SLOW].mean(axis=1), loss[:, FAST].mean(axis=1)
+    best = np.array(SPEEDS)[loss.mean(axis=-1).argmin(axis=1)]
+    return {
+        "small_gains_by_fast": mean_estimate(slow[0] - fast[0]),
+        "large_gains_by_slow": mean_estimate(fast[-1] - slow[-1]),
+        "best_speed_falls_by": exact_value(best[0] - best[-1], loss.shape[-1]),
+    }
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The numbers of the first game under the first normalisation."""
+    return numbers(losses(results[0], settings["normalisations"][0]))
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """Every game under every normalisation."""
+    for result in results:
+        for normalisation in settings["normalisations"]:
+            yield choices(result["game"], normalisation), numbers(losses(result, normalisation))
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Mean loss by size and speed in the first game, and half of its 95 % interval."""
+    loss = losses(results[0], settings["normalisations"][0])
+    error = 1.96 * loss.std(axis=-1) / np.sqrt(loss.shape[-1])
+    return [{"loss": np.round(loss.mean(axis=-1), 4).tolist(), "error": np.round(error, 4).tolist()}]

@@ -1,37 +1,46 @@
 """C4.12: BEAT, EXP-3 and constant speeds, by the diversity of the population. Thesis: §4.8.5.2, Figure 4.16."""
 
-from collections.abc import Mapping
-from math import comb
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
-from lifelore.core.streams import stream
-from reproduction.chapter4.ball_game.games import N_TYPES, Setting
+from lifelore.core.metrics import Estimate, ratio_estimate
 from reproduction.chapter4.ball_game.games import check_games as check
-from reproduction.chapter4.ball_game.methods import crowd_of, known_of, run_methods
+from reproduction.chapter4.ball_game.trials import BEAT, EXP3, SHARED, STATIC, cells, readings_of, run_cell
 
-__all__ = ["cells", "check", "run_cell"]
-DIVERSITIES = range(1, N_TYPES + 1)
-
-
-def cells(settings: Mapping) -> list[dict]:
-    """One a game and diversity; the first game gets `runs` a population and at least `least` a diversity."""
-    found = []
-    for place, game in enumerate(settings["games"]):
-        for diversity in DIVERSITIES:
-            least = -(-settings["least"] // comb(N_TYPES, diversity))
-            runs = settings["grid_runs"] if place else max(settings["runs"], least)
-            found.append({"game": list(game), "diversity": diversity, "runs": runs})
-    return found
+__all__ = ["cells", "check", "measure", "readings", "rows", "run_cell", "shared"]
+shared = SHARED
+FEW, THREE, MANY, ALL = slice(0, 3), slice(2, 3), slice(3, 6), slice(0, 6)
+"""Populations of 1 to 3 types, of 3, of 4 to 6, and all; every size weighs as much."""
 
 
-def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Mean loss of each run's five episodes by method, for all populations of one size."""
-    setting = Setting(*cell["game"])
-    known = known_of(setting, settings["training"], settings["tuning"], seed)
-    name = f"C4.12 {setting.words} {cell['diversity']}"
-    crowd = crowd_of(cell["diversity"], known.game.n_types, cell["runs"], stream(seed, name, "players"))
-    found = run_methods(known, crowd, seed, name)
-    losses = {method: np.round(lost.mean(axis=1), 5).tolist() for method, lost in found.items()}
-    best = np.array(known.game.speeds)[known.value.argmax(axis=1)].tolist()
-    return {**cell, "populations": len(crowd.members), "losses": losses, "gamma": known.gamma, "best": best}
+def numbers(result: Mapping, instead: Mapping[str, str]) -> dict[str, Estimate]:
+    """Ratios of losses of BEAT to EXP-3 and to the static speed, paired by runs; methods may be replaced."""
+    losses = {method: np.array(result["losses"][instead.get(method, method)]) for method in (BEAT, EXP3, STATIC)}
+
+    def ratio(other: str, sizes: slice) -> Estimate:
+        mine, theirs = (losses[method][sizes].mean(axis=(0, 2)) for method in (BEAT, other))
+        return ratio_estimate(mine, theirs)
+
+    return {
+        "to_exp3": ratio(EXP3, ALL),
+        "to_static_few": ratio(STATIC, FEW),
+        "to_static_at_3": ratio(STATIC, THREE),
+        "to_static_many": ratio(STATIC, MANY),
+    }
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The ratios in the first game."""
+    return numbers(results[0], {})
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterable[tuple[dict, dict[str, Estimate]]]:
+    """The ratios in every game, and in the first with each other choice."""
+    return readings_of(results, numbers)
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Mean loss of an episode by method and size of the population in the first game."""
+    losses = {method: np.array(results[0]["losses"][method]).mean(axis=(1, 2)) for method in (STATIC, EXP3, BEAT)}
+    return [{"method": method, "mean": lost.round(4).tolist()} for method, lost in losses.items()]

@@ -3,61 +3,59 @@
 Players who have reached the goal keep their belief: otherwise the average would be that of slow players.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.streams import stream
-from reproduction.chapter4.ball_game.games import Setting
+from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.domains.ball_game.ball_game import SIZES
 from reproduction.chapter4.ball_game.games import check_games as check
-from reproduction.chapter4.ball_game.methods import BEATS, EPISODES, NamedTypes, beat_learner, known_of
-from reproduction.chapter4.ball_game.play import Players, play_all
+from reproduction.chapter4.ball_game.trials import BEAT, SHARED, cells, readings_of, run_cell
+from reproduction.engine.estimates import exact_share, exact_value
 
-__all__ = ["cells", "check", "run_cell"]
-WAYS = {name: BEATS[name] for name in ("BEAT", "BEAT, ε as printed")} | {"BEAT with commands": {"commands": True}}
-
-
-def cells(settings: Mapping) -> list[dict]:
-    """Every variant of BEAT on the first game, the plain one on the others."""
-    first, *others = settings["games"]
-    found = [{"game": list(first), "way": way} for way in WAYS]
-    return found + [{"game": list(game), "way": "BEAT"} for game in others]
+__all__ = ["cells", "check", "measure", "readings", "rows", "run_cell", "shared"]
+shared = SHARED
 
 
-def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Shares named right and ratios of sizes by step, confusions half-way and at the ends, steps needed."""
-    setting = Setting(*cell["game"])
-    known = known_of(setting, settings["training"], settings["tuning"], seed)
-    n_types = known.game.n_types
-    kinds = np.arange(n_types).repeat(settings["players"])
-    players = Players.drawn(kinds, EPISODES, stream(seed, "C4.13", setting.words))
-    generator = stream(seed, "C4.13", setting.words, cell["way"])
-    learner = beat_learner(known, len(kinds), generator, WAYS[cell["way"]])
-    watch = NamedTypes(learner)
-    lengths = play_all(known.game, players.between(0, 1), learner, known.scale, watch=watch).steps[:, 0]
-    named, after_first = np.array(watch.first), watch.named
-    play_all(known.game, players.between(1), learner, known.scale, watch=watch)
-    sizes = np.array(known.game.sizes, float)
-    by_step = {"right": named == kinds, "ratio": sizes[named] / sizes[kinds]}
-    means = {key: each.reshape(len(named), n_types, -1).mean(axis=2) for key, each in by_step.items()}
-    ends = {
-        "half": watch.halfway(lengths),
-        "first": after_first,
-        "last": watch.named,
-        "at_40": named[min(40, len(named)) - 1],
-    }
+def size_ratio(counts: Sequence[int], size: int) -> Estimate:
+    """Mean of the size named over the true size, from how often each size was named."""
+    return mean_estimate(np.repeat(SIZES, counts) / size)
+
+
+def numbers(result: Mapping, instead: Mapping[str, str]) -> dict[str, Estimate]:
+    """Ratios half-way through the first episode, and pairs of sizes that are confused."""
+    half: NDArray = np.array(result["half"][instead.get(BEAT, BEAT)])
+    ratios = [size_ratio(counts, size) for counts, size in zip(half, SIZES, strict=True)]
+    off = [abs(ratio.value - 1) for ratio in ratios]
+    pairs = (half + half.T)[np.triu_indices(len(SIZES), 1)]
     return {
-        **cell,
-        **{key: np.round(mean.T, 4).tolist() for key, mean in means.items()},
-        **{when: confusion(kinds, types, n_types) for when, types in ends.items()},
-        "needed": watch.steps_needed(kinds).tolist(),
-        "lengths": lengths.tolist(),
+        "ratio_2": ratios[0],
+        "ratio_5": ratios[1],
+        "worst_ratio_10_to_60": ratios[2 + int(np.argmax(off[2:]))],
+        "smallest_off_beyond_others": exact_value(off[0] - max(off[1:]), len(off)),
+        "pairs_confused_more_often": exact_value((pairs > pairs[0]).sum(), len(pairs)),
+        "right_half": exact_share(np.repeat([True, False], [half.trace(), half.sum() - half.trace()])),
     }
 
 
-def confusion(true: NDArray[np.int64], named: NDArray[np.int64], n_types: int) -> list[list[int]]:
-    """How many players of each true type (rows) were taken for each type (columns)."""
-    counts = np.zeros((n_types, n_types), int)
-    np.add.at(counts, (true, named), 1)
-    return counts.tolist()
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The numbers of the first game."""
+    return numbers(results[0], {})
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterable[tuple[dict, dict[str, Estimate]]]:
+    """The numbers of every game, and of the first with each other choice that BEAT has."""
+    return (one for one in readings_of(results, numbers) if _is_of_beat(one[0]))
+
+
+def _is_of_beat(reading: Mapping[str, str]) -> bool:
+    return {reading["EXP-3's pull"], reading["static speed"]} == {"default"}
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """By true size, the mean ratio step by step of the first episode."""
+    first = results[0]
+    return [{"size": size, "ratio": ratio} for size, ratio in zip(SIZES, first["ratio"][BEAT], strict=True)] + [
+        {"half_of_first": first["half_of_first"]}
+    ]

@@ -1,71 +1,45 @@
-"""Figures 4.18–4.20 from people where they have played, else from scripted players, who are named as such."""
+"""Figures 4.18 to 4.20 from people where they have played, else from scripted players, who are named as such."""
 
 from collections.abc import Mapping
 
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import BLUE, GREY, LIGHT, VERMILION, Axes, Figure, house_style, new_figure
-from reproduction.chapter4.reuse.looks import size_lines
+from lifelore.figures.style import GREY, LIGHT, Axes, Figure, house_style, new_figure
+from reproduction.chapter4.ball_game.looks import METHODS, WORDS, size_lines
 
-TITLES = {"person": "people", "scripted": "scripted players, people untested"}
-METHODS = {"BEAT": "beat", "best static speed of the population": "static"}
+TITLES = {"person": "people", "scripted": "scripted players; no person has played"}
 
 
+@house_style()
 def draw(result: Mapping) -> Figure:
-    """Figures 4.18, 4.19 and 4.20 side by side."""
+    """The three figures side by side."""
     row = result["rows"][0]  # people come first
     sizes = [one["size"] for one in row["named"]]
-    with house_style():
-        figure = new_figure(11.4, 4.3)
-        left, middle, right = figure.subplots(1, 3)
-        _draw_losses(left, row, sizes)
-        diversity = [one["types"] for one in row["diversity"]]
-        series = {name: {"mean": [one[key] for one in row["diversity"]]} for name, key in METHODS.items()}
-        looks = {
-            name: {"color": colour, "marker": "o", "markersize": 3}
-            for name, colour in zip(METHODS, (BLUE, VERMILION), strict=True)
-        }
-        draw_curves(middle, diversity, series, looks=looks, title="4.19: loss by diversity")
-        middle.set(xlabel="ball sizes in the population", ylabel="mean loss", xticks=diversity)
-        named = {f"b = {one['size']}": {"mean": one["ratio"]} for one in row["named"]}
-        draw_curves(
-            right,
-            None,
-            named,
-            looks=size_lines(sizes),
-            title="4.20: recognised size",
-            logarithmic="y",
-            legend=False,
-        )
-        _plain_ticks(right, [0.5, 1, 2, 5])
-        right.axhline(1, color=GREY, linestyle=(0, (1, 2)), linewidth=1)
-        right.set(xlabel="move of a round with BEAT", ylabel="most likely / true size (mean)")
-        figure.legend(*right.get_legend_handles_labels(), title="ball size", ncols=6, loc="outside lower center")
-        for axes in (left, middle, right):
-            axes.grid(axis="y", color=LIGHT)
-        figure.suptitle(f"{row['sessions']} {TITLES[row['player']]}", fontsize=10)
+    figure = new_figure(10.6, 3.8)
+    left, middle, right = figure.subplots(1, 3)
+    _draw_losses(left, row, sizes)
+    for name, key in (("static", "static"), ("BEAT", "beat")):
+        values = [one[key] for one in row["diversity"]]
+        middle.plot(range(1, len(values) + 1), values, color=METHODS[name], label=WORDS[name], marker="o", ms=4)
+    middle.set(title="Figure 4.19", xlabel="population diversity (types)", ylabel="mean loss of a round")
+    middle.set_ylim(0, None)
+    middle.set_xticks(range(1, len(row["diversity"]) + 1))
+    middle.legend()
+    named = {f"b = {one['size']}": {"mean": one["ratio"]} for one in row["named"]}
+    draw_curves(right, None, named, looks=size_lines(sizes), title="Figure 4.20", legend=False)
+    right.axhline(1, color=GREY, linestyle=(0, (4, 2)), linewidth=1)
+    right.set(xlabel="move of a round with BEAT", ylabel="most likely size / true size", ylim=(0, None))
+    for axes in (left, middle, right):
+        axes.grid(axis="y", color=LIGHT)
+    figure.legend(
+        *right.get_legend_handles_labels(), title="size of the ball", ncols=6, loc="outside lower center"
+    )
+    figure.suptitle(f"{row['sessions']} {TITLES[row['player']]}", fontsize=10)
     return figure
 
 
 def _draw_losses(axes: Axes, row: Mapping, sizes: list[int]) -> None:
     speeds = sorted({one["speed"] for one in row["losses"]})
-    by = {(one["size"], one["speed"]): one for one in row["losses"]}
-    series = {
-        f"b = {size}": {
-            "mean": [by[size, speed]["loss"] for speed in speeds],
-            "error": [by[size, speed]["interval"] or 0.0 for speed in speeds],
-        }
-        for size in sizes
-    }
-    draw_curves(
-        axes, speeds, series, looks=size_lines(sizes), title="4.18: loss by speed", logarithmic="y", legend=False
-    )
-    _plain_ticks(axes, [0.1, 0.2, 0.5, 1, 2])
-    axes.set(xlabel="speed (units a move)", ylabel="mean loss of a round, band 95 %", xticks=speeds)
-
-
-def _plain_ticks(axes: Axes, ticks: list[float]) -> None:
-    """Ticks of a logarithmic axis as plain numbers, those within its limits."""
-    low, high = axes.get_ylim()
-    shown = [tick for tick in ticks if low <= tick <= high]
-    axes.set_yticks(shown, [f"{tick:g}" for tick in shown])
-    axes.minorticks_off()
+    loss = {(one["size"], one["speed"]): one["loss"] for one in row["losses"]}
+    series = {f"b = {size}": {"mean": [loss[size, speed] for speed in speeds]} for size in sizes}
+    draw_curves(axes, speeds, series, looks=size_lines(sizes, marker="o", ms=4), title="Figure 4.18", legend=False)
+    axes.set(xlabel="speed z", ylabel="mean loss of a round", xticks=speeds, ylim=(0, None))

@@ -1,34 +1,40 @@
-"""Cells of claim C4.14: a session of a scripted player each, and the sessions of people in a memory.
+"""C4.14: sessions of people in a memory, and of scripted players. Thesis: §4.8.5.2, Figures 4.18 to 4.20.
 
-The memory is one that `lifelore serve` has recorded on the page /play (docs/pages.md).
+The memory is one that `lifelore serve` has recorded on the page /play (docs/pages.md). Fewer than three people,
+the thesis's number, are not measured.
 """
 
-import hashlib
 from collections.abc import Mapping, Sequence
+from itertools import combinations
 from pathlib import Path
+
+import numpy as np
 
 from lifelore.agent.play_study.round_result import RoundResult
 from lifelore.agent.play_study.scripted_player import play_next_round, scripted_others
-from lifelore.agent.play_study.study_plan import BEAT, METHODS
+from lifelore.agent.play_study.study_plan import BEAT, METHODS, STATIC, TEST, TRAINING
 from lifelore.agent.play_study.study_records import SESSION, stored_results
-from lifelore.agent.play_study.study_results import ratio_by_move
+from lifelore.agent.play_study.study_results import losses_by_diversity, losses_by_speed, ratio_by_move
 from lifelore.agent.play_study.study_session import StudySession
-from lifelore.agent.play_study.study_settings import PERSON, SCRIPTED, StudySettings
+from lifelore.agent.play_study.study_settings import PERSON, PLAYERS, SCRIPTED, StudySettings
 from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.domains.ball_game.ball_game import SIZES
 from lifelore.memory import open_memory
+from reproduction.engine.estimates import exact_value
 
 COLUMNS = ("phase", "size", "speed", "method", "loss")
-"""What of each round the measures read."""
+"""Columns of a round that the measures read."""
+LEAST = 3
+"""People with whom the thesis measures."""
+WORDS = {PERSON: "people", SCRIPTED: "scripted"}
 
 
 def cells(settings: Mapping) -> list[dict]:
     """One cell for each scripted session, and one for the memory of people, if the settings name it."""
     found: list[dict] = [{"player": SCRIPTED, "session": k} for k in range(settings["sessions"])]
     if settings["people"]:
-        content = Path(settings["people"]).read_bytes()
-        digest = hashlib.sha256(content).hexdigest()[:16]
-        found.append({"player": PERSON, "memory": settings["people"], "digest": digest})
+        found.append({"player": PERSON, "changed": Path(settings["people"]).stat().st_mtime_ns})
     return found
 
 
@@ -47,39 +53,27 @@ def check(settings: Mapping) -> None:
 
 def study_settings(settings: Mapping, player: str) -> StudySettings:
     """The settings of a session."""
-    return StudySettings(
-        player,
-        tuple(settings["sizes"]),
-        tuple(settings["speeds"]),
-        settings["practice"],
-        settings["training"],
-        settings["test"],
-        settings["frames_per_move"],
-        settings["layout"],
-    )
+    sizes, speeds = tuple(settings["sizes"]), tuple(settings["speeds"])
+    rounds = (settings[name] for name in ("practice", "training", "test", "frames_per_move", "layout"))
+    return StudySettings(player, sizes, speeds, *rounds)
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """The rounds of the players of a cell, and what BEAT named in the first round of each of its blocks."""
+    """The rounds of the sessions of a cell, and the types that BEAT named in the first round of each block."""
     if cell["player"] == PERSON:
-        return {"player": PERSON, "sessions": _recorded(settings, cell["memory"])}
-    number = cell["session"]
-    session = StudySession(
-        f"C4.14 {number}",
-        study_settings(settings, SCRIPTED),
-        scripted_others(settings["layout"]),
-        first=number % len(METHODS),
-        seed=seed,
-    )
+        return {"player": PERSON, "sessions": _recorded(settings)}
+    number, own = cell["session"], study_settings(settings, SCRIPTED)
+    others, first = scripted_others(settings["layout"]), number % len(METHODS)
+    session = StudySession(f"C4.14 {number}", own, others, first=first, seed=seed)
     while session.next_round is not None:
         session.accept(play_next_round(session))
     return {"player": SCRIPTED, "sessions": [_summary(session.done)]}
 
 
-def _recorded(settings: Mapping, path: str) -> list[dict]:
+def _recorded(settings: Mapping) -> list[dict]:
     """The finished sessions of people at the pace, with the sizes and the speeds of the settings."""
     own, found = study_settings(settings, PERSON), []
-    with open_memory(path) as memory:
+    with open_memory(settings["people"]) as memory:
         for name, _, about in memory.keys(SESSION):
             theirs = StudySettings.from_document(about["settings"])
             if _design(theirs) == _design(own):
@@ -106,5 +100,79 @@ def _summary(done: Sequence[RoundResult]) -> dict:
                 "ratio": ratio_by_move(result).round(3).tolist(),
             }
             for result in firsts.values()
+        ],
+    }
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The same numbers of people and of scripted players, by their names; none of fewer than three players."""
+    found = {}
+    for player, word in WORDS.items():
+        sessions = _sessions(results, player)
+        numbers = _numbers(settings, sessions) if len(sessions) >= LEAST else {}
+        found |= {f"{word}_{name}": number for name, number in numbers.items()}
+        found[f"{word}_sessions"] = exact_value(len(sessions), len(sessions))
+    return found
+
+
+def _sessions(results: Sequence[Mapping], player: str) -> list[dict]:
+    """Each session of a kind of player: its rounds as rows, and the types that BEAT named."""
+    sessions = [session for result in results if result["player"] == player for session in result["sessions"]]
+    rounds = [[dict(zip(COLUMNS, row, strict=True)) for row in session["rounds"]] for session in sessions]
+    return [{"rounds": rows, "named": one["named"]} for rows, one in zip(rounds, sessions, strict=True)]
+
+
+def _numbers(settings: Mapping, sessions: Sequence[Mapping]) -> dict[str, Estimate]:
+    sizes, speeds = sorted(settings["sizes"]), sorted(settings["speeds"])
+    half = len(speeds) // 2
+    slow, fast = speeds[:half], speeds[-half:]
+    gains = [
+        [row["static"] - row["beat"] for row in losses_by_diversity(*_phases(one["rounds"]))] for one in sessions
+    ]
+    ends = [(one["size"], one["last"]) for session in sessions for one in session["named"]]
+    mixed = {pair: sum(set(end) == set(pair) for end in ends) for pair in combinations(sizes, 2)}
+    more = sum(n > mixed[sizes[0], sizes[1]] for n in mixed.values())
+    return {
+        "small_gains_by_fast": mean_estimate([_gain(one["rounds"], sizes[0], slow, fast) for one in sessions]),
+        "large_gains_by_slow": mean_estimate([_gain(one["rounds"], sizes[-1], fast, slow) for one in sessions]),
+        "least_gain_of_diversities": mean_estimate(min(zip(*gains, strict=True), key=sum)),
+        "beat_less_static": mean_estimate([_beat_less_static(one["rounds"]) for one in sessions]),
+        "pairs_confused_more_often": exact_value(more, len(mixed)),
+    }
+
+
+def _gain(rounds: Sequence[Mapping], size: int, some: Sequence[int], others: Sequence[int]) -> float:
+    """Mean loss of a size in training at some speeds, less that at others."""
+    own = [r for r in rounds if (r["phase"], r["size"]) == (TRAINING, size)]
+    mean, other = (np.mean([r["loss"] for r in own if r["speed"] in speeds]) for speeds in (some, others))
+    return float(mean - other)
+
+
+def _beat_less_static(rounds: Sequence[Mapping]) -> float:
+    """Mean loss in the blinded blocks with BEAT, less that at the best static speed of other players."""
+    beat, static = (np.mean([r["loss"] for r in rounds if r["method"] == method]) for method in (BEAT, STATIC))
+    return float(beat - static)
+
+
+def _phases(rounds: Sequence[Mapping]) -> tuple[list, list]:
+    return [r for r in rounds if r["phase"] == TRAINING], [r for r in rounds if r["phase"] == TEST]
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """For each kind of player that played, people first: the numbers of Figures 4.18, 4.19 and 4.20."""
+    return [_row(settings, player, own) for player in PLAYERS if (own := _sessions(results, player))]
+
+
+def _row(settings: Mapping, player: str, sessions: Sequence[Mapping]) -> dict:
+    phases = _phases([row for one in sessions for row in one["rounds"]])
+    named = [one for session in sessions for one in session["named"]]
+    ratios = {size: [one["ratio"] for one in named if one["size"] == size] for size in settings["sizes"]}
+    return {
+        "player": player,
+        "sessions": len(sessions),
+        "losses": losses_by_speed(phases[0]),
+        "diversity": losses_by_diversity(*phases),
+        "named": [
+            {"size": size, "ratio": np.mean(own, axis=0).round(3).tolist()} for size, own in ratios.items() if own
         ],
     }

@@ -1,80 +1,119 @@
-"""C4.16: BEAT and Bayesian policy reuse with the same generator, decision by decision. Thesis: §4.8.4.2."""
+"""C4.16: Algorithm 9 by hand beside Bayesian policy reuse, step by step. Thesis: §4.8.4.2.
 
-from collections.abc import Mapping
+Algorithm 9 reads counts of moves and multiplies probabilities. The general algorithm reads a policy library with a
+transition signal and adds logs. Algorithm 9 is in charge, and both see its moves.
+"""
+
+from collections.abc import Mapping, Sequence
 from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import MAX_STEPS, BallGame, LossScale, draw_sigma
 from lifelore.domains.ball_game.moves import N_CONTEXTS, N_OUTCOMES, read_moves
 from lifelore.domains.ball_game.simulated_player import advance, new_balls, random_states
-from lifelore.interaction.adaptation.beat import Beat, Exploration, epsilon_of
+from lifelore.interaction.adaptation.beat import epsilon_of
+from lifelore.interaction.adaptation.move_model import PSEUDO_COUNT
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 from lifelore.interaction.signals.transition_signal import TransitionSignal
-from reproduction.chapter4.ball_game.games import Setting
-from reproduction.chapter4.ball_game.games import check_games as check
-from reproduction.chapter4.ball_game.methods import EPISODES
+from reproduction.chapter4.ball_game.games import N_TYPES, Game
 from reproduction.chapter4.ball_game.play import Trained, train
+from reproduction.chapter4.ball_game.trials import EPISODES
+from reproduction.engine.estimates import exact_value
 
-__all__ = ["cells", "check", "run_cell"]
-EPSILONS: dict[str, Exploration] = {"0": 0.0, "0.3": 0.3, "1/n": "1/n", "0.5 − 0.1 an episode": "by episode"}
+EPSILONS = ("1/n", "by episode")
+"""The two schedules that the thesis prints."""
 N_STATES = max(N_CONTEXTS, N_OUTCOMES)
+SHOWN = 120
+"""Steps of a session that the figure shows."""
+
+
+class Algorithm9:
+    """BEAT as printed, with ∝ where it prints =; and the products as printed, which are never normalised.
+
+    Parameters
+    ----------
+    counts : (n_speeds, contexts · outcomes, n_types) float
+        Moves seen in training.
+    value : (n_types, n_speeds) float
+    """
+
+    def __init__(self, counts: NDArray[np.float64], value: NDArray[np.float64]) -> None:
+        n_speeds, _, n_types = counts.shape
+        seen = counts.reshape(n_speeds, N_CONTEXTS, N_OUTCOMES, n_types) + 4 * PSEUDO_COUNT / N_OUTCOMES
+        self.transitions = seen / seen.sum(axis=2, keepdims=True)
+        self.value, self.belief = value, np.full(n_types, 1 / n_types)
+        self.printed = self.belief.copy()
+
+    def probabilities(self, epsilon: float) -> NDArray[np.float64]:
+        """Line 7: the Bayes optimal action set with probability 1 - ε, any with ε."""
+        n_speeds = self.value.shape[1]
+        found = np.full(n_speeds, epsilon / n_speeds)
+        found[np.argmax([np.dot(self.belief, self.value[:, speed]) for speed in range(n_speeds)])] += 1 - epsilon
+        return found
+
+    def update(self, speed: int, context: int, outcome: int) -> None:
+        """Line 6."""
+        likelihood = self.transitions[speed, context, outcome]
+        self.printed = likelihood * self.printed
+        self.belief = likelihood * self.belief / np.dot(likelihood, self.belief)
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """A cell for each ε, with users of all types."""
-    return [{"game": list(settings["games"][0]), "epsilon": name} for name in EPSILONS]
+    """A cell for each schedule of ε."""
+    return [{"epsilon": name} for name in EPSILONS]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Sessions of five episodes: decisions, those alike, how far beliefs differ, and when products vanish."""
-    setting, epsilon = Setting(*cell["game"]), EPSILONS[cell["epsilon"]]
-    game = setting.game
+    """Sessions of five episodes with users of every type."""
+    game = Game.parsed(settings["game"]).game
     trained = train(game, settings["training"], seed)
-    library = library_of(game, trained, trained.scale(setting.normalisation))
+    value = trained.value(LossScale())
+    library = library_of(game, trained, LossScale())
     sessions = []
-    for kind, user in product(range(game.n_types), range(settings["users"])):
-        name = (setting.words, cell["epsilon"], kind, user)
-        beat = Beat(library, epsilon=epsilon, seed=stream(seed, "C4.16", *name))
-        generator = stream(seed, "C4.16", *name)
-        reuse = BayesianPolicyReuse(library, EpsilonGreedy(0.0), dynamics=TypeDynamics.static(), seed=generator)
-        sessions.append(_session(game, kind, beat, reuse, epsilon, stream(seed, "C4.16", "world", *name)))
+    for kind, user in product(range(N_TYPES), range(settings["users"])):
+        beat = Algorithm9(trained.signals, value)
+        reuse = BayesianPolicyReuse(library, EpsilonGreedy(0.0), dynamics=TypeDynamics.static())
+        world = stream(seed, "C4.16", cell["epsilon"], kind, user)
+        sessions.append(_session(game, kind, beat, reuse, cell["epsilon"], world))
     return {**cell, "sessions": sessions}
 
 
 def _session(
-    game: BallGame, kind: int, beat: Beat, reuse: BayesianPolicyReuse, epsilon: Exploration, world
+    game: BallGame,
+    kind: int,
+    beat: Algorithm9,
+    reuse: BayesianPolicyReuse,
+    schedule: str,
+    world: np.random.Generator,
 ) -> dict:
-    """One user's episodes, BEAT in charge."""
-    schedule, product = epsilon_of(epsilon), np.full(game.n_types, 1 / game.n_types)
-    decisions, alike, vanished, apart = 0, 0, 0, 0.0
+    """One user's episodes: steps, those decided alike, the largest difference of beliefs, when products vanish."""
+    epsilon_at, steps, alike, apart, vanished = epsilon_of(schedule), 0, 0, 0.0, 0
+    beliefs: list[list[float]] = []
     heading, signal, before = np.empty(1, np.int64), np.empty(1, np.int64), np.empty((1, 2), np.int64)
     for episode in range(EPISODES):
         balls = new_balls(game, [kind], draw_sigma(world), random_states(world, 1))
         while balls.playing[0]:
-            reuse.rule = EpsilonGreedy(schedule(decisions, episode))
-            speed = beat.select()
-            alike += reuse.select() == speed
-            decisions += 1
+            epsilon = epsilon_at(steps, episode)
+            reuse.rule, mine = EpsilonGreedy(epsilon), beat.probabilities(epsilon)
+            alike += bool(np.abs(reuse.probabilities() - mine).max() < 1e-9)
+            speed = int(world.choice(len(mine), p=mine))
             advance(game.field, balls, np.array([speed]), 0, MAX_STEPS, heading, before)
             read_moves(game.field, before, heading, np.array([speed]), balls.x, balls.y, signal)
-            move = transition_of(signal[0])
-            beat.update(speed, move)
-            reuse.update(speed, move)
-            product = product * np.exp(beat.library.signal.log_likelihood(speed, move))
-            vanished = vanished or (decisions if not product.any() else 0)
+            beat.update(speed, *divmod(int(signal[0]), N_OUTCOMES))
+            reuse.update(speed, transition_of(signal[0]))
+            steps += 1
+            vanished = vanished or (0 if beat.printed.any() else steps)
             apart = max(apart, float(np.abs(beat.belief - reuse.belief).max()))
-        beat.end_episode()
-    finite = beat.log_belief[np.isfinite(beat.log_belief)]
-    return {
-        "kind": kind, "decisions": decisions, "alike": alike, "apart": apart, "vanished": vanished,
-        "spread": round(float(finite.max() - finite.min()), 2),
-    }  # fmt: skip
+            beliefs.append([beat.belief[kind], reuse.belief[kind]])
+    shown = np.round(beliefs[:SHOWN], 6).T.tolist()
+    return {"kind": kind, "steps": steps, "alike": alike, "apart": apart, "vanished": vanished, "beliefs": shown}
 
 
 def library_of(game: BallGame, trained: Trained, scale: LossScale) -> PolicyLibrary:
@@ -99,3 +138,24 @@ def transition_signal(trained: Trained) -> TransitionSignal:
 def transition_of(signal: int) -> NDArray[np.int64]:
     """A signal's number as one transition (context, outcome), (1, 2) int64."""
     return np.array([divmod(int(signal), N_OUTCOMES)], np.int64)
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Share of decisions alike, the largest difference of beliefs, and sessions whose products vanish."""
+    sessions = [session for result in results for session in result["sessions"]]
+    steps = sum(session["steps"] for session in sessions)
+    return {
+        "decisions_alike": exact_value(sum(session["alike"] for session in sessions) / steps, steps),
+        "steps": exact_value(steps, len(sessions)),
+        "beliefs_apart": exact_value(max(session["apart"] for session in sessions), len(sessions)),
+        "products_that_vanish": mean_estimate([float(session["vanished"] > 0) for session in sessions]),
+    }
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """The belief in the true type in the first session of each type, and when products vanish in every session."""
+    sessions = results[-1]["sessions"]
+    firsts = {session["kind"]: session for session in reversed(sessions)}
+    vanished = [session["vanished"] for result in results for session in result["sessions"] if session["vanished"]]
+    shown = [{"kind": kind, "beliefs": firsts[kind]["beliefs"]} for kind in sorted(firsts)]
+    return [*shown, {"vanished": vanished}]

@@ -16,7 +16,6 @@ from lifelore.domains.ball_game.moves import (
     N_BEFORE,
     N_OUTCOMES,
     N_SIGNALS,
-    command_place,
     move_context,
     move_fate,
     move_outcome,
@@ -103,12 +102,6 @@ def test_signals_of_play_are_in_range_and_tell_sizes_apart():
     # more.
     assert made[0] > 0.97
     assert 0.5 < made[1] < 0.75
-
-
-def test_commands_by_place_by_hand():
-    # 20 × 20 squares of 50.05 units: (120, 60) lies in column 2, row 1; four commands a place.
-    before = np.array([[120, 60], [1000, 1000], [0, 0]])
-    assert command_place(before, np.array([EAST, 3, -1])).tolist() == [(1 * 20 + 2) * 4 + 2, 399 * 4 + 3, -1]
 
 
 def test_nothing_in_a_signal_depends_on_the_type():

@@ -8,7 +8,8 @@ from lifelore.domains.buildings.map_alignment import MapFrame, aligned_map
 from lifelore.domains.buildings.occupancy_map import FREE, UNKNOWN, OccupancyMap
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.registration import IDENTITY, moved
-from tests.domains.buildings.resaved_maps import padded, shifted, turned
+from reproduction.own.o_04_same_building.edits import turned
+from tests.domains.buildings.resaved_maps import padded, shifted
 
 OFFICE = office_map(1, 20.0, 14.0)
 FRAME = MapFrame.of(OFFICE)

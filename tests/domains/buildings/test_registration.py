@@ -3,26 +3,20 @@
 import numpy as np
 import pytest
 
-from lifelore.agent.live.buildings.recognition import LEAST_MARGIN, LEAST_MATCH
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.registration import (
-    Registration,
     composed,
     inverse,
     moved,
     register,
     register_near,
 )
-from tests.domains.buildings.resaved_maps import cropped, noisy, padded, refurnished, shifted, turned
+from reproduction.own.o_04_same_building.edits import cropped, noisy, refurnished, turned
+from reproduction.own.o_04_same_building.run import recognised
+from tests.domains.buildings.resaved_maps import padded, shifted
 
 OFFICE = office_map(1, 20.0, 14.0)
-
-
-def recognised(found: Registration) -> bool:
-    """Whether a registration would recognise the building, were it the only one in memory."""
-    clear = found.second is None or found.best.match - found.second.match >= LEAST_MARGIN
-    return found.best.match >= LEAST_MATCH and clear
 
 
 def hall(width: int = 200, height: int = 120) -> OccupancyMap:

@@ -1,4 +1,4 @@
-"""The default rule: the one that claim C4.17 chose, the same everywhere, and never the policy of wide outcomes."""
+"""The default rule: the one that claim O1 chose, the same everywhere, and never the policy of wide outcomes."""
 
 import json
 from pathlib import Path
@@ -17,14 +17,13 @@ from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.joint_signal import JointSignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 from lifelore.interaction.signals.return_signal import ReturnSignal
-from reproduction.chapter4.c4_17_default_rule.measure import CANDIDATES, decided_rule
-from reproduction.chapter4.c4_17_default_rule.run import RULES as COMPARED
-
-RESULT = Path(__file__).parents[3] / "results" / "C4.17" / "result.json"
+from reproduction.engine.registry import RESULTS
+from reproduction.own.o_01_default_rule.run import CANDIDATES, decided_rule
+from reproduction.own.o_01_default_rule.run import RULES as COMPARED
 
 
 def test_the_default_is_the_rule_that_the_claim_decided_for():
-    result = json.loads(RESULT.read_text(encoding="utf-8"))
+    result = json.loads((RESULTS / "O1" / "result.json").read_text(encoding="utf-8"))
     assert result["mode"] == "full"
     assert COMPARED[decided_rule(result["measured"], CANDIDATES)] == rule_named(DEFAULT_RULE)
     # Over all six rules the decision names another rule; docs/policy_reuse.md says why it is not the default.

@@ -3,31 +3,23 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
+from lifelore.core.errors import LifeloreError
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import LossScale, ball_game
 from lifelore.domains.ball_game.moves import N_AFTER, N_OUTCOMES
 from lifelore.interaction.baselines.exp3 import EXP3
-from reproduction.chapter4.ball_game.games import DEFAULT, Setting, check_games
-from reproduction.chapter4.ball_game.learners import (
-    BeatLearner,
-    PrintedExp3,
-    exp3_by_episode,
-    tuned_gamma,
-)
+from reproduction.chapter4.ball_game.games import Game, check_games, choices
+from reproduction.chapter4.ball_game.learners import BeatLearner, PrintedExp3, exp3_by_episode
 from reproduction.chapter4.ball_game.play import (
     FixedSpeeds,
     Learner,
     Players,
     losses_by_speed,
     play_all,
-    populations,
     train,
 )
 from reproduction.chapter4.c4_16_beat_is_reuse.run import library_of, transition_of
-from reproduction.engine.registry import claim_of
 
-GAMES = claim_of("C4.12").sizes["full"]["games"]
 GAME = ball_game()
 SCALE = LossScale()
 TRAINED = train(GAME, 12, 0)
@@ -37,17 +29,10 @@ def players(n=12, episodes=2, seed=3):
     return Players.drawn(np.arange(n) % 6, episodes, stream(seed, "test"))
 
 
-def test_there_are_63_populations():
-    every = populations(6)
-    assert len(every) == len(set(every)) == 63
-    assert [sum(len(p) == x for p in every) for x in range(1, 7)] == [6, 15, 20, 15, 6, 1]
-
-
 def test_training_counts_every_move_once():
     assert TRAINED.steps.shape == TRAINED.hits.shape == (6, 5, 12)
     moves = TRAINED.steps.sum(axis=2).T  # (speeds, types)
     np.testing.assert_array_equal(TRAINED.signals.sum(axis=1), moves)
-    np.testing.assert_array_equal(TRAINED.commands.sum(axis=1), moves)
     assert TRAINED.scale("fixed") == LossScale()
     assert TRAINED.scale("maxima") == LossScale(TRAINED.steps.max(), TRAINED.hits.max())
     value = TRAINED.value(SCALE)
@@ -96,18 +81,12 @@ def test_a_speed_kept_for_an_episode_loses_what_the_table_says():
 
 def test_exp3_by_episode_is_exp3_on_the_table():
     losses = np.random.default_rng(0).uniform(0, 2, (7, 5, 3))
-    lost = exp3_by_episode(losses, 0.4, 2.0, np.random.default_rng(8))
-    arms = EXP3(3, gamma=0.4, scale=(-2.0, 0.0), n_tasks=7, seed=np.random.default_rng(8))
+    lost = exp3_by_episode(losses, 2.0, np.random.default_rng(8))
+    arms = EXP3(3, horizon=5, scale=(-2.0, 0.0), n_tasks=7, seed=np.random.default_rng(8))
     for episode in range(5):
         chosen = arms.select()
         assert lost[:, episode].tolist() == losses[np.arange(7), episode, chosen].tolist()
         arms.update(chosen, -losses[np.arange(7), episode, chosen])
-
-
-def test_gamma_is_tuned_to_what_is_easy_to_tell():
-    # One arm loses nothing: the less uniform play the better, once it has paid.
-    losses = np.broadcast_to(np.array([2.0, 0.0]), (400, 60, 2))
-    assert tuned_gamma(losses, [0.2, 1.0], 2.0, np.random.default_rng(0)) == 0.2
 
 
 def test_steps_that_pay_nothing_leave_exp3_as_it_is():
@@ -142,19 +121,27 @@ def test_the_library_says_what_the_tables_say():
         np.testing.assert_allclose(found, table[2, signal], atol=1e-12)
 
 
-def test_games_that_cannot_be_played_are_refused():
-    check_games({"games": GAMES})
-    for games, rule in (
-        ([], "games must name at least one"),
-        ([["moon", 0.5, 3.0, "fixed", "slides"]], "cannot be played: unknown layout"),
-        ([["blobs", 0.5, 3.0, "loud", "slides"]], "the normalisation one of fixed, maxima"),
-        ([["blobs", 0.5, 3.0, "fixed", "bounces"]], "cannot be played: blocked must be one of slides, stays"),
-        ([["blobs", 0.5, 3.0, "fixed"]], r"must be \[layout, radius_share, care, normalisation, blocked\]"),
-    ):
-        with pytest.raises(InputError, match=rule):
-            check_games({"games": games})
-    assert Setting(*GAMES[-1]).words == "s-maze 160, r = b/2, by maxima"
-    assert Setting("blobs", 1.0, 0.0, "fixed", "stays").words == "blobs, r = b, careless, stays"
-    assert Setting(*DEFAULT).game.blocked == "slides"
-    assert [Setting(*game).game.field.stays for game in GAMES].count(True) == 3
-    assert len({Setting(*game).words for game in GAMES}) == len(GAMES)
+def test_the_type_named_halfway_through_the_first_episode():
+    everyone = players(12, 2)
+    told = np.eye(6)[everyone.kinds]
+    learner = BeatLearner(TRAINED.value(SCALE), TRAINED.signal_table(), 12, prior=told)
+    lengths = play_all(GAME, everyone, learner, SCALE).steps[:, 0]
+    assert len(learner.named) == lengths.max()  # nothing of the second episode
+    assert learner.named_halfway(lengths).tolist() == everyone.kinds.tolist()
+    learner.named = [np.full(12, step, np.int8) for step in range(100)]
+    # Of 7 steps half are made after the fourth, whose number is 3.
+    assert learner.named_halfway(np.arange(12) + 1).tolist() == [0, 0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5]
+
+
+def test_games_by_their_words():
+    careless = Game.parsed("blobs, r = b, careless, stays").game
+    assert (careless.radius_share, careless.care, careless.blocked) == (1.0, 0.0, "stays")
+    plain = Game.parsed("s-maze 160").game
+    assert (plain.radius_share, plain.care, plain.blocked) == (GAME.radius_share, GAME.care, GAME.blocked)
+    assert choices("s-maze 110, stays", "maxima") == {
+        "layout": "s-maze 110", "radius": "r = b/2", "player": "careful", "blocked": "stays",
+        "normalisation": "maxima",
+    }  # fmt: skip
+    for words, rule in (("moon", "unknown layout"), ("blobs, bounces", "a layout, then any of r = b, careless")):
+        with pytest.raises(LifeloreError, match=rule):
+            check_games({"games": [words]})

@@ -1,20 +1,9 @@
-"""Measures of C4.11 on losses made by hand, and a tiny run."""
+"""Measures of C4.11 on losses made by hand."""
 
 import numpy as np
 import pytest
 
-from reproduction.chapter4.c4_11_speeds.measure import (
-    best_speeds,
-    gains,
-    has_transition,
-    losses,
-    measure,
-    rows,
-)
-from reproduction.chapter4.c4_11_speeds.run import cells, run_cell
-from reproduction.engine.registry import claim_of
-
-CLAIM = claim_of("C4.11")
+from reproduction.chapter4.c4_11_speeds.run import losses, measure, numbers, readings, rows
 
 
 def made(best, n=40, noise=0.01):
@@ -26,41 +15,26 @@ def made(best, n=40, noise=0.01):
 
 
 def test_a_transition_by_hand():
-    loss = made([70, 70, 60, 60, 50, 30])
-    assert best_speeds(loss).tolist() == [70, 70, 60, 60, 50, 30]
-    small, large = gains(loss)
+    found = numbers(made([70, 70, 60, 60, 50, 30]))
     # (0.4 + 0.3) / 2 - (0.1 + 0) / 2 = 0.3, and the same for the largest the other way round.
-    assert (small.value, large.value) == (pytest.approx(0.3, abs=0.01), pytest.approx(0.3, abs=0.01))
-    assert has_transition(loss)
-    assert not has_transition(made([70] * 6))
-    assert not has_transition(made([30] * 6))
-    assert not has_transition(made([70, 70, 60, 60, 50, 50]))  # 50 is neither slow nor fast: no gain
-
-
-def result_of(loss):
-    """Steps that give these losses, no collisions."""
-    return {
-        "game": ["s-maze 160", 0.5, 3.0, "fixed", "slides"],
-        "steps": (400 * loss).tolist(),
-        "hits": (0 * loss).tolist(),
-    }
-
-
-def test_measures_by_hand():
-    falling, rising = result_of(made([70, 60, 60, 60, 40, 30])), result_of(made([30, 30, 30, 30, 60, 70]))
-    found = measure({}, [falling, rising])
+    assert found["small_gains_by_fast"].value == pytest.approx(0.3, abs=0.01)
+    assert found["large_gains_by_slow"].value == pytest.approx(0.3, abs=0.01)
     assert found["best_speed_falls_by"].value == 40
-    assert found["best_speed_rises_by"].value == 0
-    assert found["grid_with_transition"].value == 0.5
-    assert measure({}, [rising])["best_speed_rises_by"].value == 30
-    row = rows({}, [falling])[0]
-    assert row["transition"]
-    assert (row["game"], row["blocked"]) == (["s-maze 160", 0.5, 3.0], "slides")
-    assert row["best"] == [70, 60, 60, 60, 40, 30]
+    assert numbers(made([30, 30, 30, 30, 60, 70]))["best_speed_falls_by"].value == -40
 
 
-def test_a_tiny_run_pairs_the_noise_of_all_speeds():
-    settings = CLAIM.settings("quick", {"episodes": 4})
-    result = run_cell(settings, cells(settings)[0], 0)
-    assert np.shape(result["steps"]) == np.shape(result["hits"]) == (6, 5, 4)
-    assert losses(result, "maxima").max() <= 2
+def test_every_game_is_read_under_every_normalisation():
+    loss = made([70, 60, 60, 60, 40, 30])
+    # Without collisions the fixed scale of time, 400, gives the loss back.
+    results = [
+        {"game": game, "steps": (400 * loss).tolist(), "hits": (0 * loss).tolist()}
+        for game in ("blobs", "s-maze 110")
+    ]
+    settings = {"normalisations": ["fixed", "maxima"]}
+    found = list(readings(settings, results))
+    assert [(cell["layout"], cell["normalisation"]) for cell, _ in found] == [
+        ("blobs", "fixed"), ("blobs", "maxima"), ("s-maze 110", "fixed"), ("s-maze 110", "maxima"),
+    ]  # fmt: skip
+    assert found[0][1] == measure(settings, results)
+    assert losses(results[0], "maxima").max() == pytest.approx(1)
+    assert rows(settings, results)[0]["loss"][0] == np.round(loss[0].mean(axis=1), 4).tolist()

@@ -1,57 +1,41 @@
-"""Measures of C4.13 on confusions made by hand, and a tiny run."""
+"""Measures of C4.13 on confusions made by hand."""
 
 import numpy as np
 import pytest
 
-from reproduction.chapter4.ball_game.games import DEFAULT
-from reproduction.chapter4.c4_13_type_naming.measure import measure, right_of, share
-from reproduction.chapter4.c4_13_type_naming.run import WAYS, cells, confusion, run_cell
-from reproduction.engine.registry import claim_of
-
-CLAIM = claim_of("C4.13")
+from reproduction.chapter4.ball_game.trials import BEAT, BEATS
+from reproduction.chapter4.c4_13_type_naming.run import numbers, readings, size_ratio
 
 
-def test_confusion_and_shares_by_hand():
-    counts = confusion(np.array([0, 0, 1, 2]), np.array([0, 1, 1, 0]), 3)
-    assert counts == [[1, 1, 0], [0, 1, 0], [1, 0, 0]]
-    assert right_of(counts, [0, 1]).value == pytest.approx(2 / 3)
-    # Wilson's interval of 8 in 10.
-    assert share(8, 10).ci95 == pytest.approx((0.4902, 0.9433), abs=1e-4)
-
-
-def made(half):
-    return [
-        {"game": DEFAULT, "way": way, "half": half, "at_40": half, "first": half, "last": half, "lengths": [60]}
-        for way in WAYS
-    ]
+def made():
+    """Of 100 players of each size: 45 of b = 2 are taken for 5, 10 of b = 5 for 2, 12 of b = 10 for 20."""
+    half = (100 * np.eye(6)).astype(int)
+    half[0, :2], half[1, :2], half[2, 2:4] = [55, 45], [10, 90], [88, 12]
+    return half
 
 
 def test_measures_by_hand():
-    half = (100 * np.eye(6)).astype(int)
-    half[0, :2] = [55, 45]
-    half[1, :2] = [10, 90]
-    half[2, 2:4] = [88, 12]
-    found = measure({}, made(half.tolist()))
-    assert found["right_half_large"].value == 1
-    assert found["least_right_half_but_smallest"].value == 0.88
-    assert found["smallest_above_worst"].value == pytest.approx(0.55 - 0.88)
-    assert found["two_and_five_of_confusions"].value == 55 / 67
+    half = made()
+    found = numbers({"half": {BEAT: half.tolist()}}, {})
+    assert found["ratio_2"].value == pytest.approx((55 + 45 * 2.5) / 100)
+    assert found["ratio_5"].value == pytest.approx((90 + 10 * 0.4) / 100)
+    assert found["worst_ratio_10_to_60"].value == pytest.approx(1.12)
+    assert found["smallest_off_beyond_others"].value == pytest.approx(0.675 - 0.12)
     assert found["pairs_confused_more_often"].value == 0
-    plain = {name: number.to_dict() for name, number in found.items()}
-    assert CLAIM.predicate.verdict(plain) == "holds"
+    assert found["right_half"].value == pytest.approx(533 / 600)
     half[3, 3:5] = [40, 60]
-    assert measure({}, made(half.tolist()))["pairs_confused_more_often"].value == 1
+    changed = numbers({"half": {BEAT: half.tolist()}}, {})
+    assert changed["pairs_confused_more_often"].value == 1
+    assert changed["worst_ratio_10_to_60"].value == pytest.approx(0.4 + 0.6 * 2)
 
 
-def test_a_tiny_run_counts_everybody_to_the_end():
-    settings = CLAIM.settings("quick", {"players": 5, "training": 6})
-    result = run_cell(settings, cells(settings)[0], 0)
-    for when in ("half", "at_40", "first", "last"):
-        assert np.sum(result[when], axis=1).tolist() == [5] * 6
-    right, ratio = np.array(result["right"]), np.array(result["ratio"])
-    # Who has finished keeps her belief: the last step kept is the belief after the episode.
-    assert right[:, -1] == pytest.approx(np.diag(result["first"]) / 5)
-    assert ((ratio > 1 / 31) & (ratio < 31)).all()
-    named = np.array(result["needed"])
-    assert len(named) == 30
-    assert (named >= -1).all()
+def test_a_ratio_has_the_interval_of_its_players():
+    assert size_ratio([0, 20, 0, 0, 0, 0], 5).ci95 is None
+    assert size_ratio([5, 15, 0, 0, 0, 0], 5).ci95[0] > 0.4
+
+
+def test_readings_leave_out_choices_of_other_methods():
+    result = {"game": "blobs", "normalisation": "fixed", "half": {method: made().tolist() for method in BEATS}}
+    assert [(cell["ε"], cell["prior"]) for cell, _ in readings({}, [result])] == [
+        ("default", "default"), ("1/n", "default"), ("default", "types of the population"),
+    ]  # fmt: skip

@@ -1,6 +1,5 @@
-"""C4.14: no verdict without people; with made-up people the filed conditions decide; recorded people are read."""
+"""C4.14: without people it cannot be tested; made-up people are measured; recorded people are read."""
 
-import numpy as np
 import pytest
 
 from lifelore.agent.play_study.scripted_player import play_next_round
@@ -9,9 +8,10 @@ from lifelore.agent.play_study.study_records import open_new_session, store_roun
 from lifelore.agent.play_study.study_settings import PERSON, SCRIPTED
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import open_memory
-from reproduction.chapter4.c4_14_people.measure import measure
-from reproduction.chapter4.c4_14_people.run import cells, run_cell, study_settings
+from reproduction.chapter4.c4_14_people.run import cells, measure, run_cell, study_settings
 from reproduction.engine.registry import claim_of
+from reproduction.engine.reproduce import judged
+from reproduction.engine.statement import DIRECTION, FAILS, REPRODUCED, UNTESTED
 
 CLAIM = claim_of("C4.14")
 QUICK = CLAIM.settings("quick", {})
@@ -35,22 +35,21 @@ def people(beat, static, confused=(2, 5), number=5):
     return {"player": PERSON, "sessions": sessions}
 
 
-def verdict(*results):
-    measured = {name: number.to_dict() for name, number in measure(QUICK, results).items()}
-    return CLAIM.predicate.verdict(measured)
+def word(*results):
+    return judged(CLAIM, {name: number.to_dict() for name, number in measure(QUICK, results).items()}, [])[0]
 
 
 def test_without_people_it_cannot_be_tested_whatever_scripts_do():
-    assert verdict() == "cannot be tested"
-    assert verdict({**people(0.0, 0.5), "player": SCRIPTED}) == "cannot be tested"
-    assert verdict(people(0.0, 0.5, number=2)) == "cannot be tested"
+    assert word() == UNTESTED
+    assert word({**people(0.0, 0.5), "player": SCRIPTED}) == UNTESTED
+    assert word(people(0.0, 0.5, number=2)) == UNTESTED
 
 
 def test_people_decide():
-    assert verdict(people(0.0, 0.5)) == "holds"
+    assert word(people(0.0, 0.5)) == REPRODUCED
     # A population of one size loses 0.1 at its best speed, less than with BEAT.
-    assert verdict(people(0.3, 0.5)) == "holds in part"
-    assert verdict(people(0.0, 0.5, confused=(5, 60))) == "holds in part"
+    assert word(people(0.3, 0.5)) == FAILS
+    assert word(people(0.0, 0.5, confused=(5, 60))) == DIRECTION
 
 
 def test_measures_by_hand():
@@ -59,10 +58,12 @@ def test_measures_by_hand():
     assert found["people_small_gains_by_fast"].value == pytest.approx(0.8 * 1.02)
     assert found["people_large_gains_by_slow"].value == pytest.approx(0.8 * 1.02)
     assert found["people_beat_less_static"].value == pytest.approx(-0.2 * 1.02)
-    # At their best speeds populations of one size lose 0.1, of two sizes 0.1, 0.5 and 0.5, of all three 0.37.
-    assert found["people_diversities_won"].value == pytest.approx(2 / 3)
+    # At their best speeds populations of one size lose 0.1, of two sizes 0.1, 0.5 and 0.5, of all three 0.37; so
+    # BEAT, which loses 0.3, gains least in populations of one size.
+    assert found["people_least_gain_of_diversities"].value == pytest.approx(-0.2 * 1.02)
     assert found["people_pairs_confused_more_often"].value == 0
-    assert np.isnan(found["scripted_beat_less_static"].value)
+    assert found["scripted_sessions"].value == 0
+    assert "scripted_beat_less_static" not in found
 
 
 def test_finished_sessions_of_people_are_read_from_a_memory(tmp_path):

@@ -1,42 +1,44 @@
-"""C4.16 in a tiny run: every decision alike, and the measures see one that is not."""
+"""C4.16: Algorithm 9 by hand, and measures that see a step that differs."""
 
-import copy
-
+import numpy as np
 import pytest
 
-from reproduction.chapter4.c4_16_beat_is_reuse.measure import measure, rows
-from reproduction.chapter4.c4_16_beat_is_reuse.run import EPSILONS, cells, run_cell
-from reproduction.engine.registry import claim_of
-
-CLAIM = claim_of("C4.16")
-
-SETTINGS = CLAIM.settings("quick", {"training": 4})
-RESULTS = [run_cell(SETTINGS, cell, 0) for cell in cells(SETTINGS)[1:3]]
+from lifelore.domains.ball_game.moves import N_OUTCOMES, N_SIGNALS
+from lifelore.interaction.adaptation.move_model import PSEUDO_COUNT
+from reproduction.chapter4.c4_16_beat_is_reuse.run import Algorithm9, measure, rows
 
 
-def test_every_decision_is_alike():
-    found = measure(SETTINGS, RESULTS)
-    assert found["decisions_alike"].value == 1
-    assert found["decisions_alike"].n > 1000
-    assert found["beliefs_apart"].value <= 1e-12
-    assert [cell["epsilon"] for cell in cells(SETTINGS)] == list(EPSILONS)
-    assert {row["kind"] for row in rows(SETTINGS, RESULTS)} == set(range(6))
+def test_algorithm_9_by_hand():
+    counts = np.zeros((2, N_SIGNALS, 2))
+    # In context 0 type 0 always has outcome 0; type 1 has outcomes 0 and 1 as often.
+    counts[1, 0] = [8, 4]
+    counts[1, 1] = [0, 4]
+    beat = Algorithm9(counts, np.array([[1.0, 0.0], [0.0, 2.0]]))
+    assert beat.probabilities(0.4).tolist() == pytest.approx([0.2, 0.8])  # 0.5 to 1.0
+    small, total = 4 * PSEUDO_COUNT / N_OUTCOMES, 8 + 4 * PSEUDO_COUNT
+    first, second = (8 + small) / total, (4 + small) / total
+    for _ in range(2):
+        beat.update(1, 0, 0)
+    assert beat.printed == pytest.approx([first**2 / 2, second**2 / 2])
+    assert beat.belief == pytest.approx(np.array([first**2, second**2]) / (first**2 + second**2))
+    assert beat.probabilities(0.0).tolist() == [1.0, 0.0]
 
 
-def test_a_decision_that_differs_is_seen():
-    changed = copy.deepcopy(RESULTS)
-    changed[0]["sessions"][2]["alike"] -= 1
-    changed[1]["sessions"][0]["apart"] = 0.25
-    found = measure(SETTINGS, changed)
-    assert found["decisions_alike"].value < 1
+def session(**changed):
+    return {"kind": 1, "steps": 10, "alike": 10, "apart": 0.0, "vanished": 0, "beliefs": [[0.5], [0.5]], **changed}
+
+
+def test_a_step_that_differs_is_seen():
+    found = measure(
+        {}, [{"sessions": [session(), session(alike=8, vanished=7)]}, {"sessions": [session(apart=0.25)]}]
+    )
+    assert found["decisions_alike"].value == pytest.approx(28 / 30)
     assert found["beliefs_apart"].value == 0.25
-    assert CLAIM.predicate.verdict({k: v.to_dict() for k, v in found.items()}) == "does not hold"
+    assert found["products_that_vanish"].value == pytest.approx(1 / 3)
 
 
-def test_products_vanish_where_five_episodes_are_long():
-    sessions = RESULTS[0]["sessions"]
-    for session in sessions:
-        assert session["vanished"] <= session["decisions"]
-    longest = max(sessions, key=lambda s: s["decisions"])
-    assert longest["vanished"] > 100
-    assert longest["spread"] == pytest.approx(max(s["spread"] for s in sessions), rel=1)
+def test_rows_show_a_session_of_each_type():
+    kinds = [session(kind=0, vanished=3), session(kind=2), session(kind=2)]
+    *shown, last = rows({}, [{"sessions": kinds}, {"sessions": kinds}])
+    assert [row["kind"] for row in shown] == [0, 2]
+    assert last == {"vanished": [3, 3]}

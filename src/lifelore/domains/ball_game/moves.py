@@ -7,7 +7,6 @@ type. Thesis: §4.8.4.1, §4.8.5.1.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.core.compiled.jit import kernel
 from lifelore.domains.ball_game.ball_game import MOVES
@@ -94,12 +93,3 @@ def read_moves(field, before, heading, speed, x, y, signal):
             context = move_context(field, x0, y0, heading[i], distance)
             outcome = move_outcome(field, x0, y0, heading[i], distance, x[i], y[i])
             signal[i] = context * N_OUTCOMES + outcome
-
-
-def command_place(before: NDArray[np.int64], heading: NDArray[np.int64], cells: int = 20) -> NDArray[np.int64]:
-    """Numbers of (place, command) for a model of what people command where, (n,); -1 where nothing was.
-
-    Places are the `cells` × `cells` squares of the field.
-    """
-    place = np.minimum(before * cells // 1001, cells - 1)
-    return np.where(heading >= 0, (place[:, 1] * cells + place[:, 0]) * len(MOVES) + heading, -1)

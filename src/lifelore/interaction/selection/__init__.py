@@ -40,7 +40,7 @@ RULES: dict[str, type] = {
 """Every rule by the name that sessions and the command line use."""
 
 DEFAULT_RULE = "information-directed"
-"""Name of the rule where none is given, for agents, many users and `lifelore reuse`; claim C4.17 decides it."""
+"""Name of the rule where none is given, for agents, many users and `lifelore reuse`; claim O1 decides it."""
 WITHOUT_TABLE = "expected-improvement"
 """Name of the rule in its place where the signals have no table."""
 BEFORE: dict[str, dict[str, Any]] = {

@@ -22,7 +22,8 @@ from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.registration import IDENTITY
 from lifelore.domains.worlds import WorldSettings
 from lifelore.memory import open_memory
-from tests.domains.buildings.resaved_maps import cropped, noisy, padded, shifted, turned
+from reproduction.own.o_04_same_building.edits import cropped, noisy, turned
+from tests.domains.buildings.resaved_maps import padded, shifted
 
 OFFICE = office_map(1, 14.0, 12.0)
 

@@ -1,4 +1,4 @@
-"""Worlds of claim C4.17: mean pays, the noise of the pays, and libraries with exact or learnt models.
+"""Worlds of claim O1: mean pays, the noise of the pays, and libraries with exact or learnt models.
 
 Means come from the surveillance reserve in four layouts, from golf (minus the yards missed), from the telephone
 (expected pay of a call), and from random tables with three types. Pays are normal around the means. In the world
@@ -84,7 +84,7 @@ def world_of(name: str, noise: str, seed: int, group: int) -> World:
         probs = phone.utility_probs
         return World(phone.mean, np.sqrt(probs @ np.square(UTILITIES) - phone.mean**2), probs)
     mean = _mean_of(name, seed, group)
-    generator, deviation = stream(seed, "C4.17", "deviations", name, noise, group), DEVIATIONS[name]
+    generator, deviation = stream(seed, "O1", "deviations", name, noise, group), DEVIATIONS[name]
     if noise == EQUAL:
         return World(mean, np.full(mean.shape, deviation))
     shape = (1, mean.shape[1]) if noise == BY_POLICY else mean.shape
@@ -96,5 +96,5 @@ def _mean_of(name: str, seed: int, group: int) -> Array:
     if name in LAYOUTS:
         return Surveillance(name).mean
     if name == TABLES:
-        return TABLE_SPREAD * stream(seed, "C4.17", "tables", group).standard_normal(TABLE_SHAPE)
+        return TABLE_SPREAD * stream(seed, "O1", "tables", group).standard_normal(TABLE_SHAPE)
     return Golf().mean if name == GOLF else Telephone().mean
