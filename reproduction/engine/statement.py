@@ -96,9 +96,9 @@ class Statement:
 def word_of(statements: Sequence[Statement], marks: Sequence[str], in_error: bool) -> str:
     """The claim's word, from the marks of its central statements, and of all at the default.
 
-    *Reproduced*: all hold, the central ones not only under few readings. *Depends on an open choice*: every central
-    one holds under some reading. *Direction reproduced*: at least half of the central ones hold. `in_error`: an
-    erratum shows that the thesis's formula or proof is wrong.
+    *Reproduced*: all hold, the central ones not only under few readings. *Depends on an open choice*: every
+    central one holds under some reading. *Direction reproduced*: at least half of the central ones hold.
+    `in_error`: an erratum shows that the thesis's formula or proof is wrong.
     """
     default, some, most = zip(*(of for one, of in zip(statements, marks, strict=True) if one.central), strict=True)
     if any(MISSING in of for of in marks):
