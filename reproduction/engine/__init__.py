@@ -1,4 +1,5 @@
-"""The engine of claims: registry, runner, cell store, predicate, verdict, report.
+"""The engine of claims: registry, runner, cell store, marks, words, pages.
 
-Read in this order: `claim`, `ledger`, `registry`, `reproduce`, `cell_store`, `source_key`, `predicate`, `report`.
+Read in this order: `statement`, `claim`, `registry`, `reproduce`, `run_cells`, `cell_store`, `source_key`,
+`verify`, `readings_figure`, `pages`.
 """

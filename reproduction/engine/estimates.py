@@ -38,21 +38,6 @@ def quantile_estimate(values: NDArray[np.float64], q: float) -> Estimate:
     return Estimate(float(np.quantile(values, q)), float(np.median(values)), ends if n >= 3 else None, n)
 
 
-def is_above(number: Estimate, bound: float) -> bool:
-    """Whether the whole 95 % interval lies above `bound`; False where there is none."""
-    return number.ci95 is not None and number.ci95[0] > bound
-
-
-def is_below(number: Estimate, bound: float) -> bool:
-    """Whether the whole 95 % interval lies below `bound`; False where there is none."""
-    return number.ci95 is not None and number.ci95[1] < bound
-
-
-def interval_or_value(number: Estimate) -> tuple[float, float]:
-    """Ends of the 95 % interval; the value twice where there is none."""
-    return number.ci95 or (number.value, number.value)
-
-
 def share_of(cells: ArrayLike) -> Estimate:
     """The share of true `cells` (n,); a count of all there are, so without an interval."""
     cells = np.asarray(cells, float)

@@ -99,14 +99,6 @@ class Grid:
         """The cells that a method meets, each once."""
         return self._once(self.met_by(method, cell) for cell in self.cells)
 
-    def with_schedule(self, schedule: Sequence[float]) -> Cell:
-        """The default under another schedule."""
-        return {**self.default, "schedule": schedule}
-
-    def is_default_but_for_schedule(self, cell: Mapping[str, Any]) -> bool:
-        """Whether a cell is the default under any schedule, or what a method that reads less meets there."""
-        return all(cell[key] in (None, self.default[key]) for key in self.default if key != "schedule")
-
     def _once(self, cells) -> list[Cell]:
         return list({self.key(cell): cell for cell in cells}.values())
 

@@ -88,7 +88,7 @@ def row(result: Mapping) -> str:
     link = f"{_file(chapter_of(claim.id))}#{anchor(claim.id)}"
     word = f"[{result['verdict']}]({LINK}/{claim.id}/result.json)"
     here = filled(claim.here, result["measured"])
-    return f"|[{name}]({link})|{claim.thesis}|{here}|{claim_marks(result)}|{word}|"
+    return f"|[{name}]({link})|{_cell(claim.thesis)}|{_cell(here)}|{claim_marks(result)}|{word}|"
 
 
 def claim_marks(result: Mapping) -> str:
@@ -101,10 +101,7 @@ def _others(results: Sequence[Mapping]) -> Iterator[str]:
     """A line of the ideas of chapter 5, and one of our own claims."""
     for chapter, words in (("5", "Ideas that the thesis proposes"), ("own", "Our own")):
         of = [result for result in results if chapter_of(result["claim"]) == chapter]
-        links = [
-            f"[{claim_of(one['claim']).title}]({_file(chapter)}#{anchor(one['claim'])}) {claim_marks(one)}"
-            for one in of
-        ]
+        links = [f"[{one['claim']}]({_file(chapter)}#{anchor(one['claim'])}) {claim_marks(one)}" for one in of]
         if links:
             yield f"{words}: {', '.join(links)}.\n"
 
@@ -126,8 +123,8 @@ def section(result: Mapping) -> str:
         marks = "".join(result["marks"][one.says])
         here = number_in_words(number) if number else "not measured"
         more = " (more runs needed)" if marks[0] == HALF else ""
-        lines.append(f"|{one.says}|{here}{more}|{marks}|")
-    lines += ["", f"![{claim.title}]({folder}/figure.png)", ""]
+        lines.append(f"|{_cell(one.says)}|{here}{more}|{marks}|")
+    lines += ["", f"![{claim.id}]({folder}/figure.png)", ""]
     readings = f" [All readings]({folder}/readings.png)." if len(result["readings"]) > 2 else ""
     return "\n".join([*lines, f"{filled(claim.decides.strip(), measured)}{readings}", ""])
 
@@ -150,6 +147,11 @@ def gallery(results: Sequence[Mapping]) -> str:
         "Figures and tables as the thesis numbers them: the thesis's axes and curves, our numbers.", "",
         *_pairs(shown), "## Claims without a figure", "", *_pairs([("", *one) for one in rest.values()]),
     ])  # fmt: skip
+
+
+def _cell(words: str) -> str:
+    """Words as a cell of a table."""
+    return words.replace("|", "\\|")
 
 
 def figure_name(number: str) -> str:

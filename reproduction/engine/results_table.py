@@ -15,7 +15,6 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
 from reproduction.engine.cell_store import canonical
-from reproduction.engine.estimates import share_of
 
 T = TypeVar("T")
 
@@ -122,10 +121,6 @@ class ResultsTable:
     def ratio(self, measure: str, first: Mapping, second: Mapping, **where: Any) -> Estimate:
         """Ratio of the means, the first selection to the second, with its paired 95 % interval."""
         return ratio_estimate(*self.paired(measure, first, second, **where))
-
-    def share(self, measure: str, **where: Any) -> Estimate:
-        """Share of records whose measure is true, without an interval: a count of all there are."""
-        return share_of(self.values(measure, **where))
 
     def curve(
         self, measure: str, digits: int | None = None, parts: Sequence[str] = PARTS, **where: Any

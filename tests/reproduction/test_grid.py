@@ -40,11 +40,3 @@ def test_every_method_runs_once_in_each_cell_that_it_meets():
     # Without a prior: two schedules and one other cap.
     assert [met.count(who) for who in ("none", "deaf", "prior")] == [3, 2, 5]
     assert records[0] == {"who": "none", "schedule": [1.0, 0.9, 0.1], "ties": None, "max_steps": 9, "n": 4}
-
-
-def test_the_default_under_any_schedule_and_as_methods_that_read_less_meet_it():
-    other = GRID.with_schedule([0.1, 1.0, 0.1])
-    assert GRID.is_default_but_for_schedule(other)
-    assert GRID.is_default_but_for_schedule(GRID.without_prior(other))
-    assert not GRID.is_default_but_for_schedule({**other, "ties": "prior"})
-    assert not GRID.is_default_but_for_schedule({**GRID.without_prior(other), "max_steps": 7})

@@ -40,12 +40,6 @@ def test_nested_records_take_the_keys_of_their_result():
     assert table.values("x", run=2).tolist() == [2, -2]
 
 
-def test_share_counts_true_answers():
-    table = ResultsTable([{"cell": i, "holds": i > 0} for i in range(4)], ("cell",))
-    share = table.share("holds")
-    assert (share.value, share.median, share.ci95, share.n) == (0.75, 1.0, None, 4)
-
-
 def test_curve_has_a_t_interval_worked_by_hand():
     found = curve_of([[0.0, 1.0], [2.0, 1.0]])
     assert found["mean"] == [1.0, 1.0]

