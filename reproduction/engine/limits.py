@@ -1,6 +1,6 @@
 """Limits of a claim's settings: a rule for all, and the table ``[limits]`` of ``claim.toml`` for what differs.
 
-A whole number is at least 1, other numbers are at least 0, and a list is not empty. A limit such as
+A whole number is at least 1, other numbers, also in lists, are at least 0, a list is not empty. A limit such as
 ``share = { above = 0, most = 1 }`` or ``ties = { among = ["uniform", "prior"] }`` holds for a value, or for every
 value of a list at any depth. No limit names another setting, so that one setting can be changed alone.
 """

@@ -75,7 +75,7 @@ def index_page(results: Sequence[Mapping]) -> str:
         f"Of {tested} testable claims: **{counts}**.", "",
         filled(SUMMARY.read_text(encoding="utf-8").strip(), numbers), "",
         "Marks: at the default, under some reasonable reading of the choices left open, under most readings; "
-        "½: in part. A word links to the numbers. Run one: `lifelore reproduce 3.7 --full`.", "",
+        "½: in part or on average. A word links to the numbers. Run one: `lifelore reproduce 3.7 --full`.", "",
         "|figure|thesis|here|marks|word|", "|---|---|---|---|---|", *map(row, thesis), "",
         *_others(results), "",
     ])  # fmt: skip

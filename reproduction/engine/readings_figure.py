@@ -10,7 +10,7 @@ from reproduction.engine.claim import Claim
 from reproduction.engine.statement import HALF, MISSING, NO, YES, Statement
 
 COLOURS = {YES: BLUE, HALF: ORANGE, NO: VERMILION, MISSING: GREY}
-WORDS = {YES: "holds", HALF: "interval spans the bound", NO: "does not hold"}
+WORDS = {YES: "holds", HALF: "holds on average", NO: "does not hold"}
 MOST_LABEL = 34
 """Characters of a choice's value that a row shows."""
 

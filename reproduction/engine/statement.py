@@ -96,7 +96,9 @@ class Statement:
 def word_of(statements: Sequence[Statement], marks: Sequence[str], in_error: bool) -> str:
     """The claim's word, from the marks of its central statements, and of all at the default.
 
-    `in_error`: the thesis's formula or proof is known to be wrong (an erratum shows it).
+    *Reproduced*: all hold, the central ones not only under few readings. *Depends on an open choice*: every
+    central one holds under some reading. *Direction reproduced*: at least half of the central ones hold.
+    `in_error`: an erratum shows that the thesis's formula or proof is wrong.
     """
     default, some, most = zip(*(of for one, of in zip(statements, marks, strict=True) if one.central), strict=True)
     if any(MISSING in of for of in marks):
@@ -105,7 +107,9 @@ def word_of(statements: Sequence[Statement], marks: Sequence[str], in_error: boo
         return IN_ERROR
     if NO not in default and NO not in most:
         return REPRODUCED if all(of[0] == YES for of in marks) else DIRECTION
-    return OPEN_CHOICE if set(some) == {YES} else FAILS
+    if set(some) == {YES}:
+        return OPEN_CHOICE
+    return DIRECTION if 2 * default.count(NO) <= len(default) else FAILS
 
 
 def number_in_words(number: Mapping, significant: int = 3) -> str:

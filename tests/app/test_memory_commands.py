@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import typer
 
 from lifelore.app import reproduce_command
 from lifelore.app.memory_table import print_memory
@@ -244,7 +245,10 @@ def test_a_claim_from_the_command_line(as_json, name, ask, tmp_path):
         assert said.out.endswith("results/C3.1/figure.png\n\n")
 
 
-def test_reproduce_elsewhere_names_the_checkout(monkeypatch, tmp_path):
+@pytest.mark.parametrize("arguments", [[], ["3.7", "--full"], ["--list"]], ids=" ".join)
+def test_reproduce_elsewhere_names_the_checkout(arguments, monkeypatch, tmp_path):
     monkeypatch.setattr(reproduce_command, "CHECKOUT", tmp_path)
+    app = typer.Typer()
+    reproduce_command.add_reproduce(app)
     with pytest.raises(InputError, match="runs in a checkout of the repository"):
-        reproduce_command.reproduce_verb()()
+        app(arguments, standalone_mode=False)

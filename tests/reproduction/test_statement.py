@@ -82,8 +82,10 @@ def test_a_reading_without_the_measure_does_not_count():
         (["✓✓✗"], [], OPEN_CHOICE),
         (["✗✓✓"], [], OPEN_CHOICE),
         (["✓✓✓", "✗✓✗"], ["✓✓✓"], OPEN_CHOICE),
-        (["✓✓✓", "✗✗✗"], [], FAILS),
-        (["✓✓✓", "✗½✗"], [], FAILS),
+        (["✓✓✓", "✗✗✗"], [], DIRECTION),  # half of the sentence is found
+        (["✓✓✓", "✗½✗"], [], DIRECTION),
+        (["✓✓✓", "✗½✗", "✗✗✗"], [], FAILS),
+        (["✗½✗"], [], FAILS),
         (["✓✓✓"], ["–––"], UNTESTED),
     ],
 )

@@ -61,7 +61,7 @@ def _register() -> None:
     app.add_typer(reuse_command.reuse, name="reuse")
     app.add_typer(memory_commands.memory, name="memory")
     app.command("serve")(serve_command.serve)
-    app.command("reproduce")(reproduce_command.reproduce_verb())
+    reproduce_command.add_reproduce(app)
     app.command("doctor")(doctor_command.doctor)
 
 
