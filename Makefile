@@ -3,7 +3,7 @@ PYTHON ?= python3
 PYTHONS ?= $(PYTHON)
 VENV := .venv
 BIN := $(VENV)/bin
-# In the order of the folders: the claims and the processes come before many small files, so both cores end together.
+# In the order of collection, pages and processes before many small files, so that both cores end together.
 PARALLEL := -n auto --no-loadscope-reorder
 # Each worker has a core of its own; threads of linear algebra would only take it from the other workers.
 PYTEST = OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest $(PARALLEL)

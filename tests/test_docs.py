@@ -1,6 +1,5 @@
 """The pages name what exists, and their Python prints the numbers that they show."""
 
-import ast
 import json
 import re
 import subprocess
@@ -11,12 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from lifelore.action.priors.prior_file import load_prior
-
 DOCS = Path(__file__).parents[1] / "docs"
-PRIORS = (DOCS / "action_priors.md").read_text(encoding="utf-8")
 COURIER = (DOCS / "courier.md").read_text(encoding="utf-8")
-EXPLORE, LEARNT, FEATURES = re.findall(r"```python\n(.*?)```", PRIORS, flags=re.S)
 
 
 def run(command: list[str], folder: Path) -> str:
@@ -53,32 +48,6 @@ def test_modules_and_files_named_on_a_page_exist(page):
     assert not [name for name in dotted if not exists(name)]
     files = re.findall(rf"`((?:{rooms})/[\w/.]+)`", text)
     assert not [name for name in files if not (DOCS.parent / "src" / "lifelore" / name).exists()]
-
-
-@pytest.mark.slow
-def test_a_prior_is_learnt_kept_and_explored_by(tmp_path):
-    uniform, guided, report = run([sys.executable, "-W", "error", "-c", EXPLORE], tmp_path).splitlines()
-    for line in (uniform, guided):
-        earned, collisions = re.findall(r"return (\S+), (\d+) collisions", line)[0]
-        assert earned.replace("-", "−") in PRIORS
-        assert f" {collisions}" in PRIORS
-    assert report.startswith("<ActionPrior: 4 actions, 83 contexts")
-    numbers = ast.literal_eval(report[report.index("{") :])
-    assert f"{numbers['exclusion_rate']:.1%}".replace("%", " %") + " of the cells" in PRIORS
-    assert len(load_prior(tmp_path / "percepts.npz")) > 10
-
-
-@pytest.mark.slow
-def test_vectors_become_contexts(tmp_path):
-    code, key = run([sys.executable, "-W", "error", "-c", LEARNT], tmp_path).split(" ", 1)
-    assert 0 <= int(code) < 32
-    assert key.startswith("learnt contexts ")
-
-
-@pytest.mark.slow
-def test_the_moves_that_pass_matter(tmp_path):
-    alone, together = run([sys.executable, "-W", "error", "-c", FEATURES], tmp_path).splitlines()
-    assert alone == together == "('f0', 'f1', 'f2', 'f3')"
 
 
 @pytest.mark.slow

@@ -1,14 +1,19 @@
 """Pages walked in a fresh checkout: their commands and Python run as printed, in the page's order."""
 
+import ast
 import os
 import re
 import shutil
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import pytest
+
+from lifelore.action.priors.prior_file import load_prior
 
 DOCS = Path(__file__).parents[1] / "docs"
 EXPECTED = {
@@ -23,9 +28,8 @@ EXPECTED = {
         "Relation(a=3, b=4, relation='on'",
         "stands_on",
     ],
-    "start/learning": ["what the thesis reports", "; measured ", "results/C3.2/figure.png"],
+    "start/learning": ["what the thesis says", "C3.2 Q-learning with", "a small run, no evidence", "figure.png"],
     "start/personalisation": ["3 types found", "probability", "uplift"],
-    "nav2": ["11:15 dock 4.975,12.525: lore"],
     "perception": [
         "4 objects, 0 holes",
         '"contact_points"',
@@ -37,7 +41,7 @@ EXPECTED = {
     "action_priors": [
         "prior: return",
         "learnt contexts",
-        "('f0', 'f1', 'f2', 'f3')",
+        "('f0', 'f1', 'f2', 'f3')\n('f0', 'f1', 'f2', 'f3')\n",
         "3 tasks shown in 86 steps",
         '"advise": false',
         '"advise": true',
@@ -120,14 +124,25 @@ def watched(code: str, during: str, folder: Path, home: Path) -> str:
     return line
 
 
+@pytest.fixture(scope="module")
+def walked(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], tuple[str, Path]]:
+    """A function from a page to its output and the checkout it was walked in; each page is walked once."""
+
+    @cache
+    def walked(page: str) -> tuple[str, Path]:
+        folder = tmp_path_factory.mktemp("fresh")
+        shutil.copytree(DOCS.parent / "examples", folder / "checkout" / "examples")
+        return walk(page, folder / "checkout", folder / "home"), folder / "checkout"
+
+    return walked
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("page", EXPECTED)
-def test_a_page_is_walked_from_a_fresh_checkout(page, tmp_path):
+def test_a_page_is_walked_from_a_fresh_checkout(page, walked):
     if page == "perception":
         pytest.importorskip("rosbags")
-    checkout = tmp_path / "checkout"
-    shutil.copytree(DOCS.parent / "examples", checkout / "examples")
-    shown = walk(page, checkout, tmp_path / "home")
+    shown, _ = walked(page)
     print(shown)
     at = 0
     for words in EXPECTED[page]:
@@ -137,6 +152,23 @@ def test_a_page_is_walked_from_a_fresh_checkout(page, tmp_path):
 
 def test_the_gain_of_memory_is_the_one_that_the_page_shows():
     assert f"\n    {EXPECTED['start/robots'][1]}" in (DOCS / "start" / "robots.md").read_text("utf-8")
+
+
+@pytest.mark.slow
+def test_a_prior_is_learnt_kept_and_explored_by(walked):
+    shown, checkout = walked("action_priors")
+    text = (DOCS / "action_priors.md").read_text("utf-8")
+    found = re.findall(r"^(?:uniform|prior): return (\S+), (\d+) collisions", shown, flags=re.M)
+    assert len(found) == 2
+    for earned, collisions in found:
+        assert earned.replace("-", "−") in text
+        assert f" {collisions}" in text
+    (numbers,) = re.findall(r"^<ActionPrior: 4 actions, 83 contexts.*?(\{.*\})$", shown, flags=re.M)
+    excluded = ast.literal_eval(numbers)["exclusion_rate"]
+    assert f"{excluded:.1%}".replace("%", " %") + " of the cells" in text
+    assert len(load_prior(checkout / "percepts.npz")) > 10
+    (code,) = re.findall(r"^(\d+) learnt contexts ", shown, flags=re.M)
+    assert 0 <= int(code) < 32
 
 
 @pytest.mark.slow
@@ -157,8 +189,8 @@ def test_an_outcome_comes_by_the_identifier_that_the_choice_printed(tmp_path):
 def test_every_page_with_commands_is_walked():
     names = {path.relative_to(DOCS).with_suffix("").as_posix() for path in DOCS.rglob("*.md")}
     with_commands = {name for name in names if any(language == "sh" and code for language, code in blocks(name))}
-    # The shop, whose log comes with a package, the service, its pages and ROS 2 have tests of their own.
-    assert with_commands <= {*EXPECTED, "install", "index", "fashion_shop", "service", "pages", "ros2"}
+    # The shop, whose log comes with a package, the service, its pages, nav2 and ROS 2 have tests of their own.
+    assert with_commands <= {*EXPECTED, "install", "index", "fashion_shop", "service", "pages", "nav2", "ros2"}
     assert {name for name in names if name.startswith("start/")} <= set(EXPECTED)
 
 

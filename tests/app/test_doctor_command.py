@@ -66,10 +66,21 @@ def test_after_the_warm_up_verbs_compile_nothing(ask, tmp_path):
         assert compiled(folder) == before, arguments
 
 
+WARMED_BY_ONE_VERB = """
+import sys
+from lifelore.agent import compile_kernels
+from lifelore.app.command_line import run
+compile_kernels.VERBS = {"reuse": compile_kernels.VERBS["reuse"]}
+sys.exit(run(["doctor", "--warm"]))
+"""
+
+
 def test_a_warm_up_that_stores_nothing_says_so(tmp_path):
     blocked = tmp_path / "blocked"
     blocked.write_text("a file where the folder should be")
-    done = shell("doctor", "--warm", NUMBA_CACHE_DIR=str(blocked), NUMBA_DISABLE_JIT="1")
+    command = [sys.executable, "-c", WARMED_BY_ONE_VERB]
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(blocked), "NUMBA_DISABLE_JIT": "1"}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith("lifelore: no kernel could be stored in ")
     assert done.stderr.count("\n") == 1

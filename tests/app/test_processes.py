@@ -109,7 +109,7 @@ def kill_loop(start, ask, wait_for_tasks, memory: Path, kills: int, seed: int) -
 
 
 def test_kills_lose_at_most_the_task_in_progress(start, ask, wait_for_tasks, tmp_path):
-    kill_loop(start, ask, wait_for_tasks, tmp_path / "life.db", kills=20, seed=20)
+    kill_loop(start, ask, wait_for_tasks, tmp_path / "life.db", kills=8, seed=20)
 
 
 @pytest.mark.soak

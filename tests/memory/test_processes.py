@@ -74,7 +74,7 @@ def kill_loop(where: str, kills: int, longest: float, seed: int) -> None:
 # On an idle machine opening takes 10 to 20 ms and a task about 25 ms in SQLite, 100 ms in PostgreSQL, most of it
 # inside the transaction: these times end anywhere between "not yet open" and "some tasks done".
 @pytest.mark.slow
-@pytest.mark.parametrize(("back_end", "kills", "longest"), [("sqlite", 20, 0.15), ("postgresql", 5, 0.6)])
+@pytest.mark.parametrize(("back_end", "kills", "longest"), [("sqlite", 8, 0.15), ("postgresql", 4, 0.6)])
 def test_a_kill_loses_at_most_the_task_in_progress(back_end, kills, longest, new_place):
     kill_loop(new_place(back_end), kills, longest, seed=kills)
 

@@ -60,11 +60,12 @@ def _compiled() -> set[Path]:
 def _live(folder: Path) -> None:
     from lifelore.agent.live.life import live
     from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings, SensorSettings
+    from lifelore.domains.worlds import WorldSettings
 
-    for learner in ("model", "q"):
+    for learner, domain in (("model", "building"), ("q", "building"), ("q", "noise")):
         learning = LearningSettings(learner, episodes=3, max_steps=50)
-        memory = MemorySettings(str(folder / f"{learner}.db"))
-        live(LifeSettings(learning=learning, memory=memory, agent="all", tasks=2))
+        memory = MemorySettings(str(folder / f"{learner} {domain}.db"))
+        live(LifeSettings(WorldSettings(domain), learning=learning, memory=memory, agent="all", tasks=2))
     live(LifeSettings(memory=MemorySettings(str(folder / "lidar.db")), tasks=1, sensor=SensorSettings("lidar")))
 
 

@@ -190,7 +190,7 @@ def assert_stored(memory, acknowledged) -> None:
 
 
 def test_kills_under_load_lose_nothing_acknowledged(started, study, tmp_path):
-    kill_loop(started, study, tmp_path / "lifelore.db", kills=4, seed=4)
+    kill_loop(started, study, tmp_path / "lifelore.db", kills=2, seed=4)
 
 
 @pytest.mark.soak

@@ -4,6 +4,7 @@ import heapq
 import os
 import subprocess
 import sys
+from functools import cache
 
 import numpy as np
 import pytest
@@ -48,6 +49,7 @@ NORTH, SOUTH, EAST, WEST = range(4)
 NO_SLIP, NO_PUSH = 0.999, (0.0, 0.0)
 
 
+@cache
 def places(kind):
     """Free places of a ball, some of them touching almost."""
     free = np.argwhere(FIELD.clearance > FIELD.radius[kind])

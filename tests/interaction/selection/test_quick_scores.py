@@ -119,7 +119,8 @@ def test_knowledge_gradients_in_float32_choose_as_exact_ones(seed, mass, candida
 
 
 @pytest.mark.slow
-def test_choices_of_ten_thousand_random_beliefs_at_the_size_of_the_reserve():
+@pytest.mark.parametrize("n_beliefs", [2_000, pytest.param(10_000, marks=pytest.mark.soak)])
+def test_choices_of_random_beliefs_at_the_size_of_the_reserve(n_beliefs):
     random = np.random.default_rng(3)
     means = random.normal(scale=60, size=(40, 40))
     library = PolicyLibrary.from_samples(means[..., None] + 20 * random.standard_normal((40, 40, 10)))
@@ -127,7 +128,7 @@ def test_choices_of_ten_thousand_random_beliefs_at_the_size_of_the_reserve():
     assert signal_rows.signal_rows(table) is not None
     gradient = KnowledgeGradient(n_bins=24)
     rules = [BeliefEntropy(n_bins=24), InformationDirected(n_bins=24)]
-    for number in range(10_000):
+    for number in range(n_beliefs):
         belief = beliefs(random, 40)
         for rule in rules:
             exact = rule.scores(library, belief[None])[0]
@@ -287,12 +288,13 @@ def test_means_of_any_size_and_beliefs_near_zero(single, scale):
 
 
 @pytest.mark.slow
-def test_a_hundred_thousand_beliefs_give_numbers(single):
+@pytest.mark.parametrize("n_beliefs", [10_000, pytest.param(100_000, marks=pytest.mark.soak)])
+def test_random_beliefs_give_numbers(n_beliefs, single):
     random = np.random.default_rng(6)
     mean, table = learnt(random, 12, 6, 5, np.float32)
     library = library_of(mean, table)
     rules = [BeliefEntropy(mass=1.0), InformationDirected(), KnowledgeGradient()]
-    for number in range(100_000):
+    for number in range(n_beliefs):
         belief = beliefs(random, 12)
         assert np.isfinite(rules[number % 3].scores(library, belief, episodes_left=3)).all()
 
