@@ -48,7 +48,7 @@ demo: setup ## The main job on embedded defaults; pictures in out/demo
 	$(BIN)/lifelore live --memory out/demo/lifelore.db --out out/demo
 
 test: setup-test ## The tests and the examples in docstrings, on all cores
-	$(PYTEST) -m "not soak" tests src/lifelore reproduction/engine
+	$(PYTEST) -m "not soak" tests reproduction/engine src/lifelore
 
 test-fast: setup-test ## The quick part of the tests: no claims, processes or pictures
 	$(PYTEST) -m "not soak and not slow"
