@@ -25,7 +25,7 @@ PICTURES = {
     "4.2": "reuse_curves", "4.13": "reuse_interaction",
 }  # fmt: skip
 """Drawings of the thesis that show no measurement, by figure number: files of ``docs/pictures``."""
-FIRST = "Generated from the stored results by `make reproduction-pages`; do not edit it by hand."
+FIRST = "Generated from the stored results by `make reproduction-pages`."
 
 
 def read_results(results: str | Path = RESULTS) -> list[dict]:
@@ -101,7 +101,10 @@ def _others(results: Sequence[Mapping]) -> Iterator[str]:
     """A line of the ideas of chapter 5, and one of our own claims."""
     for chapter, words in (("5", "Ideas that the thesis proposes"), ("own", "Our own")):
         of = [result for result in results if chapter_of(result["claim"]) == chapter]
-        links = [f"[{one['claim']}]({_file(chapter)}#{anchor(one['claim'])}) {claim_marks(one)}" for one in of]
+        links = [
+            f"[{claim_of(one['claim']).title}]({_file(chapter)}#{anchor(one['claim'])}) {claim_marks(one)}"
+            for one in of
+        ]
         if links:
             yield f"{words}: {', '.join(links)}.\n"
 
