@@ -16,7 +16,7 @@ Places = Callable[[str], str]
 SLOW = ("reproduction", "benchmarks", "app", "figures")
 """Folders whose tests run claims and processes or draw pictures: `make test-fast` leaves them out."""
 QUICK = (
-    "reproduction/test_predicate.py",
+    "reproduction/test_statement.py",
     "benchmarks/test_rounds.py",
     "app/test_console.py",
     "figures/test_heat_grid.py",
