@@ -28,7 +28,12 @@ EXPECTED = {
         "Relation(a=3, b=4, relation='on'",
         "stands_on",
     ],
-    "start/learning": ["what the thesis says", "C3.2 State prior on the lattice", "a small run, no evidence", "figure.png"],
+    "start/learning": [
+        "what the thesis says",
+        "C3.2 State prior on the lattice",
+        "a small run, no evidence",
+        "figure.png",
+    ],
     "start/personalisation": ["3 types found", "probability", "uplift"],
     "perception": [
         "4 objects, 0 holes",
