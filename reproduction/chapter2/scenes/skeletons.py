@@ -5,16 +5,13 @@ table far below it). The thesis's pictures show no such contacts, and no table: 
 (§2.3.2), so the ground's contacts take part only where `ground` is set.
 """
 
-import hashlib
 from collections.abc import Collection, Iterator
 from functools import cache
-from pathlib import Path
 from typing import NamedTuple
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON, PairLabel
 from lifelore.perception.perceived_scene import perceived_scene
-from lifelore.perception.relations import relation_model_file
 from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene import Scene
 from reproduction.chapter2.scenes.perturbation import only
@@ -23,14 +20,6 @@ from reproduction.chapter2.scenes.real_scenes import real_scenes
 NEAR = (ON, BOTH, ADJACENT, NONE)
 RELATED = (ON, BOTH, ADJACENT)
 _model = cache(shipped_model)
-
-
-@cache
-def shipped_model_digest() -> str:
-    """Identifies the model that ships with the package."""
-    folder = Path(relation_model_file.__file__).with_name("models")
-    content = b"".join(path.read_bytes() for path in sorted(folder.glob("*.npz")))
-    return hashlib.sha256(content).hexdigest()[:16]
 
 
 def perceived(cloud: LabelledCloud) -> Scene:
