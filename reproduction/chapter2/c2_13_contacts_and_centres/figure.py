@@ -20,7 +20,7 @@ def draw(result: Mapping) -> Figure:
     with house_style():
         axes = below.subplots()
         draw_interval_bars(
-            axes, list(NAMES.values()), bars, colours=COLOURS, words="{:.0f}".format, label="told right (%)"
+            axes, list(NAMES.values()), bars, colours=COLOURS, words="{:.0f}".format, label="classified right (%)"
         )
         axes.set(xlim=(0, 112), xticks=range(0, 101, 20))
         axes.grid(axis="x", color=LIGHT)
