@@ -1,4 +1,4 @@
-"""Beliefs over types in log space: the prior, Bayes' rule for any number of users, entropy, expected utility.
+"""Beliefs over types in log space: the prior, Bayes' rule for any number of users, entropy.
 
     β'(τ) = F(σ | τ, π) β(τ) / Σ F(σ | τ', π) β(τ')                                            Eq. 4.1, 4.2
 
@@ -6,19 +6,15 @@ A belief of 10⁻⁴⁰⁰ is still a number in log space and may rise again. A 
 explains leaves the belief as it is; its log evidence is minus infinity. Thesis: §4.4.3.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.compiled.compiler_start import kernel_pays
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.bayes_rule import bayes_rule
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
-ROW_COST = 10
-"""Time of `bayes_rule` for each type, in the numbers that `kernel_pays` counts."""
 SUM_TOLERANCE = 1e-9
 """Largest distance from 1 of the sum of a caller's belief."""
 
@@ -26,15 +22,15 @@ SUM_TOLERANCE = 1e-9
 class Updated(NamedTuple):
     """A belief after a signal.
 
-    log_belief : (..., n_types) float64, normalised
-    log_evidence : (...) float64, log Σ F β; minus infinity where no type explains the signal
+    log_belief : (..., n_types) float, normalised
+    log_evidence : (...) float, log Σ F β; minus infinity where no type explains the signal
     """
 
     log_belief: Array
     log_evidence: Array
 
 
-def log_prior(prior: ArrayLike) -> Array:
+def log_prior(prior: ArrayLike) -> NDArray[np.float64]:
     """Logarithms of an initial belief, normalised.
 
     Parameters
@@ -85,25 +81,24 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
     >>> np.exp(after.log_belief).round(3).tolist(), float(np.exp(after.log_evidence).round(3))
     ([0.25, 0.75], 0.2)
     """
-    beliefs, likelihoods = np.broadcast_arrays(
-        np.asarray(log_belief, np.float64), np.asarray(log_likelihood, np.float64)
-    )
-    shape = beliefs.shape
-    result = np.array(beliefs.reshape(-1, shape[-1]), order="C")
-    rows = np.ascontiguousarray(likelihoods.reshape(result.shape))
-    evidence = np.empty(len(result))
-    if kernel_pays(ROW_COST * result.size):
-        from lifelore.interaction.beliefs.belief_kernels import bayes_rows
-
-        bayes_rows(result, rows, evidence)
-    else:
-        for number, row in enumerate(rows):
-            result[number], evidence[number] = bayes_rule(result[number], row)
-    if np.isnan(evidence).any():
-        raise InputError(
-            "log_likelihood must be numbers below infinity (minus infinity is allowed), got NaN or infinity"
-        )
-    return Updated(result.reshape(shape), evidence.reshape(shape[:-1]))
+    log_belief = np.asarray(log_belief)
+    joint = log_belief + log_likelihood
+    top = joint.max(axis=-1, keepdims=True)
+    explained = np.isfinite(top)
+    if not explained.all():
+        if not (top < np.inf).all():
+            raise InputError(
+                "log_likelihood must be numbers below infinity (minus infinity is allowed), got NaN or infinity"
+            )
+        # A signal that no type explains is as likely under all.
+        joint, top = np.where(explained, joint, log_belief), np.where(explained, top, 0.0)
+    # The largest is taken off first: beside a large number the logarithm of the sum would be rounded away.
+    joint -= top
+    log_total = np.log(np.exp(joint).sum(axis=-1, keepdims=True))
+    log_evidence = (top + log_total)[..., 0]
+    if not explained.all():
+        log_evidence = np.where(explained[..., 0], log_evidence, -np.inf)
+    return Updated(joint - log_total, log_evidence)
 
 
 def entropy(belief: ArrayLike) -> Array:

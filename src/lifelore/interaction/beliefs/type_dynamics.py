@@ -5,17 +5,16 @@ With a hazard h, a new type is drawn from the prior with probability h before ea
 seven. The default is a hazard of `DEFAULT_HAZARD`. The thesis assumes static types, h = 0.
 """
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, field
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.belief import SUM_TOLERANCE, log_prior
-from lifelore.interaction.beliefs.hazard import HazardTerms
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 DEFAULT_HAZARD = 0.002
 """Default probability per episode of a new type; a larger one forgets sooner what a known user showed."""
 ROWS_AT_ONCE = 1 << 20
@@ -44,6 +43,7 @@ class TypeDynamics:
     kind: Literal["static", "hazard", "transitions"] = "static"
     rate: float = 0.0
     law: Array | None = None
+    _known: dict[Any, "_HazardTerms"] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         shape = () if self.law is None else np.shape(self.law)
@@ -100,15 +100,16 @@ class TypeDynamics:
         """Number of types that the dynamics are for; None where it does not matter."""
         return None if self.law is None else self.law.shape[-1]
 
-    def hazard_terms(self, dtype: str = "f8") -> HazardTerms | None:
-        """The terms of `hazard_rule` and its kernels; None where the dynamics are no hazard above 0."""
-        if self.kind != "hazard" or not self.rate:
-            return None
-        assert self.law is not None
-        return HazardTerms.of(self.rate, self.law, dtype)
+    def step(self, log_belief: Array, users: Any = None, outcome: Any = None) -> Array:
+        """The belief before the next episode, (..., n_types) to the same, normalised.
 
-    def step(self, log_belief: Array) -> Array:
-        """The belief before the next episode, (..., n_types) to the same, normalised."""
+        Parameters
+        ----------
+        users : int or (k,) int64, optional
+            Whose beliefs these are, and
+        outcome : optional
+            how the episode ended; for dynamics that learn. These do not.
+        """
         if self.kind == "static":
             return log_belief
         stepped = self._hazarded(log_belief) if self.kind == "hazard" else self._moved(log_belief)
@@ -116,22 +117,33 @@ class TypeDynamics:
         return np.minimum(stepped, 0.0)
 
     def changed_share(self, log_belief: Array) -> Array | None:
-        """P(the type has just changed | it is now this type) after a `step`, (n_types,); None where it never does.
+        """P(the type has just changed | it is now this type) after a `step`, (..., n_types); None where it never does.
 
         For transitions, whose changes the belief follows by itself, None too.
         """
         if self.kind != "hazard" or not self.rate:
             return None
-        assert self.law is not None
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.exp(np.log(self.rate) + np.log(self.law) - log_belief)
-        return np.clip(np.nan_to_num(share), 0.0, 1.0)
+        with np.errstate(invalid="ignore"):
+            share = np.exp(self._terms(log_belief.dtype).log_anew - log_belief)
+        return np.fmin(share, 1.0)
 
     def _hazarded(self, log_belief: Array) -> Array:
-        assert self.law is not None
-        with np.errstate(divide="ignore"):
-            stays, anew = np.log1p(-self.rate), np.log(self.rate) + np.log(self.law)
-        return np.logaddexp(log_belief + stays, anew)
+        terms = self._terms(log_belief.dtype)
+        if not terms.small.any():
+            return np.log(np.exp(log_belief) * terms.stay + terms.anew)
+        return np.logaddexp(log_belief + np.log(terms.stay), terms.log_anew)
+
+    def _terms(self, dtype: Any) -> "_HazardTerms":
+        """The numbers of a hazard's step in the precision of the beliefs, computed once."""
+        if dtype not in self._known:
+            assert self.law is not None
+            anew = self.rate * self.law
+            with np.errstate(divide="ignore"):
+                log_anew = np.log(anew)
+            small = anew < np.finfo(dtype).tiny
+            stay = np.asarray(1 - self.rate, dtype)
+            self._known[dtype] = _HazardTerms(stay, anew.astype(dtype), log_anew.astype(dtype), small)
+        return self._known[dtype]
 
     def _moved(self, log_belief: Array) -> Array:
         assert self.law is not None
@@ -142,6 +154,15 @@ class TypeDynamics:
         block = max(1, ROWS_AT_ONCE // n_types**2)
         moved = [_log_sums(rows[at : at + block, :, None] + log_law) for at in range(0, len(rows), block)]
         return np.concatenate(moved).reshape(log_belief.shape)
+
+
+class _HazardTerms(NamedTuple):
+    """1 − h; h G₀ and its logarithm, (n_types,); and where h G₀ is too small for a number: there, logs are added."""
+
+    stay: Array
+    anew: Array
+    log_anew: Array
+    small: NDArray[np.bool_]
 
 
 def _log_sums(terms: Array) -> Array:

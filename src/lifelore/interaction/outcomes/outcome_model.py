@@ -23,7 +23,7 @@ LEAST_DEVIATION = 1e-50
 
 
 class OutcomeModel(Protocol):
-    """P(U | type, policy) for every pair; (T, P) is (n_types, n_policies)."""
+    """P(U | type, policy) for every pair: a `Prediction` of the next outcome that also fits, learns and is stored."""
 
     @property
     def n_types(self) -> int: ...
@@ -33,16 +33,16 @@ class OutcomeModel(Protocol):
 
     @property
     def mean(self) -> Array:
-        """E[U | type, policy], (T, P)."""
+        """E[U | type, policy], (n_types, n_policies)."""
         ...
 
     @property
     def deviation(self) -> Array:
-        """Standard deviation of U, (T, P)."""
+        """Standard deviation of U, (n_types, n_policies)."""
         ...
 
     def log_density(self, policy: int, value: float) -> Array:
-        """Log density (log probability, where outcomes are discrete) of `value` per type, (T,); -inf allowed.
+        """Log density (log probability, where outcomes are discrete) of `value` per type, (n_types,); -inf allowed.
 
         Raises
         ------
@@ -53,35 +53,12 @@ class OutcomeModel(Protocol):
         """
         ...
 
-    def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
-        """`log_density` of many outcomes, (n,) and (n,) to (n, T); without checks."""
-        ...
-
-    def batch_likelihood(self) -> Any:
-        """The outcome's likelihood as policy reuse takes it for many users, see `batch_likelihood`."""
-        ...
-
-    def density(self, value: ArrayLike) -> Array:
-        """Density of `value`, a number or a batch (...,), for every pair: (..., T, P)."""
-        ...
-
-    def exceedance(self, threshold: ArrayLike) -> Array:
-        """P(U > threshold) for every pair; a batch (...,) of thresholds gives (..., T, P)."""
-        ...
-
-    def expected_excess(self, threshold: ArrayLike) -> Array:
-        """E[max(U - threshold, 0)] for every pair; a batch (...,) of thresholds gives (..., T, P)."""
-        ...
-
-    def expected_mean_excess(self, threshold: ArrayLike) -> Array:
-        """E[max(m - threshold, 0)] of the mean pay m of every pair under what is unknown about it, (..., T, P).
-
-        A model that takes its means as exact returns max(mean - threshold, 0).
-        """
+    def log_densities(self, policies: Any, values: Any) -> Array:
+        """`log_density` of many outcomes, (...) and (...) to (..., n_types); without checks."""
         ...
 
     def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (T, n)."""
+        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
         ...
 
     def bounds(self) -> tuple[float, float]:
@@ -101,23 +78,16 @@ class OutcomeModel(Protocol):
         ...
 
     def with_type(self, samples: ArrayLike) -> Self:
-        """A new model with an additional type, from `samples` (P, n), NaN where missing."""
+        """A new model with an additional type, from `samples` (n_policies, n), NaN where missing."""
         ...
 
     def with_policy(self, samples: ArrayLike) -> Self:
-        """A new model with an additional policy, from `samples` (T, n), NaN where missing."""
+        """A new model with an additional policy, from `samples` (n_types, n), NaN where missing."""
         ...
 
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
         """A new model of some types and policies, in the order given; None means all."""
         ...
-
-    def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """The whole state of the model as arrays; `from_arrays` restores every bit."""
-        ...
-
-    @classmethod
-    def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self: ...
 
 
 class OutcomeRows(NamedTuple):
@@ -251,6 +221,19 @@ def refuse_outcome(policy: Any, value: Any, n_policies: int) -> NoReturn:
     )
 
 
+def finite_outcomes(values: Any) -> Any:
+    """Outcomes, a number or (k,), as float64; InputError where one is not finite."""
+    try:
+        found = np.asarray(values, np.float64)
+    except (TypeError, ValueError):
+        found = np.asarray(np.nan)
+    if not (np.abs(found) <= LARGEST).all():
+        raise InputError(
+            f"value must be a finite number of at most {LARGEST:g}, got {values!r:.80}; leave out what has no outcome"
+        )
+    return found
+
+
 def check_policy(policy: Any, n_policies: int) -> None:
     """Raise NotFoundError for a policy outside 0 … n_policies - 1."""
     if not isinstance(policy, int | np.integer) or not 0 <= policy < n_policies:
@@ -277,14 +260,3 @@ def is_outcome(policy: Any, value: Any, n_policies: int) -> bool:
         return known and isinstance(policy, int | np.integer)
     except (TypeError, ValueError):
         return False
-
-
-def excess_of_means(mean: Array, threshold: ArrayLike) -> Array:
-    """max(mean - threshold, 0) of exact means (T, P), (..., T, P) for a batch (...,) of thresholds."""
-    excess = mean - over_pairs(threshold)
-    return np.maximum(excess, 0.0, out=excess)
-
-
-def over_pairs(values: ArrayLike) -> Any:
-    """A number as it is, a batch (...,) as (..., 1, 1), which broadcasts against a (T, P) array."""
-    return values if isinstance(values, float | int) else np.asarray(values, np.float64)[..., None, None]

@@ -89,9 +89,9 @@ def relative_evidence(evidence: Sequence[Evidence], n_types: int) -> Array:
 def two_best(scores: Array, selected: int) -> tuple[float, int | None, float | None]:
     """Score of the selected policy, and the best other policy with its score; None where there is no other.
 
-    Policies of score NaN were not available.
+    Policies of score minus infinity were not available.
     """
-    others = np.flatnonzero(~np.isnan(scores))
+    others = np.flatnonzero(scores > -np.inf)
     others = others[others != selected]
     if not others.size:
         return float(scores[selected]), None, None

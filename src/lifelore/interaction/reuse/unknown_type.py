@@ -68,21 +68,19 @@ class UnknownType:
         self._laws = signal_laws(library)
         self._broad: BroadLaw = broad_law(library, self._laws)
         self._shown: dict[int, NDArray[np.float64]] = {}
-        self._task = library.for_task(closest=True) if models == "uncertain" else None
-        self._types = ReuseAlgorithm(self._task or library, dynamics)
-        self._log_belief: NDArray[np.float64] = self._types.start(prior)
+        self._types = closest_types(library, prior, dynamics, models)
 
-    def add(self, policy: int, signal: Any) -> None:
-        """Take in the signal of a policy; errors as for an agent's `update`."""
-        log_evidence = self._types.update_row(self._log_belief, policy, signal)[1]
+    def observe(self, policy: int, signal: Any) -> None:
+        """Take in the signal of a policy; errors as for an agent's `observe`."""
+        log_evidence = self._types.observe(0, policy, signal).log_evidence
         number, policies = self._laws.numbers([signal]), np.array([policy])
         shown = self._shown.setdefault(policy, np.zeros((1, self._broad.width)))
-        self.log_odds += float(self._broad.log_density(shown, policies, number)[0]) + surprise_of(log_evidence)
+        self.log_odds += float(self._broad.log_density(shown, policies, number)[0]) + surprise_of(float(log_evidence))
         self._broad.learn(shown, number)
 
-    def skip(self) -> None:
-        """End an episode whose signal is missing."""
-        self._types.step_row(self._log_belief)
+    def end_episode(self) -> None:
+        """End an episode."""
+        self._types.end_episode(0)
 
     @property
     def probability(self) -> float:
@@ -92,10 +90,9 @@ class UnknownType:
 
     def state(self) -> dict[str, NDArray[Any]]:
         """What the task has shown: ``numbers`` (mass, log odds), ``log_belief``, ``policies`` (m,), ``shown``."""
-        state = {} if self._task is None else self._task.state()
-        return {f"task.{name}": array for name, array in state.items()} | {
+        return {f"task.{name}": array for name, array in self._types.state(0).items()} | {
             "numbers": np.array([self.mass, self.log_odds]),
-            "log_belief": self._log_belief.copy(),
+            "log_belief": self._types.log_belief[0].copy(),
             "policies": np.array(list(self._shown), np.int64),
             "shown": np.array(list(self._shown.values())).reshape(-1, self._broad.width),
         }
@@ -109,19 +106,22 @@ class UnknownType:
             mass, log_odds = np.asarray(state["numbers"], np.float64).tolist()
             found = cls(library, mass, None, dynamics, models)
             policies, shown = np.asarray(state["policies"], np.int64), np.array(state["shown"], np.float64)
-            found._log_belief[:] = state["log_belief"]
+            parts = {name.removeprefix("task."): array for name, array in state.items() if name.startswith("task.")}
+            found._types.restore(0, state["log_belief"], parts)
         except (KeyError, ValueError, TypeError) as error:
             raise InputError(f"this is no evidence of an unknown type of this library: {error}") from None
-        numbers = [log_odds, *shown.ravel(), np.exp(found._log_belief).sum()]
+        numbers = [log_odds, *shown.ravel()]
         if shown.shape != (len(policies), found._broad.width) or not np.isfinite(numbers).all():
             raise InputError("the evidence of an unknown type is of another library")
         if policies.size and not 0 <= policies.min() <= policies.max() < library.n_policies:
             raise InputError(f"the evidence of an unknown type must be of policies 0 to {library.n_policies - 1}")
-        if found._task is not None:
-            parts = {
-                name.removeprefix("task."): array for name, array in state.items() if name.startswith("task.")
-            }
-            found._task.restore(parts)
         found.log_odds = log_odds
         found._shown = {policy: row[None].copy() for policy, row in zip(policies.tolist(), shown, strict=True)}
         return found
+
+
+def closest_types(library: PolicyLibrary, prior: Any, dynamics: Any, models: Any) -> ReuseAlgorithm:
+    """Algorithm 7 for a single user who is as close to a type as the spread of the users of a type allows."""
+    usual = ReuseAlgorithm(library, prior=prior, dynamics=dynamics, models=models)
+    least = usual.signals.law.spread.least
+    return ReuseAlgorithm(library, prior=prior, dynamics=dynamics, models=models, spread=least)

@@ -11,16 +11,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.finite_signals.signal_bins import check_bins, joined_bins
+from lifelore.interaction.finite_signals.signal_bins import joined_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, TableLikelihood
-from lifelore.interaction.outcomes.dirichlet import spread_of_counts
+from lifelore.interaction.outcomes.counted_law import CountedLaw, spread_of_counts
+from lifelore.interaction.outcomes.law import FixedLaw, Models
 from lifelore.interaction.outcomes.log_probability import checked_distributions, log_of
 from lifelore.interaction.outcomes.outcome_model import check_policy, rows_of_samples
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
 from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
 from lifelore.interaction.outcomes.spread import Spread
-from lifelore.interaction.signals.task_categories import TaskCategories
 
 Array = NDArray[np.float64]
 
@@ -135,33 +134,32 @@ class CategorySignal:
             check_policy(policy, self.n_policies)
         return place
 
-    def for_task(self, closest: bool = False) -> TaskCategories | None:
-        """A model of one task, which its own signals change; None where the probabilities are exact.
+    def places_of(self, signals: Any) -> Any:
+        """The numbers of a category, or of categories (k,); InputError where there is no such category."""
+        if isinstance(signals, np.ndarray) and self.categories is None and signals.dtype.kind in "iu":
+            if signals.size and not 0 <= signals.min() <= signals.max() < self.n_categories:
+                raise InputError(f"signals must be category numbers 0 to {self.n_categories - 1}")
+            return signals.astype(np.int64, copy=False)
+        if isinstance(signals, np.ndarray | list) and np.ndim(signals):
+            return np.array([self.place_of(0, signal) for signal in signals], np.int64)
+        return self.place_of(0, signals)
 
-        With `closest` the task is as close to its type as the spread allows.
-        """
-        if self.totals is None:
-            return None
+    def law(self, models: Models = "uncertain", *, spread: Spread | None = None, dtype: str = "f8") -> Any:
+        """The law of categories given what users have shown; a fixed law where all is exact, or taken for the truth."""
+        if models == "plug-in" or self.totals is None:
+            return FixedLaw(self, self.n_types, self.log_likelihoods, self.places_of)
+        counts = self.probs * self.totals[:, :, None]
         if self._spread is None:
-            counts = np.ascontiguousarray((self.probs * self.totals[:, :, None]).transpose(1, 0, 2))
             self._spread = spread_of_counts(counts, 0.0)
-        return TaskCategories(self, self._spread.least if closest else self._spread)
+        return CountedLaw(counts, spread or self._spread, self.places_of, dtype=dtype)
 
-    def log_likelihoods(self, policies: NDArray[np.int64], signals: NDArray[Any]) -> Array:
-        """Log probabilities of many category numbers, (n,) and (n,) to (n, n_types); without checks."""
-        return self._log[policies, np.asarray(signals, np.int64)]
-
-    def batch_likelihood(self) -> BatchLikelihood:
-        """The table of log probabilities; signals of a batch are category numbers, not names."""
-        return TableLikelihood(self._log)
+    def log_likelihoods(self, policies: Any, signals: Any) -> Array:
+        """Log probabilities of many category numbers, (...) and (...) to (..., n_types); without checks."""
+        return self._log[policies, signals]
 
     def table(self, n_bins: int = 8) -> SignalTable:
         """All categories where they are at most `n_bins`; otherwise neighbours are joined, as for outcomes."""
-        check_bins(n_bins)
-        by_policy = self.probs.transpose(1, 0, 2)
-        if self.n_categories <= n_bins:
-            return SignalTable(by_policy)
-        return SignalTable(np.stack([joined_bins(rows, n_bins) for rows in by_policy]))
+        return joined_table(self.probs, n_bins)
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
         """Random category numbers of a pair."""

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood
+from lifelore.interaction.outcomes.law import Models
 from lifelore.interaction.outcomes.outcome_model import rows_of_samples
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
 from lifelore.interaction.signals.category_signal import CategorySignal
@@ -145,13 +145,9 @@ class OrderedNormalSignal:
         """Log probability of the category per type, (n_types,); errors as `CategorySignal.log_likelihood`."""
         return self._bands.log_likelihood(policy, signal)
 
-    def log_likelihoods(self, policies: NDArray[np.int64], signals: NDArray[Any]) -> Array:
-        """Log probabilities of many category numbers, (n,) and (n,) to (n, n_types); without checks."""
-        return self._bands.log_likelihoods(policies, signals)
-
-    def batch_likelihood(self) -> BatchLikelihood:
-        """The table of log probabilities; signals of a batch are category numbers, not names."""
-        return self._bands.batch_likelihood()
+    def law(self, models: Models = "uncertain", **_: Any) -> Any:
+        """The fixed law of the categories: what the runs leave open of the normals does not count."""
+        return self._bands.law("plug-in")
 
     def table(self, n_bins: int = 8) -> SignalTable:
         """All categories where they are at most `n_bins`; otherwise neighbours are joined."""

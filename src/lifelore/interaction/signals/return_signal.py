@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
+from lifelore.interaction.outcomes.law import FixedLaw, Models, law_of
 from lifelore.interaction.outcomes.outcome_model import OutcomeModel
 
 Array = NDArray[np.float64]
@@ -50,15 +50,11 @@ class ReturnSignal:
         """
         return self.outcomes.log_density(policy, signal)
 
-    def log_likelihoods(self, policies: NDArray[np.int64], signals: NDArray[Any]) -> Array:
-        """Log densities of many returns, (n,) and (n,) to (n, n_types); without checks."""
-        return self.outcomes.log_densities(policies, signals)
-
-    def batch_likelihood(self) -> BatchLikelihood:
-        """The outcomes' likelihood; for a subclass with its own `log_likelihood`, calls of the subclass."""
+    def law(self, models: Models = "uncertain", **settings: Any) -> Any:
+        """The outcomes' law; for a subclass with a `log_likelihood` of its own, the fixed law of that."""
         if type(self).log_likelihood is not ReturnSignal.log_likelihood:
-            return CalledLikelihood(self.log_likelihoods, finite_signals)
-        return self.outcomes.batch_likelihood()
+            return FixedLaw(self, self.n_types)
+        return law_of(self.outcomes, self.n_types, models, **settings)
 
     def table(self, n_bins: int = 8) -> SignalTable:
         """The return in bins."""

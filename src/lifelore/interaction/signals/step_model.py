@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.law import FixedLaw, Models
 from lifelore.interaction.outcomes.log_probability import checked_distributions, log_of, with_pseudo_counts
 from lifelore.interaction.outcomes.outcome_model import check_policy
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
 from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
-from lifelore.interaction.signals.step_checks import check_steps
-from lifelore.interaction.signals.task_steps import TaskSteps
+from lifelore.interaction.signals.step_law import StepLaw
 
 Array = NDArray[np.float64]
 
@@ -54,28 +54,28 @@ class StepModel:
         table = checked_distributions(probs[:, None] if self.shared else probs, "probs", _AXES)
         self.n_policies = n_policies if self.shared else table.shape[1]
         # Types last: a step reads a row.
-        self._log = log_of(np.ascontiguousarray(np.moveaxis(table, 0, -1)))
+        self.log_table = log_of(np.ascontiguousarray(np.moveaxis(table, 0, -1)))
         self.totals = None if count is None else self._weights(count)
 
     @property
     def n_types(self) -> int:
-        return self._log.shape[-1]
+        return self.log_table.shape[-1]
 
     @property
     def shape(self) -> tuple[int, int, int]:
         """(n_states, n_actions, n_outcomes)."""
-        return self._log.shape[1:4]
+        return self.log_table.shape[1:4]
 
     @property
     def probs(self) -> Array:
         """P(outcome | state, action; type[, policy]), axes as given; computed at each call."""
-        table = np.moveaxis(np.exp(self._log), -1, 0)
+        table = np.moveaxis(np.exp(self.log_table), -1, 0)
         return table[:, 0] if self.shared else table
 
     @property
     def n_entries(self) -> int:
         """Number of stored probabilities."""
-        return self._log.size
+        return self.log_table.size
 
     def log_sum(self, policy: int, steps: NDArray[np.int64]) -> Array:
         """Log likelihood per type, (n_types,), of steps (n, 3): state, action, outcome; 0 for no steps.
@@ -90,22 +90,21 @@ class StepModel:
         if self.n_policies is not None:
             check_policy(policy, self.n_policies)
         check_steps(steps, self.shape)
-        return self._log[0 if self.shared else policy, steps[:, 0], steps[:, 1], steps[:, 2]].sum(axis=0)
-
-    def log_probs(self, place: tuple[int, int, int]) -> Array:
-        """Log probabilities of the outcomes of a table, state and action, (n_outcomes, n_types)."""
-        return self._log[place]
+        return self.log_table[0 if self.shared else policy, steps[:, 0], steps[:, 1], steps[:, 2]].sum(axis=0)
 
     def steps_of(self, signal: Any) -> NDArray[np.int64]:
         """A signal as steps (n, 3): state, action, number of the outcome."""
         raise NotImplementedError
 
-    def for_task(self, closest: bool = False) -> TaskSteps | None:
-        """A model of one task, which its own steps change; None where the probabilities are exact.
+    def checked_steps(self, signal: Any) -> NDArray[np.int64]:
+        """`steps_of` a signal; InputError for a step outside the table."""
+        steps = self.steps_of(signal)
+        check_steps(steps, self.shape)
+        return steps
 
-        Steps have no spread, so `closest` makes no difference.
-        """
-        return None if self.totals is None else TaskSteps(self)
+    def law(self, models: Models = "uncertain", **_: Any) -> Any:
+        """The law of episodes given what users have shown; a fixed law where all is exact, or taken for the truth."""
+        return StepLaw(self) if models == "uncertain" and self.totals is not None else FixedLaw(self, self.n_types)
 
     def taken(
         self, types: Sequence[int] | None, policies: Sequence[int] | None
@@ -127,14 +126,14 @@ class StepModel:
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """The logarithms, and the number of policies that share them."""
         totals = {} if self.totals is None else {"totals": self.totals}
-        return {"log": self._log, "shared": np.array([self.shared, self.n_policies or 0]), **totals}
+        return {"log": self.log_table, "shared": np.array([self.shared, self.n_policies or 0]), **totals}
 
     def _restore(self, arrays: dict[str, NDArray[Any]]) -> Self:
         """Restore the arrays of `to_arrays`, bit for bit."""
         log, (shared, n_policies) = np.array(arrays["log"], np.float64), arrays["shared"].tolist()
         if log.ndim != 5 or not log.size or not (log <= _ABOVE).all() or (shared and len(log) != 1):
             raise InputError("log must be logarithms of probabilities by policy, state, action, outcome, type")
-        self._log, self.shared, self.n_policies = log, bool(shared), int(n_policies) or None
+        self.log_table, self.shared, self.n_policies = log, bool(shared), int(n_policies) or None
         self.totals = np.array(arrays["totals"], np.float64) if "totals" in arrays else None
         if self.totals is not None and self.totals.shape != (*log.shape[:3], log.shape[4]):
             raise InputError("totals must be the steps behind each row, by policy, state, action, type")
@@ -143,11 +142,18 @@ class StepModel:
     def _weights(self, count: ArrayLike) -> Array:
         found = np.asarray(count, np.float64)
         found = np.moveaxis(found[:, None] if self.shared else found, 0, -1)
-        if found.shape != (*self._log.shape[:3], self.n_types):
+        if found.shape != (*self.log_table.shape[:3], self.n_types):
             raise InputError(f"count must have the shape of probs without its last axis, got {found.shape}")
         if not ((found > 0) & np.isfinite(found)).all():
             raise InputError("count must be positive and finite; omit it where the probabilities are exact")
         return np.ascontiguousarray(found)
+
+
+def check_steps(steps: NDArray[np.int64], shape: tuple[int, int, int]) -> None:
+    """Raise InputError for steps (n, 3) outside (n_states, n_actions, n_outcomes)."""
+    if len(steps) and not ((steps >= 0).all() and (steps < shape).all()):
+        bad = steps[((steps < 0) | (steps >= shape)).any(axis=1)][0]
+        raise InputError(f"each step must be below {shape} (states, actions, outcomes), got {tuple(bad.tolist())}")
 
 
 def whole_numbers(steps: ArrayLike, what: str) -> NDArray[np.int64]:

@@ -1,0 +1,354 @@
+"""The law of numbers: normal outcomes whose mean and variance are known from a finite number of runs.
+
+    given a type, mean and variance of a pair have a normal-inverse-χ² law: location m₀, variance v₀ with ν₀
+    degrees of freedom, and the weight of κ₀ = 1 / (1/n + ρ) outcomes, ρ the spread of the users of a type
+
+After k outcomes of a user under a policy, with mean x̄ and sum of squares S, the law is of the same kind:
+
+    κ = κ₀ + k     m = (κ₀ m₀ + k x̄) / κ     ν = ν₀ + k     ν v = ν₀ v₀ + S + (κ₀ k / κ)(x̄ − m₀)²
+
+and the next outcome has a t distribution with ν degrees of freedom, location m and scale² = v (1 + 1/κ). So the
+parameters are never drawn: (k, x̄, S) of each user and policy is all that is needed. Pairs that are known exactly
+(n and ν₀ infinite, no spread) keep their normal distribution. Thesis: §4.3.4; models as in §4.4.1.
+"""
+
+from collections.abc import Mapping
+from functools import cached_property, lru_cache
+from math import lgamma, log, pi
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.finite_signals.signal_bins import informative_cuts, normal_probs, normal_table
+from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.law import Numbers, Shown
+from lifelore.interaction.outcomes.prediction import NormalPrediction
+from lifelore.interaction.outcomes.outcome_model import finite_outcomes
+from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
+from lifelore.interaction.outcomes.special_functions import gammaln
+from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest
+
+Array = NDArray[Any]
+
+EXACT = 1e30
+"""Degrees of freedom of a variance that is known exactly: t is then normal to the last digit."""
+LARGEST_FREEDOM = 1e6
+"""Degrees of freedom above which the height of a t distribution is that of a normal and a correction."""
+FEW = 256
+"""Numbers up to which heights are computed one by one: SciPy is not needed for a single user."""
+LEAST_FREEDOM = 0.5
+"""Least ν − 2 in the variance of a t distribution: below it would be infinite, and nothing compares."""
+
+
+class Posterior(NamedTuple):
+    """The law of pairs after what users have shown, (..., n_spreads or 1, n_types or 1) each.
+
+    location : m
+    doubt : 1/κ
+    variance : v
+    freedom : ν
+    """
+
+    location: Array
+    doubt: Array
+    variance: Array
+    freedom: Array
+
+
+class NormalLaw:
+    """P(number | type, policy) given what each user has shown, Student's t.
+
+    Parameters
+    ----------
+    moments : OutcomeMoments
+        What the runs of the library say; read once.
+    spread : Spread
+    dtype : {"f8", "f4"}
+        Precision of the statistics and of the likelihoods. float32 counts in deviations from the middle of the
+        types' means.
+    """
+
+    learns = True
+
+    def __init__(self, moments: OutcomeMoments, spread: Spread, dtype: str = "f8") -> None:
+        self.spread, self.dtype = spread, np.dtype(dtype)
+        self.n_types, self.n_policies = moments.mean.shape
+        mean, variance = moments.mean.T, moments.variance.T
+        single = self.dtype == np.float32
+        self.middle = mean.mean(axis=1) if single else np.zeros(len(mean))
+        self.unit = np.sqrt(variance.mean(axis=1)) if single else np.ones(len(mean))
+        # Policy first: a signal reads the rows of its policy. A column stands for types that are alike.
+        self._location = self._stored((mean - self.middle[:, None]) / self.unit[:, None])
+        self._variance = self._stored(variance / self.unit[:, None] ** 2)
+        self._rarity = self._stored(_alike(1 / moments.count.T))
+        self._freedom = self._stored(_alike(np.minimum(moments.freedom.T, EXACT)))
+        self._spreads = self._stored(spread.values[:, None])
+        self._log_unit = self._stored(np.log(self.unit))
+        factor = variance_factor(moments.freedom)
+        self.mean, self.noise = moments.mean.copy(), moments.variance * factor
+        self.of_runs, self.of_spread = self.noise / moments.count, self.noise
+        self._bins: dict[int, tuple[Array, SignalTable]] = {}
+
+    # ---- the law of signals --------------------------------------------------------------------------------
+
+    def checked(self, signals: Any) -> Array:
+        """Finite numbers (k,)."""
+        return finite_outcomes(signals)
+
+    def shown(self, n_users: int) -> Shown:
+        """Number, mean and sum of squares around the mean of no outcomes, (n_users, n_policies) each."""
+        return Shown(**{name: np.zeros((n_users, self.n_policies), self.dtype) for name in STATISTICS})
+
+    def log_likelihoods(
+        self, policies: Numbers, signals: Any, shown: Shown | None = None, users: Numbers = None
+    ) -> Array:
+        """Log densities of outcomes (...) given what `users` (...) have shown, (..., n_spreads, n_types)."""
+        location, doubt, variance, freedom = self.posterior(policies, shown, users)
+        square = variance * (1 + doubt)
+        gap = _over(self._scaled(policies, signals)) - location
+        tail = 0.5 * (freedom + 1) * np.log1p(gap * gap / (square * freedom))
+        height = self._stored(log_t_height(freedom)) - _over(self._log_unit[policies])
+        return height - 0.5 * np.log(square) - tail
+
+    def posterior(self, policies: Numbers, shown: Shown | None = None, users: Numbers = None) -> Posterior:
+        """The law of the pairs of `policies` (...) given what `users` (...) have shown."""
+        location, rare = self._location[policies][..., None, :], self._rarity[policies][..., None, :]
+        variance, freedom = self._variance[policies][..., None, :], self._freedom[policies][..., None, :]
+        rare = rare + self._spreads
+        if shown is None:
+            return Posterior(location, rare, variance, freedom)
+        n, mean, squares = (_over(shown[name][users, policies]) for name in STATISTICS)
+        grown, apart, after = 1 + n * rare, mean - location, freedom + n
+        doubt = rare / grown
+        variance = (freedom * variance + squares + n / grown * (apart * apart)) / after
+        return Posterior(location + n * doubt * apart, doubt, variance, after)
+
+    def learn(self, shown: Shown, users: Numbers, policies: Numbers, signals: Any) -> None:
+        """Add outcomes of distinct users (Welford's update)."""
+        count, mean, squares = (shown[name] for name in STATISTICS)
+        at = users, policies
+        n, before = count[at], self._scaled(policies, signals) - mean[at]
+        count[at] = n + 1
+        mean[at] += before / (n + 1)
+        squares[at] += before * before * (n / (n + 1))
+
+    def fade(self, shown: Shown, users: Numbers, keep: ArrayLike) -> None:
+        """Let what distinct `users` have shown count `keep` (...) of what it did."""
+        share = self._stored(np.asarray(keep)[..., None])
+        shown["count"][users] *= share
+        shown["squares"][users] *= share
+
+    def tried(self, shown: Shown, users: Numbers) -> NDArray[np.bool_]:
+        """The policies that `users` have shown an outcome of, (..., n_policies)."""
+        return shown["count"][users] > 0
+
+    # ---- what rules read -----------------------------------------------------------------------------------
+
+    def prediction(
+        self, shown: Shown | None = None, users: Numbers = None, log_weights: Array | None = None
+    ) -> NormalPrediction:
+        """The next outcome of all users, or of `users` (...) with the spreads' log probabilities (..., n_spreads)."""
+        if shown is None or log_weights is None:
+            variance = self.of_runs + self.of_spread * self.spread.mean
+            return NormalPrediction(self.mean, np.sqrt(self.noise + variance), variance)
+        return NormalRows(self, shown, users, log_weights)
+
+    def table(
+        self, n_bins: int, shown: Shown | None = None, users: Numbers = None, log_weights: Array | None = None
+    ) -> SignalTable:
+        """The next outcome in bins that tell the types apart; the bins are those of users who showed nothing."""
+        if n_bins not in self._bins:
+            known = self.prediction()
+            cuts = informative_cuts(known.mean, known.deviation, n_bins)
+            self._bins[n_bins] = cuts, normal_table(known.mean, known.deviation, cuts)
+        cuts, table = self._bins[n_bins]
+        if shown is None or log_weights is None:
+            return table
+        rows = NormalRows(self, shown, users, log_weights)
+        at, mean, deviation = rows.tried_pairs()
+        return table.replaced(np.shape(users), at, normal_probs(mean, deviation, cuts[at[1]][:, None]))
+
+    # ---- a single user's statistics as small arrays ----------------------------------------------------------
+
+    def state(self, shown: Shown, user: int) -> dict[str, Array]:
+        """``policies`` (m,) and ``shown`` (m, 3): number, mean and sum of squares of each policy's outcomes."""
+        policies = np.flatnonzero(shown["count"][user])
+        n, mean, squares = (shown[name][user, policies].astype(np.float64) for name in STATISTICS)
+        unit, middle = self.unit[policies], self.middle[policies]
+        return {"policies": policies, "shown": np.stack([n, middle + unit * mean, unit**2 * squares], axis=-1)}
+
+    def restore(self, shown: Shown, user: int, state: Mapping[str, Array]) -> None:
+        """Take over a `state`; InputError where it is of another law."""
+        policies, numbers = np.asarray(state["policies"], np.int64), np.asarray(state["shown"], np.float64)
+        good = numbers.shape == (len(policies), 3) and np.isfinite(numbers).all()
+        if not good or (numbers[:, [0, 2]] < 0).any() or not np.isin(policies, range(self.n_policies)).all():
+            raise InputError("a user's state must have policies and (count, mean, squares) of each")
+        unit, middle = self.unit[policies], self.middle[policies]
+        n, mean, squares = numbers.T
+        shown.reset(user)
+        for name, column in zip(STATISTICS, (n, (mean - middle) / unit, squares / unit**2), strict=True):
+            shown[name][user, policies] = column
+
+    def _scaled(self, policies: Numbers, signals: Any) -> Array:
+        return self._stored((signals - self.middle[policies]) / self.unit[policies])
+
+    def _stored(self, values: Any) -> Array:
+        return np.asarray(values).astype(self.dtype, copy=False)
+
+
+STATISTICS = ("count", "mean", "squares")
+
+
+class NormalRows(NormalPrediction):
+    """The next outcomes of users, each given what the user has shown; computed where they are read.
+
+    Only pairs of a user and a policy that the user has shown an outcome of differ from the library's.
+    """
+
+    def __init__(self, law: NormalLaw, shown: Shown, users: Numbers, log_weights: Array) -> None:
+        self._law, self._shown, self._shape = law, shown, np.shape(users)
+        self._users = np.atleast_1d(users)
+        self._weights = np.exp(log_weights).reshape(len(self._users), -1)
+
+    @property
+    def n_types(self) -> int:
+        return self._law.n_types
+
+    @property
+    def n_policies(self) -> int:
+        return self._law.n_policies
+
+    @cached_property
+    def mean(self) -> Array:
+        """Expected mean outcome of each pair, (..., n_types, n_policies)."""
+        return self._rows(np.broadcast_to(self._law.mean, self._full), self._pairs.mean)
+
+    @cached_property
+    def mean_variance(self) -> Array:
+        """Variance of each pair's mean outcome, (..., n_types, n_policies)."""
+        spread = (self._weights @ self._law.spread.values)[:, None, None]
+        return self._rows(self._law.of_runs + self._law.of_spread * spread, self._pairs.mean_variance)
+
+    @cached_property
+    def noise(self) -> Array:
+        """Expected variance of each pair's outcomes around their mean, (..., n_types, n_policies)."""
+        return self._rows(np.broadcast_to(self._law.noise, self._full), self._pairs.noise)
+
+    @cached_property
+    def deviation(self) -> Array:
+        """Standard deviation of the next outcome, (..., n_types, n_policies)."""
+        return np.sqrt(self.mean_variance + self.noise)
+
+    def mean_on(self, types: NDArray[np.int64]) -> Array:
+        """Mean outcomes on a type for each user, (...) to (..., n_policies), without those on other types."""
+        law, types = self._law, np.atleast_1d(types)
+        location = law._location.T[types]
+        n, mean = self._shown["count"][self._users], self._shown["mean"][self._users]
+        rarity = law._rarity.T[types if law._rarity.shape[1] > 1 else np.zeros_like(types)]
+        pull = n[..., None] * (rarity[..., None] + law._spreads[:, 0])
+        pull = ((pull / (1 + pull)) * self._weights[:, None, :].astype(law.dtype)).sum(axis=-1)
+        found = law.middle + law.unit * (location + pull * (mean - location))
+        return found.reshape(*self._shape, -1)
+
+    def expected(self, belief: Array) -> Array:
+        """Ũ(π) of beliefs (..., n_types), (..., n_policies)."""
+        rows, policies = self._pairs.at
+        flat = belief.reshape(len(self._users), -1)
+        found = flat @ self._law.mean
+        more = (flat[rows] * (self._pairs.mean - self._law.mean.T[policies])).sum(axis=1)
+        found[rows, policies] += more
+        return found.reshape(*self._shape, -1)
+
+    def tried_pairs(self) -> tuple[tuple[Array, Array], Array, Array]:
+        """Row and policy (m,) of each tried pair, and the mean and deviation of its outcome by type, (m, n_types)."""
+        pairs = self._pairs
+        return pairs.at, pairs.mean, np.sqrt(pairs.mean_variance + pairs.noise)
+
+    @cached_property
+    def _pairs(self) -> "TriedPairs":
+        law, count = self._law, self._shown["count"][self._users]
+        rows, policies = np.nonzero(count)
+        location, doubt, variance, freedom = law.posterior(policies, self._shown, self._users[rows])
+        weights = self._weights[rows][:, :, None]
+        mean = (weights * location).sum(axis=1)
+        gap, factor = location - mean[:, None], variance_factor(freedom)
+        unknown = (weights * (factor * doubt * variance + gap * gap)).sum(axis=1)
+        noise = (weights * (factor * variance)).sum(axis=1)
+        unit = law.unit[policies][:, None]
+        shown = law.middle[policies][:, None] + unit * mean, unit**2 * noise, unit**2 * unknown
+        return TriedPairs((rows, policies), *shown)
+
+    @property
+    def _full(self) -> tuple[int, int, int]:
+        return len(self._users), self.n_types, self.n_policies
+
+    def _rows(self, untried: Array, tried: Array) -> Array:
+        rows, policies = self._pairs.at
+        found = np.array(untried)
+        found[rows, :, policies] = tried
+        return found.reshape(*self._shape, *found.shape[1:])
+
+
+class TriedPairs(NamedTuple):
+    """Pairs of a user and a policy that the user has shown an outcome of.
+
+    at : rows and policies, (m,) each
+    mean, noise, mean_variance : (m, n_types) float, as in `NormalRows`
+    """
+
+    at: tuple[Array, Array]
+    mean: Array
+    noise: Array
+    mean_variance: Array
+
+
+def variance_factor(freedom: Array) -> Array:
+    """Variance of a t distribution of scale 1, ν / (ν − 2) with ν − 2 at least `LEAST_FREEDOM`."""
+    return 1 + 2 / np.maximum(freedom - 2, LEAST_FREEDOM)
+
+
+def log_t_height(freedom: Array) -> Array:
+    """Log density of Student's t at its location, scale 1, of degrees of freedom (...)."""
+    if freedom.size <= FEW:
+        return np.array([_height(value) for value in freedom.ravel().tolist()]).reshape(freedom.shape)
+    few = np.minimum(freedom, LARGEST_FREEDOM)
+    height = gammaln(0.5 * (few + 1)) - gammaln(0.5 * few) - 0.5 * np.log(np.pi * few)
+    return np.where(freedom > LARGEST_FREEDOM, -0.5 * log(2 * pi) - 0.25 / freedom, height)
+
+
+@lru_cache(maxsize=4096)
+def _height(freedom: float) -> float:
+    # Differences of log Γ at large arguments lose their digits; the next term of this series is below 1e-18.
+    if freedom > LARGEST_FREEDOM:
+        return -0.5 * log(2 * pi) - 0.25 / freedom
+    return lgamma(0.5 * (freedom + 1)) - lgamma(0.5 * freedom) - 0.5 * log(pi * freedom)
+
+
+def _alike(of_pairs: Array) -> Array:
+    """(n_policies, n_types) as (n_policies, 1) where no policy's numbers differ between types."""
+    return of_pairs[:, :1] if (of_pairs == of_pairs[:, :1]).all() else of_pairs
+
+
+def _over(of_users: Any) -> Array:
+    """(...) as (..., 1, 1), which broadcasts against spreads and types."""
+    return np.asarray(of_users)[..., None, None]
+
+
+def spread_of_moments(moments: OutcomeMoments) -> Spread:
+    """The spreads that the moments' own types leave possible; none where there is a single type."""
+    n_types, n_policies = moments.mean.shape
+    if n_types < 2 or np.isinf(moments.count).any():
+        return Spread.known(0.0)
+    some = held_out(n_types, n_types * n_policies)
+    rare = moments.variance / moments.count
+    found = np.empty((len(GRID), len(some), n_types))
+    for place, i in enumerate(some):
+        apart = (moments.mean[i] - moments.mean) ** 2
+        noise, unit = rare[i] + rare, moments.variance
+        for number, value in enumerate(GRID):
+            variance = noise + value * unit
+            found[number, place] = -0.5 * (apart / variance + np.log(variance)).sum(axis=1)
+        found[:, place, i] = -np.inf
+    return Spread.up_to(likeliest(found))

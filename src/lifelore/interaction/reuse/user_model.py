@@ -1,0 +1,153 @@
+"""A law and what users have shown of it; Bayes' rule for the spreads of a law beside the belief over types.
+
+    F(σ | τ, π) = (1 − w_τ) F(σ | τ, π, all signals so far) + w_τ F(σ | τ, π)
+
+w_τ is the probability that a user who is now of type τ has just changed to it; 0 where types do not change. The
+signals so far count less afterwards by the probability that the type has just changed. Where a single change lies
+between many signals this is close to exact; it is not exact, since the signals of both types are summed up.
+"""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.law import Law, Numbers
+
+Array = NDArray[Any]
+
+SLACK = 1e-5
+"""Rounding error of probabilities that sum to 1."""
+
+
+class Evidence(NamedTuple):
+    """What signals say of the types, and of what users have shown.
+
+    log_likelihood : (..., n_types), log F
+    changed : (..., n_types) or None
+        Probability that the type has just changed, given that it is now this type and showed the signal; None
+        where types do not change.
+    gain : (..., n_spreads) or None
+        Log likelihoods of the spreads, up to a constant; None where there is a single spread.
+    """
+
+    log_likelihood: Array
+    changed: Array | None
+    gain: Array | None
+
+
+class UserModel:
+    """What users have shown of a law.
+
+    Parameters
+    ----------
+    law : Law
+    n_users : int
+
+    Attributes
+    ----------
+    shown : Shown
+    log_weights : (n_users, n_spreads) float64
+        Log probabilities of the spreads, given what the user has shown.
+    """
+
+    def __init__(self, law: Law, n_users: int) -> None:
+        self.law, self.shown = law, law.shown(n_users)
+        self._log_first: Array = np.log(law.spread.weights)
+        self.log_weights: Array = np.tile(self._log_first, (n_users, 1))
+
+    def evidence(
+        self, users: Numbers, policies: Numbers, signals: Any, log_belief: Array, changed: Array | None
+    ) -> Evidence:
+        """The evidence of checked signals (...) of `users` (...), before they are learnt.
+
+        Parameters
+        ----------
+        log_belief : (..., n_types)
+            Before the signals.
+        changed : (..., n_types), optional
+            w, as `TypeDynamics.changed_share` gives it.
+        """
+        found = self.law.log_likelihoods(policies, signals, self.shown, users)
+        if not self.law.learns:
+            return Evidence(found[..., 0, :], None, None)
+        weights = self.log_weights[users][..., None].astype(found.dtype, copy=False)
+        several = found.shape[-2] > 1
+        gain = _gain(found, np.exp(log_belief)) if several else None
+        if changed is None:
+            return Evidence(_log_sum(found + weights) if several else found[..., 0, :], None, gain)
+        fresh, first = self.law.log_likelihoods(policies, signals), self._log_first[:, None].astype(found.dtype)
+        with np.errstate(divide="ignore"):
+            stayed = found + weights + np.log1p(-changed)[..., None, :]
+            anew = fresh + first + np.log(changed)[..., None, :]
+        whole, new = _log_sum(np.concatenate([stayed, anew], axis=-2)), _log_sum(anew)
+        with np.errstate(invalid="ignore"):
+            return Evidence(whole, np.where(whole > -np.inf, np.exp(new - whole), 0.0), gain)
+
+    def learn(self, users: Numbers, policies: Numbers, signals: Any, gain: Array | None, keep: Any = None) -> None:
+        """Take in signals of distinct users, after what they have shown counts `keep` (...) of what it did."""
+        if keep is not None:
+            self.law.fade(self.shown, users, keep)
+        if gain is not None:
+            self._weigh(users, gain, keep)
+        self.law.learn(self.shown, users, policies, signals)
+
+    def reset(self, users: Numbers) -> None:
+        """Forget what `users` have shown."""
+        self.shown.reset(users)
+        self.log_weights[users] = self._log_first
+
+    def grow(self, n_users: int) -> None:
+        """Make room for `n_users` users; new users have shown nothing."""
+        self.shown.grow(n_users)
+        more = np.tile(self._log_first, (n_users - len(self.log_weights), 1))
+        self.log_weights = np.concatenate([self.log_weights, more])
+
+    def state(self, user: int) -> dict[str, Array]:
+        """What a single user has shown, as small arrays; empty where nothing is learnt."""
+        if not self.law.learns:
+            return {}
+        return {**self.law.state(self.shown, user), "log_weights": self.log_weights[user].copy()}
+
+    def restore(self, user: int, state: Mapping[str, ArrayLike]) -> None:
+        """Take over a `state`; InputError where it is of another library."""
+        try:
+            log_weights = np.array(state.get("log_weights", self._log_first), np.float64)
+            if log_weights.shape != self._log_first.shape or not abs(np.exp(log_weights).sum() - 1) < SLACK:
+                raise InputError(f"a user's state must have {len(self._log_first)} probabilities of spreads")
+            self.law.restore(self.shown, user, state)  # pyright: ignore[reportArgumentType]
+        except (KeyError, IndexError, ValueError, TypeError) as error:
+            raise InputError(f"the user's state is not of this library: {error}") from None
+        self.log_weights[user] = log_weights
+
+    def _weigh(self, users: Numbers, gain: Array, keep: Any) -> None:
+        """Bayes' rule for the spreads, of which the part that is not kept is as before the first signal."""
+        weights = np.exp(self.log_weights[users])
+        if keep is not None:
+            share = np.asarray(keep)[..., None]
+            weights = share * weights + (1 - share) * np.exp(self._log_first)
+        with np.errstate(divide="ignore"):
+            found = np.log(weights) + gain
+        top = found.max(axis=-1, keepdims=True)
+        possible = top > -np.inf
+        found = found - np.where(possible, top, 0.0)
+        total = np.log(np.where(possible, np.exp(found).sum(axis=-1, keepdims=True), 1.0))
+        self.log_weights[users] = np.where(possible, found - total, self.log_weights[users])
+
+
+def _log_sum(terms: Array) -> Array:
+    """log Σ exp over the spreads, (..., n_spreads, n_types) to (..., n_types); minus infinity where all are."""
+    top = terms.max(axis=-2)
+    top = np.where(top > -np.inf, top, 0.0)
+    with np.errstate(divide="ignore"):
+        return np.log(np.exp(terms - top[..., None, :]).sum(axis=-2)) + top
+
+
+def _gain(by_spread: Array, belief: Array) -> Array:
+    """Log likelihoods of the spreads up to a constant, (..., n_spreads), given the belief before the signal."""
+    top = by_spread.max(axis=(-1, -2), keepdims=True)
+    top = np.where(top > -np.inf, top, 0.0)
+    with np.errstate(divide="ignore"):
+        return np.log((np.exp(by_spread - top) * belief[..., None, :]).sum(axis=-1))
