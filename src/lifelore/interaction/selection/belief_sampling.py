@@ -5,9 +5,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.choice import tied_shares
-from lifelore.interaction.selection.rule import Array, check_generator
+from lifelore.interaction.selection.rule import Array, RuleLibrary, check_generator, weighted
 
 
 @dataclass(frozen=True)
@@ -18,25 +17,23 @@ class BeliefSampling:
 
     def scores(
         self,
-        library: PolicyLibrary,
+        library: RuleLibrary,
         belief: Array,
         *,
         episodes_left: float | None = None,
         generator: np.random.Generator | None = None,
     ) -> Array:
-        """Mean utilities on the type drawn, (..., n_policies)."""
-        generator = check_generator(self.name, generator)
-        return library.performance.mean[drawn_types(belief, generator)]
+        """Mean utilities on the type drawn, (P,) or (k, P)."""
+        types, mean = drawn_types(belief, check_generator(self.name, generator)), library.performance.mean
+        return mean[types] if mean.ndim == 2 else mean[np.arange(len(mean)), types]
 
-    def probabilities(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
-        """Probability of selecting each policy, (..., n_policies); rows sum to 1."""
-        return np.asarray(belief) @ tied_shares(library.performance.mean)
+    def probabilities(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
+        """Probability of selecting each policy, (P,) or (k, P); rows sum to 1."""
+        return weighted(belief, tied_shares(library.performance.mean))
 
 
 def drawn_types(belief: Array, generator: np.random.Generator) -> Any:
-    """Draw a type for each row of beliefs (..., n_types); never a type of belief 0."""
-    cum = np.add.accumulate(belief, axis=-1)
-    if cum.ndim == 1:
-        return cum.searchsorted(generator.random() * cum[-1], side="right")
-    level = generator.random(cum.shape[:-1]) * cum[..., -1]
-    return (cum <= level[..., None]).sum(axis=-1)
+    """Draw a type for each row of beliefs (..., T); never a type of belief 0."""
+    held = np.add.accumulate(belief, axis=-1)
+    level = generator.random(held.shape[:-1]) * held[..., -1]
+    return (held <= np.asarray(level)[..., None]).sum(axis=-1)

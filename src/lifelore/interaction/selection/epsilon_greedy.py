@@ -6,10 +6,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import expected_utility
-from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.choice import tied_shares
-from lifelore.interaction.selection.rule import Array, check_generator
+from lifelore.interaction.selection.rule import Array, RuleLibrary, check_generator, weighted
 
 
 @dataclass(frozen=True)
@@ -36,21 +34,21 @@ class EpsilonGreedy:
 
     def scores(
         self,
-        library: PolicyLibrary,
+        library: RuleLibrary,
         belief: Array,
         *,
         episodes_left: float | None = None,
         generator: np.random.Generator | None = None,
     ) -> Array:
-        """Expected utilities, or with probability ε random numbers, (..., n_policies)."""
+        """Expected utilities, or with probability ε random numbers, (P,) or (k, P)."""
         generator = check_generator(self.name, generator)
-        utility = expected_utility(belief, library.performance.mean)
-        explores = generator.random(utility.shape[:-1]) < self.epsilon
-        if not np.any(explores):
-            return utility
-        return np.where(np.asarray(explores)[..., None], generator.random(utility.shape), utility)
+        utility = weighted(belief, library.performance.mean)
+        explores = np.asarray(generator.random(utility.shape[:-1]) < self.epsilon)
+        return (
+            np.where(explores[..., None], generator.random(utility.shape), utility) if explores.any() else utility
+        )
 
-    def probabilities(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
-        """Probability of selecting each policy, (..., n_policies); rows sum to 1."""
-        best = tied_shares(expected_utility(belief, library.performance.mean))
+    def probabilities(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
+        """Probability of selecting each policy, (P,) or (k, P); rows sum to 1."""
+        best = tied_shares(weighted(belief, library.performance.mean))
         return self.epsilon / best.shape[-1] + (1 - self.epsilon) * best

@@ -3,9 +3,7 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from lifelore.interaction.beliefs.belief import expected_utility
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.rule import Array, Deterministic
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, weighted
 
 
 @dataclass(frozen=True)
@@ -14,6 +12,6 @@ class Greedy(Deterministic):
 
     name: ClassVar[str] = "greedy"
 
-    def scores(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
-        """Expected utilities, (..., n_policies)."""
-        return expected_utility(belief, library.performance.mean)
+    def scores(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
+        """Expected utilities, (P,) or (k, P)."""
+        return weighted(belief, library.performance.mean)
