@@ -206,14 +206,17 @@ class ReuseAlgorithm:
             The model cannot have made a signal, or gave NaN or infinity. All stays as it was.
         """
         signals, before = self.signals.law.checked(signals), self.log_belief[users]
+        outcomes = None if outcomes is None else self.outcomes.law.checked(outcomes)
         found = self.signals.evidence(users, policies, signals, before, self._changed(users, before))
         after, log_evidence = self._updated(before, found.log_likelihood)
-        if outcomes is not None and self.outcomes is not self.signals:
-            self._learn_outcomes(users, policies, self.outcomes.law.checked(outcomes), before)
         self.log_belief[users], self._begun[users] = after, False
-        if self.signals.law.learns:
-            keep = None if found.changed is None else 1 - (np.exp(after) * found.changed).sum(axis=-1)
-            self._learn(users, policies, signals, found.gain, keep, log_evidence > -np.inf)
+        explained = log_evidence > -np.inf
+        if found.changed is not None:
+            self._fade(users, 1 - np.where(explained, (np.exp(after) * found.changed).sum(axis=-1), 0.0))
+        if self.signals.law.learns and explained.any():
+            self.signals.learn(*_explained(explained, users, policies, signals, found.gain))
+        if outcomes is not None and self.outcomes is not self.signals:
+            self._learn_outcomes(users, policies, outcomes, before)
         return Observed(found.log_likelihood, log_evidence)
 
     def end_episode(self, users: Numbers, outcome: Any = None) -> None:
@@ -287,21 +290,23 @@ class ReuseAlgorithm:
                 "infinity is allowed, they are not"
             ) from None
 
-    def _learn(
-        self, users: Numbers, policies: Numbers, signals: Any, gain: Array | None, keep: Any, explained: Any
-    ) -> None:
-        """Teach the law the signals that some type explains."""
-        if not np.all(explained):
-            if np.ndim(users) == 0 or not np.any(explained):
-                return
-            users, policies, signals = users[explained], policies[explained], signals[explained]
-            gain, keep = (None if part is None else part[explained] for part in (gain, keep))
-        self.signals.learn(users, policies, signals, gain, keep)
+    def _fade(self, users: Numbers, keep: Array) -> None:
+        for model in self._models():
+            model.fade(users, keep)
 
     def _learn_outcomes(self, users: Numbers, policies: Numbers, outcomes: Any, log_belief: Array) -> None:
         if self.outcomes.law.learns:
             gain = self.outcomes.evidence(users, policies, outcomes, log_belief, None).gain
             self.outcomes.learn(users, policies, outcomes, gain)
+
+
+def _explained(explained: Any, *of_users: Any) -> tuple[Any, ...]:
+    """The parts of what comes for each user that `explained` (...) marks."""
+    if explained.all():
+        return of_users
+    rows = np.flatnonzero(explained)
+    return tuple([each[row] for row in rows] if isinstance(each, list) else each if each is None else each[rows]
+                 for each in of_users)
 
 
 def _part(state: Mapping[str, Any], prefix: str) -> dict[str, Any]:

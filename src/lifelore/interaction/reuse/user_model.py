@@ -86,12 +86,22 @@ class UserModel:
         with np.errstate(invalid="ignore"):
             return Evidence(whole, np.where(whole > -np.inf, np.exp(new - whole), 0.0), gain)
 
-    def learn(self, users: Numbers, policies: Numbers, signals: Any, gain: Array | None, keep: Any = None) -> None:
-        """Take in signals of distinct users, after what they have shown counts `keep` (...) of what it did."""
-        if keep is not None:
-            self.law.fade(self.shown, users, keep)
+    def fade(self, users: Numbers, keep: Array) -> None:
+        """Let all that distinct `users` have shown count `keep` (...) of what it did: their types may have changed."""
+        if not self.law.learns:
+            return
+        self.law.fade(self.shown, users, keep)
+        share = np.asarray(keep)[..., None]
+        with np.errstate(divide="ignore"):
+            weights = share * np.exp(self.log_weights[users]) + (1 - share) * np.exp(self._log_first)
+            self.log_weights[users] = np.log(weights)
+
+    def learn(self, users: Numbers, policies: Numbers, signals: Any, gain: Array | None) -> None:
+        """Take in signals of distinct users; `gain` as in their `Evidence`."""
         if gain is not None:
-            self._weigh(users, gain, keep)
+            found = self.log_weights[users] + gain
+            total = _log_sum(found[..., None])
+            self.log_weights[users] = np.where(total > -np.inf, found - total, self.log_weights[users])
         self.law.learn(self.shown, users, policies, signals)
 
     def reset(self, users: Numbers) -> None:
@@ -121,20 +131,6 @@ class UserModel:
         except (KeyError, IndexError, ValueError, TypeError) as error:
             raise InputError(f"the user's state is not of this library: {error}") from None
         self.log_weights[user] = log_weights
-
-    def _weigh(self, users: Numbers, gain: Array, keep: Any) -> None:
-        """Bayes' rule for the spreads, of which the part that is not kept is as before the first signal."""
-        weights = np.exp(self.log_weights[users])
-        if keep is not None:
-            share = np.asarray(keep)[..., None]
-            weights = share * weights + (1 - share) * np.exp(self._log_first)
-        with np.errstate(divide="ignore"):
-            found = np.log(weights) + gain
-        top = found.max(axis=-1, keepdims=True)
-        possible = top > -np.inf
-        found = found - np.where(possible, top, 0.0)
-        total = np.log(np.where(possible, np.exp(found).sum(axis=-1, keepdims=True), 1.0))
-        self.log_weights[users] = np.where(possible, found - total, self.log_weights[users])
 
 
 def _log_sum(terms: Array) -> Array:
