@@ -209,7 +209,6 @@ class ReuseAlgorithm:
         outcomes = None if outcomes is None else self.outcomes.law.checked(outcomes)
         found = self.signals.evidence(users, policies, signals, before, self._changed(users, before))
         after, log_evidence = self._updated(before, found.log_likelihood)
-        self.log_belief[users], self._begun[users] = after, False
         explained = log_evidence > -np.inf
         if found.changed is not None:
             self._fade(users, 1 - np.where(explained, (np.exp(after) * found.changed).sum(axis=-1), 0.0))
@@ -217,6 +216,7 @@ class ReuseAlgorithm:
             self.signals.learn(*_explained(explained, users, policies, signals, found.gain))
         if outcomes is not None and self.outcomes is not self.signals:
             self._learn_outcomes(users, policies, outcomes, before)
+        self.log_belief[users], self._begun[users] = after, False
         return Observed(found.log_likelihood, log_evidence)
 
     def end_episode(self, users: Numbers, outcome: Any = None) -> None:
