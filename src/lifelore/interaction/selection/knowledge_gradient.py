@@ -85,7 +85,7 @@ class KnowledgeGradient(Deterministic):
             gain = printed_gain(belief, mean, table)
         else:
             gain = knowledge_gain(belief, mean, table, self.mass, self.candidates)
-        return weighted(belief, mean) + weight * gain
+        return library.performance.expected(belief) + weight * gain
 
 
 def knowledge_gain(
