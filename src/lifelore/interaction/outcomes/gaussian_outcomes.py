@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.outcome_moments import known_moments
 from lifelore.interaction.outcomes.prediction import over_types
-from lifelore.interaction.outcomes.special_functions import ndtr
+from lifelore.interaction.finite_signals.normal_distribution import ndtr
 
 Array = NDArray[np.float64]
 

@@ -145,7 +145,7 @@ class FixedLaw:
 
     def checked(self, signals: Any) -> Any:
         """The signals as the model takes them."""
-        return list(signals) if self._check is None else self._check(signals)
+        return signals if self._check is None else self._check(signals)
 
     def shown(self, n_users: int) -> Shown:
         """Nothing."""
@@ -181,7 +181,8 @@ class FixedLaw:
         """There is nothing to take over."""
 
     def _one(self, policy: int, signal: Any) -> Array:
-        found = np.asarray(self.model.log_likelihood(policy, signal), np.float64)
+        # A copy: callers keep it, and a model may write its next answer into the same array.
+        found = np.array(self.model.log_likelihood(policy, signal), np.float64)
         if found.shape != (self.n_types,):
             raise InputError(
                 f"signal model {type(self.model).__name__} must give ({self.n_types},) log likelihoods, gave "

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.interaction.outcomes.cells import Cells
-from lifelore.interaction.outcomes.special_functions import ndtr
+from lifelore.interaction.finite_signals.normal_distribution import ndtr
 
 Array = NDArray[Any]
 

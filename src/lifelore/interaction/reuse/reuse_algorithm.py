@@ -53,7 +53,7 @@ class ReuseAlgorithm:
     Parameters
     ----------
     library : PolicyLibrary
-        Not copied. Its models are read once, at the start and by `refresh`.
+        Not copied. Uncertain models are read once, at the start.
     n_users : int
     prior : (n_types,) float, optional
         The library's by default.
@@ -123,12 +123,6 @@ class ReuseAlgorithm:
         if log_belief.shape != (self.library.n_types,):
             raise InputError(f"prior must be ({self.library.n_types},), got {log_belief.shape}")
         return log_belief
-
-    def refresh(self) -> None:
-        """Read the library's models again; beliefs and what users have shown stay."""
-        self.signals.law = self._law(self.library.signal)
-        if self.outcomes is not self.signals:
-            self.outcomes.law = self._law(self.library.performance)
 
     # ---- score and choose --------------------------------------------------------------------------------
 
@@ -249,9 +243,10 @@ class ReuseAlgorithm:
             model.grow(n_users)
 
     def state(self, user: int) -> dict[str, Array]:
-        """What a user has shown, as small arrays; empty where nothing is learnt beside the belief."""
+        """What a user has shown, as small arrays; empty between episodes where nothing is learnt beside the belief."""
         parts = {"signal": self.signals} | ({} if self.outcomes is self.signals else {"outcomes": self.outcomes})
-        return {f"{name}.{key}": array for name, model in parts.items() for key, array in model.state(user).items()}
+        found = {f"{name}.{key}": array for name, model in parts.items() for key, array in model.state(user).items()}
+        return found if self._begun[user] else found | {"begun": np.array(False)}
 
     def restore(self, user: int, log_belief: ArrayLike, state: Mapping[str, Any]) -> None:
         """Take over a log belief (n_types,) and a `state`; InputError where they are of another library."""
@@ -261,7 +256,7 @@ class ReuseAlgorithm:
         self.signals.restore(user, _part(state, "signal."))
         if self.outcomes is not self.signals:
             self.outcomes.restore(user, _part(state, "outcomes."))
-        self.log_belief[user], self._begun[user] = row, True
+        self.log_belief[user], self._begun[user] = row, bool(state.get("begun", True))
 
     @property
     def nbytes(self) -> int:
