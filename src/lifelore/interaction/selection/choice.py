@@ -6,6 +6,7 @@ sampling draws. The belief is about all types and stays as it is. Shapes: T type
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -144,13 +145,8 @@ def scored(
     generator : numpy generator, optional
         Needed by rules that draw.
     """
-    return _by_part(
-        lambda part, rows: rule.scores(part, rows, episodes_left=episodes_left, generator=generator),
-        library,
-        belief,
-        available,
-        -np.inf,
-    )
+    values = partial(rule.scores, episodes_left=episodes_left, generator=generator)
+    return _by_part(values, library, belief, available, -np.inf)
 
 
 def propensities(
@@ -162,13 +158,8 @@ def propensities(
     episodes_left: float | None = None,
 ) -> Array:
     """Probability that the rule selects each policy, (P,) or (k, P); rows sum to 1. Parameters as for `scored`."""
-    return _by_part(
-        lambda part, rows: rule.probabilities(part, rows, episodes_left=episodes_left),
-        library,
-        belief,
-        available,
-        0.0,
-    )
+    values = partial(rule.probabilities, episodes_left=episodes_left)
+    return _by_part(values, library, belief, available, 0.0)
 
 
 def available_mask(available: Available, names: Sequence[str], n_rows: int | None = None) -> Mask:
