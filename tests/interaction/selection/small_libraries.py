@@ -15,6 +15,12 @@ class NormalOutcomes:
         self.mean = np.array(mean, float)
         self.deviation = np.broadcast_to(np.asarray(deviation, float), self.mean.shape)
 
+    def mean_on(self, types):
+        return self.mean[types] if self.mean.ndim == 2 else self.mean[np.arange(len(self.mean)), types]
+
+    def expected(self, belief):
+        return np.einsum("...t,...tp->...p", belief, self.mean)
+
     def density(self, value):
         return norm.pdf(_over_pairs(value), self.mean, self.deviation)
 

@@ -97,4 +97,4 @@ class SignalTable:
 def entropy_of_signals(probs: Array) -> Array:
     """Entropy in nats of distributions (..., n_signals), (...); 0 log 0 is 0."""
     # With any finite number in place of the logarithm of 0.
-    return -np.vecdot(probs, np.log(np.maximum(probs, 1e-300)))
+    return 0.0 - np.vecdot(probs, np.log(np.maximum(probs, 1e-300)))

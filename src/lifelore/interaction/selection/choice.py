@@ -220,12 +220,12 @@ def _by_part(
 
 
 def _part(library: Any, rows: Any, policies: Mask) -> Any:
-    """The library of some users and policies; see `SignalTable.part` for `rows`."""
+    """The library of some users and policies; only libraries that users do not share have a method `part`."""
     return library.part(rows, policies) if hasattr(library, "part") else PartOfLibrary(library, policies)
 
 
 class PartOfLibrary:
-    """Some policies of a library whose models all users share, as rules read it.
+    """Some policies of a library, as rules read it.
 
     Parameters
     ----------
