@@ -17,7 +17,8 @@ from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.library_names import index_of
 
 if TYPE_CHECKING:
-    from lifelore.interaction.selection.rule import RuleLibrary, RuleOutcomes, SelectionRule
+    from lifelore.interaction.outcomes.prediction import Prediction
+    from lifelore.interaction.selection.rule import RuleLibrary, SelectionRule
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -262,9 +263,9 @@ class PartOfLibrary:
 
 
 class PartOfOutcomes:
-    """The outcomes of some policies; methods as in `RuleOutcomes`."""
+    """The outcomes of some policies; methods as in `Prediction`."""
 
-    def __init__(self, outcomes: "RuleOutcomes", policies: Mask) -> None:
+    def __init__(self, outcomes: "Prediction", policies: Mask) -> None:
         self._outcomes, self._policies = outcomes, policies
 
     @property
