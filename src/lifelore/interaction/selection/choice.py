@@ -117,7 +117,7 @@ def _best(scores: Array, tolerance: float) -> Mask:
             return scores >= _bar(largest, max(abs(largest), abs(least)), tolerance)
     largest = scores.max(axis=-1, keepdims=True, initial=-np.inf)
     least = scores.min(axis=-1, keepdims=True, initial=np.inf)
-    if (largest < np.inf).all() and (least > -np.inf).all():
+    if np.isfinite(largest).all() and (least > -np.inf).all():
         return scores >= _bar(largest, np.maximum(np.abs(largest), np.abs(least)), tolerance)
     if not (largest > -np.inf).all():
         raise InputError("scores must be numbers, at least one of them above minus infinity, got NaN or nothing")
