@@ -127,7 +127,7 @@ def new_model_learner(n_states: int, n_actions: int, world, own) -> ModelLearner
     )
 
 
-@kernel(allocates=False)
+@kernel
 def explore(tables, model, state_info, strategy, learner, curve, max_steps, discount, budget):
     """Run at most `budget` steps; returns how many were run, fewer once the last episode is over.
 
@@ -269,7 +269,7 @@ def least_tried(tried, state, random):
     return np.int64(best)
 
 
-@kernel(allocates=False)
+@kernel
 def _doubt(target, tried):
     """Forget remembered refusals that this task has not met: they may be out of date."""
     for s in range(target.shape[0]):

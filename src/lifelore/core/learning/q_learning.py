@@ -190,7 +190,7 @@ def _break_tie(q, row, tie_weight, context, first, random):
     return chosen
 
 
-@kernel(allocates=False)
+@kernel
 def learn(tables, rows, schedule, learner, curve, budget):
     """Run at most `budget` steps; returns how many were run, fewer once the last episode is over."""
     # Unpacked once, because reading an array of a tuple inside the loop would count references at every step.
@@ -254,7 +254,7 @@ def _best_value(q, row):
     return best
 
 
-@kernel(allocates=False)
+@kernel
 def learn_each(tables, rows, schedule, learners, curves, budget, first, last):
     """`learn` for the learners `first` … `last` - 1 of a stack, one after the other; returns the steps of all.
 

@@ -16,7 +16,7 @@ OUT_OF_REACH = -1
 """Length of a plan if no known path leads to the wanted place."""
 
 
-@kernel(allocates=False)
+@kernel
 def plan_search(
     start,
     target,

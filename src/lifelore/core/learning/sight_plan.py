@@ -10,7 +10,7 @@ SEARCH, DRIVE, SHORTEN = range(3)
 """Purposes of a plan: find the goal, reach the goal seen in this episode, or reach it on a shorter path."""
 
 
-@kernel(allocates=False)
+@kernel
 def plan_by_sight(start, target, remembered, place, gain, purpose, plan, queue, parent, parent_action, random):
     """Breadth-first search for the place to walk to; fills `plan`, returns its length or 0.
 

@@ -76,7 +76,7 @@ def places_on_sight(tables: Tables) -> NDArray[np.int8]:
     return kind
 
 
-@kernel(allocates=False)
+@kernel
 def explore_by_sight(tables, model, state_info, strategy, learner, search, curve, max_steps, discount, budget):
     """Run at most `budget` steps; returns how many were run, fewer once the last episode is over.
 
@@ -158,7 +158,7 @@ def explore_by_sight(tables, model, state_info, strategy, learner, search, curve
     return done_steps
 
 
-@kernel(allocates=False)
+@kernel
 def _look(state, next_state, model, percept, place, queue, search):
     """Learn the moves of all places in sight; returns how many are new in this task, and how many are goals."""
     target, remembered = model

@@ -52,7 +52,7 @@ def closed_length(near: NearDistances, tour: NDArray[np.int32]) -> int:
     return int(sum(steps_between(a, b, near) for a, b in zip(tour, np.roll(tour, -1), strict=True)))
 
 
-@kernel(allocates=False)
+@kernel
 def nearest_walk(start, begin, ends, visited, queue, mark, walk):
     """Fill `walk` with states reached from `start`, each next one the nearest not visited; return their number.
 
@@ -96,7 +96,7 @@ def nearest_walk(start, begin, ends, visited, queue, mark, walk):
     return count
 
 
-@kernel(allocates=False)
+@kernel
 def _search(tour, position, near, exchanges, random, waiting, queued, log):
     n = tour.size
     for c in tour:
@@ -136,7 +136,7 @@ def _search(tour, position, near, exchanges, random, waiting, queued, log):
                 _turn(tour, position, log[k, 1], log[k, 0], log[k, 2], log, log.shape[0])
 
 
-@kernel(allocates=False)
+@kernel
 def _wait(c, waiting, queued, head, count):
     if not queued[c]:
         queued[c] = True
@@ -145,7 +145,7 @@ def _wait(c, waiting, queued, head, count):
     return count
 
 
-@kernel(allocates=False)
+@kernel
 def _turn(tour, position, first, last, length, log, n_log):
     """Turn the section of `length` places with the ends `first` and `last` round; returns the longer log.
 
@@ -173,7 +173,7 @@ def _turn(tour, position, first, last, length, log, n_log):
     return n_log + 1
 
 
-@kernel(allocates=False)
+@kernel
 def _improve(tour, position, near, waiting, queued, head, count, log, n_log):
     """Take a place from the queue and make the first move there that shortens the tour.
 
@@ -237,7 +237,7 @@ def _improve(tour, position, near, waiting, queued, head, count, log, n_log):
     return head, count, 0, n_log
 
 
-@kernel(allocates=False)
+@kernel
 def _shift(tour, position, c, e, p, q, x, y, length, x_first, gap, back, log, n_log):
     """Shift c … e between x and y with c beside x, by turning sections round.
 

@@ -57,7 +57,7 @@ def near_distances(graph: sparse.csr_array, cells: NDArray[np.integer]) -> NearD
     return NearDistances(cells, steps, nearest)
 
 
-@kernel(allocates=False)
+@kernel
 def _fill(begin, ends, cells, steps, nearest, queue):
     """Breadth first from each state inside its window."""
     side = steps.shape[1]
@@ -82,7 +82,7 @@ def _fill(begin, ends, cells, steps, nearest, queue):
                     tail += 1
 
 
-@kernel(allocates=False)
+@kernel
 def steps_between(a, b, near):
     """Steps from state `a` to state `b`: exact inside the window, else one and a half times the straight way."""
     if a > b:  # windows differ, so the way back could be longer: the same answer both ways

@@ -24,7 +24,7 @@ def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDAr
     return q
 
 
-@kernel(allocates=False)
+@kernel
 def _sweep(tables, q, value, discount, tolerance):
     n_states, n_actions = q.shape
     moved = tolerance + 1.0
@@ -112,7 +112,7 @@ def policy_values(tables: Tables, policy: NDArray[np.int32], discount: float) ->
     return value
 
 
-@kernel(allocates=False)
+@kernel
 def _follow(next_state, reward, event, policy, discount, value, mark, path):
     """Deterministic world: walk each path once; a cycle's value has a closed form."""
     for start in range(policy.size):
@@ -141,7 +141,7 @@ def _follow(next_state, reward, event, policy, discount, value, mark, path):
             mark[path[i]] = -1
 
 
-@kernel(allocates=False)
+@kernel
 def _iterate(tables, policy, discount, tolerance, value):
     moved = tolerance + 1.0
     while moved > tolerance:
