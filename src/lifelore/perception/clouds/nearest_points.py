@@ -4,11 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from lifelore.core.compiled.jit import kernel
 
 MOST_PAIRS = 1_000_000
-"""Pairs of points from which a k-d tree is quicker, its import included; fewer load SciPy needlessly."""
+"""Number of pairs of points above which a k-d tree searches; it is quicker there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,16 +29,12 @@ def nearest_points(first: NDArray[np.float64], second: NDArray[np.float64]) -> N
     if not len(first) or not len(second):
         return None
     if len(first) * len(second) > MOST_PAIRS:
-        from scipy.spatial import KDTree
-
         distances, partners = KDTree(second).query(first)
         row = int(np.argmin(distances))
         return Nearest(float(distances[row]), first[row], second[int(np.asarray(partners)[row])])
     distance, row, partner, alone = _nearest_rows(first, second)
     if not alone:
-        # The k-d tree decides between equals. Real clouds have none, so SciPy is not loaded.
-        from scipy.spatial import KDTree
-
+        # The k-d tree decides between equals.
         partner = int(KDTree(second).query(first[row])[1])
     return Nearest(float(distance), first[row], second[partner])
 
