@@ -36,7 +36,7 @@ def kernel_folder(source: Path) -> Path | None:
     folder = cache_folder() / f"{name}-{digest.hexdigest()[:16]}"
     try:
         if not folder.is_dir():
-            folder.mkdir(parents=True)
+            folder.mkdir(parents=True, exist_ok=True)
             for other in folder.parent.glob(f"{name}-*"):
                 if time.time() - other.stat().st_mtime > STALE_DAYS * 24 * 3600:
                     shutil.rmtree(other, ignore_errors=True)
