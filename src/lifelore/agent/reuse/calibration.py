@@ -43,7 +43,7 @@ def _of_outcomes(study: Study, known: Sequence[History], past: Past) -> dict[str
         for decision in history.decisions:
             if decision.outcome is not None and decision.policy in study.library.policies:
                 policy = study.library.index_of_policy(decision.policy)
-                levels.append(outcome_levels(belief.library, [belief.belief], [policy], [decision.outcome])[0])
+                levels.append(outcome_levels(belief.known, [belief.belief], [policy], [decision.outcome])[0])
                 users.append(number)
             belief.learn(decision.policy, decision.outcome)
     return outcome_calibration(levels, users).to_dict() if users else None

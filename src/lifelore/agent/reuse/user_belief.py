@@ -21,7 +21,6 @@ from lifelore.agent.reuse.history import KIND, VERSION, Decision, History, decis
 from lifelore.agent.reuse.past import PastUser, index_name, read_index, read_past_user
 from lifelore.agent.reuse.study import Study
 from lifelore.agent.reuse.user_state import Checkpoint, UserState, WorkingBelief, from_bytes
-from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.interaction.reuse.explanation import Evidence
 from lifelore.memory import Memory
 
@@ -198,8 +197,7 @@ def expected_outcomes(study: Study, history: History, past: PastUser) -> NDArray
     """Expected outcome of each policy of the library after all decisions of a history, (n_policies,)."""
     features = history.features or past.features
     head = replayed(study, history.context or past.context, past, history.decisions, features).head
-    known = study.task(head.task) or study.library
-    return expected_utility(study.algorithm.belief(head.log_belief), known.performance.mean)
+    return WorkingBelief(study, head).expected
 
 
 def prior_of(
