@@ -85,7 +85,8 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
     joint = log_belief + log_likelihood
     top = joint.max(axis=-1, keepdims=True)
     explained = np.isfinite(top)
-    if not explained.all():
+    every = bool(explained.all())
+    if not every:
         if not (top < np.inf).all():
             raise InputError(
                 "log_likelihood must be numbers below infinity (minus infinity is allowed), got NaN or infinity"
@@ -96,7 +97,7 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
     joint -= top
     log_total = np.log(np.exp(joint).sum(axis=-1, keepdims=True))
     log_evidence = (top + log_total)[..., 0]
-    if not explained.all():
+    if not every:
         log_evidence = np.where(explained[..., 0], log_evidence, -np.inf)
     return Updated(joint - log_total, log_evidence)
 

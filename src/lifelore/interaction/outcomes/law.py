@@ -154,12 +154,12 @@ class FixedLaw:
     def log_likelihoods(
         self, policies: Numbers, signals: Any, shown: Shown | None = None, users: Numbers = None
     ) -> Array:
-        """The model's own log likelihoods, (..., 1, n_types)."""
+        """The model's own log likelihoods, (..., n_types): there are no spreads."""
         if self._many is not None:
-            return self._many(policies, signals)[..., None, :]
+            return self._many(policies, signals)
         if np.ndim(policies) == 0:
-            return self._one(policies, signals)[None]
-        return np.array([self._one(*pair) for pair in zip(policies.tolist(), signals, strict=True)])[:, None]
+            return self._one(policies, signals)
+        return np.array([self._one(*pair) for pair in zip(policies.tolist(), signals, strict=True)])
 
     def learn(self, shown: Shown, users: Numbers, policies: Numbers, signals: Any) -> None:
         """Nothing is to be learnt."""

@@ -148,8 +148,10 @@ class ReuseAlgorithm:
         """β of `users` (...), (..., n_types), rows sum to 1 up to rounding."""
         return np.exp(self.log_belief[users])
 
-    def known(self, users: Numbers) -> UserLibrary:
+    def known(self, users: Numbers) -> Any:
         """The library as rules read it for `users`, given what they have shown."""
+        if not (self.signals.law.learns or self.outcomes.law.learns):
+            return self.library
         return UserLibrary(self.library, self.signals, self.outcomes, users)
 
     def select(
@@ -287,11 +289,12 @@ class ReuseAlgorithm:
         return law_of(model, self.library.n_types, self.models, dtype=self._dtype, **spread)
 
     def _changed(self, users: Numbers, log_belief: Array) -> Array | None:
-        """Probability that each type has just changed to what it is, (..., n_types); None where no law asks for it."""
+        """P(the type has just changed to this type), (..., n_types); None where it cannot have, or no law learns."""
         if not self.signals.law.learns:
             return None
-        share = self.dynamics.changed_share(log_belief)
-        return None if share is None else share * self._begun[users][..., None]
+        begun = self._begun[users]
+        share = self.dynamics.changed_share(log_belief) if begun.any() else None
+        return None if share is None else share * begun[..., None]
 
     def _updated(self, log_belief: Array, log_likelihood: Array) -> tuple[Array, Array]:
         try:

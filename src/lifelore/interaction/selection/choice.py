@@ -144,6 +144,9 @@ def scored(
     generator : numpy generator, optional
         Needed by rules that draw.
     """
+    if getattr(rule, "by_means", False):
+        scores = rule.scores(library, belief, episodes_left=episodes_left, generator=generator)
+        return scores if available is None else np.where(available, scores, -np.inf)
     return _by_part(
         lambda part, rows: rule.scores(part, rows, episodes_left=episodes_left, generator=generator),
         library,
@@ -259,7 +262,16 @@ class PartOfOutcomes:
 
     def __init__(self, outcomes: "RuleOutcomes", policies: Mask) -> None:
         self._outcomes, self._policies = outcomes, policies
-        self.mean = outcomes.mean[..., policies]
+
+    @property
+    def mean(self) -> Array:
+        return self._outcomes.mean[..., self._policies]
+
+    def mean_on(self, types: Any) -> Array:
+        return self._outcomes.mean_on(types)[..., self._policies]
+
+    def expected(self, belief: Array) -> Array:
+        return self._outcomes.expected(belief)[..., self._policies]
 
     def density(self, value: Any) -> Array:
         return self._outcomes.density(value)[..., self._policies]
