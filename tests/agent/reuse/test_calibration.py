@@ -57,7 +57,7 @@ def test_outcomes_are_those_of_agents_that_live_the_same(memory, study):
         agent = BayesianPolicyReuse(study.library)
         for policy, outcome in rows:
             beliefs.append(agent.belief)
-            levels.append(outcome_levels(agent.algorithm.library, [agent.belief], [policy], [outcome])[0])
+            levels.append(outcome_levels(agent.algorithm.known(0), [agent.belief], [policy], [outcome])[0])
             groups.append(user)
             agent.update(policy, outcome)
     found = report(memory, study)["calibration"]

@@ -198,12 +198,11 @@ def policy_odds(study: Study, now: WorkingBelief, available: Sequence[str] | Non
     policies = [policy for policy in study.active if available is None or policy in available]
     if not policies:
         raise InputError(
-            f"available must name a policy in use, got {', '.join(available or ())}, which the control group alone "
-            f"gets; in use are {', '.join(study.active)}"
+            f"available must name a policy in use, got {', '.join(available or ())}, which the control group "
+            f"alone gets; in use are {', '.join(study.active)}"
         )
     mask = available_mask(policies, study.library.policies)
-    probs = (1 - study.explore) * now.propensities(mask)[mask] + study.explore / len(policies)
-    return Odds(policies, probs / probs.sum())
+    return Odds(policies, study.explored(now.propensities(mask)[mask]))
 
 
 def _control_odds(study: Study, available: Sequence[str] | None) -> Odds:

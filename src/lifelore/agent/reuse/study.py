@@ -169,6 +169,11 @@ class Study:
         """
         return _control_draw(self.name, user) < self.control
 
+    def explored(self, probs: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The rule's probabilities of policies (..., n) with the share of exploration mixed in; rows sum to 1."""
+        mixed = (1 - self.explore) * probs + self.explore / probs.shape[-1]
+        return mixed / mixed.sum(axis=-1, keepdims=True)
+
     def with_state(self, policy: str, state: str) -> "Study":
         """The study with another state of one policy."""
         return replace(self, states={**self.states, policy: state})

@@ -134,6 +134,10 @@ class CountedPrediction(Prediction):
     def expected_excess(self, threshold: ArrayLike) -> Array:
         return self._expectation(self.cells.excess(np.asarray(threshold, np.float64)[..., None]))
 
+    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
+        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
+        return self.probs[types, policy] @ (1 - self.cells.above(values[:, None])).T
+
     def _expectation(self, of_cells: Array) -> Array:
         """Expectation of a number of each cell, (..., n_cells) to (..., n_types, n_policies)."""
         return np.matmul(self.probs, of_cells[..., None, :, None])[..., 0]
