@@ -1,4 +1,4 @@
-"""The interface of laws: log likelihoods of signals for rows of users and all types, given what each user has shown.
+"""The interface of laws: log likelihoods of signals for users and all types, given what each user has shown.
 
 A library's runs leave open what a type pays. What a user shows then tells of the type and of the parameters of the
 user's own outcomes. A law has sufficient statistics of that, `Shown`, and predicts the next signal from them:
@@ -93,10 +93,6 @@ class Law(Protocol):
         """Let everything that distinct `users` have shown count `keep` (...) of what it did."""
         ...
 
-    def tried(self, shown: Shown, users: Numbers) -> NDArray[np.bool_]:
-        """The policies that `users` have shown a signal of, (..., n_policies)."""
-        ...
-
     def table(
         self, n_bins: int, shown: Shown | None = None, users: Numbers = None, log_weights: Array | None = None
     ) -> SignalTable:
@@ -145,7 +141,7 @@ class FixedLaw:
 
     def checked(self, signals: Any) -> Any:
         """The signals as the model takes them."""
-        return list(signals) if self._check is None else self._check(signals)
+        return signals if self._check is None else self._check(signals)
 
     def shown(self, n_users: int) -> Shown:
         """Nothing."""
@@ -181,7 +177,8 @@ class FixedLaw:
         """There is nothing to take over."""
 
     def _one(self, policy: int, signal: Any) -> Array:
-        found = np.asarray(self.model.log_likelihood(policy, signal), np.float64)
+        # A copy: callers keep it, and a model may write its next answer into the same array.
+        found = np.array(self.model.log_likelihood(policy, signal), np.float64)
         if found.shape != (self.n_types,):
             raise InputError(
                 f"signal model {type(self.model).__name__} must give ({self.n_types},) log likelihoods, gave "

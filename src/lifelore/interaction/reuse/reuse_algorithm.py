@@ -27,7 +27,7 @@ from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.user_library import UserLibrary
 from lifelore.interaction.reuse.user_model import UserModel
 from lifelore.interaction.selection import SelectionRule
-from lifelore.interaction.selection.choice import choose, propensities, scored
+from lifelore.interaction.selection.choice import Mask, choose, propensities, scored
 from lifelore.interaction.signals.return_signal import ReturnSignal
 
 Array = NDArray[Any]
@@ -54,13 +54,14 @@ class ReuseAlgorithm:
     Parameters
     ----------
     library : PolicyLibrary
-        Not copied. Its models are read once, at the start and by `refresh`.
+        Not copied. Uncertain models are read once, at the start.
     n_users : int
     prior : (n_types,) float, optional
         The library's by default.
     dynamics : TypeDynamics, optional
         By default a hazard of `DEFAULT_HAZARD` that draws from the library's prior; the thesis's types are static.
-        Any object with `step` and `changed_share` serves, and may learn from what `end_episode` gives it.
+        Any object with `moves`, `n_types`, `step` and `changed_share` serves, and may learn from what
+        `end_episode` gives it.
     models : {"uncertain", "plug-in"}
         Whether a model learnt from a finite number of runs is known to be uncertain.
     spread : Spread, optional
@@ -94,7 +95,8 @@ class ReuseAlgorithm:
             raise InputError(f"models must be 'uncertain' or 'plug-in', got {models!r}")
         if dtype not in ("f4", "f8"):
             raise InputError(f"dtype must be 'f4' or 'f8', got {dtype!r}")
-        self.library, self.models = library, models
+        self.library = library
+        self.models: Models = models
         self.dynamics = dynamics or TypeDynamics.hazard(DEFAULT_HAZARD, library.prior)
         if self.dynamics.n_types not in (None, library.n_types):
             raise InputError(f"dynamics are for {self.dynamics.n_types} types, the library has {library.n_types}")
@@ -136,12 +138,6 @@ class ReuseAlgorithm:
             raise InputError(f"prior must be ({self.library.n_types},), got {log_belief.shape}")
         return log_belief
 
-    def refresh(self) -> None:
-        """Read the library's models again; beliefs and what users have shown stay."""
-        self.signals.law = self._law(self.library.signal)
-        if self.outcomes is not self.signals:
-            self.outcomes.law = self._law(self.library.performance)
-
     # ---- score and choose --------------------------------------------------------------------------------
 
     def belief(self, users: Numbers) -> Array:
@@ -159,10 +155,10 @@ class ReuseAlgorithm:
         users: Numbers,
         rule: SelectionRule,
         generator: np.random.Generator,
-        available: ArrayLike | None = None,
+        available: Mask | None = None,
         episodes_left: float | None = None,
     ) -> tuple[Any, Array]:
-        """The policy to run next for `users` (...), (...) int64, and the scores of all policies, (..., n_policies).
+        """The policy to run next for `users` (...), (...) int64, and all policies' scores, (..., n_policies).
 
         Parameters
         ----------
@@ -181,7 +177,7 @@ class ReuseAlgorithm:
         users: Numbers,
         rule: SelectionRule,
         generator: np.random.Generator | None = None,
-        available: ArrayLike | None = None,
+        available: Mask | None = None,
         episodes_left: float | None = None,
     ) -> Array:
         """The rule's scores for `users` (...), (..., n_policies); arguments as for `select`."""
@@ -194,7 +190,7 @@ class ReuseAlgorithm:
         self,
         users: Numbers,
         rule: SelectionRule,
-        available: ArrayLike | None = None,
+        available: Mask | None = None,
         episodes_left: float | None = None,
     ) -> Array:
         """Probability that `select` takes each policy for `users` (...), (..., n_policies); rows sum to 1."""
@@ -225,7 +221,8 @@ class ReuseAlgorithm:
         after, log_evidence = self._updated(before, found.log_likelihood)
         explained = log_evidence > -np.inf
         if found.changed is not None:
-            self._fade(users, 1 - np.where(explained, (np.exp(after) * found.changed).sum(axis=-1), 0.0))
+            changes = np.where(explained, (np.exp(after) * found.changed).sum(axis=-1), 0.0)
+            self._fade(users, 1 - np.minimum(changes, 1.0))
         if self.signals.law.learns and explained.any():
             self.signals.learn(*_explained(explained, users, policies, signals, found.gain))
         if outcomes is not None and self.outcomes is not self.signals:
@@ -234,9 +231,10 @@ class ReuseAlgorithm:
         return Observed(found.log_likelihood, log_evidence)
 
     def end_episode(self, users: Numbers, outcome: Any = None) -> None:
-        """Take the dynamics' step for `users`; `outcome` says how their episodes ended, for dynamics that learn."""
-        self.log_belief[users] = self.dynamics.step(self.log_belief[users], users, outcome)
-        self._begun[users] = True
+        """Take the dynamics' step for `users`; dynamics that learn read by `outcome` how the episodes ended."""
+        if self.dynamics.moves:
+            self.log_belief[users] = self.dynamics.step(self.log_belief[users], users, outcome)
+            self._begun[users] = True
 
     def update(self, users: Numbers, policies: Numbers, signals: Any, outcomes: Any = None) -> Observed:
         """`observe`, and `end_episode`."""
@@ -261,9 +259,12 @@ class ReuseAlgorithm:
             model.grow(n_users)
 
     def state(self, user: int) -> dict[str, Array]:
-        """What a user has shown, as small arrays; empty where nothing is learnt beside the belief."""
+        """What a user has shown, as small arrays; empty between episodes where only the belief learns."""
         parts = {"signal": self.signals} | ({} if self.outcomes is self.signals else {"outcomes": self.outcomes})
-        return {f"{name}.{key}": array for name, model in parts.items() for key, array in model.state(user).items()}
+        found = {
+            f"{name}.{key}": array for name, model in parts.items() for key, array in model.state(user).items()
+        }
+        return found if self._begun[user] else found | {"begun": np.array(False)}
 
     def restore(self, user: int, log_belief: ArrayLike, state: Mapping[str, Any]) -> None:
         """Take over a log belief (n_types,) and a `state`; InputError where they are of another library."""
@@ -273,7 +274,7 @@ class ReuseAlgorithm:
         self.signals.restore(user, _part(state, "signal."))
         if self.outcomes is not self.signals:
             self.outcomes.restore(user, _part(state, "outcomes."))
-        self.log_belief[user], self._begun[user] = row, True
+        self.log_belief[user], self._begun[user] = row, bool(state.get("begun", True))
 
     @property
     def nbytes(self) -> int:
@@ -289,7 +290,7 @@ class ReuseAlgorithm:
         return law_of(model, self.library.n_types, self.models, dtype=self._dtype, **spread)
 
     def _changed(self, users: Numbers, log_belief: Array) -> Array | None:
-        """P(the type has just changed to this type), (..., n_types); None where it cannot have, or no law learns."""
+        """P(the type has just changed to this), (..., n_types); None where it cannot have, or no law learns."""
         if not self.signals.law.learns:
             return None
         begun = self._begun[users]
@@ -301,8 +302,8 @@ class ReuseAlgorithm:
             return update(log_belief, log_likelihood)
         except InputError:
             raise InputError(
-                f"signal model {type(self.library.signal).__name__} gave NaN or infinity as a log likelihood; minus "
-                "infinity is allowed, they are not"
+                f"signal model {type(self.library.signal).__name__} gave NaN or infinity as a log likelihood; "
+                "minus infinity is allowed, they are not"
             ) from None
 
     def _fade(self, users: Numbers, keep: Array) -> None:
@@ -320,8 +321,10 @@ def _explained(explained: Any, *of_users: Any) -> tuple[Any, ...]:
     if explained.all():
         return of_users
     rows = np.flatnonzero(explained)
-    return tuple([each[row] for row in rows] if isinstance(each, list) else each if each is None else each[rows]
-                 for each in of_users)
+    return tuple(
+        [each[row] for row in rows] if isinstance(each, list) else each if each is None else each[rows]
+        for each in of_users
+    )
 
 
 def _part(state: Mapping[str, Any], prefix: str) -> dict[str, Any]:
