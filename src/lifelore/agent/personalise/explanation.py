@@ -8,9 +8,9 @@ from lifelore.agent.reuse.history import read_decisions, user_key
 from lifelore.agent.reuse.log_columns import check_word
 from lifelore.agent.reuse.one_user import policy_odds
 from lifelore.agent.reuse.study import Study
-from lifelore.agent.reuse.user_belief import evidence_of, open_belief
+from lifelore.agent.reuse.user_belief import belief_anew, open_belief
 from lifelore.core.errors import NotFoundError
-from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, relative_evidence
+from lifelore.interaction.reuse.explanation import relative_evidence
 from lifelore.memory import Memory
 
 LAST_DECISIONS = 16
@@ -37,7 +37,8 @@ def explain(memory: Memory, study: Study, user: str) -> dict[str, Any]:
     check_word("user", user)
     key = user_key(study.name, user)
     known = open_belief(memory, study, key, user)
-    now, last = evidence_of(memory, study, known, MAX_EVIDENCE)
+    now = belief_anew(memory, study, known)
+    last = list(now.evidence)
     number = known.state.head.number
     if number == 0 and not last:
         raise NotFoundError(f"nothing is stored of user '{user}' in study '{study.name}'")

@@ -26,7 +26,7 @@ from lifelore.agent.reuse.log_columns import check_word
 from lifelore.agent.reuse.past import forget_past
 from lifelore.agent.reuse.requests import request_record, requested
 from lifelore.agent.reuse.study import ACTIVE, PILOT, RETIRED, Study
-from lifelore.agent.reuse.user_belief import UserBelief, novelty_of, open_belief
+from lifelore.agent.reuse.user_belief import UserBelief, belief_anew, open_belief
 from lifelore.agent.reuse.user_state import WorkingBelief
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.streams import stream
@@ -114,7 +114,8 @@ def choose(
             decision, answer = _decided(study, known, attempt, seed, available)
         else:
             decision, answer = _repeated(memory, study, known, *made)
-        answer["novelty"] = novelty_of(memory, study, known) if novelty else None
+        unknown = belief_anew(memory, study, known, novelty=True).novelty if novelty else None
+        answer["novelty"] = None if unknown is None else unknown.probability
         if request is not None:
             answer["repeated"] = made is not None
         if made is not None:

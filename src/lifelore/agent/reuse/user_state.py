@@ -13,6 +13,7 @@ bits.
 import json
 import struct
 import zlib
+from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -22,7 +23,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.interaction.reuse.explanation import Evidence, surprise_of
+from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, Evidence, surprise_of
 from lifelore.interaction.reuse.user_library import UserLibrary
 
 if TYPE_CHECKING:
@@ -188,35 +189,56 @@ class WorkingBelief:
     study : Study
     start : Checkpoint
         The belief before the first of them.
-    novelty : UnknownType, optional
+
+    Attributes
+    ----------
+    evidence : deque of Evidence
+        Of the last outcomes that were learnt.
+    novelty : UnknownType or None
         Takes in the same outcomes.
     """
 
-    def __init__(self, study: "Study", start: Checkpoint, novelty: "UnknownType | None" = None) -> None:
-        self._study, self._surprise, self._novelty = study, start.surprise, novelty
+    def __init__(self, study: "Study", start: Checkpoint) -> None:
+        self._study, self._surprise = study, start.surprise
+        self.evidence: deque[Evidence] = deque(maxlen=MAX_EVIDENCE)
+        self.novelty: UnknownType | None = None
         self._row = study.algorithm.new_rows()
         self._row.log_belief[0] = start.log_belief
         if start.task:
             self._row.restore(0, start.log_belief, start.task)
 
-    def learn(self, policy: str | None, outcome: float | None) -> Evidence | None:
-        """Learn from an outcome of a policy, and return its evidence.
+    @classmethod
+    def of_stranger(cls, study: "Study", prior: NDArray[np.float64], novelty: bool = False) -> "WorkingBelief":
+        """The belief before the first outcome, from a prior (n_types,).
+
+        Parameters
+        ----------
+        novelty : bool
+            Whether to follow the probability that no type fits; InputError where no broad law is known.
+        """
+        belief = cls(study, Checkpoint(0, study.algorithm.start(prior), 0.0))
+        if novelty:
+            from lifelore.interaction.reuse.unknown_type import UnknownType
+
+            belief.novelty = UnknownType(study.library, prior=prior, dynamics=study.dynamics, models=study.models)
+        return belief
+
+    def learn(self, policy: str | None, outcome: float | None) -> None:
+        """Learn from an outcome of a policy.
 
         Without an outcome, or with a policy that the library does not know, there is no evidence. The user's type
         may change all the same.
         """
-        evidence = None
         if outcome is not None and policy in self._study.library.policies:
             index = self._study.library.index_of_policy(policy)
             found = self._row.observe(0, index, outcome)
-            evidence = Evidence(index, found.log_likelihood, float(found.log_evidence))
-            self._surprise += surprise_of(evidence.log_evidence)
-            if self._novelty is not None:
-                self._novelty.observe(index, outcome)
+            self.evidence.append(Evidence(index, found.log_likelihood, float(found.log_evidence)))
+            self._surprise += surprise_of(float(found.log_evidence))
+            if self.novelty is not None:
+                self.novelty.observe(index, outcome)
         self._row.end_episode(0)
-        if self._novelty is not None:
-            self._novelty.end_episode()
-        return evidence
+        if self.novelty is not None:
+            self.novelty.end_episode()
 
     @property
     def belief(self) -> NDArray[np.float64]:
