@@ -4,8 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import log_prior
-from lifelore.interaction.beliefs.belief_kernels import bayes_rows
+from lifelore.interaction.beliefs.belief import log_prior, update
 
 Array = NDArray[np.float64]
 
@@ -100,9 +99,6 @@ class BeatUsers:
         likelihood = self.log_table[policies, signals]
         if extra is not None:
             likelihood = likelihood + extra
-        beliefs = np.ascontiguousarray(self.log_belief[users])
-        evidence = np.empty(len(users))
-        bayes_rows(beliefs, np.ascontiguousarray(likelihood), evidence)
-        if np.isnan(evidence).any():
-            raise InputError("extra must be below infinity and no NaN; minus infinity is allowed")
-        self.log_belief[users] = beliefs
+            if not (likelihood < np.inf).all():
+                raise InputError("extra must be below infinity and no NaN; minus infinity is allowed")
+        self.log_belief[users] = update(self.log_belief[users], likelihood).log_belief
