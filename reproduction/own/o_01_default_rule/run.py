@@ -91,9 +91,7 @@ def _group(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict[str,
         found[UNCERTAIN] = {}
         for word in CANDIDATES:
             generator = stream(seed, "O1", "doubting", word, name, noise, group)
-            played = play_rule(
-                RULES[word], library, signals, n_tasks, n_episodes, generator, models="uncertain"
-            )
+            played = play_rule(RULES[word], library, signals, n_tasks, n_episodes, generator, models="uncertain")
             found[UNCERTAIN][word] = judged(played.policies)
     return found
 
