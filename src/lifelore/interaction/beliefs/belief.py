@@ -15,6 +15,8 @@ from lifelore.core.errors import InputError
 
 Array = NDArray[Any]
 
+FAR = {"d": 1e3, "f": 10.0}
+"""Largest log likelihood in size beside which a belief in float64 or float32 is not rounded away."""
 SUM_TOLERANCE = 1e-9
 """Largest distance from 1 of the sum of a caller's belief."""
 
@@ -81,24 +83,33 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
     >>> np.exp(after.log_belief).round(3).tolist(), float(np.exp(after.log_evidence).round(3))
     ([0.25, 0.75], 0.2)
     """
-    log_belief = np.asarray(log_belief)
-    joint = log_belief + log_likelihood
-    top = joint.max(axis=-1, keepdims=True)
-    explained = np.isfinite(top)
-    if not explained.all():
-        if not (top < np.inf).all():
-            raise InputError(
-                "log_likelihood must be numbers below infinity (minus infinity is allowed), got NaN or infinity"
-            )
-        # A signal that no type explains is as likely under all.
-        joint, top = np.where(explained, joint, log_belief), np.where(explained, top, 0.0)
+    joint = np.add(log_belief, log_likelihood)
+    top = np.maximum.reduce(joint, axis=-1, keepdims=True)
+    if not (np.abs(top) <= FAR[joint.dtype.char]).all():
+        return _far_update(np.asarray(log_belief), np.asarray(log_likelihood))
     # The largest is taken off first: beside a large number the logarithm of the sum would be rounded away.
     joint -= top
-    log_total = np.log(np.exp(joint).sum(axis=-1, keepdims=True))
-    log_evidence = (top + log_total)[..., 0]
-    if not explained.all():
-        log_evidence = np.where(explained[..., 0], log_evidence, -np.inf)
-    return Updated(joint - log_total, log_evidence)
+    log_total = np.log(np.add.reduce(np.exp(joint), axis=-1, keepdims=True))
+    joint -= log_total
+    return Updated(joint, (top + log_total)[..., 0])
+
+
+def _far_update(log_belief: Array, log_likelihood: Array) -> Updated:
+    """`update` where likelihoods are large, minus infinity for all types, or no numbers."""
+    if not (log_likelihood < np.inf).all():
+        raise InputError(
+            "log_likelihood must be numbers below infinity (minus infinity is allowed), got NaN or infinity"
+        )
+    # Likelihoods are taken relative to the best of the possible types, so that no belief is rounded away.
+    possible = log_belief > -np.inf
+    best = np.where(possible, log_likelihood, -np.inf).max(axis=-1, keepdims=True)
+    explained = best > -np.inf
+    with np.errstate(invalid="ignore", over="ignore"):
+        relative = np.where(possible & explained, log_likelihood - best, 0.0)
+    joint = log_belief + relative.astype(log_belief.dtype, copy=False)
+    top = joint.max(axis=-1, keepdims=True)
+    log_total = top + np.log(np.exp(joint - top).sum(axis=-1, keepdims=True))
+    return Updated(np.minimum(joint - log_total, 0.0), (log_total + best)[..., 0])
 
 
 def entropy(belief: ArrayLike) -> Array:

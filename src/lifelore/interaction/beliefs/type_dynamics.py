@@ -112,24 +112,21 @@ class TypeDynamics:
         """
         if self.kind == "static":
             return log_belief
-        stepped = self._hazarded(log_belief) if self.kind == "hazard" else self._moved(log_belief)
-        # Rounding may leave the belief of a certain type a last bit above 1.
-        return np.minimum(stepped, 0.0)
+        return self._hazarded(log_belief) if self.kind == "hazard" else np.minimum(self._moved(log_belief), 0.0)
 
     def changed_share(self, log_belief: Array) -> Array | None:
-        """P(the type has just changed | it is now this type) after a `step`, (..., n_types); None where it never does.
+        """P(the type has just changed | it is now this type) after a `step`, (..., n_types).
 
-        For transitions, whose changes the belief follows by itself, None too.
+        None where types never change, and for transitions, whose changes the belief follows by itself.
         """
         if self.kind != "hazard" or not self.rate:
             return None
         with np.errstate(invalid="ignore"):
-            share = np.exp(self._terms(log_belief.dtype).log_anew - log_belief)
-        return np.fmin(share, 1.0)
+            return np.exp(np.fmin(self._terms(log_belief.dtype).log_anew - log_belief, 0.0))
 
     def _hazarded(self, log_belief: Array) -> Array:
         terms = self._terms(log_belief.dtype)
-        if not terms.small.any():
+        if not terms.small:
             return np.log(np.exp(log_belief) * terms.stay + terms.anew)
         return np.logaddexp(log_belief + np.log(terms.stay), terms.log_anew)
 
@@ -140,7 +137,7 @@ class TypeDynamics:
             anew = self.rate * self.law
             with np.errstate(divide="ignore"):
                 log_anew = np.log(anew)
-            small = anew < np.finfo(dtype).tiny
+            small = bool((anew < np.finfo(dtype).tiny).any())
             stay = np.asarray(1 - self.rate, dtype)
             self._known[dtype] = _HazardTerms(stay, anew.astype(dtype), log_anew.astype(dtype), small)
         return self._known[dtype]
@@ -157,12 +154,12 @@ class TypeDynamics:
 
 
 class _HazardTerms(NamedTuple):
-    """1 − h; h G₀ and its logarithm, (n_types,); and where h G₀ is too small for a number: there, logs are added."""
+    """1 − h; h G₀ and its logarithm, (n_types,); whether some h G₀ is too small for a number."""
 
     stay: Array
     anew: Array
     log_anew: Array
-    small: NDArray[np.bool_]
+    small: bool
 
 
 def _log_sums(terms: Array) -> Array:

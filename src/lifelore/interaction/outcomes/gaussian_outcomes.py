@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.outcome_moments import known_moments
-from lifelore.interaction.outcomes.special_functions import ndtr
+from lifelore.interaction.outcomes.prediction import over_types
+from lifelore.interaction.finite_signals.normal_distribution import ndtr
 
 Array = NDArray[np.float64]
 
@@ -48,7 +49,7 @@ class GaussianOutcomes(MomentOutcomes):
 
     def log_densities(self, policies: Any, values: Any) -> Array:
         """Log densities of many outcomes, (...) and (...) to (..., n_types); without checks."""
-        z = (np.asarray(values, np.float64)[..., None] - self._centre[policies]) * self._precision[policies]
+        z = (over_types(values) - self._centre[policies]) * self._precision[policies]
         return self._log_height[policies] - 0.5 * (z * z)
 
     def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:

@@ -145,7 +145,7 @@ class FixedLaw:
 
     def checked(self, signals: Any) -> Any:
         """The signals as the model takes them."""
-        return list(signals) if self._check is None else self._check(signals)
+        return signals if self._check is None else self._check(signals)
 
     def shown(self, n_users: int) -> Shown:
         """Nothing."""
@@ -154,12 +154,12 @@ class FixedLaw:
     def log_likelihoods(
         self, policies: Numbers, signals: Any, shown: Shown | None = None, users: Numbers = None
     ) -> Array:
-        """The model's own log likelihoods, (..., 1, n_types)."""
+        """The model's own log likelihoods, (..., n_types): there are no spreads."""
         if self._many is not None:
-            return self._many(policies, signals)[..., None, :]
+            return self._many(policies, signals)
         if np.ndim(policies) == 0:
-            return self._one(policies, signals)[None]
-        return np.array([self._one(*pair) for pair in zip(policies.tolist(), signals, strict=True)])[:, None]
+            return self._one(policies, signals)
+        return np.array([self._one(*pair) for pair in zip(policies.tolist(), signals, strict=True)])
 
     def learn(self, shown: Shown, users: Numbers, policies: Numbers, signals: Any) -> None:
         """Nothing is to be learnt."""
@@ -181,7 +181,8 @@ class FixedLaw:
         """There is nothing to take over."""
 
     def _one(self, policy: int, signal: Any) -> Array:
-        found = np.asarray(self.model.log_likelihood(policy, signal), np.float64)
+        # A copy: callers keep it, and a model may write its next answer into the same array.
+        found = np.array(self.model.log_likelihood(policy, signal), np.float64)
         if found.shape != (self.n_types,):
             raise InputError(
                 f"signal model {type(self.model).__name__} must give ({self.n_types},) log likelihoods, gave "

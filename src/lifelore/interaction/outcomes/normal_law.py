@@ -79,13 +79,20 @@ class NormalLaw:
         single = self.dtype == np.float32
         self.middle = mean.mean(axis=1) if single else np.zeros(len(mean))
         self.unit = np.sqrt(variance.mean(axis=1)) if single else np.ones(len(mean))
-        # Policy first: a signal reads the rows of its policy. A column stands for types that are alike.
-        self._location = self._stored((mean - self.middle[:, None]) / self.unit[:, None])
-        self._variance = self._stored(variance / self.unit[:, None] ** 2)
-        self._rarity = self._stored(_alike(1 / moments.count.T))
-        self._freedom = self._stored(_alike(np.minimum(moments.freedom.T, EXACT)))
-        self._spreads = self._stored(spread.values[:, None])
-        self._log_unit = self._stored(np.log(self.unit))
+        # Policy first: a signal reads the rows of its policy, (n_policies, n_spreads or 1, n_types or 1). Types
+        # that are alike share a column.
+        mean, variance = (mean - self.middle[:, None]) / self.unit[:, None], variance / self.unit[:, None] ** 2
+        rarity, freedom = _alike(1 / moments.count.T), _alike(np.minimum(moments.freedom.T, EXACT))
+        doubt, freedom = rarity[:, None] + spread.values[:, None], freedom[:, None]
+        square, power = variance[:, None] * (1 + doubt), 0.5 * (freedom + 1)
+        height = log_t_height(freedom) - np.log(self.unit)[:, None, None]
+        self._location, self._doubt, self._freedom, self._power = map(
+            self._stored, (mean[:, None], doubt, freedom, power)
+        )
+        self._weight, self._log_unit = self._stored(variance[:, None] * freedom), self._stored(np.log(self.unit))
+        # Student's t of users who have shown nothing: log density = top − power log1p(gap² narrow).
+        self._narrow = self._stored(1 / (square * freedom))
+        self._top = self._stored(height - 0.5 * np.log(square))
         factor = variance_factor(moments.freedom)
         self.mean, self.noise = moments.mean.copy(), moments.variance * factor
         self.of_runs, self.of_spread = self.noise / moments.count, self.noise
@@ -105,25 +112,23 @@ class NormalLaw:
         self, policies: Numbers, signals: Any, shown: Shown | None = None, users: Numbers = None
     ) -> Array:
         """Log densities of outcomes (...) given what `users` (...) have shown, (..., n_spreads, n_types)."""
-        location, doubt, variance, freedom = self.posterior(policies, shown, users)
-        square = variance * (1 + doubt)
-        gap = _over(self._scaled(policies, signals)) - location
-        tail = 0.5 * (freedom + 1) * np.log1p(gap * gap / (square * freedom))
-        height = self._stored(log_t_height(freedom)) - _over(self._log_unit[policies])
-        return height - 0.5 * np.log(square) - tail
-
-    def posterior(self, policies: Numbers, shown: Shown | None = None, users: Numbers = None) -> Posterior:
-        """The law of the pairs of `policies` (...) given what `users` (...) have shown."""
-        location, rare = self._location[policies][..., None, :], self._rarity[policies][..., None, :]
-        variance, freedom = self._variance[policies][..., None, :], self._freedom[policies][..., None, :]
-        rare = rare + self._spreads
+        value = _over(self._scaled(policies, signals))
         if shown is None:
-            return Posterior(location, rare, variance, freedom)
+            gap = value - self._location[policies]
+            return self._top[policies] - self._power[policies] * np.log1p(gap * gap * self._narrow[policies])
+        location, doubt, variance, freedom = self.posterior(policies, shown, users)
+        square, gap = variance * (1 + doubt), value - location
+        height = self._stored(log_t_height(freedom)) - _over(self._log_unit[policies])
+        return height - 0.5 * np.log(square) - 0.5 * (freedom + 1) * np.log1p(gap * gap / (square * freedom))
+
+    def posterior(self, policies: Numbers, shown: Shown, users: Numbers) -> Posterior:
+        """The law of the pairs of `policies` (...) given what `users` (...) have shown."""
         n, mean, squares = (_over(shown[name][users, policies]) for name in STATISTICS)
-        grown, apart, after = 1 + n * rare, mean - location, freedom + n
-        doubt = rare / grown
-        variance = (freedom * variance + squares + n / grown * (apart * apart)) / after
-        return Posterior(location + n * doubt * apart, doubt, variance, after)
+        location, doubt = self._location[policies], self._doubt[policies]
+        grown, apart, freedom = 1 + n * doubt, mean - location, self._freedom[policies] + n
+        doubt = doubt / grown
+        variance = (self._weight[policies] + squares + n / grown * (apart * apart)) / freedom
+        return Posterior(location + n * doubt * apart, doubt, variance, freedom)
 
     def learn(self, shown: Shown, users: Numbers, policies: Numbers, signals: Any) -> None:
         """Add outcomes of distinct users (Welford's update)."""
@@ -244,11 +249,12 @@ class NormalRows(NormalPrediction):
     def mean_on(self, types: NDArray[np.int64]) -> Array:
         """Mean outcomes on a type for each user, (...) to (..., n_policies), without those on other types."""
         law, types = self._law, np.atleast_1d(types)
-        location = law._location.T[types]
+        location = law._location[:, 0].T[types]
         n, mean = self._shown["count"][self._users], self._shown["mean"][self._users]
-        rarity = law._rarity.T[types if law._rarity.shape[1] > 1 else np.zeros_like(types)]
-        pull = n[..., None] * (rarity[..., None] + law._spreads[:, 0])
-        pull = ((pull / (1 + pull)) * self._weights[:, None, :].astype(law.dtype)).sum(axis=-1)
+        # (n_types or 1, n_spreads, n_policies) to (k, n_spreads, n_policies)
+        doubt = law._doubt.T[types if law._doubt.shape[2] > 1 else np.zeros_like(types)]
+        pull = n[:, None] * doubt
+        pull = np.matmul(self._weights[:, None].astype(law.dtype), pull / (1 + pull))[:, 0]
         found = law.middle + law.unit * (location + pull * (mean - location))
         return found.reshape(*self._shape, -1)
 

@@ -223,6 +223,8 @@ def refuse_outcome(policy: Any, value: Any, n_policies: int) -> NoReturn:
 
 def finite_outcomes(values: Any) -> Any:
     """Outcomes, a number or (k,), as float64; InputError where one is not finite."""
+    if isinstance(values, float) and -LARGEST <= values <= LARGEST:
+        return values
     try:
         found = np.asarray(values, np.float64)
     except (TypeError, ValueError):

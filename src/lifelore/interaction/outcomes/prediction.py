@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.interaction.outcomes.cells import Cells
-from lifelore.interaction.outcomes.special_functions import ndtr
+from lifelore.interaction.finite_signals.normal_distribution import ndtr
 
 Array = NDArray[Any]
 
@@ -159,3 +159,8 @@ def weighted(belief: Array, values: Array) -> Array:
 def over_pairs(values: ArrayLike) -> Any:
     """A number as it is, a batch (...,) as (..., 1, 1), which broadcasts against (n_types, n_policies)."""
     return values if isinstance(values, float | int) else np.asarray(values)[..., None, None]
+
+
+def over_types(values: ArrayLike) -> Any:
+    """A number as it is, a batch (...,) as (..., 1), which broadcasts against (n_types,)."""
+    return values if isinstance(values, float | int) else np.asarray(values, np.float64)[..., None]

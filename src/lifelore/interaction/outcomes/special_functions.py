@@ -4,26 +4,11 @@ SciPy is imported at the first call that needs it: a choice by stored tables nee
 """
 
 from functools import cache
-from math import erfc, sqrt
 from typing import Any
 
-import numpy as np
+from lifelore.interaction.finite_signals.normal_distribution import ndtr
 
-FEW = 30_000
-"""Count of numbers up to which a process computes `ndtr` without SciPy: the import takes as long as some hundred
-thousand of them."""
-_computed = 0
-
-
-def ndtr(z: Any) -> Any:
-    """Distribution function of the standard normal, of a number or an array; one number at a time while few."""
-    global _computed
-    z = np.asarray(z, np.float64)
-    if _computed + z.size > FEW:
-        return _special().ndtr(z)
-    _computed += z.size
-    halves = [0.5 * erfc(x) for x in (-sqrt(0.5) * z).ravel().tolist()]
-    return np.array(halves).reshape(z.shape)[()]
+__all__ = ["gammaln", "ndtr", "stdtr"]
 
 
 def stdtr(freedom: Any, t: Any) -> Any:

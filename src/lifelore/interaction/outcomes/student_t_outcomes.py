@@ -14,7 +14,7 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.normal_law import log_t_height
 from lifelore.interaction.outcomes.outcome_moments import known_moments
-from lifelore.interaction.outcomes.prediction import over_pairs
+from lifelore.interaction.outcomes.prediction import over_pairs, over_types
 from lifelore.interaction.outcomes.special_functions import stdtr
 
 Array = NDArray[np.float64]
@@ -50,7 +50,7 @@ class StudentTOutcomes(MomentOutcomes):
 
     def log_densities(self, policies: Any, values: Any) -> Array:
         """Log densities of many outcomes, (...) and (...) to (..., n_types); without checks."""
-        z = (np.asarray(values, np.float64)[..., None] - self._centre[policies]) * self._narrow[policies]
+        z = (over_types(values) - self._centre[policies]) * self._narrow[policies]
         return self._log_height[policies] + self._power[policies] * np.log1p(z * z)
 
     def density(self, value: ArrayLike) -> Array:

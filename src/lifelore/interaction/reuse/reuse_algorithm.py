@@ -53,7 +53,7 @@ class ReuseAlgorithm:
     Parameters
     ----------
     library : PolicyLibrary
-        Not copied. Its models are read once, at the start and by `refresh`.
+        Not copied. Uncertain models are read once, at the start.
     n_users : int
     prior : (n_types,) float, optional
         The library's by default.
@@ -124,20 +124,16 @@ class ReuseAlgorithm:
             raise InputError(f"prior must be ({self.library.n_types},), got {log_belief.shape}")
         return log_belief
 
-    def refresh(self) -> None:
-        """Read the library's models again; beliefs and what users have shown stay."""
-        self.signals.law = self._law(self.library.signal)
-        if self.outcomes is not self.signals:
-            self.outcomes.law = self._law(self.library.performance)
-
     # ---- score and choose --------------------------------------------------------------------------------
 
     def belief(self, users: Numbers) -> Array:
         """β of `users` (...), (..., n_types), rows sum to 1 up to rounding."""
         return np.exp(self.log_belief[users])
 
-    def known(self, users: Numbers) -> UserLibrary:
+    def known(self, users: Numbers) -> Any:
         """The library as rules read it for `users`, given what they have shown."""
+        if not (self.signals.law.learns or self.outcomes.law.learns):
+            return self.library
         return UserLibrary(self.library, self.signals, self.outcomes, users)
 
     def select(
@@ -247,9 +243,10 @@ class ReuseAlgorithm:
             model.grow(n_users)
 
     def state(self, user: int) -> dict[str, Array]:
-        """What a user has shown, as small arrays; empty where nothing is learnt beside the belief."""
+        """What a user has shown, as small arrays; empty between episodes where nothing is learnt beside the belief."""
         parts = {"signal": self.signals} | ({} if self.outcomes is self.signals else {"outcomes": self.outcomes})
-        return {f"{name}.{key}": array for name, model in parts.items() for key, array in model.state(user).items()}
+        found = {f"{name}.{key}": array for name, model in parts.items() for key, array in model.state(user).items()}
+        return found if self._begun[user] else found | {"begun": np.array(False)}
 
     def restore(self, user: int, log_belief: ArrayLike, state: Mapping[str, Any]) -> None:
         """Take over a log belief (n_types,) and a `state`; InputError where they are of another library."""
@@ -259,7 +256,7 @@ class ReuseAlgorithm:
         self.signals.restore(user, _part(state, "signal."))
         if self.outcomes is not self.signals:
             self.outcomes.restore(user, _part(state, "outcomes."))
-        self.log_belief[user], self._begun[user] = row, True
+        self.log_belief[user], self._begun[user] = row, bool(state.get("begun", True))
 
     @property
     def nbytes(self) -> int:
@@ -275,11 +272,12 @@ class ReuseAlgorithm:
         return law_of(model, self.library.n_types, self.models, dtype=self._dtype, **spread)
 
     def _changed(self, users: Numbers, log_belief: Array) -> Array | None:
-        """Probability that each type has just changed to what it is, (..., n_types); None where no law asks for it."""
+        """P(the type has just changed to this type), (..., n_types); None where it cannot have, or no law learns."""
         if not self.signals.law.learns:
             return None
-        share = self.dynamics.changed_share(log_belief)
-        return None if share is None else share * self._begun[users][..., None]
+        begun = self._begun[users]
+        share = self.dynamics.changed_share(log_belief) if begun.any() else None
+        return None if share is None else share * begun[..., None]
 
     def _updated(self, log_belief: Array, log_likelihood: Array) -> tuple[Array, Array]:
         try:

@@ -123,8 +123,7 @@ def _arrays(agent: BayesianPolicyReuse) -> Arrays:
     }
     if agent.dynamics.law is not None:
         arrays["law"] = agent.dynamics.law
-    if agent.task is not None:
-        arrays |= {f"task.{name}": array for name, array in agent.task.state().items()}
+    arrays |= {f"task.{name}": array for name, array in agent.algorithm.state(0).items()}
     if agent.novelty is not None:
         arrays |= {f"novelty.{name}": array for name, array in agent.novelty.state().items()}
     if agent._selected is not None:
@@ -133,14 +132,7 @@ def _arrays(agent: BayesianPolicyReuse) -> Arrays:
 
 
 def _restore(agent: BayesianPolicyReuse, header: dict[str, Any], arrays: Arrays) -> None:
-    log_belief = arrays["log_belief"]
-    if log_belief.shape != (agent.library.n_types,) or log_belief.dtype != np.float64:
-        raise ValueError(f"log_belief has shape {log_belief.shape}")
-    if not ((log_belief <= 0).all() and abs(np.exp(log_belief).sum() - 1) < 1e-9):
-        raise ValueError("log_belief is no belief")
-    agent._log_belief[:] = log_belief
-    if agent.task is not None:
-        agent.task.restore(_part(arrays, "task."))
+    agent.algorithm.restore(0, arrays["log_belief"], _part(arrays, "task."))
     # Files of versions 1 and 2 have none.
     if novelty := _part(arrays, "novelty."):
         agent.novelty = UnknownType.restored(novelty, agent.library, agent.dynamics, agent.models)
@@ -149,7 +141,9 @@ def _restore(agent: BayesianPolicyReuse, header: dict[str, Any], arrays: Arrays)
     last = zip(arrays["evidence_policy"], arrays["log_likelihood"], arrays["log_evidence"], strict=True)
     agent._evidence.extend(Evidence(int(policy), row, float(evidence)) for policy, row, evidence in last)
     if header["selected"] is not None:
-        agent._selected = int(header["selected"]), arrays["scores"]
+        # Until version 3, scores of policies that were not available were NaN.
+        scores = arrays["scores"]
+        agent._selected = int(header["selected"]), np.where(np.isnan(scores), -np.inf, scores)
 
 
 def _part(arrays: Arrays, prefix: str) -> Arrays:

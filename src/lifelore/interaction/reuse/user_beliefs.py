@@ -40,7 +40,7 @@ class UserBeliefs:
     Parameters
     ----------
     library : PolicyLibrary
-        Call `refresh` after its models have learnt in place.
+        Not copied. Uncertain models are read once, at the start.
     users : int or iterable of str
         Number of users, at least 1; they are then numbered from 0. Or their names, none to begin with allowed.
     dtype : {"f4", "f8"}
@@ -103,10 +103,6 @@ class UserBeliefs:
         )
         self.generator = stream(seed, "user beliefs") if isinstance(seed, int | np.integer) else seed
         self._n_users = n_users
-
-    def refresh(self) -> None:
-        """Read the library's models again; beliefs and what users have shown stay."""
-        self.algorithm.refresh()
 
     @property
     def n_users(self) -> int:

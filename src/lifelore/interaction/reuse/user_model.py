@@ -18,6 +18,8 @@ from lifelore.interaction.outcomes.law import Law, Numbers
 
 Array = NDArray[Any]
 
+LEAST = 1e-37
+"""In place of 0 below a line."""
 SLACK = 1e-5
 """Rounding error of probabilities that sum to 1."""
 
@@ -70,21 +72,21 @@ class UserModel:
         changed : (..., n_types), optional
             w, as `TypeDynamics.changed_share` gives it.
         """
-        found = self.law.log_likelihoods(policies, signals, self.shown, users)
-        if not self.law.learns:
-            return Evidence(found[..., 0, :], None, None)
-        weights = self.log_weights[users][..., None].astype(found.dtype, copy=False)
-        several = found.shape[-2] > 1
-        gain = _gain(found, np.exp(log_belief)) if several else None
+        law, weigh = self.law, self.log_weights[users][..., None]
+        if not law.learns:
+            return Evidence(law.log_likelihoods(policies, signals), None, None)
+        found = law.log_likelihoods(policies, signals, self.shown, users)
+        gain = _gain(found, np.exp(log_belief)) if found.shape[-2] > 1 else None
+        stayed = found + weigh.astype(found.dtype, copy=False)
         if changed is None:
-            return Evidence(_log_sum(found + weights) if several else found[..., 0, :], None, gain)
-        fresh, first = self.law.log_likelihoods(policies, signals), self._log_first[:, None].astype(found.dtype)
+            return Evidence(_log_sum(stayed), None, gain)
+        anew = law.log_likelihoods(policies, signals) + self._log_first[:, None].astype(found.dtype, copy=False)
+        top = np.maximum(stayed.max(axis=-2), np.where(changed > 0, anew.max(axis=-2), -np.inf))
+        top = np.where(top > -np.inf, top, 0.0)
+        new = changed * np.exp(anew - top[..., None, :]).sum(axis=-2)
+        whole = (1 - changed) * np.exp(stayed - top[..., None, :]).sum(axis=-2) + new
         with np.errstate(divide="ignore"):
-            stayed = found + weights + np.log1p(-changed)[..., None, :]
-            anew = fresh + first + np.log(changed)[..., None, :]
-        whole, new = _log_sum(np.concatenate([stayed, anew], axis=-2)), _log_sum(anew)
-        with np.errstate(invalid="ignore"):
-            return Evidence(whole, np.where(whole > -np.inf, np.exp(new - whole), 0.0), gain)
+            return Evidence(np.log(whole) + top, new / np.maximum(whole, LEAST), gain)
 
     def fade(self, users: Numbers, keep: Array) -> None:
         """Let all that distinct `users` have shown count `keep` (...) of what it did: their types may have changed."""

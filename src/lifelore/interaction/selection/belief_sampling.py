@@ -14,6 +14,7 @@ class BeliefSampling:
     """Selects the best response to a type drawn from the belief; also called posterior or Thompson sampling."""
 
     name: ClassVar[str] = "sampling"
+    by_means: ClassVar[bool] = True
 
     def scores(
         self,
@@ -24,8 +25,7 @@ class BeliefSampling:
         generator: np.random.Generator | None = None,
     ) -> Array:
         """Mean utilities on the type drawn, (P,) or (k, P)."""
-        types, mean = drawn_types(belief, check_generator(self.name, generator)), library.performance.mean
-        return mean[types] if mean.ndim == 2 else mean[np.arange(len(mean)), types]
+        return library.performance.mean_on(drawn_types(belief, check_generator(self.name, generator)))
 
     def probabilities(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
         """Probability of selecting each policy, (P,) or (k, P); rows sum to 1."""
@@ -35,5 +35,7 @@ class BeliefSampling:
 def drawn_types(belief: Array, generator: np.random.Generator) -> Any:
     """Draw a type for each row of beliefs (..., T); never a type of belief 0."""
     held = np.add.accumulate(belief, axis=-1)
+    if held.ndim == 1:
+        return held.searchsorted(generator.random() * held[-1], side="right")
     level = generator.random(held.shape[:-1]) * held[..., -1]
     return (held <= np.asarray(level)[..., None]).sum(axis=-1)

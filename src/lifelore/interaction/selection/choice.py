@@ -61,7 +61,7 @@ def choose(scores: ArrayLike, generator: np.random.Generator, tolerance: float =
     scores = np.asarray(scores, np.float64)
     if scores.ndim == 1:
         best = _best(scores, tolerance).nonzero()[0]
-        return int(best[0] if len(best) == 1 else best[int(generator.random() * len(best))])
+        return int(best[0]) if len(best) == 1 else int(best[int(generator.random() * len(best))])
     best = _best(scores, tolerance)
     number = best.sum(axis=-1)
     chosen, tie = best.argmax(axis=-1), number > 1
@@ -100,7 +100,7 @@ def _best(scores: Array, tolerance: float) -> Mask:
     """Which policies are best or as good as the best, (..., P)."""
     if scores.ndim == 1 and scores.size:
         # A single row of finite scores, quickly.
-        largest, least = float(scores.max()), float(scores.min())
+        largest, least = float(np.maximum.reduce(scores)), float(np.minimum.reduce(scores))
         if largest < np.inf and least > -np.inf:
             return scores >= _bar(largest, max(abs(largest), abs(least)), tolerance)
     largest = scores.max(axis=-1, keepdims=True, initial=-np.inf)
@@ -144,6 +144,9 @@ def scored(
     generator : numpy generator, optional
         Needed by rules that draw.
     """
+    if getattr(rule, "by_means", False):
+        scores = rule.scores(library, belief, episodes_left=episodes_left, generator=generator)
+        return scores if available is None else np.where(available, scores, -np.inf)
     return _by_part(
         lambda part, rows: rule.scores(part, rows, episodes_left=episodes_left, generator=generator),
         library,
@@ -259,7 +262,16 @@ class PartOfOutcomes:
 
     def __init__(self, outcomes: "RuleOutcomes", policies: Mask) -> None:
         self._outcomes, self._policies = outcomes, policies
-        self.mean = outcomes.mean[..., policies]
+
+    @property
+    def mean(self) -> Array:
+        return self._outcomes.mean[..., self._policies]
+
+    def mean_on(self, types: Any) -> Array:
+        return self._outcomes.mean_on(types)[..., self._policies]
+
+    def expected(self, belief: Array) -> Array:
+        return self._outcomes.expected(belief)[..., self._policies]
 
     def density(self, value: Any) -> Array:
         return self._outcomes.density(value)[..., self._policies]

@@ -27,6 +27,7 @@ class EpsilonGreedy:
 
     epsilon: float = 0.3
     name: ClassVar[str] = "epsilon-greedy"
+    by_means: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if not 0 <= self.epsilon <= 1:
@@ -42,7 +43,7 @@ class EpsilonGreedy:
     ) -> Array:
         """Expected utilities, or with probability ε random numbers, (P,) or (k, P)."""
         generator = check_generator(self.name, generator)
-        utility = weighted(belief, library.performance.mean)
+        utility = library.performance.expected(belief)
         explores = np.asarray(generator.random(utility.shape[:-1]) < self.epsilon)
         return (
             np.where(explores[..., None], generator.random(utility.shape), utility) if explores.any() else utility
@@ -50,5 +51,5 @@ class EpsilonGreedy:
 
     def probabilities(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
         """Probability of selecting each policy, (P,) or (k, P); rows sum to 1."""
-        best = tied_shares(weighted(belief, library.performance.mean))
+        best = tied_shares(library.performance.expected(belief))
         return self.epsilon / best.shape[-1] + (1 - self.epsilon) * best

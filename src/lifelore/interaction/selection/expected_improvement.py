@@ -69,7 +69,7 @@ class ExpectedImprovement(Deterministic):
     def scores(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
         """Expected improvements (as printed: their probabilities), (P,) or (k, P)."""
         model = library.performance
-        expected = weighted(belief, model.mean)
+        expected = model.expected(belief)
         best = expected.max(axis=-1)
         if self.variant == "thesis":
             return weighted(belief, model.exceedance(best))

@@ -11,7 +11,8 @@ class Greedy(Deterministic):
     """Selects the policy of the largest expected utility; never explores."""
 
     name: ClassVar[str] = "greedy"
+    by_means: ClassVar[bool] = True
 
     def scores(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
         """Expected utilities, (P,) or (k, P)."""
-        return weighted(belief, library.performance.mean)
+        return library.performance.expected(belief)

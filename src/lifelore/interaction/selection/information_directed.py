@@ -45,6 +45,6 @@ class InformationDirected(Deterministic):
         """Minus the root of the information ratio, (P,) or (k, P)."""
         mean = library.performance.mean
         best = (belief * mean.max(axis=-1)).sum(axis=-1)[..., None]
-        lost = np.maximum(best - weighted(belief, mean), 0.0)
+        lost = np.maximum(best - library.performance.expected(belief), 0.0)
         information = mutual_information(belief, library.table(self.n_bins), self.mass)
         return -lost / np.sqrt(np.maximum(information, LEAST_INFORMATION))

@@ -31,7 +31,7 @@ Candidates = Literal["auto", "responses", "all"]
 
 LARGEST_EXACT = 1 << 22
 """Number of products n_types n_policies² n_signals up to which "auto" considers all policies; more costs time."""
-_AT_ONCE = 1 << 16
+_AT_ONCE = 1 << 20
 """Size of the largest product at once."""
 
 
@@ -85,7 +85,7 @@ class KnowledgeGradient(Deterministic):
             gain = printed_gain(belief, mean, table)
         else:
             gain = knowledge_gain(belief, mean, table, self.mass, self.candidates)
-        return weighted(belief, mean) + weight * gain
+        return library.performance.expected(belief) + weight * gain
 
 
 def knowledge_gain(

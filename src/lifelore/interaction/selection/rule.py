@@ -28,6 +28,14 @@ class RuleOutcomes(Protocol):
         """E[U | type, policy], (T, P) or (k, T, P)."""
         ...
 
+    def mean_on(self, types: Any) -> Array:
+        """Mean outcomes on a type for each row, () or (k,) int to (P,) or (k, P)."""
+        ...
+
+    def expected(self, belief: Array) -> Array:
+        """Ũ(π) = Σ β(τ) E[U | τ, π] (Eq. 4.5) of beliefs (T,) or (k, T), (P,) or (k, P)."""
+        ...
+
     def density(self, value: Any) -> Array:
         """Density of `value`, a number or (k,), for every pair, (T, P) or (k, T, P)."""
         ...
@@ -66,6 +74,8 @@ class SelectionRule(Protocol):
     """A way to select policies. A rule holds its settings and no state."""
 
     name: ClassVar[str]
+    by_means: ClassVar[bool] = False
+    """Whether a policy's score does not depend on the other policies, nor on signals."""
 
     def scores(
         self,

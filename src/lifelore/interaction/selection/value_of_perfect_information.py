@@ -64,7 +64,7 @@ class ValueOfPerfectInformation(Deterministic):
     ) -> Array:
         """Expected utilities plus the gain of perfect information, (P,) or (k, P)."""
         weight = self.lookahead if episodes_left is None else episodes_left
-        expected = weighted(belief, library.performance.mean)
+        expected = library.performance.expected(belief)
         gain = perfect_gain(library.performance, belief, expected)
         return expected + (1.0 if self.counted == "once" else weight) * gain
 
