@@ -27,8 +27,8 @@ from lifelore.interaction.reuse.explanation import (
     surprise_of,
     two_best,
 )
+from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
-from lifelore.interaction.reuse.unknown_type import UnknownType
 from lifelore.interaction.selection import SelectionRule, rule_of
 from lifelore.interaction.selection.choice import Available, available_mask, best_policies
 
@@ -72,14 +72,16 @@ class BayesianPolicyReuse:
         Whether a model learnt from a finite number of runs is known to be uncertain: the belief is then over types
         and the parameters of their models, and each signal teaches both. "plug-in" takes estimates for the truth,
         as the thesis does. Exact models are the same under both.
-    novelty : float, optional
-        Prior probability that no known type fits, in (0, 1), such as 0.05. With it the agent computes after each
-        signal how probable that is. Signals must be outcomes or categories.
+    novelty : float or NoveltyDetector, optional
+        Prior probability that no known type fits, in (0, 1), such as 0.05: the agent then computes after each
+        signal how probable that is. Or a detector of this library without signals, such as a calibrated detector's
+        `restart()`. Signals must be outcomes or categories.
 
     Attributes
     ----------
-    novelty : UnknownType or None
-        Its attribute ``probability`` is the probability that no known type fits; None without the argument.
+    novelty : NoveltyDetector or None
+        Its attribute ``probability`` is the probability that no known type fits, ``alarm`` whether a calibrated
+        detector raised an alarm; None without the argument.
 
     Raises
     ------
@@ -105,13 +107,16 @@ class BayesianPolicyReuse:
         horizon: int | None = None,
         seed: int | np.random.Generator = 0,
         models: Models = "uncertain",
-        novelty: float | None = None,
+        novelty: float | NoveltyDetector | None = None,
     ) -> None:
-        self.library, self.models = library, models
+        self.library = library
+        self.models: Models = models
         self.rule: SelectionRule = rule_of(rule, library)
         self.algorithm = ReuseAlgorithm(library, prior=prior, dynamics=dynamics, models=models)
         self.horizon = horizon
-        self.novelty = None if novelty is None else UnknownType(library, novelty, prior, dynamics, models)
+        if isinstance(novelty, float | int):
+            novelty = NoveltyDetector(library, novelty, prior, dynamics, models)
+        self.novelty = novelty
         self.episode, self.surprise, self.unexplained = 0, 0.0, 0
         self._taught = False
         self.generator = stream(seed, "policy reuse") if isinstance(seed, int | np.integer) else seed

@@ -24,7 +24,7 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.explanation import Evidence
-from lifelore.interaction.reuse.unknown_type import UnknownType
+from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.selection import RULES, restored_rule
 
 FORMAT = PackedFormat("lifelore policy reuse session", 3, "session", "save_session", oldest=1)
@@ -135,7 +135,7 @@ def _restore(agent: BayesianPolicyReuse, header: dict[str, Any], arrays: Arrays)
     agent.algorithm.restore(0, arrays["log_belief"], _part(arrays, "task."))
     # Files of versions 1 and 2 have none.
     if novelty := _part(arrays, "novelty."):
-        agent.novelty = UnknownType.restored(novelty, agent.library, agent.dynamics, agent.models)
+        agent.novelty = NoveltyDetector.restored(novelty, agent.library, agent.dynamics, agent.models)
     agent.episode, agent.unexplained = int(header["episode"]), int(header["unexplained"])
     agent.surprise, agent._taught = float(header["surprise"]), bool(header.get("taught", False))
     last = zip(arrays["evidence_policy"], arrays["log_likelihood"], arrays["log_evidence"], strict=True)

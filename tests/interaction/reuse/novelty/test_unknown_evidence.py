@@ -1,6 +1,4 @@
-"""The probability that no known type fits: by hand, beside the detector, and as state."""
-
-from math import log
+"""The probability that no known type fits: by hand, in rows, and beside a library that learns."""
 
 import numpy as np
 import pytest
@@ -8,11 +6,10 @@ from scipy.stats import norm, t
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
-from lifelore.interaction.library.broad_law import FREEDOM
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.novelty.novelty_detector import NoveltyCalibration, NoveltyDetector
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.reuse.unknown_type import UnknownType
+from lifelore.interaction.reuse.novelty.broad_library import FREEDOM, broad_moments
+from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
 from lifelore.interaction.selection import BeliefSampling
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
@@ -38,20 +35,25 @@ def test_one_signal_by_hand():
     assert agent.novelty.probability == pytest.approx(odds / (1 + odds), rel=1e-12)
 
 
+@pytest.mark.parametrize("models", ["uncertain", "plug-in"])
 @pytest.mark.parametrize("kind", ["outcomes", "categories"])
-def test_with_plug_in_models_the_odds_are_those_of_the_detector(kind):
+def test_rows_are_single_tasks(kind, models):
     random = np.random.default_rng(1)
-    signal = None if kind == "outcomes" else CategorySignal(random.dirichlet(np.ones(4), (3, 3)))
+    signal = None if kind == "outcomes" else CategorySignal(random.dirichlet(np.ones(4), (3, 3)), count=12)
     library = learnt(signal=signal)
-    agent = BayesianPolicyReuse(
-        library, BeliefSampling(), models="plug-in", dynamics=TypeDynamics.static(), novelty=0.05
+    many, alone = (
+        UnknownEvidence(library, 6, models=models),
+        [UnknownEvidence(library, models=models) for _ in range(6)],
     )
-    detector = NoveltyDetector(library, NoveltyCalibration(0.01, np.zeros(9), np.ones(9), 5.0, 1000))
     for _ in range(9):
-        policy = agent.select()
-        detector.update(agent, policy, random.normal(140, 30) if signal is None else int(random.integers(4)))
-        assert agent.novelty is not None
-        assert agent.novelty.probability == pytest.approx(detector.probability, rel=1e-9)
+        policies = random.integers(0, 3, 6)
+        signals = random.normal(140, 30, 6) if signal is None else random.integers(0, 4, 6)
+        many.observe(np.arange(6), policies, signals)
+        many.end_episode(np.arange(6))
+        for row, one in enumerate(alone):
+            one.observe(0, int(policies[row]), signals[row].item())
+            one.end_episode(0)
+    np.testing.assert_allclose(many.log_odds, [one.log_odds[0] for one in alone], rtol=1e-10)
 
 
 @pytest.mark.parametrize("models", ["uncertain", "plug-in"])
@@ -92,24 +94,20 @@ def test_new_users_are_told_from_known_users():
 
 
 def test_ten_runs_leave_a_type_in_doubt_as_far_as_the_runs_do():
-    samples = np.array([[[9.0, 11.0, 10.0, 8.0, 12.0, 10.0]]])
-    library = PolicyLibrary.from_samples(samples)
-    unknown = UnknownType(library, dynamics=TypeDynamics.static())
-    unknown.add(0, 13.0)
-    unknown.add(0, 12.0)
-    # The predictive of the runs and the task together: both count alike, because a task is just like its type.
+    library = PolicyLibrary.from_samples(np.array([[[9.0, 11.0, 10.0, 8.0, 12.0, 10.0]]]))
+    evidence = UnknownEvidence(library, dynamics=TypeDynamics.static())
+    # Both laws are normal-inverse-χ², with the location, the weight, the variance and its degrees of freedom:
     moments = library.performance.moments  # pyright: ignore[reportAttributeAccessIssue]
-    mean, variance, n, freedom = 10.0, float(moments.variance[0, 0]), 6, float(moments.freedom[0, 0])
-    expected, k, x, s = 0.0, 0, 0.0, 0.0
-    broad = UnknownType(library)._broad
+    model, expected, k, x, s = library.performance, 0.0, 0, 0.0, 0.0
+    broad = broad_moments(model.mean, model.deviation, library.prior)
     for outcome in (13.0, 12.0):
-        shown = np.array([[k, x, s]])
-        expected += float(broad.log_density(shown, np.array([0]), np.array([outcome]))[0])
-        scale2 = (freedom * variance + s + n * k / (n + k) * (x - mean) ** 2) / (freedom + k) * (1 + 1 / (n + k))
-        place = (n * mean + k * x) / (n + k)
-        expected -= t.logpdf(outcome, freedom + k, place, np.sqrt(scale2))
+        evidence.observe(0, 0, outcome)
+        for law, sign in ((broad, 1), (moments, -1)):
+            m, v, n, f = (float(field[0, 0]) for field in (law.mean, law.variance, law.count, law.freedom))
+            square = (f * v + s + n * k / (n + k) * (x - m) ** 2) / (f + k) * (1 + 1 / (n + k))
+            expected += sign * t.logpdf(outcome, f + k, (n * m + k * x) / (n + k), square**0.5)
         s, k, x = s + (outcome - x) ** 2 * k / (k + 1), k + 1, (k * x + outcome) / (k + 1)
-    assert unknown.log_odds == pytest.approx(expected, rel=1e-9)
+    assert evidence.log_odds[0] == pytest.approx(expected, rel=1e-9)
 
 
 def test_the_order_of_signals_does_not_matter_where_types_are_static():
@@ -131,39 +129,9 @@ def test_an_impossible_signal_counts_745_nats_and_stays_finite():
         agent.update(0, 1)
     assert agent.novelty is not None
     assert agent.novelty.probability == 1.0
-    assert agent.novelty.log_odds == pytest.approx(3 * 745 + log(0.005 * 0.505 * 0.67), abs=10)
-
-
-def test_a_restored_state_has_the_same_bits():
-    unknown = UnknownType(learnt(), 0.1)
-    unknown.add(2, 130.0)
-    unknown.add(0, 90.0)
-    again = UnknownType.restored(
-        unknown.state(), learnt(), TypeDynamics.hazard(0.002, np.full(3, 1 / 3)), "uncertain"
-    )
-    for found in (unknown, again):
-        found.add(2, 180.0)
-    assert again.log_odds == unknown.log_odds
-    assert again.mass == 0.1
-
-
-@pytest.mark.parametrize(
-    ("change", "message"),
-    [
-        ({"policies": np.array([7])}, "policies 0 to 2"),
-        ({"log_belief": np.zeros(9)}, "no evidence of an unknown type"),
-        ({"task.signal.shown": np.zeros((2, 3))}, "a task's state must have"),
-        ({"shown": np.zeros((1, 2))}, "of another library"),
-        ({"shown": np.full((1, 3), np.nan)}, "of another library"),
-        ({"numbers": np.array([2.0, 0.0])}, "between 0 and 1"),
-        ({"numbers": np.array([0.5])}, "no evidence of an unknown type"),
-    ],
-)
-def test_states_that_are_none_are_refused(change, message):
-    unknown = UnknownType(learnt())
-    unknown.add(1, 100.0)
-    with pytest.raises(InputError, match=message):
-        UnknownType.restored(unknown.state() | change, learnt(), TypeDynamics.static(), "uncertain")
+    # The broad law has the probability 1/8, a quarter of the uniform law, and counts as half a signal.
+    broad = 1 / 8 * (1 / 16 + 1) / 1.5 * (1 / 16 + 2) / 2.5
+    assert agent.novelty.log_odds == pytest.approx(3 * 745 + np.log(broad), rel=1e-12)
 
 
 def test_mistakes_are_said():

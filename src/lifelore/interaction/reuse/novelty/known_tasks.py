@@ -1,21 +1,24 @@
 """Simulated tasks of known types: the type is drawn from the prior, its true parameters from what the runs say.
 
 Where a model is exact, a task of a type has the model's own distribution. Where it was learnt, mean and variance
-of each pair are drawn from their posterior distribution (normal-inverse-χ², Dirichlet): tasks then differ from the
-model as much as real tasks do.
+of each pair are drawn from their law (normal-inverse-χ², Dirichlet) at the least spread of the tasks of a type:
+tasks then differ from the model as much as real tasks do.
 """
 
-from typing import Protocol
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
-from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
+from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
+from lifelore.interaction.outcomes.normal_law import EXACT
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
+from lifelore.interaction.reuse.novelty.misfit import weight_of_runs
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.return_signal import ReturnSignal
 
@@ -26,8 +29,8 @@ Numbers = NDArray[np.int64]
 class Tasks(Protocol):
     """Tasks whose signals a rule may ask for."""
 
-    def signals(self, policies: Numbers) -> Array:
-        """The next signal of each task under its policy (n,): outcomes, or category numbers."""
+    def signals(self, policies: Numbers) -> Any:
+        """The next signal of each task under its policy (n,), as the library's signal model takes it."""
         ...
 
 
@@ -36,55 +39,34 @@ class NormalTasks:
 
     def __init__(self, mean: Array, deviation: Array, generator: np.random.Generator) -> None:
         self.mean, self.deviation, self.generator = mean, deviation, generator
-        self._every = np.arange(len(mean))
 
     def signals(self, policies: Numbers) -> Array:
         """Outcomes."""
-        noise = self.generator.standard_normal(len(policies))
-        return self.mean[self._every, policies] + self.deviation[self._every, policies] * noise
+        at = np.arange(len(policies)), policies
+        return self.mean[at] + self.deviation[at] * self.generator.standard_normal(len(policies))
 
 
-class CategoryTasks:
+class CountedTasks:
     """Tasks with cells of probabilities `probs` (n, n_policies, n_cells).
 
     Parameters
     ----------
-    values : (n_cells,) float, optional
-        The outcome of a cell; without it signals are the cells' numbers.
-    edges : (n_cells + 1,) float, optional
-        Edges of bins, in which outcomes are uniform.
+    signals_of : callable
+        Numbers of cells (n,) to signals.
     """
 
-    def __init__(
-        self,
-        probs: Array,
-        generator: np.random.Generator,
-        values: Array | None = None,
-        edges: Array | None = None,
-    ) -> None:
-        self.cumulative, self.generator = probs.cumsum(axis=2), generator
-        self.values, self.edges = values, edges
-        self._every = np.arange(len(probs))
+    def __init__(self, probs: Array, generator: np.random.Generator, signals_of: Callable[[Numbers], Any]) -> None:
+        self.cumulative, self.generator, self._signals_of = probs.cumsum(axis=2), generator, signals_of
 
-    def signals(self, policies: Numbers) -> Array:
-        """Outcomes, or category numbers."""
-        rows = self.cumulative[self._every, policies]
+    def signals(self, policies: Numbers) -> Any:
+        """Outcomes, or categories."""
+        rows = self.cumulative[np.arange(len(policies)), policies]
         level = self.generator.random(len(rows)) * rows[:, -1]
-        cells = (rows <= level[:, None]).sum(axis=1)
-        if self.edges is not None:
-            return self.generator.uniform(self.edges[cells], self.edges[cells + 1])
-        return cells.astype(np.float64) if self.values is None else self.values[cells]
+        return self._signals_of((rows <= level[:, None]).sum(axis=1))
 
 
-def known_tasks(
-    library: PolicyLibrary, n: int, generator: np.random.Generator, signal_count: ArrayLike | None = None
-) -> Tasks:
+def known_tasks(library: PolicyLibrary, n: int, generator: np.random.Generator) -> Tasks:
     """`n` tasks of the library's types.
-
-    Parameters
-    ----------
-    signal_count : float or (n_types, n_policies) float, optional
-        Number of signals behind each row of a `CategorySignal`, pseudo-counts included; exact without it.
 
     Raises
     ------
@@ -93,29 +75,29 @@ def known_tasks(
     """
     types = generator.choice(library.n_types, n, p=library.prior)
     signal = library.signal
-    if isinstance(signal, CategorySignal):
-        count = getattr(signal, "totals", None) if signal_count is None else signal_count
-        return CategoryTasks(_category_probs(signal.probs[types], count, types, generator), generator)
-    model = signal.outcomes if isinstance(signal, ReturnSignal) else None
+    model: Any = signal.outcomes if isinstance(signal, ReturnSignal) else None
     if isinstance(model, MomentOutcomes):
-        return NormalTasks(*drawn_moments(model.moments, types, generator), generator)
-    if isinstance(model, CategoricalOutcomes | HistogramOutcomes):
-        probs = model.probs[types]
-        if not model.exact:
-            probs = _dirichlet(model.counts.transpose(1, 0, 2)[types], generator)
-        cells = {"values": model.values} if isinstance(model, CategoricalOutcomes) else {"edges": model.edges}
-        return CategoryTasks(probs, generator, **cells)
+        return NormalTasks(*drawn_moments(model, types, generator), generator)
+    if isinstance(model, CountedOutcomes):
+        return CountedTasks(
+            drawn_probs(model, types, generator), generator, partial(model.cells.sample, generator)
+        )
+    if isinstance(signal, CategorySignal):
+        names = signal.categories
+        named = np.arange(signal.n_categories) if names is None else np.fromiter(names, object, len(names))
+        return CountedTasks(drawn_probs(signal, types, generator), generator, lambda cells: named[cells])
     raise InputError(f"known tasks have outcomes or categories as signals, got {type(signal).__name__}")
 
 
-def drawn_moments(moments: OutcomeMoments, types: Numbers, generator: np.random.Generator) -> tuple[Array, Array]:
-    """Mean and deviation of each policy on tasks of `types` (n,), drawn from their posterior, (n, n_policies)."""
+def drawn_moments(model: MomentOutcomes, types: Numbers, generator: np.random.Generator) -> tuple[Array, Array]:
+    """Mean and deviation of each policy on tasks of `types` (n,), drawn from their law, (n, n_policies) each."""
+    moments, spread = model.moments, float(model.spread.least.values[0])
     variance, freedom = (array[types] for array in posterior_variance(moments))
-    finite = np.isfinite(freedom)
-    drawn = 2 * generator.standard_gamma(0.5 * np.where(finite, freedom, 1.0))
-    variance = np.where(finite, variance * freedom / np.maximum(drawn, 1e-12), variance)
-    error = np.sqrt(variance / moments.count[types])
-    return moments.mean[types] + error * generator.standard_normal(error.shape), np.sqrt(variance)
+    freedom = np.minimum(freedom, EXACT)
+    drawn = np.maximum(2 * generator.standard_gamma(0.5 * freedom), 1e-12)
+    deviation = np.sqrt(variance * (freedom / drawn))
+    error = deviation * np.sqrt(1 / moments.count[types] + spread)
+    return moments.mean[types] + error * generator.standard_normal(error.shape), deviation
 
 
 def posterior_variance(moments: OutcomeMoments) -> tuple[Array, Array]:
@@ -171,18 +153,12 @@ def _inverse_trigamma(value: float) -> float:
     return x
 
 
-def _category_probs(
-    probs: Array, count: ArrayLike | None, types: Numbers, generator: np.random.Generator
-) -> Array:
-    if count is None:
+def drawn_probs(model: Any, types: Numbers, generator: np.random.Generator) -> Array:
+    """Probabilities of cells on tasks of `types` (n,), drawn from the law of a model, (n, n_policies, n_cells)."""
+    probs, weight = model.probs[types], weight_of_runs(model)
+    if weight is None:
         return probs
-    count = np.asarray(count, np.float64)
-    if not ((count > 0) & np.isfinite(count)).all():
-        raise InputError("signal_count must be positive and finite; leave it out where probabilities are exact")
-    return _dirichlet(probs * (count[types] if count.ndim else count.reshape(1, 1))[..., None], generator)
-
-
-def _dirichlet(counts: Array, generator: np.random.Generator) -> Array:
+    counts = weight[types][..., None] * probs
     # Gammas of tiny shapes may all round to 0; a cell without counts stays impossible.
     drawn = generator.standard_gamma(counts) + 1e-300 * counts
     return drawn / drawn.sum(axis=-1, keepdims=True)

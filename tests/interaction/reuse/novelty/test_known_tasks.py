@@ -4,13 +4,14 @@ from scipy.special import polygamma
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.novelty.known_tasks import (
+from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
+from lifelore.interaction.outcomes.spread import Spread
+from lifelore.interaction.reuse.novelty.known_tasks import (
     _inverse_trigamma,
     drawn_moments,
     known_tasks,
     posterior_variance,
 )
-from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
@@ -26,11 +27,14 @@ def test_exact_models_give_their_own_means_and_deviations():
 
 def test_means_of_learnt_models_differ_by_their_standard_error():
     samples = np.random.default_rng(0).normal(0, 3.0, (30, 20, 10))
-    moments = PolicyLibrary.from_samples(samples).performance.moments
-    mean, deviation = drawn_moments(moments, np.zeros(N, np.int64), np.random.default_rng(1))
-    error = mean - moments.mean[0]
-    assert error.std() == pytest.approx(3 / 10**0.5, rel=0.05)
+    model = PolicyLibrary.from_samples(samples).performance
+    mean, deviation = drawn_moments(model, np.zeros(N, np.int64), np.random.default_rng(1))
+    assert (mean - model.mean[0]).std() == pytest.approx(3 / 10**0.5, rel=0.05)
     assert deviation.mean() == pytest.approx(3, rel=0.05)
+    # The least spread of the tasks of a type is an outcome's variance more.
+    model.spread = Spread.known(1.0)
+    mean, _ = drawn_moments(model, np.zeros(N, np.int64), np.random.default_rng(1))
+    assert (mean - model.mean[0]).std() == pytest.approx(3 * (1 / 10 + 1) ** 0.5, rel=0.05)
 
 
 def test_equal_deviations_are_recognised_as_equal_and_unequal_as_unequal():
@@ -68,16 +72,21 @@ def test_the_inverse_of_the_trigamma_function():
 
 
 def test_learnt_categories_vary_with_their_count_and_exact_ones_do_not():
-    signal = CategorySignal([[[0.5, 0.5, 0.0]]])
-    library = PolicyLibrary.from_means([[1.0]], 1.0, signal=signal)
-    exact = known_tasks(library, 500, np.random.default_rng(0))
-    assert np.unique(exact.cumulative[:, 0, 0]).tolist() == [0.5]
-    learnt = known_tasks(library, 5000, np.random.default_rng(0), signal_count=9)
-    share = learnt.cumulative[:, 0, 0]
+    probs = [[[0.5, 0.5, 0.0]]]
+    exact = PolicyLibrary.from_means([[1.0]], 1.0, signal=CategorySignal(probs))
+    tasks = known_tasks(exact, 500, np.random.default_rng(0))
+    assert np.unique(tasks.cumulative[:, 0, 0]).tolist() == [0.5]
+    learnt = PolicyLibrary.from_means([[1.0]], 1.0, signal=CategorySignal(probs, count=9))
+    tasks = known_tasks(learnt, 5000, np.random.default_rng(0))
+    share = tasks.cumulative[:, 0, 0]
     assert share.var() == pytest.approx(0.25 / 10, rel=0.1)  # Dirichlet: p (1 - p) / (count + 1)
-    assert (learnt.signals(np.zeros(5000, np.int64)) < 2).all()
-    with pytest.raises(InputError, match="signal_count must be positive"):
-        known_tasks(library, 5, np.random.default_rng(0), signal_count=0)
+    assert (tasks.signals(np.zeros(5000, np.int64)) < 2).all()
+
+
+def test_named_categories_come_by_name():
+    signal = CategorySignal([[[0.5, 0.5]]], categories=["near", "far"])
+    tasks = known_tasks(PolicyLibrary.from_means([[1.0]], 1.0, signal=signal), 50, np.random.default_rng(0))
+    assert set(tasks.signals(np.zeros(50, np.int64))) == {"near", "far"}
 
 
 def test_outcomes_of_a_few_values_and_of_bins():
