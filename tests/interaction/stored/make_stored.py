@@ -7,9 +7,6 @@ two studies. `expected.json` in each archive holds what that commit says of the 
 same. Do not run the script at a later commit: it would store what that commit says.
 """
 
-# The imports are those of commit fde65343; later commits may have moved them.
-# pyright: reportMissingImports=false, reportAttributeAccessIssue=false, reportCallIssue=false
-
 import json
 import sys
 import tempfile
