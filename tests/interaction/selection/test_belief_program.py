@@ -11,7 +11,7 @@ from lifelore.interaction.selection import RULES, EpsilonGreedy, Greedy, Knowled
 from lifelore.interaction.selection.belief_program import best_plan, value_of_rule
 from lifelore.interaction.signals.category_signal import CategorySignal
 
-from . import naive_selection as naive
+from ..twins import naive_rules as naive
 
 
 def naive_value(belief, mean, laws, horizon):

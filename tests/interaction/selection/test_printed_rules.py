@@ -23,7 +23,7 @@ from lifelore.interaction.selection.belief_program import best_plan
 from lifelore.interaction.selection.information import expected_entropy, mutual_information
 from lifelore.interaction.selection.knowledge_gradient import knowledge_gain, printed_gain
 
-from . import naive_selection as naive
+from ..twins import naive_rules as naive
 
 
 def random_library(seed: int, n_types: int = 6, n_policies: int = 5) -> tuple[PolicyLibrary, np.ndarray]:

@@ -27,7 +27,7 @@ from lifelore.interaction.selection.knowledge_gradient import knowledge_gain, kn
 from lifelore.interaction.selection.support import supported_types
 from lifelore.interaction.signals.category_signal import CategorySignal
 
-from . import naive_selection as naive
+from ..twins import naive_rules as naive
 
 MASS = 0.999
 seeds = st.integers(0, 2**32 - 1)

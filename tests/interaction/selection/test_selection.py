@@ -36,7 +36,7 @@ from lifelore.interaction.selection.type_classes import type_classes
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
-from . import naive_selection as naive
+from ..twins import naive_rules as naive
 
 INF = math.inf
 EVERY_RULE = [
