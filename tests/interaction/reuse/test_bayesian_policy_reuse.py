@@ -155,7 +155,7 @@ def test_types_may_change_unless_they_are_static():
     agent = BayesianPolicyReuse(coin_library(prior=[0.6, 0.4]), prior=[1.0, 0.0])
     assert (agent.dynamics.kind, agent.dynamics.rate) == ("hazard", 0.002)
     assert agent.dynamics.law == pytest.approx([0.6, 0.4])
-    agent.skip()
+    agent.end_episode()
     assert agent.belief == pytest.approx([0.9992, 0.0008])
 
 

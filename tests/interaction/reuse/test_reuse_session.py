@@ -164,9 +164,9 @@ def test_sessions_of_earlier_versions_have_no_evidence_of_an_unknown_type(versio
         (lambda h, a: h.update(settings={"wish": 1}), "wish"),
         (lambda h, a: h.update(horizon=0), "horizon must be at least 1"),
         (lambda h, a: h["generator"].update(bit_generator="Dice"), "unknown random generator"),
-        (lambda h, a: a.update(log_belief=np.zeros(3)), "log_belief has shape"),
-        (lambda h, a: a.update(log_belief=np.zeros(6)), "log_belief is no belief"),
-        (lambda h, a: a.update(log_belief=np.full(6, np.nan)), "log_belief is no belief"),
+        (lambda h, a: a.update(log_belief=np.zeros(3)), "log_belief must be the logs of a belief"),
+        (lambda h, a: a.update(log_belief=np.zeros(6)), "log_belief must be the logs of a belief"),
+        (lambda h, a: a.update(log_belief=np.full(6, np.nan)), "log_belief must be the logs of a belief"),
         (lambda h, a: a.pop("library"), "library"),
     ],
 )

@@ -1,4 +1,4 @@
-"""Files of an earlier commit: libraries, sessions, users and a memory are read, and say what they said then."""
+"""Files of an earlier commit: libraries and sessions are read, and say what they said then."""
 
 import json
 import math
@@ -10,14 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lifelore.agent.reuse.one_user import choose, update
-from lifelore.agent.reuse.report import report
-from lifelore.agent.reuse.study import open_study
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.reuse_session import load_session
-from lifelore.interaction.reuse.user_file import load_users
-from lifelore.memory import open_memory
 
 HERE = Path(__file__).parent
 RELATIVE = 1e-9
@@ -104,43 +99,3 @@ def test_a_session_goes_on_as_it_would_have(name, folder):
     agent.update(*then["update"])
     assert_same(said_of(agent), {key: then[key] for key in said_of(agent)}, f"{name}, then")
     assert [agent.select() for _ in range(3)] == then["next"]
-
-
-@pytest.mark.parametrize("name", names_in("users"))
-def test_many_users_go_on_as_they_would_have(name, folder):
-    told = expected(folder, "users")[name]
-    users, own = load_users(folder / "users" / f"{name}.npz"), np.arange(5)
-    single = users.dtype == "f4"
-    numbers = {
-        "belief": users.belief(own),
-        "probabilities": users.probabilities(own),
-        "probabilities_sampling": users.probabilities(own, "sampling"),
-    }
-    for key, found in numbers.items():
-        # float32 beliefs are right to 1e-5.
-        np.testing.assert_allclose(found, told[key], rtol=0, atol=1e-5 if single else 1e-11, err_msg=key)
-    assert [users.select(own).tolist() for _ in range(3)] == told["next"]
-    assert [users.select(own, "sampling").tolist() for _ in range(3)] == told["next_sampling"]
-    evidence = users.update(*told["then"]["update"])
-    np.testing.assert_allclose(evidence, told["then"]["log_evidence"], atol=1e-5 if single else 1e-9)
-    np.testing.assert_allclose(users.belief(own), told["then"]["belief"], atol=1e-5 if single else 1e-11)
-
-
-@pytest.mark.parametrize("name", ["learnt", "sampled"])
-def test_a_study_in_memory_goes_on_as_it_would_have(name, folder, tmp_path):
-    told = expected(folder, "memory")[name]
-    shutil.copy(folder / "memory" / "memory.db", tmp_path)
-    with open_memory(tmp_path / "memory.db") as memory:
-        study = open_study(memory, name)
-        assert_same(list(study.library.types), told["types"], "types")
-        assert_same(study.library.performance.mean.tolist(), told["mean"], "mean")
-        assert_same(study.library.prior.tolist(), told["prior"], "prior")
-        assert study.states == told["states"]
-        assert_same(report(memory, study), told["report"], "report")
-        for user, answer in told["answers"].items():
-            assert_same(choose(memory, study, user, seed=9, novelty=True), answer, user)
-        late = [decision for own in told["open"].values() for decision in own]
-        for decision, answer in zip(late, told["late"], strict=True):
-            assert_same(update(memory, study, decision, 6.5), answer, decision)
-        for user, answer in told["after"].items():
-            assert_same(choose(memory, study, user, seed=10), answer, f"{user}, after")

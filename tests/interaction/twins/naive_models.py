@@ -217,11 +217,23 @@ class NaiveUncertainReuse:
         self.first = [log_of(w) for w in weights]
         self.log_weights: Logs = list(self.first)
         self.shown: dict[int, list[tuple[Any, float]]] = {}
+        self.begun = True
 
     def update(self, policy: int, value: Any) -> float:
-        """Learn from an outcome, with the step of the hazard after it; the log evidence.
+        """An episode of a single outcome; the log evidence."""
+        evidence = self.observe(policy, value)
+        self.end_episode()
+        return evidence
 
-        A value that no type explains teaches nothing.
+    def end_episode(self) -> None:
+        """Take the step of the hazard."""
+        self.log_belief, self.begun = self._stepped(self.log_belief), True
+
+    def observe(self, policy: int, value: Any) -> float:
+        """Learn from an outcome within an episode; the log evidence.
+
+        A value that no type explains teaches nothing. Only before the first outcome of an episode may the type
+        have changed.
         """
         before, types, earlier = self.log_belief, range(len(self.prior)), self.shown.get(policy, [])
         known = [[self.predictive(t, policy, rho, earlier, value) for t in types] for rho in self.spreads]
@@ -236,7 +248,7 @@ class NaiveUncertainReuse:
             likelihood.append(log_sum([stays, anew]))
             changed.append(exp(anew - likelihood[-1]) if likelihood[-1] > -inf else 0.0)
         after, evidence = bayes(before, likelihood)
-        self.log_belief = self._stepped(after)
+        self.log_belief, self.begun = after, False
         if evidence == -inf:
             return evidence
         self._fade(1 - min(fsum(exp(a) * share for a, share in zip(after, changed, strict=True)), 1.0))
@@ -258,7 +270,7 @@ class NaiveUncertainReuse:
 
     def _changed_share(self, log_belief: float, type_: int) -> float:
         """P(the type has just changed | it is now this type)."""
-        anew = self.rate * self.prior[type_]
+        anew = self.rate * self.prior[type_] if self.begun else 0.0
         return min(exp(log(anew) - log_belief), 1.0) if anew > 0 else 0.0
 
     def _stepped(self, log_belief: Logs) -> Logs:
