@@ -87,11 +87,10 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
     top = np.maximum.reduce(joint, axis=-1, keepdims=True)
     if not (np.abs(top) <= FAR[joint.dtype.char]).all():
         return _far_update(np.asarray(log_belief), np.asarray(log_likelihood))
-    # The largest is taken off first: beside a large number the logarithm of the sum would be rounded away.
-    joint -= top
-    log_total = np.log(np.add.reduce(np.exp(joint), axis=-1, keepdims=True))
-    joint -= log_total
-    return Updated(joint, (top + log_total)[..., 0])
+    log_evidence = np.log(np.add.reduce(np.exp(joint - top), axis=-1, keepdims=True))
+    log_evidence += top
+    joint -= log_evidence
+    return Updated(joint, log_evidence[..., 0])
 
 
 def _far_update(log_belief: Array, log_likelihood: Array) -> Updated:
