@@ -49,7 +49,10 @@ def test_steps_agree_with_the_slow_twin(seed, rate):
     matrix = random.dirichlet(np.full(5, 0.3), 5)
     for dynamics, step in (
         (TypeDynamics.hazard(rate, prior), naive.hazard(rate, (prior / prior.sum()).tolist())),
-        (TypeDynamics.transitions(matrix), naive.transitions((matrix / matrix.sum(axis=1, keepdims=True)).tolist())),
+        (
+            TypeDynamics.transitions(matrix),
+            naive.transitions((matrix / matrix.sum(axis=1, keepdims=True)).tolist()),
+        ),
     ):
         expected = np.array([step(row) for row in rows.tolist()])
         np.testing.assert_allclose(dynamics.step(rows), expected, rtol=1e-12, atol=1e-12)

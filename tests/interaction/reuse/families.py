@@ -1,11 +1,12 @@
 """Every family of signals for the tests of Algorithm 7: a small library, its signals, and their law by hand.
 
-Three types, two policies. `predictive` is the law as `NaiveUncertainReuse` takes it: normals by numerical integration,
-categories and steps by urns, exact models by their printed densities. Nothing of it is taken from the code under
-test. Families that learn hold several spreads possible, except steps, which have none.
+Three types, two policies. `predictive` is the law as `NaiveUncertainReuse` takes it: normals by numerical
+integration, categories and steps by urns, exact models by their printed densities. Nothing of it is taken from the
+code under test. Families that learn hold several spreads possible, except steps, which have none.
 """
 
 from collections.abc import Callable
+from itertools import pairwise
 from math import fsum, inf, log
 from typing import Any, NamedTuple
 
@@ -25,7 +26,7 @@ from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
 from lifelore.interaction.signals.transition_signal import TransitionSignal
 
 from ..twins.naive_models import NaiveUncertainReuse, NormalPair, Predictive, category_law, normal_law
-from ..twins.naive_reuse import histogram_log_density, log_of, normal_log_density, steps_log_probability
+from ..twins.naive_reuse import log_of, normal_log_density, steps_log_probability
 
 N_TYPES, N_POLICIES = 3, 2
 PRIOR = [0.2, 0.5, 0.3]
@@ -115,7 +116,7 @@ def categories() -> PolicyLibrary:
     return exact(signal)
 
 
-# ---- steps: states 0 and 1, one action, two outcomes ---------------------------------------------------------------
+# ---- steps: states 0 and 1, one action, two outcomes ---------------------------------------------------------
 
 STEPS = np.array([[[[5.0, 1.0]], [[2.0, 2.0]]], [[[1.0, 5.0]], [[0.0, 3.0]]], [[[3.0, 3.0]], [[4.0, 0.0]]]])
 """Counts (type, state, action, outcome)."""
@@ -157,7 +158,7 @@ def coded(earlier: Any) -> list[Any]:
     return [([(s, a, int(r / 5)) for s, a, r in steps], weight) for steps, weight in earlier]
 
 
-# ---- laws by hand --------------------------------------------------------------------------------------------------
+# ---- laws by hand --------------------------------------------------------------------------------------------
 
 
 def learnt_normals(library: PolicyLibrary) -> Predictive:
@@ -175,7 +176,7 @@ def in_bins(library: PolicyLibrary) -> Predictive:
     urn = category_law(library.performance.counts.tolist())  # pyright: ignore
 
     def cell(value: float) -> int:
-        inside = [low <= value < high for low, high in zip(EDGES, EDGES[1:], strict=False)]
+        inside = [low <= value < high for low, high in pairwise(EDGES)]
         return inside.index(True)
 
     def predictive(type_, policy, spread, earlier, value):
@@ -291,10 +292,10 @@ FAMILIES = {
         spreads=False,
     ),
     "exact outcomes": Family(exact, number, fixed(normal_density)),
-    "exact categories": Family(lambda: exact(CategorySignal(PROBS)), one_of(0, 1, 2), fixed(category_density), impossible=3),
-    "exact steps": Family(
-        lambda: exact(TransitionSignal(STEP_TABLE)), episode, fixed(plug_in_steps)
+    "exact categories": Family(
+        lambda: exact(CategorySignal(PROBS)), one_of(0, 1, 2), fixed(category_density), impossible=3
     ),
+    "exact steps": Family(lambda: exact(TransitionSignal(STEP_TABLE)), episode, fixed(plug_in_steps)),
     "ordered-normal": Family(
         lambda: exact(OrderedNormalSignal(MEAN, np.full(MEAN.shape, 5.0), CUTS, lapse=0.03)),
         one_of(0, 1, 2),

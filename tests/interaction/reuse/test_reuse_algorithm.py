@@ -64,7 +64,7 @@ def test_every_family_is_here():
         assert not ReuseAlgorithm(library, models="plug-in").signals.law.learns
 
 
-# ---- against the slow twin -----------------------------------------------------------------------------------------
+# ---- against the slow twin -----------------------------------------------------------------------------------
 
 
 @every_family
@@ -111,7 +111,7 @@ def test_a_signal_that_no_type_explains_keeps_the_belief_and_teaches_nothing(fam
     assert_same(states(single, 0), states(made, 0))
 
 
-# ---- many rows and one, both precisions ----------------------------------------------------------------------------
+# ---- many rows and one, both precisions ----------------------------------------------------------------------
 
 
 @every_family
@@ -167,7 +167,7 @@ def test_rules_score_rows_as_single_users(family, name):
             assert own is None or (scores[~own] == -np.inf).all()
 
 
-# ---- rows are reset, grow, are stored ------------------------------------------------------------------------------
+# ---- rows are reset, grow, are stored ------------------------------------------------------------------------
 
 
 @every_family
@@ -223,12 +223,12 @@ def test_states_of_another_library_are_refused_and_change_nothing(family):
             wrong.append((made.log_belief[0], state | {name: np.full_like(state[name], 99)[..., :1]}))
             wrong.append((made.log_belief[0], state | {name: -1 - state[name]}))
     for log_belief, parts in wrong:
-        with pytest.raises(InputError, match="state|log_belief"):
+        with pytest.raises(InputError, match=r"state|log_belief"):
             made.restore(1, log_belief, parts)
     assert_same(states(made, 1), before)
 
 
-# ---- types that change ---------------------------------------------------------------------------------------------
+# ---- types that change ---------------------------------------------------------------------------------------
 
 
 @learning
@@ -297,7 +297,7 @@ def test_dynamics_that_learn_are_told_whose_episodes_ended_and_how():
     assert dynamics.seen == [([2, 0], ["won", "lost"]), ([1], None)]
 
 
-# ---- the library, and arguments ------------------------------------------------------------------------------------
+# ---- the library, and arguments ------------------------------------------------------------------------------
 
 
 @learning
@@ -386,7 +386,9 @@ def test_selection_takes_the_largest_score(family):
     for rule in (Greedy(), ExpectedImprovement()):
         chosen, scores = made.select(users, rule, np.random.default_rng(0))
         assert (chosen == scores.argmax(axis=1)).all()
-    assert made.scores(users, Greedy()) == pytest.approx(made.known(users).performance.expected(made.belief(users)))
+    assert made.scores(users, Greedy()) == pytest.approx(
+        made.known(users).performance.expected(made.belief(users))
+    )
 
 
 def test_arguments_that_break_their_rule_are_refused():

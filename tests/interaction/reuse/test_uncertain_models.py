@@ -62,7 +62,9 @@ def test_moments_are_those_of_integrating_over_spreads_means_and_variances():
     weights, found = np.exp(agent.algorithm.outcomes.log_weights[0]).tolist(), predicted(agent)
     moments = library.performance.moments
     for pair in np.ndindex(moments.mean.shape):
-        law = NormalPair(*(field[pair] for field in (moments.mean, moments.variance, moments.count, moments.freedom)))
+        law = NormalPair(
+            *(field[pair] for field in (moments.mean, moments.variance, moments.count, moments.freedom))
+        )
         earlier = [(outcome, 1.0) for outcome in shown.get(pair[1], [])]
         expected = over_spreads([normal_moments(law, rho, earlier) for rho in Spread.up_to(0.6).values], weights)
         assert found.mean[pair] == pytest.approx(expected.mean, rel=1e-6)
@@ -85,9 +87,9 @@ def test_a_users_table_has_the_librarys_bins():
 
 
 def cuts_of(agent: BayesianPolicyReuse, probs: np.ndarray) -> np.ndarray:
-    """Cut points of policy 1 that probabilities of bins imply for each type, NaN where they are too near 0 or 1."""
+    """Cut points of policy 1 that each type's probabilities of bins imply, NaN where these are too near 0 or 1."""
     outcomes, below = predicted(agent), probs[:, 1].cumsum(axis=1)[:, :-1]
-    quantiles = stats.norm.ppf(np.where((1e-4 < below) & (below < 1 - 1e-4), below, np.nan))
+    quantiles = stats.norm.ppf(np.where(np.abs(below - 0.5) < 0.5 - 1e-4, below, np.nan))
     return outcomes.mean[:, 1, None] + outcomes.deviation[:, 1, None] * quantiles
 
 
@@ -102,7 +104,9 @@ def test_a_users_table_of_categories_is_that_of_urns():
     assert len(weights) > 1
     for type_ in range(2):
         counts = (5 * signal.probs[type_, 1]).tolist()
-        urns = [[np.exp(category_predictive(counts, rho, earlier, c)) for c in range(3)] for rho in law.spread.values]
+        urns = [
+            [np.exp(category_predictive(counts, rho, earlier, c)) for c in range(3)] for rho in law.spread.values
+        ]
         assert table.probs[type_, 1] == pytest.approx(weights @ np.array(urns), rel=1e-9)
     assert table.probs[:, 0] == pytest.approx(signal.probs[:, 0], rel=1e-9)
 

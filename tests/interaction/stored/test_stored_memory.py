@@ -2,7 +2,6 @@
 
 import shutil
 
-import numpy as np
 import pytest
 
 from lifelore.agent.reuse.one_user import choose, update
