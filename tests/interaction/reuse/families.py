@@ -240,7 +240,12 @@ def plug_in_steps(type_: int, policy: int, steps: list[tuple[int, int, int]]) ->
     return steps_log_probability(steps, table.tolist())
 
 
-WORDS = LikelihoodSignal(lambda policy, word: [own_density(i, policy, word) for i in range(N_TYPES)], N_TYPES)
+def own_likelihood(policy: int, word: str) -> list[float]:
+    """At the top of a module, as pickle needs it."""
+    return [own_density(type_, policy, word) for type_ in range(N_TYPES)]
+
+
+WORDS = LikelihoodSignal(own_likelihood, N_TYPES)
 STEP_TABLE = STEPS / STEPS.sum(axis=-1, keepdims=True)
 BY_POLICY = np.stack([STEPS, STEPS[::-1]], axis=1) + PSEUDO_COUNT
 
