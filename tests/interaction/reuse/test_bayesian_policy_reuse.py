@@ -151,6 +151,17 @@ def test_types_that_change_take_their_step_after_each_signal():
     assert agent.belief == pytest.approx([0.77, 0.23])
 
 
+def test_types_may_change_once_after_all_signals_of_an_episode():
+    agent = BayesianPolicyReuse(coin_library(), dynamics=TypeDynamics.hazard(0.1, [0.5, 0.5]))
+    agent.observe("left", 0)
+    agent.observe("left", 0)
+    assert agent.belief == pytest.approx([16 / 17, 1 / 17])
+    assert agent.episode == 0
+    agent.end_episode()
+    assert agent.belief == pytest.approx([0.9 * 16 / 17 + 0.05, 0.9 / 17 + 0.05])
+    assert agent.episode == 1
+
+
 def test_types_may_change_unless_they_are_static():
     agent = BayesianPolicyReuse(coin_library(prior=[0.6, 0.4]), prior=[1.0, 0.0])
     assert (agent.dynamics.kind, agent.dynamics.rate) == ("hazard", 0.002)
