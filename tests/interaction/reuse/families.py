@@ -15,7 +15,9 @@ from scipy.stats import norm
 
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
+from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
+from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.joint_signal import JointSignal
@@ -80,14 +82,23 @@ class Family(NamedTuple):
         return policy if self.by_policy else 0
 
 
+def with_spread(library: PolicyLibrary, spread: Spread) -> PolicyLibrary:
+    """The library, whose models that are learnt from runs hold `spread` possible."""
+    performance, signal = library.performance, library.signal
+    if isinstance(performance, MomentOutcomes):
+        learnt = np.isfinite(performance.moments.count).any()
+    else:
+        learnt = isinstance(performance, CountedOutcomes) and not performance.exact
+    if learnt:
+        performance.spread = spread  # pyright: ignore[reportAttributeAccessIssue]
+    if isinstance(signal, CategorySignal) and signal.totals is not None:
+        signal._spread = spread
+    return library
+
+
 def of_performance(performance: Any, signal: Any = None) -> PolicyLibrary:
     """The library of an outcome model with `SPREAD`."""
-    if performance.kind in ("gaussian", "student-t"):
-        if np.isfinite(performance.moments.count).any():
-            performance.moments.spread = SPREAD
-    elif not performance.exact:
-        performance.spread = SPREAD
-    return PolicyLibrary(performance, signal, prior=PRIOR)
+    return with_spread(PolicyLibrary(performance, signal, prior=np.array(PRIOR)), SPREAD)
 
 
 def sampled(model: str, **options: Any) -> PolicyLibrary:
@@ -112,7 +123,6 @@ def exact(signal: Any = None) -> PolicyLibrary:
 
 def categories() -> PolicyLibrary:
     signal = CategorySignal(PROBS, count=np.array([[4.0, 9.0], [12.0, 5.0], [7.0, 7.0]]))
-    signal._spread = SPREAD
     return exact(signal)
 
 

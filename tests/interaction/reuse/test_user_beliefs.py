@@ -1,6 +1,7 @@
 """Many users at once: as one agent a user, whatever the blocks, hostile signals, and what a user costs."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -16,76 +17,48 @@ from lifelore.interaction.selection import RULES, BeliefSampling, ExpectedImprov
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
-N_TYPES, N_POLICIES = 9, 6
+from .families import FAMILIES, N_POLICIES, N_TYPES, with_spread
+
 STATIC = TypeDynamics.static()
 TOLERANCE = {"f8": 1e-12, "f4": 1e-5}
 FLOOR = 1e-6
 """Above this, float32 beliefs of exact models also hold to 1e-4 of themselves."""
-EXACT = ["return", "category", "own"]
-LEARNT = ["gaussian", "uneven", "partly exact", "student-t", "histogram", "categorical"]
 both_precisions = pytest.mark.parametrize("dtype", ["f4", "f8"])
 
 
-def library(kind: str = "return", **options) -> PolicyLibrary:
+def library(name: str = "exact outcomes") -> PolicyLibrary:
     """A library whose users of a type differ by a known spread, where it is learnt from runs."""
-    random = np.random.default_rng(7)
-    mean = random.normal(scale=30, size=(N_TYPES, N_POLICIES))
-    if kind in EXACT:
-        probs = random.dirichlet(np.full(5, 0.5), (N_TYPES, N_POLICIES))
-        probs[0, :, 0] = 0
-        probs /= probs.sum(axis=2, keepdims=True)
-        own = LikelihoodSignal(lambda policy, x: -np.abs(mean[:, policy] - x), N_TYPES, N_POLICIES)
-        signal = {"return": None, "category": CategorySignal(probs), "own": own}[kind]
-        return PolicyLibrary.from_means(mean, 20.0, signal=signal, **options)
-    samples = mean[..., None] + random.normal(scale=20, size=(N_TYPES, N_POLICIES, 8))
-    if kind in ("uneven", "partly exact"):
-        count = random.integers(3, 40, (N_TYPES, N_POLICIES)).astype(float)
-        if kind == "partly exact":
-            count[::2, 1:3] = np.inf
-        deviation = random.uniform(5, 30, (N_TYPES, N_POLICIES))
-        made = PolicyLibrary.from_means(mean, deviation, count=count, **options)
-    elif kind == "categorical":
-        made = PolicyLibrary.from_samples(random.choice([0.0, 3.0, 10.0], samples.shape), model=kind, **options)
-    else:
-        settings = {"edges": np.linspace(-150, 150, 13)} if kind == "histogram" else {}
-        made = PolicyLibrary.from_samples(samples, model=kind, **settings, **options)
-    made.performance.spread = Spread.known(0.3)  # pyright: ignore[reportAttributeAccessIssue]
-    return made
+    return with_spread(FAMILIES[name].library(), Spread.known(0.3))
 
 
-def drawn(kind: str, random: np.random.Generator, n: int):
-    if kind == "category":
-        return random.integers(0, 5, n)
-    return random.choice([0.0, 3.0, 10.0], n) if kind == "categorical" else random.normal(scale=40, size=n)
+def drawn(name: str, random: np.random.Generator, n: int) -> list[Any]:
+    return [FAMILIES[name].draw(random) for _ in range(n)]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", EXACT + LEARNT)
+@pytest.mark.parametrize("name", FAMILIES)
 @both_precisions
 @pytest.mark.parametrize("hazard", [0.0, 0.05, 1e-36, 1.0])
-def test_a_batch_agrees_with_one_agent_a_user(kind, dtype, hazard, monkeypatch):
+def test_a_batch_agrees_with_one_agent_a_user(name, dtype, hazard, monkeypatch):
     """Users come twice in a batch, blocks are small, and a hazard of 1e-36 is too small for float32."""
     monkeypatch.setattr(user_beliefs, "BLOCK", 7 * N_TYPES)
-    model, random, close = library(kind), np.random.default_rng(0), TOLERANCE[dtype]
+    model, random, close = library(name), np.random.default_rng(0), TOLERANCE[dtype]
     dynamics = TypeDynamics.hazard(hazard, model.prior)
     users = UserBeliefs(model, 12, dtype, dynamics=dynamics)
     agents = [BayesianPolicyReuse(model, dynamics=dynamics) for _ in range(12)]
     for _ in range(8):
         who, policies = random.integers(0, 12, 30), random.integers(0, N_POLICIES, 30)
-        signals = drawn(kind, random, 30)
+        signals = drawn(name, random, 30)
         evidence = users.update(who, policies, signals)
-        for k, (user, policy, signal) in enumerate(
-            zip(who.tolist(), policies.tolist(), signals.tolist(), strict=True)
-        ):
+        for k, (user, policy, signal) in enumerate(zip(who.tolist(), policies.tolist(), signals, strict=True)):
             agents[user].update(policy, signal)
             expected = agents[user].explain().log_evidence[-1]
             assert evidence[k] == expected or evidence[k] == pytest.approx(expected, rel=close, abs=20 * close)
         one_by_one, found = np.array([agent.belief for agent in agents]), users.belief(np.arange(12))
         assert found == pytest.approx(one_by_one, abs=close if hazard < 1 else 10 * close)
-        if kind in EXACT:
+        if not FAMILIES[name].learns:
             above = one_by_one > FLOOR
             assert found[above] == pytest.approx(one_by_one[above], rel=10 * close)
-    assert (users.log_belief == -np.inf).any() == (kind == "category" and not hazard)
     every = np.arange(12)
     # A hazard of 1 leaves the prior, under which policies of counted outcomes tie; float32 breaks these ties.
     for rule in (Greedy(), BeliefSampling(), ExpectedImprovement()) if dtype == "f8" or hazard < 1 else ():
@@ -103,8 +76,8 @@ def test_the_spread_is_the_mean_of_the_librarys_or_the_callers():
         known.performance.spread = Spread.known(spread)  # pyright: ignore[reportAttributeAccessIssue]
         agent = BayesianPolicyReuse(known)
         for outcome in (10.0, 30.0):
-            users.update([0], [2], [outcome])
-            agent.update(2, outcome)
+            users.update([0], [1], [outcome])
+            agent.update(1, outcome)
         assert users.belief([0])[0] == pytest.approx(agent.belief, abs=1e-12)
     for bad in (-0.1, np.inf, np.nan):
         with pytest.raises(InputError, match="spread must be at least 0"):
@@ -116,7 +89,7 @@ def test_the_spread_is_the_mean_of_the_librarys_or_the_callers():
 def test_rules_select_what_one_agent_a_user_selects(dtype, name):
     model, random = library(), np.random.default_rng(1)
     users = UserBeliefs(model, 700, dtype)
-    policies, signals = random.integers(0, N_POLICIES, 700), drawn("return", random, 700)
+    policies, signals = random.integers(0, N_POLICIES, 700), drawn("exact outcomes", random, 700)
     together = users.update_and_select(np.arange(700), policies, signals, name, episodes_left=5)
     assert np.array_equal(together, users.select(np.arange(700), name, episodes_left=5))
     rule, differ = rule_named(name), 0
@@ -128,13 +101,13 @@ def test_rules_select_what_one_agent_a_user_selects(dtype, name):
     assert differ <= (0 if dtype == "f8" else 3)
 
 
-@pytest.mark.parametrize("kind", ["return", "gaussian", "categorical"])
-def test_sampling_follows_the_stated_probabilities(kind):
+@pytest.mark.parametrize("name", ["exact outcomes", "gaussian", "categorical"])
+def test_sampling_follows_the_stated_probabilities(name):
     random = np.random.default_rng(2)
-    users, every = UserBeliefs(library(kind), 20_000), np.arange(20_000)
-    for policy in (2, 4, 2, 0):
-        users.update(every, np.full(20_000, policy), np.full(20_000, drawn(kind, random, 1)[0]))
-    for available in (None, np.array([True, False, True, True, False, True])):
+    users, every = UserBeliefs(library(name), 20_000), np.arange(20_000)
+    for policy in (1, 0, 1):
+        users.update(every, np.full(20_000, policy), drawn(name, random, 1) * 20_000)
+    for available in (None, np.array([False, True])):
         stated = users.probabilities([0], "sampling", available=available)[0]
         chosen = users.select(every, "sampling", available=available)
         # A share of 20000 has a deviation of at most 0.0035; five of them.
@@ -212,11 +185,11 @@ def test_a_hazard_steps_where_no_type_explains_the_signal_and_spares_impossible_
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("kind", ["return", "gaussian", "partly exact", "histogram"])
+@pytest.mark.parametrize("name", ["exact outcomes", "gaussian", "uneven", "histogram"])
 @pytest.mark.parametrize("hazard", [0.0, 0.002])
 @both_precisions
-def test_a_hundred_thousand_hostile_signals_leave_beliefs(kind, hazard, dtype):
-    random, n, model = np.random.default_rng(0), 1000, library(kind)
+def test_a_hundred_thousand_hostile_signals_leave_beliefs(name, hazard, dtype):
+    random, n, model = np.random.default_rng(0), 1000, library(name)
     users, every = UserBeliefs(model, n, dtype, dynamics=TypeDynamics.hazard(hazard, model.prior)), np.arange(n)
     for turn in range(100):
         size = 10.0 ** random.uniform(-320, 100, n)
@@ -246,8 +219,8 @@ def test_users_that_are_reset_are_new_and_the_others_stay():
     users.reset([*every[::2], 0])
     assert users.belief([0])[0] == pytest.approx(users.library.prior)
     assert np.array_equal(users.belief(every[1::2]), before)
-    users.update([14], [2], [7.0])
-    fresh.update([0], [2], [7.0])
+    users.update([14], [1], [7.0])
+    fresh.update([0], [1], [7.0])
     assert users.belief([14]) == pytest.approx(fresh.belief([0]), abs=1e-12)
     assert users.nbytes == size
 
@@ -299,7 +272,7 @@ def test_evidence_below_the_range_of_numbers_is_not_that_of_the_impossible():
     [
         (([0, 3], [0, 0], [1.0, 1.0]), NotFoundError, "unknown user 3; there are 3"),
         (([-1], [0], [1.0]), NotFoundError, "unknown user -1"),
-        (([0], [6], [1.0]), NotFoundError, "unknown policy 6; there are 6"),
+        (([0], [2], [1.0]), NotFoundError, "unknown policy 2; there are 2"),
         (([0.5], [0], [1.0]), InputError, "whole numbers"),
         (([[0]], [0], [1.0]), InputError, "whole numbers"),
         (([0], [0], [math.nan]), InputError, "value must be a finite number"),
@@ -317,8 +290,8 @@ def test_arguments_that_break_their_rule_are_refused(arguments, error, message):
 
 
 def test_categories_and_models_that_answer_wrongly_are_refused():
-    users = UserBeliefs(library("category"), 3)
-    for bad in ([5], [-1], [0.5]):
+    users = UserBeliefs(library("exact categories"), 3)
+    for bad in ([4], [-1], [0.5]):
         with pytest.raises(InputError, match="signal must be one of"):
             users.update([0], [0], bad)
 
@@ -339,7 +312,7 @@ def test_categories_and_models_that_answer_wrongly_are_refused():
     [
         ({"users": 0}, "users must be at least 1"),
         ({"users": 2, "dtype": "f2"}, "dtype must be"),
-        ({"users": 2, "prior": [0.5, 0.5]}, r"prior must be \(9,\)"),
+        ({"users": 2, "prior": [0.5, 0.5]}, r"prior must be \(3,\)"),
         ({"users": 2, "dynamics": TypeDynamics.hazard(0.1, [0.5, 0.5])}, "dynamics are for 2 types"),
     ],
 )

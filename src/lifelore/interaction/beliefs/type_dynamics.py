@@ -100,6 +100,11 @@ class TypeDynamics:
         """Number of types that the dynamics are for; None where it does not matter."""
         return None if self.law is None else self.law.shape[-1]
 
+    @property
+    def moves(self) -> bool:
+        """Whether a step changes beliefs."""
+        return self.kind == "transitions" or self.rate > 0
+
     def step(self, log_belief: Array, users: Any = None, outcome: Any = None) -> Array:
         """The belief before the next episode, (..., n_types) to the same, normalised.
 
@@ -110,7 +115,7 @@ class TypeDynamics:
         outcome : optional
             how the episode ended; for dynamics that learn. These do not.
         """
-        if self.kind == "static":
+        if not self.moves:
             return log_belief
         return self._hazarded(log_belief) if self.kind == "hazard" else np.minimum(self._moved(log_belief), 0.0)
 

@@ -173,7 +173,9 @@ class CountedRows(CountedPrediction):
     def probs(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
         """P(next cell | type, policy), (..., n_types, n_policies, n_cells)."""
         expected = (self._tried[..., None] * self._by_spread).sum(axis=1)
-        return self._rows(np.broadcast_to(self._law.probs, (len(self._spread_weights), *self._law.probs.shape)), expected)
+        return self._rows(
+            np.broadcast_to(self._law.probs, (len(self._spread_weights), *self._law.probs.shape)), expected
+        )
 
     @cached_property
     def mean_variance(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]

@@ -211,7 +211,9 @@ class CountedOutcomeLaw(CountedLaw):
         super().__init__(counts, spread, partial(_places, cells), np.log(cells.sizes), dtype)
         self.cells = cells
 
-    def prediction(self, shown: Any = None, users: Any = None, log_weights: Array | None = None) -> CountedPrediction:
+    def prediction(
+        self, shown: Any = None, users: Any = None, log_weights: Array | None = None
+    ) -> CountedPrediction:
         """The next outcome of all users, or of `users` (...) with the spreads' log probabilities (..., n_spreads)."""
         if shown is None or log_weights is None:
             shown, users, log_weights = self.shown(1), 0, np.log(self.spread.weights)

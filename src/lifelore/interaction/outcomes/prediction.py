@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.interaction.outcomes.cells import Cells
 from lifelore.interaction.finite_signals.normal_distribution import ndtr
+from lifelore.interaction.outcomes.cells import Cells
 
 Array = NDArray[Any]
 

@@ -59,7 +59,8 @@ class ReuseAlgorithm:
         The library's by default.
     dynamics : TypeDynamics, optional
         By default a hazard of `DEFAULT_HAZARD` that draws from the library's prior; the thesis's types are static.
-        Any object with `step` and `changed_share` serves, and may learn from what `end_episode` gives it.
+        Any object with `moves`, `n_types`, `step` and `changed_share` serves, and may learn from what `end_episode`
+        gives it.
     models : {"uncertain", "plug-in"}
         Whether a model learnt from a finite number of runs is known to be uncertain.
     spread : Spread, optional
@@ -217,8 +218,9 @@ class ReuseAlgorithm:
 
     def end_episode(self, users: Numbers, outcome: Any = None) -> None:
         """Take the dynamics' step for `users`; `outcome` says how their episodes ended, for dynamics that learn."""
-        self.log_belief[users] = self.dynamics.step(self.log_belief[users], users, outcome)
-        self._begun[users] = True
+        if self.dynamics.moves:
+            self.log_belief[users] = self.dynamics.step(self.log_belief[users], users, outcome)
+            self._begun[users] = True
 
     def update(self, users: Numbers, policies: Numbers, signals: Any, outcomes: Any = None) -> Observed:
         """`observe`, and `end_episode`."""
@@ -245,7 +247,9 @@ class ReuseAlgorithm:
     def state(self, user: int) -> dict[str, Array]:
         """What a user has shown, as small arrays; empty between episodes where nothing is learnt beside the belief."""
         parts = {"signal": self.signals} | ({} if self.outcomes is self.signals else {"outcomes": self.outcomes})
-        found = {f"{name}.{key}": array for name, model in parts.items() for key, array in model.state(user).items()}
+        found = {
+            f"{name}.{key}": array for name, model in parts.items() for key, array in model.state(user).items()
+        }
         return found if self._begun[user] else found | {"begun": np.array(False)}
 
     def restore(self, user: int, log_belief: ArrayLike, state: Mapping[str, Any]) -> None:
@@ -303,8 +307,10 @@ def _explained(explained: Any, *of_users: Any) -> tuple[Any, ...]:
     if explained.all():
         return of_users
     rows = np.flatnonzero(explained)
-    return tuple([each[row] for row in rows] if isinstance(each, list) else each if each is None else each[rows]
-                 for each in of_users)
+    return tuple(
+        [each[row] for row in rows] if isinstance(each, list) else each if each is None else each[rows]
+        for each in of_users
+    )
 
 
 def _part(state: Mapping[str, Any], prefix: str) -> dict[str, Any]:

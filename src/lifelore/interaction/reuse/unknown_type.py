@@ -75,7 +75,9 @@ class UnknownType:
         log_evidence = self._types.observe(0, policy, signal).log_evidence
         number, policies = self._laws.numbers([signal]), np.array([policy])
         shown = self._shown.setdefault(policy, np.zeros((1, self._broad.width)))
-        self.log_odds += float(self._broad.log_density(shown, policies, number)[0]) + surprise_of(float(log_evidence))
+        self.log_odds += float(self._broad.log_density(shown, policies, number)[0]) + surprise_of(
+            float(log_evidence)
+        )
         self._broad.learn(shown, number)
 
     def end_episode(self) -> None:
@@ -106,7 +108,9 @@ class UnknownType:
             mass, log_odds = np.asarray(state["numbers"], np.float64).tolist()
             found = cls(library, mass, None, dynamics, models)
             policies, shown = np.asarray(state["policies"], np.int64), np.array(state["shown"], np.float64)
-            parts = {name.removeprefix("task."): array for name, array in state.items() if name.startswith("task.")}
+            parts = {
+                name.removeprefix("task."): array for name, array in state.items() if name.startswith("task.")
+            }
             found._types.restore(0, state["log_belief"], parts)
         except (KeyError, ValueError, TypeError) as error:
             raise InputError(f"this is no evidence of an unknown type of this library: {error}") from None

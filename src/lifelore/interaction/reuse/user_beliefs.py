@@ -28,8 +28,8 @@ Numbers = NDArray[np.int64]
 Users = ArrayLike | Sequence[str]
 """Numbers of users, or their names where the users have names."""
 
-BLOCK = 1 << 16
-"""Numbers of a block's beliefs: they stay in the processor's cache."""
+BLOCK = 1 << 15
+"""Numbers of a block's beliefs: they, and what is computed of them, stay in the processor's cache."""
 LARGEST_BLOCK = 1 << 21
 """Numbers of the largest temporary arrays, which have a row for each user, type, policy and signal."""
 
@@ -99,7 +99,13 @@ class UserBeliefs:
             usual = ReuseAlgorithm(library, prior=prior, dynamics=dynamics, models=models)
             spread = usual.signals.law.spread.mean
         self.algorithm = ReuseAlgorithm(
-            library, n_users, prior=prior, dynamics=dynamics, models=models, spread=Spread.known(spread), dtype=dtype
+            library,
+            n_users,
+            prior=prior,
+            dynamics=dynamics,
+            models=models,
+            spread=Spread.known(spread),
+            dtype=dtype,
         )
         self.generator = stream(seed, "user beliefs") if isinstance(seed, int | np.integer) else seed
         self._n_users = n_users

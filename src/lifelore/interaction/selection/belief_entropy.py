@@ -20,7 +20,6 @@ from lifelore.interaction.selection.rule import (
     Variant,
     check_variant,
     range_of_means,
-    weighted,
 )
 from lifelore.interaction.selection.support import MASS, check_mass
 
@@ -60,7 +59,10 @@ class BeliefEntropy(Deterministic):
     def scores(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
         """Expected utilities plus κ times the information, (P,) or (k, P)."""
         mean, table = library.performance.mean, library.table(self.n_bins)
-        kappa, utility = range_of_means(mean) if self.kappa is None else self.kappa, library.performance.expected(belief)
+        kappa, utility = (
+            range_of_means(mean) if self.kappa is None else self.kappa,
+            library.performance.expected(belief),
+        )
         if self.variant == "thesis":
             return utility - kappa * _printed_entropy(printed_posterior(belief, table))
         return utility + kappa * mutual_information(belief, table, self.mass)

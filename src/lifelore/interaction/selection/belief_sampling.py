@@ -38,4 +38,4 @@ def drawn_types(belief: Array, generator: np.random.Generator) -> Any:
     if held.ndim == 1:
         return held.searchsorted(generator.random() * held[-1], side="right")
     level = generator.random(held.shape[:-1]) * held[..., -1]
-    return (held <= np.asarray(level)[..., None]).sum(axis=-1)
+    return (held > level[..., None]).argmax(axis=-1)

@@ -50,6 +50,7 @@ class ExpectedImprovement(Deterministic):
 
     Examples
     --------
+    >>> from lifelore.interaction.library.policy_library import PolicyLibrary
     >>> library = PolicyLibrary.from_means([[10.0, 6.0]], [[1.0, 30.0]], policies=["A", "B"])
     >>> ExpectedImprovement().probabilities(library, library.prior).tolist()
     [1.0, 0.0]

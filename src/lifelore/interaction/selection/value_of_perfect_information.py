@@ -44,6 +44,7 @@ class ValueOfPerfectInformation(Deterministic):
     Of two equally likely types, A pays 5 on both; B pays 0 on the first and 8 on the second, 4 on average. Knowing
     B's pay gains 3 in half of the cases, and knowing A's pay gains nothing.
 
+    >>> from lifelore.interaction.library.policy_library import PolicyLibrary
     >>> library = PolicyLibrary.from_means([[5.0, 0.0], [5.0, 8.0]], 1.0, policies=["A", "B"])
     >>> ValueOfPerfectInformation(counted="once").scores(library, library.prior).tolist()
     [5.0, 5.5]
