@@ -94,7 +94,7 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
 
 
 def _relative_to_possible(log_belief: Array, log_likelihood: Array) -> tuple[Array, Array, Array]:
-    """Sums of log beliefs and log likelihoods less those of the best possible type, largest sums, what was taken off.
+    """Sums of log beliefs and log likelihoods less the largest, that largest sum (0), and what was taken off.
 
     Beside a large likelihood a belief would be rounded away. What is taken off is minus infinity where no type
     explains the signal: the belief then stays.
@@ -108,7 +108,8 @@ def _relative_to_possible(log_belief: Array, log_likelihood: Array) -> tuple[Arr
     with np.errstate(invalid="ignore", over="ignore"):
         relative = np.where(possible & (best > -np.inf), log_likelihood - best, 0.0)
     joint = log_belief + relative.astype(log_belief.dtype, copy=False)
-    return joint, joint.max(axis=-1, keepdims=True), best
+    top = joint.max(axis=-1, keepdims=True)
+    return joint - top, np.zeros_like(top), best + top
 
 
 def entropy(belief: ArrayLike) -> Array:

@@ -133,7 +133,7 @@ class TypeDynamics:
         terms = self._terms(log_belief.dtype)
         if not terms.small:
             return np.log(np.exp(log_belief) * terms.stay + terms.anew)
-        return np.logaddexp(log_belief + np.log(terms.stay), terms.log_anew)
+        return np.logaddexp(log_belief + terms.log_stay, terms.log_anew)
 
     def _terms(self, dtype: Any) -> "_HazardTerms":
         """The numbers of a hazard's step in the precision of the beliefs, computed once."""
@@ -141,10 +141,10 @@ class TypeDynamics:
             assert self.law is not None
             anew = self.rate * self.law
             with np.errstate(divide="ignore"):
-                log_anew = np.log(anew)
+                log_stay, log_anew = np.log1p(-self.rate), np.log(anew)
             small = bool((anew < np.finfo(dtype).tiny).any())
-            stay = np.asarray(1 - self.rate, dtype)
-            self._known[dtype] = _HazardTerms(stay, anew.astype(dtype), log_anew.astype(dtype), small)
+            terms = (1 - self.rate, log_stay, anew, log_anew)
+            self._known[dtype] = _HazardTerms(*(np.asarray(term, dtype) for term in terms), small)
         return self._known[dtype]
 
     def _moved(self, log_belief: Array) -> Array:
@@ -159,9 +159,10 @@ class TypeDynamics:
 
 
 class _HazardTerms(NamedTuple):
-    """1 − h; h G₀ and its logarithm, (n_types,); whether some h G₀ is too small for a number."""
+    """1 − h and h G₀ (n_types,), with their logarithms; whether some h G₀ is too small for a number."""
 
     stay: Array
+    log_stay: Array
     anew: Array
     log_anew: Array
     small: bool

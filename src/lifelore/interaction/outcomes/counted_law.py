@@ -98,10 +98,6 @@ class CountedLaw:
         """Let what distinct `users` have shown count `keep` (...) of what it did."""
         shown["counts"][users] *= np.asarray(keep, self.dtype)[..., None, None]
 
-    def tried(self, shown: Shown, users: Numbers) -> NDArray[np.bool_]:
-        """The policies that `users` have shown a signal of, (..., n_policies)."""
-        return shown["counts"][users].any(axis=-1)
-
     # ---- what rules read -----------------------------------------------------------------------------------
 
     def predicted(

@@ -93,10 +93,6 @@ class Law(Protocol):
         """Let everything that distinct `users` have shown count `keep` (...) of what it did."""
         ...
 
-    def tried(self, shown: Shown, users: Numbers) -> NDArray[np.bool_]:
-        """The policies that `users` have shown a signal of, (..., n_policies)."""
-        ...
-
     def table(
         self, n_bins: int, shown: Shown | None = None, users: Numbers = None, log_weights: Array | None = None
     ) -> SignalTable:

@@ -36,6 +36,8 @@ EXACT = 1e30
 """Degrees of freedom of a variance that is known exactly: t is then normal to the last digit."""
 LARGEST_FREEDOM = 1e6
 """Degrees of freedom above which the height of a t distribution is that of a normal and a correction."""
+FARTHEST = 1e15
+"""Deviations as which outcomes that are farther count in float32: their squares stay numbers."""
 FEW = 256
 """Numbers up to which heights are computed one by one: SciPy is not needed for a single user."""
 LEAST_FREEDOM = 0.5
@@ -67,7 +69,7 @@ class NormalLaw:
     spread : Spread
     dtype : {"f8", "f4"}
         Precision of the statistics and of the likelihoods. float32 counts in deviations from the middle of the
-        types' means.
+        types' means, at most `FARTHEST`.
     """
 
     learns = True
@@ -157,10 +159,6 @@ class NormalLaw:
         share = self._stored(keep)
         shown["moments"][users] *= np.stack([share, np.ones_like(share), share], axis=-1)[..., None, :]
 
-    def tried(self, shown: Shown, users: Numbers) -> NDArray[np.bool_]:
-        """The policies that `users` have shown an outcome of, (..., n_policies)."""
-        return shown["moments"][users, :, 0] > 0
-
     # ---- what rules read -----------------------------------------------------------------------------------
 
     def prediction(
@@ -210,7 +208,8 @@ class NormalLaw:
     def _scaled(self, policies: Numbers, signals: Any) -> Array:
         if self.dtype != np.float32:
             return signals
-        return self._stored((signals - self.middle[policies]) / self.unit[policies])
+        scaled = (signals - self.middle[policies]) / self.unit[policies]
+        return self._stored(np.clip(scaled, -FARTHEST, FARTHEST))
 
     def _stored(self, values: Any) -> Array:
         return np.asarray(values).astype(self.dtype, copy=False)

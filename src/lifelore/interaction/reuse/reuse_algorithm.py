@@ -208,7 +208,8 @@ class ReuseAlgorithm:
         after, log_evidence = self._updated(before, found.log_likelihood)
         explained = log_evidence > -np.inf
         if found.changed is not None:
-            self._fade(users, 1 - np.where(explained, (np.exp(after) * found.changed).sum(axis=-1), 0.0))
+            changes = np.where(explained, (np.exp(after) * found.changed).sum(axis=-1), 0.0)
+            self._fade(users, 1 - np.minimum(changes, 1.0))
         if self.signals.law.learns and explained.any():
             self.signals.learn(*_explained(explained, users, policies, signals, found.gain))
         if outcomes is not None and self.outcomes is not self.signals:
