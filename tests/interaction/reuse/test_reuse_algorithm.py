@@ -277,7 +277,7 @@ def test_types_that_change_by_a_matrix_move_the_belief_alone():
 class Watching:
     """Dynamics that note how episodes ended."""
 
-    n_types = None
+    n_types, moves = None, True
 
     def __init__(self):
         self.seen = []
@@ -408,7 +408,7 @@ def test_arguments_that_break_their_rule_are_refused():
 def test_signals_that_are_none_are_refused_and_change_nothing(family):
     made, before = taught(family), states(taught(family), np.arange(K))
     kind = getattr(made.library.signal, "kind", "own")
-    wrong = {"own": [], "return": [np.nan, np.inf, -np.inf, 1e200, "much", None]}
+    wrong = {"own": [], "return": [np.nan, np.inf, -np.inf, 1e200, "much", None, [1.0, 2.0]]}
     for signal in wrong.get(kind, ["no such", np.nan, [[9, 9, 9]]]):
         with pytest.raises(InputError):
             made.observe(0, 0, signal)

@@ -179,7 +179,7 @@ def test_a_task_forgets_where_the_type_has_changed():
         own = library.performance.mean[0, 0]
         for outcome in np.r_[own + np.linspace(-9, 9, 15), np.full(3, library.performance.mean[1, 0])]:
             agent.update(0, float(outcome))
-            kept[rate] = agent.algorithm.outcomes.shown["count"][0, 0]
+            kept[rate] = agent.algorithm.state(0)["signal.shown"][0, 0]
     assert kept[0.0] == 18
     assert kept[0.01] < 18
 
