@@ -15,7 +15,7 @@ from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.reuse_session import load_session
 
 HERE = Path(__file__).parent
-RELATIVE = 1e-9
+RELATIVE = 1e-12
 """Sums may be taken in another order; no number of a file may differ by more."""
 
 
