@@ -144,7 +144,8 @@ class TypeDynamics:
                 log_stay, log_anew = np.log1p(-self.rate), np.log(anew)
             small = bool((anew < np.finfo(dtype).tiny).any())
             terms = (1 - self.rate, log_stay, anew, log_anew)
-            self._known[dtype] = _HazardTerms(*(np.asarray(term, dtype) for term in terms), small)
+            stored = [np.asarray(term, dtype) for term in terms]
+            self._known[dtype] = _HazardTerms(small, *stored)
         return self._known[dtype]
 
     def _moved(self, log_belief: Array) -> Array:
@@ -159,13 +160,13 @@ class TypeDynamics:
 
 
 class _HazardTerms(NamedTuple):
-    """1 − h and h G₀ (n_types,), with their logarithms; whether some h G₀ is too small for a number."""
+    """Whether some h G₀ is too small for a number; 1 − h and h G₀ (n_types,), with their logarithms."""
 
+    small: bool
     stay: Array
     log_stay: Array
     anew: Array
     log_anew: Array
-    small: bool
 
 
 def _log_sums(terms: Array) -> Array:

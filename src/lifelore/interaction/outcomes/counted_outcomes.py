@@ -131,7 +131,10 @@ class CountedOutcomes(CountedPrediction):
         self._prepare()
 
     def absorb(self, type_: int, state: Mapping[str, Any]) -> None:
-        """Learn from all outcomes of a task whose type has become known, in place; `state` is `CountedLaw.state`."""
+        """Learn from all outcomes of a task whose type has become known, in place.
+
+        `state` is what its law gives of them, see `Law.state`.
+        """
         check_type(type_, self.n_types)
         self.counts[type_, state["policies"]] += state["shown"]
         self._prepare()
@@ -214,7 +217,14 @@ class CountedOutcomeLaw(CountedLaw):
     def prediction(
         self, shown: Any = None, users: Any = None, log_weights: Array | None = None
     ) -> CountedPrediction:
-        """The next outcome of all users, or of `users` (...) with the spreads' log probabilities (..., n_spreads)."""
+        """The next outcome of all users, or of some.
+
+        Parameters
+        ----------
+        users : int or (k,) int64
+        log_weights : (..., n_spreads) float
+            Log probabilities of the spreads for each of `users`.
+        """
         if shown is None or log_weights is None:
             shown, users, log_weights = self.shown(1), 0, np.log(self.spread.weights)
         return CountedRows(self, self.cells, shown, users, log_weights)

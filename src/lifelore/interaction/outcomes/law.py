@@ -1,4 +1,4 @@
-"""The interface of laws: log likelihoods of signals for rows of users and all types, given what each user has shown.
+"""The interface of laws: log likelihoods of signals for users and all types, given what each user has shown.
 
 A library's runs leave open what a type pays. What a user shows then tells of the type and of the parameters of the
 user's own outcomes. A law has sufficient statistics of that, `Shown`, and predicts the next signal from them:

@@ -155,7 +155,10 @@ class MomentOutcomes(NormalPrediction):
         self._prepare()
 
     def absorb(self, type_: int, state: Mapping[str, Any]) -> None:
-        """Learn from all outcomes of a task whose type has become known, in place; `state` is `NormalLaw.state`."""
+        """Learn from all outcomes of a task whose type has become known, in place.
+
+        `state` is what its law gives of them, see `Law.state`.
+        """
         check_type(type_, self.n_types)
         for policy, (count, mean, squares) in zip(state["policies"], state["shown"], strict=True):
             if count > 0:

@@ -124,7 +124,7 @@ class NormalLaw:
         return height - 0.5 * np.log(square) - 0.5 * (freedom + 1) * np.log1p(gap * gap / (square * freedom))
 
     def posterior(self, policies: Numbers, shown: Shown, users: Numbers) -> Posterior:
-        """The law of the pairs of `policies` (...) given what `users` (...) have shown, (..., n_spreads, n_types)."""
+        """The law of the pairs of `policies` (...) given what `users` (...) have shown."""
         n, mean, squares = _parts(shown["moments"][users, policies][..., None, None, :])
         location, doubt = self._location[policies], self._doubt[policies]
         grown, apart, freedom = 1 + n * doubt, mean - location, self._freedom[policies] + n
@@ -164,7 +164,14 @@ class NormalLaw:
     def prediction(
         self, shown: Shown | None = None, users: Numbers = None, log_weights: Array | None = None
     ) -> NormalPrediction:
-        """The next outcome of all users, or of `users` (...) with the spreads' log probabilities (..., n_spreads)."""
+        """The next outcome of all users, or of some.
+
+        Parameters
+        ----------
+        users : int or (k,) int64
+        log_weights : (..., n_spreads) float
+            Log probabilities of the spreads for each of `users`.
+        """
         if shown is None or log_weights is None:
             variance = self.of_runs + self.of_spread * self.spread.mean
             return NormalPrediction(self.mean, np.sqrt(self.noise + variance), variance)
@@ -276,7 +283,7 @@ class NormalRows(NormalPrediction):
         return found.reshape(*self._shape, -1)
 
     def tried_pairs(self) -> tuple[tuple[Array, Array], Array, Array]:
-        """Row and policy (m,) of each tried pair, and the mean and deviation of its outcome by type, (m, n_types)."""
+        """Row and policy (m,) of each tried pair; mean and deviation of its outcome by type, (m, n_types)."""
         return self._at, self._tried_mean, np.sqrt(sum(self._tried_variances))
 
     @cached_property

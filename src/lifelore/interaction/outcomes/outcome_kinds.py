@@ -1,7 +1,7 @@
 """The outcome models, P(U | type, policy) for every pair of a type and a policy, by name.
 
-`GaussianOutcomes` (with shrunk deviations) is the default. `StudentTOutcomes` accounts for the uncertainty of a few
-samples. `HistogramOutcomes` and `CategoricalOutcomes` are for other distributions. Thesis: §4.3.4, Def. 4.3.4.
+`GaussianOutcomes` (with shrunk deviations) is the default. `StudentTOutcomes` accounts for the uncertainty of a
+few samples. `HistogramOutcomes` and `CategoricalOutcomes` are for other distributions. Thesis: §4.3.4, Def. 4.3.4.
 """
 
 from typing import Any

@@ -150,7 +150,8 @@ def finite_outcomes(values: Any) -> Any:
         found = np.asarray(np.nan)
     if not (np.abs(found) <= LARGEST).all():
         raise InputError(
-            f"value must be a finite number of at most {LARGEST:g}, got {values!r:.80}; leave out what has no outcome"
+            f"value must be a finite number of at most {LARGEST:g}, got {values!r:.80}; leave out what has no "
+            "outcome"
         )
     return found
 

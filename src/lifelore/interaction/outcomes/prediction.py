@@ -150,10 +150,24 @@ def normal_excess(above: Array, deviation: Array) -> Array:
 
 
 def weighted(belief: Array, values: Array) -> Array:
-    """Σ β(τ) v(τ, π): beliefs (..., n_types) and values (n_types, n), shared, or (..., n_types, n)."""
-    if values.ndim == 2:
-        return belief @ values
-    return np.matmul(belief[..., None, :], values)[..., 0, :]
+    """Σ β(τ) v(τ, ·), (n,) or (k, n).
+
+    Parameters
+    ----------
+    belief : (T,) or (k, T) float64
+    values : (T, n) float64, or (k, T, n) with values of their own for each row of the belief
+    """
+    if values.ndim > 2:
+        return np.matmul(belief[..., None, :], values)[..., 0, :]
+    if belief.ndim == 1:
+        belief, values = supported(belief, values)
+    return belief @ values
+
+
+def supported(belief: Array, *values: Array) -> tuple[Array, ...]:
+    """A belief (T,) and rows of `values` (T, n) for its types of positive probability, where these are few."""
+    some = belief.nonzero()[0]
+    return (belief, *values) if 2 * len(some) > len(belief) else tuple(each[some] for each in (belief, *values))
 
 
 def over_pairs(values: ArrayLike) -> Any:

@@ -26,7 +26,7 @@ from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.user_library import UserLibrary
 from lifelore.interaction.reuse.user_model import UserModel
 from lifelore.interaction.selection import SelectionRule
-from lifelore.interaction.selection.choice import choose, propensities, scored
+from lifelore.interaction.selection.choice import Mask, choose, propensities, scored
 from lifelore.interaction.signals.return_signal import ReturnSignal
 
 Array = NDArray[Any]
@@ -59,8 +59,8 @@ class ReuseAlgorithm:
         The library's by default.
     dynamics : TypeDynamics, optional
         By default a hazard of `DEFAULT_HAZARD` that draws from the library's prior; the thesis's types are static.
-        Any object with `moves`, `n_types`, `step` and `changed_share` serves, and may learn from what `end_episode`
-        gives it.
+        Any object with `moves`, `n_types`, `step` and `changed_share` serves, and may learn from what
+        `end_episode` gives it.
     models : {"uncertain", "plug-in"}
         Whether a model learnt from a finite number of runs is known to be uncertain.
     spread : Spread, optional
@@ -94,7 +94,8 @@ class ReuseAlgorithm:
             raise InputError(f"models must be 'uncertain' or 'plug-in', got {models!r}")
         if dtype not in ("f4", "f8"):
             raise InputError(f"dtype must be 'f4' or 'f8', got {dtype!r}")
-        self.library, self.models = library, models
+        self.library = library
+        self.models: Models = models
         self.dynamics = dynamics or TypeDynamics.hazard(DEFAULT_HAZARD, library.prior)
         if self.dynamics.n_types not in (None, library.n_types):
             raise InputError(f"dynamics are for {self.dynamics.n_types} types, the library has {library.n_types}")
@@ -142,10 +143,10 @@ class ReuseAlgorithm:
         users: Numbers,
         rule: SelectionRule,
         generator: np.random.Generator,
-        available: ArrayLike | None = None,
+        available: Mask | None = None,
         episodes_left: float | None = None,
     ) -> tuple[Any, Array]:
-        """The policy to run next for `users` (...), (...) int64, and the scores of all policies, (..., n_policies).
+        """The policy to run next for `users` (...), (...) int64, and all policies' scores, (..., n_policies).
 
         Parameters
         ----------
@@ -164,7 +165,7 @@ class ReuseAlgorithm:
         users: Numbers,
         rule: SelectionRule,
         generator: np.random.Generator | None = None,
-        available: ArrayLike | None = None,
+        available: Mask | None = None,
         episodes_left: float | None = None,
     ) -> Array:
         """The rule's scores for `users` (...), (..., n_policies); arguments as for `select`."""
@@ -177,7 +178,7 @@ class ReuseAlgorithm:
         self,
         users: Numbers,
         rule: SelectionRule,
-        available: ArrayLike | None = None,
+        available: Mask | None = None,
         episodes_left: float | None = None,
     ) -> Array:
         """Probability that `select` takes each policy for `users` (...), (..., n_policies); rows sum to 1."""
@@ -218,7 +219,7 @@ class ReuseAlgorithm:
         return Observed(found.log_likelihood, log_evidence)
 
     def end_episode(self, users: Numbers, outcome: Any = None) -> None:
-        """Take the dynamics' step for `users`; `outcome` says how their episodes ended, for dynamics that learn."""
+        """Take the dynamics' step for `users`; dynamics that learn read by `outcome` how the episodes ended."""
         if self.dynamics.moves:
             self.log_belief[users] = self.dynamics.step(self.log_belief[users], users, outcome)
             self._begun[users] = True
@@ -246,7 +247,7 @@ class ReuseAlgorithm:
             model.grow(n_users)
 
     def state(self, user: int) -> dict[str, Array]:
-        """What a user has shown, as small arrays; empty between episodes where nothing is learnt beside the belief."""
+        """What a user has shown, as small arrays; empty between episodes where only the belief learns."""
         parts = {"signal": self.signals} | ({} if self.outcomes is self.signals else {"outcomes": self.outcomes})
         found = {
             f"{name}.{key}": array for name, model in parts.items() for key, array in model.state(user).items()
@@ -277,7 +278,7 @@ class ReuseAlgorithm:
         return law_of(model, self.library.n_types, self.models, dtype=self._dtype, **spread)
 
     def _changed(self, users: Numbers, log_belief: Array) -> Array | None:
-        """P(the type has just changed to this type), (..., n_types); None where it cannot have, or no law learns."""
+        """P(the type has just changed to this), (..., n_types); None where it cannot have, or no law learns."""
         if not self.signals.law.learns:
             return None
         begun = self._begun[users]
@@ -289,8 +290,8 @@ class ReuseAlgorithm:
             return update(log_belief, log_likelihood)
         except InputError:
             raise InputError(
-                f"signal model {type(self.library.signal).__name__} gave NaN or infinity as a log likelihood; minus "
-                "infinity is allowed, they are not"
+                f"signal model {type(self.library.signal).__name__} gave NaN or infinity as a log likelihood; "
+                "minus infinity is allowed, they are not"
             ) from None
 
     def _fade(self, users: Numbers, keep: Array) -> None:

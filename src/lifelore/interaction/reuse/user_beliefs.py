@@ -1,9 +1,9 @@
 """Beliefs about very many users, numbered or named: rows of Algorithm 7, updated and read in blocks.
 
 With float32 rows a user takes 4 bytes a type, and with models learnt from a finite number of runs 12 bytes more a
-policy (4 a cell, where outcomes are counted). float32 rows agree with float64 rows to 1e-5. A `BayesianPolicyReuse`
-for each user has the same numbers to 1e-12, where both know the same spread. Thesis: §4.2, Alg. 7, with many tasks
-side by side.
+policy (4 a cell, where outcomes are counted). float32 rows agree with float64 rows to 1e-5. A
+`BayesianPolicyReuse` for each user has the same numbers to 1e-12, where both know the same spread. Thesis: §4.2,
+Alg. 7, with many tasks side by side.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -21,7 +21,7 @@ from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.reuse_algorithm import Precision, ReuseAlgorithm
 from lifelore.interaction.reuse.user_names import UserNames, are_names
 from lifelore.interaction.selection import SelectionRule, rule_of
-from lifelore.interaction.selection.choice import best_policies
+from lifelore.interaction.selection.choice import available_mask, best_policies
 
 Array = NDArray[Any]
 Numbers = NDArray[np.int64]
@@ -297,7 +297,7 @@ class UserBeliefs:
             yield slice(start, min(start + size, len(rows)))
 
     def _distinct_blocks(self, rows: Numbers, rule: SelectionRule | None = None) -> Iterator[slice]:
-        """`_blocks` in none of which a user comes twice; a user's second signal needs what the first has changed."""
+        """`_blocks` in none of which a user comes twice: a second signal needs what the first has changed."""
         for at in self._blocks(rows, rule):
             own, start = rows[at].tolist(), at.start
             if len(set(own)) == len(own):
@@ -315,16 +315,8 @@ class UserBeliefs:
         """`available` as (n_rows, n_policies) bool; None stays None."""
         if available is None:
             return None
-        mask = np.asarray(available)
-        n_policies = self.library.n_policies
-        if mask.dtype != bool or mask.shape not in ((n_policies,), (n_rows, n_policies)):
-            raise InputError(
-                f"available must be bool ({n_policies},), or ({n_rows}, {n_policies}) with a row for each of users, "
-                f"got {mask.dtype} {mask.shape}"
-            )
-        if not mask.any(axis=-1).all():
-            raise InputError("available must have a policy for every user; leave out users that can get none")
-        return np.broadcast_to(mask, (n_rows, n_policies))
+        mask = available_mask(np.asarray(available), self.library.policies, n_rows)
+        return np.broadcast_to(mask, (n_rows, self.library.n_policies))
 
     def _checked_signals(self, rows: Numbers, policies: Numbers, signals: Any) -> Any:
         if not len(rows) == len(policies) == len(signals):

@@ -92,7 +92,7 @@ class UserModel:
             return Evidence(np.log(whole) + top, new / np.maximum(whole, LEAST), gain)
 
     def fade(self, users: Numbers, keep: Array) -> None:
-        """Let all that distinct `users` have shown count `keep` (...) of what it did: their types may have changed."""
+        """Let all that distinct `users` have shown count `keep` (...) of what it did: types may have changed."""
         if not self.law.learns:
             return
         self.law.fade(self.shown, users, keep)

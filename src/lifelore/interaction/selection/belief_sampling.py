@@ -5,8 +5,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from lifelore.interaction.outcomes.prediction import weighted
 from lifelore.interaction.selection.choice import tied_shares
-from lifelore.interaction.selection.rule import Array, RuleLibrary, check_generator, weighted
+from lifelore.interaction.selection.rule import Array, RuleLibrary, check_generator
 
 
 @dataclass(frozen=True)

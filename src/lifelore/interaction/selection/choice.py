@@ -17,7 +17,8 @@ from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.library_names import index_of
 
 if TYPE_CHECKING:
-    from lifelore.interaction.selection.rule import RuleLibrary, RuleOutcomes, SelectionRule
+    from lifelore.interaction.outcomes.prediction import Prediction
+    from lifelore.interaction.selection.rule import RuleLibrary, SelectionRule
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -116,7 +117,7 @@ def _best(scores: Array, tolerance: float) -> Mask:
             return scores >= _bar(largest, max(abs(largest), abs(least)), tolerance)
     largest = scores.max(axis=-1, keepdims=True, initial=-np.inf)
     least = scores.min(axis=-1, keepdims=True, initial=np.inf)
-    if (largest < np.inf).all() and (least > -np.inf).all():
+    if np.isfinite(largest).all() and (least > -np.inf).all():
         return scores >= _bar(largest, np.maximum(np.abs(largest), np.abs(least)), tolerance)
     if not (largest > -np.inf).all():
         raise InputError("scores must be numbers, at least one of them above minus infinity, got NaN or nothing")
@@ -262,9 +263,9 @@ class PartOfLibrary:
 
 
 class PartOfOutcomes:
-    """The outcomes of some policies; methods as in `RuleOutcomes`."""
+    """The outcomes of some policies; methods as in `Prediction`."""
 
-    def __init__(self, outcomes: "RuleOutcomes", policies: Mask) -> None:
+    def __init__(self, outcomes: "Prediction", policies: Mask) -> None:
         self._outcomes, self._policies = outcomes, policies
 
     @property

@@ -16,7 +16,8 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, RuleOutcomes, weighted
+from lifelore.interaction.outcomes.prediction import Prediction, weighted
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary
 
 Counted = Literal["episodes", "once"]
 
@@ -70,12 +71,12 @@ class ValueOfPerfectInformation(Deterministic):
         return expected + (1.0 if self.counted == "once" else weight) * gain
 
 
-def perfect_gain(outcomes: RuleOutcomes, belief: Array, expected: Array) -> Array:
+def perfect_gain(outcomes: Prediction, belief: Array, expected: Array) -> Array:
     """VPI(π) of each policy, (P,) or (k, P), ≥ 0; 0 where there is a single policy.
 
     Parameters
     ----------
-    outcomes : RuleOutcomes
+    outcomes : Prediction
     belief : (T,) or (k, T) float64
     expected : (P,) or (k, P) float64
         Ũ under this belief.

@@ -145,7 +145,7 @@ class CategorySignal:
         return self.place_of(0, signals)  # pyright: ignore[reportArgumentType]
 
     def law(self, models: Models = "uncertain", *, spread: Spread | None = None, dtype: str = "f8") -> Any:
-        """The law of categories given what users have shown; a fixed law where all is exact, or taken for the truth."""
+        """The law of categories given what users have shown; fixed where all is exact, or taken for the truth."""
         if models == "plug-in" or self.totals is None:
             return FixedLaw(self, self.n_types, self.log_likelihoods, self.places_of)
         counts = self.probs * self.totals[:, :, None]
