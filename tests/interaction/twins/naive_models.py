@@ -99,12 +99,6 @@ def log_likelihoods(means: np.ndarray, variances: np.ndarray, earlier: Earlier) 
     return total
 
 
-def normal_evidence(pair: NormalPair, spread: float, earlier: Earlier) -> float:
-    """log ∫ Π N(x | m, v)^w over the law of the pair."""
-    means, variances, logs = parameters(pair, spread, [value for value, _ in earlier])
-    return log_total(logs + log_likelihoods(means, variances, earlier))
-
-
 def normal_predictive(pair: NormalPair, spread: float, earlier: Earlier, value: float) -> float:
     """Log density of the next outcome, given earlier outcomes of the same pair."""
     means, variances, logs = parameters(pair, spread, [value, *(x for x, _ in earlier)])
@@ -154,14 +148,6 @@ def category_predictive(counts: Sequence[float], spread: float, earlier: Earlier
     for shown, weight in earlier:
         urn[shown] += weight
     return log_of(urn[category]) - log(fsum(urn))
-
-
-def category_evidence(counts: Sequence[float], spread: float, categories: Sequence[int]) -> float:
-    """Log probability of categories in their order."""
-    return fsum(
-        category_predictive(counts, spread, [(shown, 1.0) for shown in categories[:number]], category)
-        for number, category in enumerate(categories)
-    )
 
 
 # ---- the belief over types, spreads and parameters --------------------------------------------------------------

@@ -1,21 +1,17 @@
-"""Bayesian policy reuse (Algorithm 7) for exact models, type by type in plain Python: the slow twin.
+"""Bayes' rule and the dynamics of types, type by type in plain Python: the slow twin of Algorithm 7's two steps.
 
-    β ← G₀
-    for each episode:  for each of its signals:  β(τ) ← F(σ | τ, π) β(τ) / Σ F β
-                       once, at its end:         β ← the step of the dynamics
+    for each signal of an episode:  β(τ) ← F(σ | τ, π) β(τ) / Σ F β
+    once, at its end:               β ← the step of the dynamics
 
 Beliefs are logarithms, and every sum of probabilities is `math.fsum` of exponentials below 1, which is exact up to
 its last rounding. Nothing is imported from the code under test. Thesis: §4.2, Alg. 7.
 """
 
 from collections.abc import Callable, Sequence
-from math import exp, fsum, inf, lgamma, log, log1p, pi
+from math import exp, fsum, inf, log, pi
 
 Logs = list[float]
 Step = Callable[[Logs], Logs]
-
-MAX_SURPRISE = 745.0
-"""Largest surprise of a single signal in nats, that of an impossible signal too."""
 
 
 # ---- sums of probabilities as logarithms ----------------------------------------------------------------------
@@ -48,11 +44,6 @@ def bayes(log_belief: Logs, log_likelihood: Sequence[float]) -> tuple[Logs, floa
     return (list(log_belief), -inf) if evidence == -inf else (normalised(joint), evidence)
 
 
-def static() -> Step:
-    """Types never change."""
-    return list
-
-
 def hazard(rate: float, prior: Sequence[float]) -> Step:
     """With probability `rate` the type is drawn anew: β'(τ) = (1 − h) β(τ) + h G₀(τ)."""
 
@@ -77,72 +68,12 @@ def transitions(matrix: Sequence[Sequence[float]]) -> Step:
     return step
 
 
-class NaiveReuse:
-    """The belief about one user.
-
-    Parameters
-    ----------
-    prior : (n_types,) float
-    step : callable
-        Log belief to log belief at the end of an episode: `static`, `hazard` or `transitions`.
-
-    Attributes
-    ----------
-    log_belief : (n_types,) float
-    surprise : float
-        Sum of −log evidence in nats over the signals, each at most `MAX_SURPRISE`.
-    unexplained : int
-        Number of signals that no type explains.
-    """
-
-    def __init__(self, prior: Sequence[float], step: Step | None = None) -> None:
-        self.log_belief = [log_of(p) for p in prior]
-        self.step = step or static()
-        self.surprise, self.unexplained = 0.0, 0
-
-    def observe(self, log_likelihood: Sequence[float]) -> float:
-        """Learn from a signal by its log likelihood of each type; the log evidence."""
-        self.log_belief, evidence = bayes(self.log_belief, log_likelihood)
-        self.unexplained += evidence == -inf
-        self.surprise += min(-evidence, MAX_SURPRISE)
-        return evidence
-
-    def end_episode(self) -> None:
-        """Take the step of the dynamics once, however many signals the episode had; none is allowed."""
-        self.log_belief = self.step(self.log_belief)
-
-    def update(self, log_likelihood: Sequence[float]) -> float:
-        """An episode of a single signal; the log evidence."""
-        evidence = self.observe(log_likelihood)
-        self.end_episode()
-        return evidence
-
-    @property
-    def belief(self) -> list[float]:
-        """β, (n_types,), sums to 1."""
-        return [exp(b) for b in normalised(self.log_belief)]
-
-
 # ---- log likelihoods of signals, for one pair of type and policy -----------------------------------------------
 
 
 def normal_log_density(value: float, mean: float, deviation: float) -> float:
     """Of a Gaussian outcome."""
     return -0.5 * ((value - mean) / deviation) ** 2 - log(deviation) - 0.5 * log(2 * pi)
-
-
-def student_t_log_density(value: float, location: float, scale: float, freedom: float) -> float:
-    """Of an outcome with a t distribution."""
-    height = lgamma((freedom + 1) / 2) - lgamma(freedom / 2) - 0.5 * log(pi * freedom) - log(scale)
-    return height - (freedom + 1) / 2 * log1p(((value - location) / scale) ** 2 / freedom)
-
-
-def histogram_log_density(value: float, edges: Sequence[float], probs: Sequence[float]) -> float:
-    """Of an outcome between rising edges; the last edge belongs to the last bin. Minus infinity outside."""
-    for low, high, prob in zip(edges, edges[1:], probs, strict=False):
-        if low <= value < high or (value == high == edges[-1]):
-            return log_of(prob) - log(high - low)
-    return -inf
 
 
 def steps_log_probability(

@@ -193,44 +193,6 @@ def perfect_gain(belief, mean, mean_deviation=None):
 # ---- scores, the support of a belief, and the choice ------------------------------------------------------------
 
 
-def information_scores(belief, mean, laws):
-    """−Δ / √I with at least a billionth of a nat."""
-    best = sum(b * max(row) for b, row in zip(belief, mean, strict=True))
-    before, worth = entropy(belief), utilities(belief, mean)
-    return [
-        -max(best - u, 0.0) / sqrt(max(before - after, 1e-9))
-        for u, after in zip(worth, expected_entropy(belief, laws), strict=True)
-    ]
-
-
-def knowledge_scores(belief, mean, laws, left, candidates=None):
-    """Utility and `left` times the gain of knowledge."""
-    gains = knowledge_gain(belief, mean, laws, candidates)
-    return [u + left * gain for u, gain in zip(utilities(belief, mean), gains, strict=True)]
-
-
-def perfect_scores(belief, mean, left, mean_deviation=None):
-    """Utility and `left` times the value of perfect information."""
-    gains = perfect_gain(belief, mean, mean_deviation)
-    return [u + left * gain for u, gain in zip(utilities(belief, mean), gains, strict=True)]
-
-
-def supported(belief, mass):
-    """The belief without its least likely types, which may hold 1 − `mass` in all; equals go or stay together."""
-    kept = sorted(belief, reverse=True)
-    while kept[-1] == 0 or sum(belief) - sum(kept[:-1]) < (1 - mass) * sum(belief):
-        kept.pop()
-    some = [b if b >= kept[-1] else 0.0 for b in belief]
-    return [b / sum(some) for b in some]
-
-
-def best_responses(belief, mean):
-    """Policies that are best on a possible type, and the policy that is best now."""
-    types = [row for b, row in zip(belief, mean, strict=True) if b > 0]
-    now = utilities(belief, mean)
-    return sorted({row.index(max(row)) for row in types} | {now.index(max(now))})
-
-
 def tied_shares(scores, tolerance=1e-9):
     """Probability that the choice takes each policy: equals at random, relative to the best score."""
     best, least = max(scores), min((s for s in scores if s > -inf), default=0.0)
@@ -239,27 +201,3 @@ def tied_shares(scores, tolerance=1e-9):
         bar -= tolerance * abs(best) + 1e-15 * max(abs(best), abs(least))
     tied = [score >= bar for score in scores]
     return [1 / sum(tied) if one else 0.0 for one in tied]
-
-
-def sampling_probabilities(belief, mean):
-    """A type is drawn from the belief and its best response selected."""
-    shares = [tied_shares(row) for row in mean]
-    return [
-        sum(b * share[policy] for b, share in zip(belief, shares, strict=True)) for policy in range(len(mean[0]))
-    ]
-
-
-def epsilon_greedy_probabilities(belief, mean, epsilon):
-    """With probability ε any policy, else the greedy policy."""
-    greedy = tied_shares(utilities(belief, mean))
-    return [epsilon / len(greedy) + (1 - epsilon) * share for share in greedy]
-
-
-def among_available(shares_of, mean, available):
-    """Probabilities where only the policies `available` can be run: the rule sees a library of these alone.
-
-    `shares_of` takes means of some policies and gives their probabilities; others have probability 0.
-    """
-    some = sorted(available)
-    shares = dict(zip(some, shares_of([[row[policy] for policy in some] for row in mean]), strict=True))
-    return [shares.get(policy, 0.0) for policy in range(len(mean[0]))]

@@ -20,8 +20,6 @@ NORMAL_EXCESS = 1 / sqrt(2 * pi)
 def test_utilities_and_the_rules_that_read_them_alone():
     assert naive.utilities(FLAT, MEAN) == [5.0, 6.0, 4.0]
     assert naive.tied_shares(naive.utilities(FLAT, MEAN)) == [0.0, 1.0, 0.0]
-    assert naive.epsilon_greedy_probabilities(FLAT, MEAN, 0.3) == pytest.approx([0.1, 0.8, 0.1])
-    assert naive.sampling_probabilities([0.3, 0.7], MEAN) == pytest.approx([0.3, 0.0, 0.7])
 
 
 def test_equals_share_the_choice():
@@ -72,7 +70,6 @@ def test_the_entropy_to_expect():
 def test_the_gain_of_knowledge():
     """Once the type is known the best pays are 10 and 8, 9 on average, 3 above the best utility now."""
     assert naive.knowledge_gain(FLAT, MEAN, LAWS) == pytest.approx([3.0, 0.0, 0.0])
-    assert naive.knowledge_scores(FLAT, MEAN, LAWS, 7) == pytest.approx([26.0, 6.0, 4.0])
     assert naive.printed_gain(FLAT, MEAN, LAWS) == pytest.approx([0.0, 0.0, 0.0])
     # The second policy alone can be chosen next: there is nothing to gain.
     assert naive.knowledge_gain(FLAT, MEAN, LAWS, [1]) == pytest.approx([0.0, 0.0, 0.0])
@@ -81,7 +78,6 @@ def test_the_gain_of_knowledge():
 def test_the_value_of_perfect_information():
     """Policy 0's pay once known: 10 or, of policy 1, 6. Policy 2: 6 or 8. Policy 1 is best whatever its pay."""
     assert naive.perfect_gain(FLAT, MEAN) == pytest.approx([2.0, 0.0, 1.0])
-    assert naive.perfect_scores(FLAT, MEAN, 7) == pytest.approx([19.0, 6.0, 11.0])
     assert naive.perfect_gain([1.0], [[5.0]]) == [0.0]
     # Both policies pay 6 ± 3 and 6: either's pay once known gains 3 E[max(Z, 0)] or nothing.
     assert naive.perfect_gain([1.0], [[6.0, 6.0]], [[3.0, 0.0]]) == pytest.approx([3 * NORMAL_EXCESS, 0.0])
@@ -90,22 +86,3 @@ def test_the_value_of_perfect_information():
 def test_information_directed():
     """Regret 4, 3, 5 of the best pay to expect, 9; policy 0 tells log 2 nats."""
     assert naive.information_ratio(FLAT, MEAN, LAWS) == pytest.approx([16 / log(2), inf, inf])
-    floor = sqrt(1e-9)
-    assert naive.information_scores(FLAT, MEAN, LAWS) == pytest.approx([-4 / sqrt(log(2)), -3 / floor, -5 / floor])
-
-
-def test_the_support_of_a_belief():
-    assert naive.supported([0.5, 0.3, 0.15, 0.05], 0.9) == pytest.approx(
-        [0.5 / 0.95, 0.3 / 0.95, 0.15 / 0.95, 0.0]
-    )
-    assert naive.supported([0.5, 0.5, 0.0], 1.0) == [0.5, 0.5, 0.0]
-    # Equals go or stay together.
-    assert naive.supported([0.4, 0.3, 0.3], 0.6) == pytest.approx([0.4, 0.3, 0.3])
-    assert naive.best_responses(FLAT, MEAN) == [0, 1, 2]
-    assert naive.best_responses([0.1, 0.9], MEAN) == [0, 2]
-
-
-def test_policies_that_cannot_be_run_do_not_exist():
-    """Without policy 0 the first type's best response is policy 1."""
-    found = naive.among_available(lambda mean: naive.sampling_probabilities([0.3, 0.7], mean), MEAN, [2, 1])
-    assert found == pytest.approx([0.0, 0.3, 0.7])
