@@ -46,7 +46,7 @@ class CountedLaw:
         A: the number of signals that the library's runs count as for a user.
     """
 
-    learns = True
+    learns, single = True, True
 
     def __init__(
         self,

@@ -62,11 +62,14 @@ class Law(Protocol):
         Possible spreads of the users of a type.
     learns : bool
         Whether users' signals change the law.
+    single : bool
+        Whether a signal is a single number once it is checked, so that there must be one for each user.
     """
 
     n_types: int
     spread: Spread
     learns: bool
+    single: bool
 
     def checked(self, signals: Any) -> Any:
         """The signals (k,) as the other methods take them; InputError where the law cannot have made one."""
@@ -137,7 +140,7 @@ class FixedLaw:
         check: Callable[[Any], Any] | None = None,
     ) -> None:
         self.model, self.n_types, self.spread = model, n_types, Spread.known(0.0)
-        self._many, self._check = log_likelihoods, check
+        self._many, self._check, self.single = log_likelihoods, check, check is not None
 
     def checked(self, signals: Any) -> Any:
         """The signals as the model takes them."""

@@ -72,7 +72,7 @@ class NormalLaw:
         types' means, at most `FARTHEST`.
     """
 
-    learns = True
+    learns, single = True, True
 
     def __init__(self, moments: OutcomeMoments, spread: Spread, dtype: str = "f8") -> None:
         self.spread, self.dtype = spread, np.dtype(dtype)

@@ -145,7 +145,7 @@ def finite_outcomes(values: Any) -> Any:
     if isinstance(values, float) and -LARGEST <= values <= LARGEST:
         return values
     try:
-        found = np.asarray(values, np.float64)
+        found = np.asarray(np.nan if isinstance(values, str) else values, np.float64)
     except (TypeError, ValueError):
         found = np.asarray(np.nan)
     if not (np.abs(found) <= LARGEST).all():
@@ -171,4 +171,4 @@ def check_type(type_: Any, n_types: int) -> None:
 def check_outcome(policy: Any, value: Any, n_policies: int) -> None:
     """Raise an error for an unknown policy, or a value that is no finite number."""
     check_policy(policy, n_policies)
-    finite_outcomes(value)
+    finite_outcomes(np.nan if np.ndim(value) else value)

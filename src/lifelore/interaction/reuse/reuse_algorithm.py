@@ -203,8 +203,10 @@ class ReuseAlgorithm:
         InputError
             The model cannot have made a signal, or gave NaN or infinity. All stays as it was.
         """
-        signals, before = self.signals.law.checked(signals), self.log_belief[users]
+        before, signals = self.log_belief[users], self.signals.law.checked(signals)
         outcomes = None if outcomes is None else self.outcomes.law.checked(outcomes)
+        if self.signals.law.single and np.shape(signals) != np.shape(users):
+            raise InputError(f"there must be a signal for each user {np.shape(users)}, got {np.shape(signals)}")
         found = self.signals.evidence(users, policies, signals, before, self._changed(users, before))
         after, log_evidence = self._updated(before, found.log_likelihood)
         explained = log_evidence > -np.inf
