@@ -131,10 +131,14 @@ def test_the_best_few_are_in_order_and_begin_with_the_best(make, dtype):
             users.select_top(every, k, available=available)
 
 
-def test_masks_of_another_form_are_refused():
+def test_policies_are_available_by_name_number_or_mask():
     users = UserBeliefs(exact(), 3)
-    for bad in (np.ones(4, bool), np.ones((2, 5), bool), np.ones(5, int), "all"):
-        with pytest.raises(InputError, match="available must be bool"):
+    for available in ("policy 1", ["policy 1"], [1], np.arange(5) == 1):
+        assert users.select([0, 1, 2], available=available).tolist() == [1, 1, 1]
+    for bad in (np.ones(4, bool), np.ones((2, 5), bool)):
+        with pytest.raises(InputError, match=r"available must be \(5,\) or \(3, 5\) bool"):
             users.select([0, 1, 2], available=bad)
-    with pytest.raises(InputError, match="a policy for every user"):
+    with pytest.raises(InputError, match="at least one policy"):
         users.select([0, 1, 2], available=np.eye(3, 5, -1) > 0)
+    with pytest.raises(NotFoundError, match="unknown policy"):
+        users.select([0, 1, 2], available=["all"])
