@@ -4,6 +4,8 @@ import copy
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
@@ -16,7 +18,7 @@ from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection import RULES, ExpectedImprovement, Greedy, rule_named
 from lifelore.interaction.signals.return_signal import ReturnSignal
 
-from .families import FAMILIES, N_POLICIES, N_TYPES, PRIOR, SPREAD, Family
+from .families import FAMILIES, N_POLICIES, N_TYPES, PRIOR, Family
 
 every_family = pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES)
 learning = pytest.mark.parametrize(
@@ -26,8 +28,8 @@ every_rate = pytest.mark.parametrize("rate", [0.0, 0.05, 1.0])
 K = 5
 
 
-def algorithm(family: Family, n_users: int = 1, rate: float = 0.05, **settings) -> ReuseAlgorithm:
-    return ReuseAlgorithm(family.library(), n_users, dynamics=TypeDynamics.hazard(rate, PRIOR), **settings)
+def algorithm(family: Family, n_users: int = 1, rate: float = 0.05, **options) -> ReuseAlgorithm:
+    return ReuseAlgorithm(family.library(), n_users, dynamics=TypeDynamics.hazard(rate, PRIOR), **options)
 
 
 def drawn(family: Family, random: np.random.Generator, n: int = K) -> tuple[np.ndarray, list]:
@@ -35,9 +37,9 @@ def drawn(family: Family, random: np.random.Generator, n: int = K) -> tuple[np.n
     return random.integers(N_POLICIES, size=n), [family.draw(random) for _ in range(n)]
 
 
-def taught(family: Family, n_users: int = K, rate: float = 0.05, seed: int = 0, **settings) -> ReuseAlgorithm:
+def taught(family: Family, n_users: int = K, rate: float = 0.05, seed: int = 0, **options) -> ReuseAlgorithm:
     """Users after four episodes."""
-    random, made = np.random.default_rng(seed), algorithm(family, n_users, rate, **settings)
+    random, made = np.random.default_rng(seed), algorithm(family, n_users, rate, **options)
     for _ in range(4):
         made.update(np.arange(n_users), *drawn(family, random, n_users))
     return made
@@ -92,6 +94,22 @@ def test_a_known_spread_agrees_with_the_twin(family):
         made.update(0, policy, signal)
         twin.update(family.place(policy), signal)
     assert made.belief(0) == pytest.approx(twin.belief, abs=1e-12)
+
+
+@every_family
+@settings(deadline=None, max_examples=10)
+@given(st.permutations(range(6)), st.integers(0, 2**32 - 1))
+def test_signals_of_a_static_type_may_come_in_any_order(family, order, seed):
+    """Outcomes of a user are exchangeable given its type, where the spread is known."""
+    random, made = np.random.default_rng(seed), algorithm(family, 2, rate=0.0, spread=Spread.known(0.3))
+    policies, signals = drawn(family, random, 6)
+    evidence = np.zeros(2)
+    for first, second in enumerate(order):
+        both = np.array([first, second])
+        found = made.update(np.arange(2), policies[both], [signals[place] for place in both])
+        evidence += found.log_evidence
+    assert evidence[0] == pytest.approx(evidence[1], rel=1e-9, abs=1e-9)
+    assert_same(states(made, 0), states(made, 1), 1e-9)
 
 
 @pytest.mark.parametrize("family", [f for f in FAMILIES.values() if f.impossible is not None])
@@ -165,6 +183,24 @@ def test_rules_score_rows_as_single_users(family, name):
             assert scores[chosen] == scores.max()
             assert stated[user, chosen] > 0
             assert own is None or (scores[~own] == -np.inf).all()
+
+
+@every_family
+def test_what_rules_read_of_rows_is_what_they_read_of_single_users(family):
+    made, users, random = taught(family), np.arange(K), np.random.default_rng(10)
+    known, mean = made.known(users).performance, states(made, users)[1]
+    belief, types, value = made.belief(users), random.integers(N_TYPES, size=K), random.normal(3, 5, K)
+    assert known.expected(belief) == pytest.approx(np.einsum("kt,ktp->kp", belief, mean))
+    assert known.mean_on(types) == pytest.approx(mean[users, types])
+    for user in users.tolist():
+        alone = made.known(user).performance
+        assert alone.mean_on(types[user]) == pytest.approx(mean[user, types[user]])
+        for name in ("density", "exceedance", "expected_excess", "expected_mean_excess"):
+            found, single = getattr(known, name)(value), getattr(alone, name)(float(value[user]))
+            assert found[user] == pytest.approx(single, rel=1e-9, abs=1e-12), name
+        if made.library.has_table:
+            tables = [made.known(each).table(4).probs for each in (users, user)]
+            assert np.broadcast_to(tables[0], (K, *tables[1].shape))[user] == pytest.approx(tables[1], abs=1e-12)
 
 
 # ---- rows are reset, grow, are stored ------------------------------------------------------------------------
@@ -394,14 +430,14 @@ def test_selection_takes_the_largest_score(family):
 
 def test_arguments_that_break_their_rule_are_refused():
     library = FAMILIES["gaussian"].library()
-    for settings, message in (
+    for options, message in (
         ({"dynamics": TypeDynamics.hazard(0.1, [0.2, 0.8])}, "dynamics are for 2 types"),
         ({"prior": [0.5, 0.5]}, r"prior must be \(3,\)"),
         ({"models": "exact"}, "'uncertain' or 'plug-in'"),
         ({"dtype": "f2"}, "'f4' or 'f8'"),
     ):
         with pytest.raises(InputError, match=message):
-            ReuseAlgorithm(library, **settings)
+            ReuseAlgorithm(library, **options)
 
 
 @every_family
@@ -415,11 +451,3 @@ def test_signals_that_are_none_are_refused_and_change_nothing(family):
         with pytest.raises(InputError):
             made.observe(np.array([1, 0]), np.array([0, 0]), [family.draw(np.random.default_rng(0)), signal])
     assert_same(states(made, np.arange(K)), before, 0)
-
-
-def test_shapes_of_what_is_known_of_users():
-    assert SPREAD.values.size == 4
-    made = taught(FAMILIES["gaussian"])
-    assert made.known(0).performance.mean.shape == (N_TYPES, N_POLICIES)
-    assert made.known(np.arange(2)).table(4).probs.shape == (2, N_TYPES, N_POLICIES, 4)
-    assert made.belief(np.array([3])).shape == (1, N_TYPES)
