@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.metrics import RESAMPLES, Estimate, mean_estimate
+from lifelore.core.intervals import LEAST_VALUES, RESAMPLES, percentile_interval
+from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.interaction.baselines import Baseline
 from lifelore.interaction.beliefs.belief import entropy
@@ -144,8 +145,7 @@ def grouped_quantile(values: ArrayLike, q: float) -> Estimate:
     """Quantile of all `values` (n_groups, n_each), with a bootstrap interval over groups; none below three."""
     values, interval = np.asarray(values, float), None
     n = len(values)
-    if n >= 3:
+    if n >= LEAST_VALUES:
         draws = stream(n, "bootstrap of a quantile").integers(0, n, size=(RESAMPLES, n))
-        low, high = np.quantile(np.quantile(values[draws].reshape(RESAMPLES, -1), q, axis=1), [0.025, 0.975])
-        interval = (float(low), float(high))
+        interval = percentile_interval(np.quantile(values[draws].reshape(RESAMPLES, -1), q, axis=1))
     return Estimate(float(np.quantile(values, q)), float(np.median(values)), interval, values.size)

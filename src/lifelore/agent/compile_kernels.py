@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.core.compiled.kernel_cache import kernel_cache_dir
-from lifelore.core.compiled.machine_code import SUFFIX, machine_code_folder, used_files
+from lifelore.core.compiled.kernel_cache import cache_folder
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Progress
 
@@ -25,36 +24,34 @@ def compile_kernels(progress: Progress | None = None) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``folder`` of the cache; ``compiled``: number of new kernels; ``kernels``: number of all kernels;
-        ``seconds``.
+        ``folder`` of the cache; ``compiled``: number of new kernels; ``seconds``.
 
     Raises
     ------
     StoreError
         No kernel was stored: the folder cannot be written, or compiling is switched off.
     """
-    began, before = time.perf_counter(), _compiled() | set(machine_code_folder().glob(f"*{SUFFIX}"))
+    began, before = time.perf_counter(), _compiled()
     with tempfile.TemporaryDirectory() as folder:
         for done, (label, run) in enumerate(VERBS.items(), start=1):
             run(Path(folder))
             if progress:
                 progress(done, len(VERBS), label)
-    after = _compiled() | used_files()
+    after = _compiled()
     if not after:
         raise StoreError(
-            f"no kernel could be stored in {kernel_cache_dir()}: make the folder writable or set NUMBA_CACHE_DIR, "
+            f"no kernel could be stored in {cache_folder()}: make the folder writable or set NUMBA_CACHE_DIR, "
             "and leave NUMBA_DISABLE_JIT unset"
         )
     return {
-        "folder": str(kernel_cache_dir()),
+        "folder": str(cache_folder()),
         "compiled": len(after - before),
-        "kernels": len(after),
         "seconds": round(time.perf_counter() - began, 3),
     }
 
 
 def _compiled() -> set[Path]:
-    return set(kernel_cache_dir().rglob("*.nbc"))
+    return set(cache_folder().rglob("*.nbc"))
 
 
 def _live(folder: Path) -> None:

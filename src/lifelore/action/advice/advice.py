@@ -90,7 +90,7 @@ def new_watched_agent(guide: Guide, window: int) -> WatchedAgent:
     )
 
 
-@kernel(allocates=False)
+@kernel
 def observe(guide, rule, agent, s, a, advised):
     """The agent tried action `a` in state `s`; `advised` if this was the advice. Action -1 is no evidence."""
     ring, total, _, cursor, dropped, _ = agent
@@ -115,7 +115,7 @@ def observe(guide, rule, agent, s, a, advised):
     cursor[PREVIOUS] = a
 
 
-@kernel(allocates=False)
+@kernel
 def consider(guide, rule, agent, s):
     """Whether to advise the agent in state `s`, and the gain in nats; sets the goal in the cursor."""
     _, _, _, cursor, _, saved = agent
@@ -138,7 +138,7 @@ def consider(guide, rule, agent, s):
     return advised, gain
 
 
-@kernel(allocates=False)
+@kernel
 def _update_posterior(guide, agent):
     """Set P(M | H) (Eq. 3.15); models of dropped goals get probability 0."""
     _, total, posterior, _, dropped, _ = agent

@@ -226,7 +226,7 @@ def _grow(tables, guide, tree, state, settings, random):
         used = _simulate(tables, guide, tree, settings, random, bounds, nodes, actions, rewards, used)
 
 
-@kernel(allocates=False)
+@kernel
 def _simulate(tables, guide, tree, settings, random, bounds, nodes, actions, rewards, used):
     """One simulation: select moves, add a node, roll out, update the means; return the number of nodes in use."""
     node, n, beyond = 0, 0, 0.0
@@ -256,7 +256,7 @@ def _simulate(tables, guide, tree, settings, random, bounds, nodes, actions, rew
     return used
 
 
-@kernel(allocates=False)
+@kernel
 def _promising(tree, node, prior, row, exploration, bounds, random):
     """The action with the highest PUCT value; ties are broken at random."""
     _, _, visits, total = tree
@@ -284,7 +284,7 @@ def _promising(tree, node, prior, row, exploration, bounds, random):
     return chosen
 
 
-@kernel(allocates=False)
+@kernel
 def _rollout(tables, guide, state, depth, discount, random):
     """Discounted return of at most `depth` randomly drawn moves."""
     next_state, reward, event, outcome_cum, _ = tables
@@ -307,7 +307,7 @@ def _rollout(tables, guide, state, depth, discount, random):
     return gained
 
 
-@kernel(allocates=False)
+@kernel
 def _outcome(tables, random):
     """Draw the outcome of a move; a deterministic world needs no random number."""
     last, k = tables.outcome_cum.size - 1, 0
@@ -318,7 +318,7 @@ def _outcome(tables, random):
     return k
 
 
-@kernel(allocates=False)
+@kernel
 def _move(tree, by_mean, random):
     """The root's action tried most, or the tried action with the best mean; ties are broken at random."""
     visits, total = tree.visits[0], tree.total[0]

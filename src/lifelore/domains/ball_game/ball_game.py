@@ -172,7 +172,7 @@ def _cell(place: int) -> int:
     return (place + CELL // 2) // CELL
 
 
-@kernel(allocates=False)
+@kernel
 def slide(clearance, radius, x, y, dx, dy, distance):
     """How far a ball can go along an axis without touching anything, at most `distance`."""
     moved = 0
@@ -188,13 +188,13 @@ def slide(clearance, radius, x, y, dx, dy, distance):
     return moved
 
 
-@kernel(allocates=False)
+@kernel
 def crosses(goal, x0, y0, x1, y1):
     """Whether a way along an axis touches the goal."""
     return max(x0, x1) >= goal[0] and min(x0, x1) <= goal[2] and max(y0, y1) >= goal[1] and min(y0, y1) <= goal[3]
 
 
-@kernel(allocates=False)
+@kernel
 def travel(field, radius, x, y, dx, dy, distance):
     """Where a ball gets that is to go a distance along an axis, and whether something is in its way.
 
@@ -213,7 +213,7 @@ def travel(field, radius, x, y, dx, dy, distance):
     return x + dx * moved, y + dy * moved, touched
 
 
-@kernel(allocates=False)
+@kernel
 def step(field, kind, x, y, heading, distance, sigma, u, v, w):
     """One move.
 

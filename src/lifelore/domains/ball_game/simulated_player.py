@@ -92,7 +92,7 @@ def random_states(generator: np.random.Generator, shape: int | tuple[int, ...]) 
     return states
 
 
-@kernel(allocates=False)
+@kernel
 def choose_heading(field, kind, x, y, distance):
     """The heading that the player commands at a place; of equals the first."""
     best, least = 0, np.inf
@@ -107,7 +107,7 @@ def choose_heading(field, kind, x, y, distance):
     return best
 
 
-@kernel(allocates=False)
+@kernel
 def advance(field, balls, speed, lag, max_steps, heading, before):
     """One step of everybody who is playing.
 

@@ -315,7 +315,7 @@ class UserBeliefs:
         """`available` as (n_rows, n_policies) bool; None stays None."""
         if available is None:
             return None
-        mask = available_mask(np.asarray(available), self.library.policies, n_rows)
+        mask = available_mask(available, self.library.policies, n_rows)  # pyright: ignore
         return np.broadcast_to(mask, (n_rows, self.library.n_policies))
 
     def _checked_signals(self, rows: Numbers, policies: Numbers, signals: Any) -> Any:
