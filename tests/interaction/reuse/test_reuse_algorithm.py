@@ -24,6 +24,16 @@ every_family = pytest.mark.parametrize("family", FAMILIES.values(), ids=FAMILIES
 learning = pytest.mark.parametrize(
     "family", [f for f in FAMILIES.values() if f.learns], ids=[name for name, f in FAMILIES.items() if f.learns]
 )
+with_twin = pytest.mark.parametrize(
+    "family",
+    [
+        pytest.param(
+            family, id=name, marks=[pytest.mark.slow] if name in ("gaussian", "student-t", "uneven") else []
+        )
+        for name, family in FAMILIES.items()
+    ],
+)
+"""Integration of normals takes half a second."""
 every_rate = pytest.mark.parametrize("rate", [0.0, 0.05, 1.0])
 K = 5
 
@@ -69,7 +79,7 @@ def test_every_family_is_here():
 # ---- against the slow twin -----------------------------------------------------------------------------------
 
 
-@every_family
+@with_twin
 @every_rate
 def test_several_signals_an_episode_agree_with_the_twin(family, rate):
     """Beliefs over types and over spreads, and the evidence; the integrals are exact to some 1e-13."""
