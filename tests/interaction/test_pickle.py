@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from lifelore.interaction.adaptation.beat import EPSILONS, Beat
-from lifelore.interaction.adaptation.beat_users import BeatUsers
 from lifelore.interaction.baselines import BASELINES
 from lifelore.interaction.beliefs.feature_prior import FeaturePrior
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
@@ -17,10 +16,9 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 from lifelore.interaction.selection import RULES, rule_named
-from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
-from .reuse.families import FAMILIES, N_POLICIES, PRIOR, PROBS, Family
+from .reuse.families import FAMILIES, PRIOR, Family
 
 Use = Callable[[Any], list[Any]]
 """Uses an object; what it answers on the way."""
@@ -97,15 +95,10 @@ def adapts(learner: Beat) -> list[Any]:
     seen: list[Any] = []
     for step in range(12):
         policy = learner.select()
-        learner.update(policy, step % 3, step % 3)
+        learner.update(policy, step % 3)
         seen += [policy, learner.log_belief.copy()]
     learner.end_episode()
     return seen
-
-
-def serves_adapting_users(beat: BeatUsers) -> list[Any]:
-    every = np.arange(5)
-    return [beat.update(every, every % N_POLICIES, every % 3), beat.select(every, 0.5)]
 
 
 def scores(rule: Any) -> list[Any]:
@@ -120,7 +113,6 @@ MORE: dict[str, dict[str, Any]] = {
     "gp-ucb": {"kernel": np.eye(4), "noise": 0.5},
 }
 HAZARD = TypeDynamics.hazard(0.1, PRIOR)
-CATEGORIES = CategorySignal(PROBS)
 MAKERS: dict[str, tuple[Callable[[], Any], Use]] = {
     **{f"library, {name}": (family.library, models(family)) for name, family in FAMILIES.items()},
     **{f"agent, {name}": (lambda name=name: agent(name), lives(family)) for name, family in FAMILIES.items()},
@@ -136,9 +128,7 @@ MAKERS: dict[str, tuple[Callable[[], Any], Use]] = {
     **{f"baseline, {name}": (lambda kind=kind, name=name: kind(4, n_tasks=3, seed=2, **MORE.get(name, {})), plays)
        for name, kind in BASELINES.items()},
     **{f"adaptation, {epsilon}": (lambda epsilon=epsilon: Beat(
-        FAMILIES["exact categories"].library(), epsilon=epsilon, lag=2, actions=CATEGORIES), adapts)
-       for epsilon in (0.2, *EPSILONS)},
-    "adapting users": (lambda: BeatUsers(PROBS[..., 0], np.zeros((2, 3, 3)), 5), serves_adapting_users),
+        FAMILIES["exact categories"].library(), epsilon=epsilon), adapts) for epsilon in (0.2, *EPSILONS)},
     "feature prior": (
         lambda: FeaturePrior.fit(np.random.default_rng(0).normal(size=(4, 6)), np.arange(4) % 3, PRIOR),
         lambda own: [own.prior(np.ones(6))],

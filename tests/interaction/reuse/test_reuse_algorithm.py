@@ -403,10 +403,12 @@ class Tripled(ReturnSignal):
         return 3 * super().log_likelihood(policy, signal)
 
 
-def test_likelihoods_of_a_callers_subclass_are_those_that_count():
+@pytest.mark.parametrize("dtype", ["f4", "f8"])
+def test_likelihoods_of_a_callers_subclass_are_those_that_count(dtype):
     means, normal = [[0.0, 1.0], [2.0, 1.0]], GaussianOutcomes([[0.0, 1.0], [2.0, 1.0]], 1.0)
     for performance, signal, factor in ((Doubled(means, 1.0), None, 2), (normal, Tripled(normal), 3)):
-        made = ReuseAlgorithm(PolicyLibrary(performance, signal), 2, dynamics=TypeDynamics.static())
+        library = PolicyLibrary(performance, signal)
+        made = ReuseAlgorithm(library, 2, dynamics=TypeDynamics.static(), dtype=dtype)
         made.update(np.arange(2), np.array([0, 1]), np.array([0.5, 0.5]))
         expected = np.exp(factor * normal.log_density(0, 0.5))
         assert made.belief(0) == pytest.approx(expected / expected.sum())
