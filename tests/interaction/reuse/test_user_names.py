@@ -102,17 +102,6 @@ def test_only_available_policies_are_selected_and_as_if_there_were_no_others(mak
 
 
 @pytest.mark.parametrize("make", [exact, learnt])
-def test_a_mask_of_all_policies_changes_no_probability(make):
-    users, every = UserBeliefs(make(), 6, "f8"), np.arange(6)
-    users.update(every, [0, 1, 2, 3, 4, 0], np.linspace(-40, 40, 6))
-    for name in RULES:
-        whole = users.probabilities(every, name, episodes_left=3)
-        assert users.probabilities(every, name, available=np.ones(5, bool), episodes_left=3) == pytest.approx(
-            whole
-        )
-
-
-@pytest.mark.parametrize("make", [exact, learnt])
 @pytest.mark.parametrize("dtype", ["f4", "f8"])
 def test_the_best_few_are_in_order_and_begin_with_the_best(make, dtype):
     random, n = np.random.default_rng(1), 50
