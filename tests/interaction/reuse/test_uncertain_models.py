@@ -9,6 +9,7 @@ from scipy import stats
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.normal_law import log_t_height
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection import ExpectedImprovement, Greedy
@@ -169,6 +170,20 @@ def test_a_task_teaches_the_library_once():
     assert BayesianPolicyReuse(learnt(2, 2)).teach() is None, "the type is not known"
 
 
+def test_a_task_teaches_a_library_of_counts():
+    values = [0.0, 1.0, 5.0]
+    samples = np.random.default_rng(0).choice(values, size=(2, 2, 8))
+    library, by_hand = (PolicyLibrary.from_samples(samples, model="categorical", values=values) for _ in range(2))
+    agent = BayesianPolicyReuse(library, prior=[0.0, 1.0], dynamics=STATIC)
+    for policy, outcome in ((0, 5.0), (1, 0.0), (0, 5.0)):
+        agent.update(policy, outcome)
+        by_hand.observe(1, policy, outcome)
+    with pytest.raises(InputError, match="least must lie in"):
+        agent.teach(0.5)
+    assert agent.teach(1.0) == "type 1"
+    assert library.performance.counts.tolist() == by_hand.performance.counts.tolist()
+
+
 def test_a_task_forgets_where_the_type_has_changed():
     """After a change, what was shown before counts less the surer the change is."""
     library = learnt(3, 2, seed=2)
@@ -207,6 +222,16 @@ def test_no_update_makes_numbers_that_are_none():
         assert not np.isnan(agent.log_belief).any()
         assert np.exp(agent.log_belief).sum() == pytest.approx(1)
         assert not np.isnan(agent.expected_utility()).any()
+
+
+@pytest.mark.parametrize("n", [3, 1000])
+def test_heights_of_t_distributions(n):
+    """A few are computed one by one, many at once, and above 10⁶ degrees of freedom by a series."""
+    freedom = np.geomspace(0.5, 1e8, n)
+    assert log_t_height(freedom) == pytest.approx(stats.t.logpdf(0.0, freedom), rel=1e-8)
+    assert log_t_height(np.array([[5.0, 1e30]])) == pytest.approx(
+        np.array([[stats.t.logpdf(0, 5), stats.norm.logpdf(0)]])
+    )
 
 
 def test_the_excess_of_means_is_that_of_normals():

@@ -65,6 +65,8 @@ def test_unknown_names_are_an_error_by_default():
         users.add_users([3])  # type: ignore[list-item]
     with pytest.raises(InputError, match="by names; got a number"):
         users.add_users(3)
+    with pytest.raises(InputError, match="users must be at least 0"):
+        UserBeliefs(exact(), 2).add_users(-1)
     with pytest.raises(InputError, match="made without names"):
         UserBeliefs(exact(), 2).select(["ada"])
     with pytest.raises(InputError, match="unknown must be"):
