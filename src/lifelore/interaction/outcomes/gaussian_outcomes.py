@@ -3,7 +3,6 @@
 Thesis: §4.3.4, Fig. 4.1; the expected excess is the textbook expected improvement of a Gaussian.
 """
 
-from dataclasses import replace
 from typing import Any, ClassVar
 
 import numpy as np
@@ -11,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.interaction.finite_signals.normal_distribution import ndtr
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
-from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments, known_moments
+from lifelore.interaction.outcomes.outcome_moments import known_moments
 from lifelore.interaction.outcomes.prediction import over_types
 
 Array = NDArray[np.float64]
@@ -61,10 +60,6 @@ class GaussianOutcomes(MomentOutcomes):
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
         """Random outcomes of a pair: a number, or an array of shape `size`."""
         return generator.normal(self.mean[type_, policy], self.deviation[type_, policy], size)
-
-    def _taken_for_true(self) -> OutcomeMoments:
-        exact = np.full(self.moments.count.shape, np.inf)
-        return replace(self.moments, count=exact, freedom=exact)
 
     def _prepare(self) -> None:
         self.mean, self.deviation = self.moments.mean, np.sqrt(self.moments.variance)

@@ -1,6 +1,6 @@
 """Base of outcome models by mean and variance."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
 import numpy as np
@@ -95,7 +95,7 @@ class MomentOutcomes(NormalPrediction):
         spread = (spread or self.spread) if models == "uncertain" else Spread.known(0.0)
         exact = np.isinf(self.moments.count).all() and not spread.values.any()
         if models == "plug-in" or exact:
-            return FixedLaw(self, self.n_types, self._log_densities_in(dtype), finite_outcomes)
+            return FixedLaw(self, self.n_types, self.log_densities, finite_outcomes)
         return NormalLaw(self.moments, spread, dtype)
 
     def log_density(self, policy: int, value: float) -> Array:
@@ -114,17 +114,6 @@ class MomentOutcomes(NormalPrediction):
     def log_densities(self, policies: Any, values: Any) -> Array:
         """`log_density` of many outcomes, (...) and (...) to (..., n_types); without checks."""
         raise NotImplementedError
-
-    def _log_densities_in(self, dtype: str) -> Callable[[Any, Any], Array]:
-        """`log_densities` in float64 or float32."""
-        if dtype == "f8":
-            return self.log_densities
-        single = NormalLaw(self._taken_for_true(), Spread.known(0.0), dtype)
-        return lambda policies, values: single.log_likelihoods(policies, values)[..., 0, :]
-
-    def _taken_for_true(self) -> OutcomeMoments:
-        """The moments of which the model's densities are the law."""
-        return self.moments
 
     def bounds(self) -> tuple[float, float]:
         """(U^min, U^max): four deviations around the means."""

@@ -98,6 +98,7 @@ class NormalLaw:
         factor = variance_factor(moments.freedom)
         self.mean, self.noise = moments.mean.copy(), moments.variance * factor
         self.of_runs, self.of_spread = self.noise / moments.count, self.noise
+        self.natural_mean = np.ascontiguousarray(self._stored(self.mean.T))
         self._bins: dict[int, tuple[Array, SignalTable]] = {}
 
     # ---- the law of signals --------------------------------------------------------------------------------
@@ -231,7 +232,7 @@ class NormalRows(NormalPrediction):
     def __init__(self, law: NormalLaw, shown: Shown, users: Numbers, log_weights: Array) -> None:
         self._law, self._shown, self._shape = law, shown, np.shape(users)
         self._users = np.atleast_1d(users)
-        self._weights = np.exp(log_weights).reshape(len(self._users), -1)
+        self._weights = np.exp(log_weights).astype(law.dtype).reshape(len(self._users), -1)
 
     @property
     def n_types(self) -> int:
@@ -270,7 +271,7 @@ class NormalRows(NormalPrediction):
         # (n_types, n_spreads, n_policies), or (1, ...) where types are alike.
         doubt = law._doubt.T if law._doubt.shape[2] == 1 else law._doubt.T[types]
         pull = n[:, None] * doubt
-        pull = (self._weights[:, :, None].astype(law.dtype) * (pull / (1 + pull))).sum(axis=1)
+        pull = (self._weights[:, :, None] * (pull / (1 + pull))).sum(axis=1)
         return law.natural(location + pull * (mean - location)).reshape(*self._shape, -1)
 
     def expected(self, belief: Array) -> Array:
@@ -278,7 +279,7 @@ class NormalRows(NormalPrediction):
         rows, policies = self._at
         flat = belief.reshape(len(self._users), -1)
         found = flat @ self._law.mean
-        more = (flat[rows] * (self._tried_mean - self._law.mean.T[policies])).sum(axis=1)
+        more = np.vecdot(flat[rows], self._tried_mean - self._law.natural_mean[policies])
         found[rows, policies] += more
         return found.reshape(*self._shape, -1)
 

@@ -301,9 +301,12 @@ class ReuseAlgorithm:
             model.fade(users, keep)
 
     def _learn_outcomes(self, users: Numbers, policies: Numbers, outcomes: Any, log_belief: Array) -> None:
-        if self.outcomes.law.learns:
-            gain = self.outcomes.evidence(users, policies, outcomes, log_belief, None).gain
-            self.outcomes.learn(users, policies, outcomes, gain)
+        if not self.outcomes.law.learns:
+            return
+        found = self.outcomes.evidence(users, policies, outcomes, log_belief, None)
+        explained = (found.log_likelihood > -np.inf).any(axis=-1)
+        if explained.any():
+            self.outcomes.learn(*_explained(explained, users, policies, outcomes, found.gain))
 
 
 def _explained(explained: Any, *of_users: Any) -> tuple[Any, ...]:

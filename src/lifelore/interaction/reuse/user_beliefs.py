@@ -29,7 +29,7 @@ Users = ArrayLike | Sequence[str]
 """Numbers of users, or their names where the users have names."""
 
 BLOCK = 1 << 15
-"""Numbers of a block's beliefs: they, and what is computed of them, stay in the processor's cache."""
+"""Numbers of a block's beliefs: they stay in the processor's cache."""
 LARGEST_BLOCK = 1 << 21
 """Numbers of the largest temporary arrays, which have a row for each user, type, policy and signal."""
 
