@@ -352,7 +352,7 @@ def test_dynamics_that_learn_are_told_whose_episodes_ended_and_how():
 
 @pytest.mark.parametrize("name", ["gaussian", "student-t", "histogram", "categorical"])
 def test_outcomes_beside_the_signal_teach_how_well_policies_do(name):
-    """As they would as signals; an outcome without a cell teaches nothing."""
+    """As they would as signals; an outcome that no type explains teaches nothing."""
     family, signal = FAMILIES[name], FAMILIES["category"].library().signal
     library = PolicyLibrary(family.library().performance, signal, prior=PRIOR)
     made, outcome = ReuseAlgorithm(library, 2, spread=Spread.known(0.3)), family.draw(np.random.default_rng(8))
@@ -365,8 +365,9 @@ def test_outcomes_beside_the_signal_teach_how_well_policies_do(name):
     assert mean == pytest.approx(alone.known(0).performance.mean)
     assert (mean[:, 1] != library.performance.mean[:, 1]).all()
     made.observe(0, 1, 2)
-    for outside in {"histogram": [99.0], "categorical": [7.7]}.get(name, []):
-        made.observe(0, 1, 2, outside)
+    for unexplained in {"histogram": [99.0], "categorical": [7.7, 20.0]}.get(name, []):
+        made.observe(0, 1, 2, unexplained)
+        made.observe(np.arange(2), np.array([1, 1]), [2, 3], [unexplained, outcome])
     assert made.known(0).performance.mean.tolist() == mean.tolist()
 
 
@@ -381,9 +382,10 @@ def test_an_algorithm_does_not_see_what_its_library_learns_later(name, dtype):
     assert_same(states(made, np.arange(K)), states(other, np.arange(K)), 0)
 
 
-def test_plug_in_models_follow_what_the_library_learns():
+@pytest.mark.parametrize("dtype", ["f4", "f8"])
+def test_plug_in_models_follow_what_the_library_learns(dtype):
     library = FAMILIES["gaussian"].library()
-    made = ReuseAlgorithm(library, models="plug-in", dynamics=TypeDynamics.static())
+    made = ReuseAlgorithm(library, models="plug-in", dynamics=TypeDynamics.static(), dtype=dtype)
     for _ in range(500):
         library.observe(0, 0, 40.0)
     made.update(0, 0, 30.0)
