@@ -2,7 +2,6 @@
 
 import json
 import math
-import shutil
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -17,15 +16,6 @@ from lifelore.interaction.reuse.reuse_session import load_session
 HERE = Path(__file__).parent
 RELATIVE = 1e-12
 """Sums may be taken in another order; no number of a file may differ by more."""
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    """All archives, unpacked."""
-    root = tmp_path_factory.mktemp("stored")
-    for archive in HERE.glob("*.zip"):
-        shutil.unpack_archive(archive, root / archive.stem)
-    return root
 
 
 def expected(folder: Path, part: str) -> dict[str, Any]:
