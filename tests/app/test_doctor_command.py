@@ -65,11 +65,11 @@ def test_after_the_warm_up_verbs_compile_nothing(ask, tmp_path):
         assert compiled(folder) == before, arguments
 
 
-WARMED_BY_ONE_VERB = """
+WARMED_BY_NO_KERNEL = """
 import sys
 from lifelore.agent import compile_kernels
 from lifelore.app.command_line import run
-compile_kernels.VERBS = {"reuse": compile_kernels.VERBS["reuse"]}
+compile_kernels.VERBS = {"a verb": lambda folder: None}
 sys.exit(run(["doctor", "--warm"]))
 """
 
@@ -77,7 +77,7 @@ sys.exit(run(["doctor", "--warm"]))
 def test_a_warm_up_that_stores_nothing_says_so(tmp_path):
     blocked = tmp_path / "blocked"
     blocked.write_text("a file where the folder should be")
-    command = [sys.executable, "-c", WARMED_BY_ONE_VERB]
+    command = [sys.executable, "-c", WARMED_BY_NO_KERNEL]
     environment = os.environ | {"NUMBA_CACHE_DIR": str(blocked), "NUMBA_DISABLE_JIT": "1"}
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 2

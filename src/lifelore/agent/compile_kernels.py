@@ -1,4 +1,4 @@
-"""Compiles the kernels of `live`, `perceive` and `reuse` before their first use (`lifelore doctor --warm`)."""
+"""Compiles the kernels of `live` and `perceive` before their first use (`lifelore doctor --warm`)."""
 
 import tempfile
 import time
@@ -96,30 +96,5 @@ def _two_boxes_on_a_table() -> tuple[np.ndarray, np.ndarray]:
     return np.vstack(parts), np.repeat(np.arange(3), [len(part) for part in parts])
 
 
-def _reuse(folder: Path) -> None:
-    from lifelore.agent.reuse.fit import FitSettings, fit
-    from lifelore.agent.reuse.one_user import choose, update
-    from lifelore.agent.reuse.study import open_study
-    from lifelore.memory import open_memory
-
-    random, log = np.random.default_rng(0), folder / "log.csv"
-    for model in ("categorical", "gaussian", "student-t"):
-        lines = ["user,policy,outcome"]
-        for user in range(8):
-            for turn in range(6):
-                mean = float(turn % 2 == user % 2)
-                outcome = (
-                    int(random.random() < 0.1 + 0.8 * mean) if model == "categorical" else mean + random.normal()
-                )
-                lines.append(f"u{user},p{turn % 2},{outcome}")
-        log.write_text("\n".join(lines))
-        with open_memory(str(folder / f"{model}.db")) as memory:
-            fit([log], memory, FitSettings(model=model))
-            study = open_study(memory)
-            for _ in range(2):
-                chosen = choose(memory, study, "new")
-                update(memory, study, chosen["decision"], 1.0)
-
-
-VERBS: dict[str, Callable[[Path], None]] = {"live": _live, "perceive": _perceive, "reuse": _reuse}
+VERBS: dict[str, Callable[[Path], None]] = {"live": _live, "perceive": _perceive}
 """Verbs with kernels, each with a function that runs it in an empty folder."""

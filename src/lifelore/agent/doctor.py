@@ -37,7 +37,7 @@ PACKAGES = {
     "rosbags": "clouds from rosbags (extra ros)",
     "stable-baselines3": "priors in deep Q-learning (extra deep)",
     "mabwiser": "a peer in benchmarks (extra peers)",
-    "botorch": "a peer in benchmarks (extra peers)",
+    "vowpalwabbit": "a peer in benchmarks (extra peers)",
 }
 SLOW = 5.0
 """Million Q-learning steps a second; slower kernels are probably not compiled."""

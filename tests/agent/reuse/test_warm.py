@@ -95,7 +95,7 @@ def test_the_probability_that_no_known_type_fits_counts_past_and_decisions(memor
         made = choose(memory, study, "h5", novelty=True)
         agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics, novelty=MASS)
         for policy, seen in rows:
-            agent.skip() if seen is None else agent.update(policy, seen)
+            agent.end_episode() if seen is None else agent.update(policy, seen)
         assert agent.novelty is not None
         assert made["novelty"] == agent.novelty.probability
         if outcome is not None:

@@ -107,7 +107,9 @@ def test_a_table_holds_the_shares_of_normal_outcomes():
     edges = np.concatenate([np.full((5, 1), -np.inf), cuts, np.full((5, 1), np.inf)], axis=1)
     below = norm.cdf(edges, mean[..., None], deviation[..., None])
     np.testing.assert_allclose(users.probs, np.diff(below, axis=-1), atol=1e-8)
-    np.testing.assert_array_equal(users.probs[1], normal_table(mean[1], deviation[1], cuts).probs)
+    np.testing.assert_allclose(
+        users.probs[1], normal_table(mean[1], deviation[1], cuts).probs, rtol=1e-9, atol=1e-15
+    )
 
 
 def test_identical_types_give_a_table_all_the_same():

@@ -59,7 +59,6 @@ def test_sizes_and_shapes(name):
             np.testing.assert_allclose(found[place], query(float(batch[place])), rtol=1e-12, atol=1e-15)
     assert model.log_density(1, 1.0).shape == (3,)
     assert model.cumulative(0, np.arange(4.0)).shape == (3, 4)
-    assert model.cumulative(0, np.arange(4.0), np.array([2, 0])).shape == (2, 4)
 
 
 @every_model
@@ -160,8 +159,6 @@ def test_cumulative_and_exceedance_add_up(name):
     for value in (-5.0, 0.0, 2.2, 6.0):
         together = [model.cumulative(policy, np.array([value]))[:, 0] for policy in range(2)]
         np.testing.assert_allclose(np.stack(together, axis=1) + model.exceedance(value), 1, atol=1e-12)
-        some = model.cumulative(1, np.array([value]), np.array([2, 0]))[:, 0]
-        np.testing.assert_allclose(some, together[1][[2, 0]])
 
 
 @every_model

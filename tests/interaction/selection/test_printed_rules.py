@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.selection import (
     BeliefEntropy,
     ExpectedImprovement,
@@ -150,3 +151,9 @@ def test_the_printed_q_has_no_horizon_and_diverges():
     library = SmallLibrary([[1.0, 0.5]], 0.1)
     values = [best_plan(library, k, n_bins=2).value for k in (1, 2, 4, 6)]
     assert values == pytest.approx([1.0, 2.0, 4.0, 6.0])
+
+
+def test_printed_posterior_is_a_number_where_a_signal_is_next_to_impossible():
+    # The second signal has a probability of 5e-310, whose inverse is above all floats.
+    table = SignalTable(np.array([[[1.0, 1e-309]], [[1.0, 0.0]]]))
+    assert printed_posterior(np.array([0.5, 0.5]), table) == pytest.approx(np.array([[0.5, 0.5]]))

@@ -28,15 +28,15 @@ def cache_folder() -> Path:
 
 @cache
 def kernel_folder(source: Path) -> Path | None:
-    """Folder for the kernels of one file; None where it cannot be written."""
+    """Folder for the kernels of one file; None where there is no such file, or nothing can be stored."""
     digest = hashlib.sha256()
-    for path in sorted(kernel_sources(source)):
-        digest.update(_source(path)[0])
-    name = ".".join(source.with_suffix("").parts[-3:])
-    folder = cache_folder() / f"{name}-{digest.hexdigest()[:16]}"
     try:
+        for path in sorted(kernel_sources(source)):
+            digest.update(_source(path)[0])
+        name = ".".join(source.with_suffix("").parts[-3:])
+        folder = cache_folder() / f"{name}-{digest.hexdigest()[:16]}"
         if not folder.is_dir():
-            folder.mkdir(parents=True)
+            folder.mkdir(parents=True, exist_ok=True)
             for other in folder.parent.glob(f"{name}-*"):
                 if time.time() - other.stat().st_mtime > STALE_DAYS * 24 * 3600:
                     shutil.rmtree(other, ignore_errors=True)

@@ -96,10 +96,6 @@ class CountedOutcomes(CountedPrediction):
         found = self._log_by_cell[policies, np.maximum(cells, 0)]
         return np.where(cells[..., None] < 0, -np.inf, found)
 
-    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
-        return self.probs[types, policy] @ (1 - self.cells.above(values[:, None])).T
-
     def table(self, n_bins: int = 8) -> SignalTable:
         """The cells as signals; above `n_bins` cells, neighbours are joined so that they tell the types apart."""
         return joined_table(self.probs, n_bins)

@@ -8,7 +8,6 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.interaction.finite_signals.normal_distribution import ndtr
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.outcome_moments import known_moments
 from lifelore.interaction.outcomes.prediction import over_types
@@ -51,11 +50,6 @@ class GaussianOutcomes(MomentOutcomes):
         """Log densities of many outcomes, (...) and (...) to (..., n_types); without checks."""
         z = (over_types(values) - self._centre[policies]) * self._narrow[policies]
         return self._log_height[policies] - z * z
-
-    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
-        z = (values - self.mean[types, policy][:, None]) / self.deviation[types, policy][:, None]
-        return ndtr(z)
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
         """Random outcomes of a pair: a number, or an array of shape `size`."""

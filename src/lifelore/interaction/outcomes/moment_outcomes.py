@@ -124,10 +124,6 @@ class MomentOutcomes(NormalPrediction):
         cuts = informative_cuts(self.mean, self.deviation, n_bins)
         return SignalTable(normal_probs(self.mean, self.deviation, cuts))
 
-    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
-        raise NotImplementedError
-
     def observe(self, type_: int, policy: int, value: float) -> None:
         """Learn from another outcome of a known type, in place.
 

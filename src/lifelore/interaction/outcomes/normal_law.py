@@ -27,7 +27,7 @@ from lifelore.interaction.outcomes.law import Numbers, Shown
 from lifelore.interaction.outcomes.outcome_model import finite_outcomes
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
 from lifelore.interaction.outcomes.prediction import NormalPrediction
-from lifelore.interaction.outcomes.special_functions import gammaln
+from lifelore.interaction.outcomes.special_functions import gammaln, stdtr
 from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest
 
 Array = NDArray[Any]
@@ -282,6 +282,13 @@ class NormalRows(NormalPrediction):
         more = np.vecdot(flat[rows], self._tried_mean - self._law.natural_mean[policies])
         found[rows, policies] += more
         return found.reshape(*self._shape, -1)
+
+    def cumulative(self, policy: int, values: Array) -> Array:
+        """P(U ≤ value | type, policy) of `values` (n,) for a single user, (n_types, n): t, mixed by spread."""
+        location, doubt, variance, freedom = self._law.posterior(policy, self._shown, self._users[0])
+        gap = _over(self._law._scaled(policy, values)) - location
+        below = stdtr(np.minimum(freedom, LARGEST_FREEDOM), gap / np.sqrt(variance * (1 + doubt)))
+        return (self._weights[0][:, None] * below).sum(axis=1).T
 
     def tried_pairs(self) -> tuple[tuple[Array, Array], Array, Array]:
         """Row and policy (m,) of each tried pair; mean and deviation of its outcome by type, (m, n_types)."""

@@ -60,6 +60,10 @@ class Prediction:
             return np.maximum(above, 0.0)
         return normal_excess(above, np.sqrt(self.mean_variance))
 
+    def cumulative(self, policy: int, values: Array) -> Array:
+        """P(U ≤ value | type, policy) of `values` (n,), (n_types, n); of a single user."""
+        raise NotImplementedError
+
     def mean_on(self, types: Any) -> Array:
         """Mean outcomes on a type for each row, (...) int to (..., n_policies)."""
         if self.mean.ndim == 2:
@@ -89,6 +93,9 @@ class NormalPrediction(Prediction):
 
     def exceedance(self, threshold: ArrayLike) -> Array:
         return ndtr((self.mean - over_pairs(threshold)) / self.deviation)
+
+    def cumulative(self, policy: int, values: Array) -> Array:
+        return ndtr((values - self.mean[:, policy, None]) / self.deviation[:, policy, None])
 
     def expected_excess(self, threshold: ArrayLike) -> Array:
         return normal_excess(self.mean - over_pairs(threshold), self.deviation)
@@ -133,6 +140,9 @@ class CountedPrediction(Prediction):
 
     def expected_excess(self, threshold: ArrayLike) -> Array:
         return self._expectation(self.cells.excess(np.asarray(threshold, np.float64)[..., None]))
+
+    def cumulative(self, policy: int, values: Array) -> Array:
+        return self.probs[:, policy] @ (1 - self.cells.above(values[:, None])).T
 
     def _expectation(self, of_cells: Array) -> Array:
         """Expectation of a number of each cell, (..., n_cells) to (..., n_types, n_policies)."""

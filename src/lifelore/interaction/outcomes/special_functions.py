@@ -1,6 +1,6 @@
 """The distribution function of Student's t and the gamma function, from SciPy.
 
-SciPy is imported at the first call: a choice by stored tables needs none of these functions. The distribution
+SciPy is imported at the first call: a choice for a single user needs none of these functions. The distribution
 function of the normal is in `finite_signals.normal_distribution`.
 """
 

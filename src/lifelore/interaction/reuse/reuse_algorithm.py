@@ -12,7 +12,8 @@ explanation, `UserBeliefs` many rows with names. Thesis: §4.2, Alg. 7; §4.5.2,
 """
 
 from collections.abc import Mapping
-from typing import Any, Literal, NamedTuple
+from copy import copy
+from typing import Any, Literal, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -101,12 +102,23 @@ class ReuseAlgorithm:
             raise InputError(f"dynamics are for {self.dynamics.n_types} types, the library has {library.n_types}")
         self._spread, self._dtype = spread, dtype
         self.log_prior: Array = self.start(prior)
+        signal_law = self._law(library.signal)
+        returns = isinstance(library.signal, ReturnSignal) and library.signal.outcomes is library.performance
+        self._begin(n_users, signal_law, None if returns else self._law(library.performance))
+
+    def _begin(self, n_users: int, signal_law: Any, outcome_law: Any) -> None:
+        """Set up rows with the prior; without `outcome_law` outcomes are the signals."""
         self.log_belief: Array = np.tile(self.log_prior, (n_users, 1))
         # Whether an episode has begun since the last signal: only then may the type have changed.
         self._begun = np.ones(n_users, bool)
-        self.signals = UserModel(self._law(library.signal), n_users)
-        returns = isinstance(library.signal, ReturnSignal) and library.signal.outcomes is library.performance
-        self.outcomes = self.signals if returns else UserModel(self._law(library.performance), n_users)
+        self.signals = UserModel(signal_law, n_users)
+        self.outcomes = self.signals if outcome_law is None else UserModel(outcome_law, n_users)
+
+    def new_rows(self, n_users: int = 1) -> Self:
+        """Another algorithm with the same laws and dynamics, whose `n_users` users have the prior."""
+        other = copy(self)
+        other._begin(n_users, self.signals.law, None if self.outcomes is self.signals else self.outcomes.law)
+        return other
 
     @property
     def n_users(self) -> int:

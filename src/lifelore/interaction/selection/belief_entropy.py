@@ -23,6 +23,9 @@ from lifelore.interaction.selection.rule import (
 )
 from lifelore.interaction.selection.support import MASS, check_mass
 
+LEAST_PREDICTED = 1e-300
+"""Probability below which the printed form takes a signal as impossible: the inverse would not be a number."""
+
 
 @dataclass(frozen=True)
 class BeliefEntropy(Deterministic):
@@ -71,7 +74,7 @@ class BeliefEntropy(Deterministic):
 def printed_posterior(belief: Array, table: SignalTable) -> Array:
     """The thesis's βᵖ(τ) = Σ F(σ | τ)² β(τ) / Σ F β, (P, T) or (k, P, T); its sums exceed 1."""
     predicted = predicted_signals(belief, table)
-    inverse = np.divide(1.0, predicted, out=np.zeros_like(predicted), where=predicted > 0)
+    inverse = np.divide(1.0, predicted, out=np.zeros_like(predicted), where=predicted > LEAST_PREDICTED)
     return np.einsum("...tps,...ps->...pt", table.probs**2, inverse) * belief[..., None, :]
 
 

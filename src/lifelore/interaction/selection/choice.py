@@ -226,6 +226,8 @@ def _by_part(
     if available is None or available.all():
         return values(library, belief)
     found = np.full((*belief.shape[:-1], library.n_policies), missing)
+    if available.ndim > 1 and (available == available[:1]).all():
+        available = available[0]
     if available.ndim == 1:
         found[..., available] = values(_part(library, slice(None), available), belief)
         return found

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.evaluation.outcome_models import FOLDS, policy_means, user_folds
+from lifelore.interaction.evaluation.reward_models import FOLDS, policy_means, user_folds
 
 
 def test_parts_hold_whole_users_and_are_alike_in_size():

@@ -8,9 +8,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.library.storage_cost import StorageSizes, effective_horizon, n_returns, storage_cost
 from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
 from lifelore.interaction.signals.transition_signal import TransitionSignal
+from reproduction.chapter4.c4_09_model_storage.storage_cost import (
+    StorageSizes,
+    effective_horizon,
+    n_returns,
+    storage_cost,
+)
 
 COUNT = st.integers(1, 50)
 

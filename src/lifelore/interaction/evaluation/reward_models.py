@@ -1,4 +1,4 @@
-"""Models of outcomes for doubly robust estimates, each learnt without the users whose decisions it predicts."""
+"""Reward models of doubly robust estimates: expected outcomes, learnt without the users whom they predict."""
 
 from dataclasses import dataclass
 
@@ -33,7 +33,7 @@ def user_folds(users: ArrayLike, generator: np.random.Generator, n_folds: int = 
 
 
 @dataclass(frozen=True, eq=False)
-class OutcomeModel:
+class RewardModel:
     """Expected outcome of every policy before each decision.
 
     Parameters
@@ -56,7 +56,7 @@ class OutcomeModel:
         return (probabilities * self.table[self.row]).sum(axis=1)
 
 
-def policy_means(outcomes: Array, policies: Numbers, n_policies: int, folds: Numbers) -> OutcomeModel:
+def policy_means(outcomes: Array, policies: Numbers, n_policies: int, folds: Numbers) -> RewardModel:
     """Mean outcome of each policy outside each decision's part of the users.
 
     A policy without an outcome there gets the mean of all outcomes there.
@@ -75,4 +75,4 @@ def policy_means(outcomes: Array, policies: Numbers, n_policies: int, folds: Num
     sums = np.bincount(cell, outcomes, minlength=n_folds * n_policies).reshape(n_folds, n_policies)
     counts, sums = counts.sum(axis=0) - counts, sums.sum(axis=0) - sums
     overall = sums.sum(axis=1, keepdims=True) / counts.sum(axis=1, keepdims=True)
-    return OutcomeModel(np.where(counts > 0, sums / np.maximum(counts, 1), overall), folds)
+    return RewardModel(np.where(counts > 0, sums / np.maximum(counts, 1), overall), folds)
