@@ -17,7 +17,7 @@ from lifelore.interaction.selection import (
 )
 from lifelore.interaction.selection.belief_program import best_plan, value_of_rule
 
-from . import naive_selection as naive
+from ..twins import naive_rules as naive
 from .small_libraries import SmallLibrary, as_lists
 
 

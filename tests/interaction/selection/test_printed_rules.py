@@ -22,7 +22,7 @@ from lifelore.interaction.selection.belief_program import best_plan
 from lifelore.interaction.selection.information import mutual_information
 from lifelore.interaction.selection.knowledge_gradient import knowledge_gain, printed_gain
 
-from . import naive_selection as naive
+from ..twins import naive_rules as naive
 from .small_libraries import SmallLibrary, as_lists
 
 

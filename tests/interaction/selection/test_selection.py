@@ -36,7 +36,7 @@ from lifelore.interaction.selection.knowledge_gradient import knowledge_gain, re
 from lifelore.interaction.selection.support import truncated
 from lifelore.interaction.selection.value_of_perfect_information import perfect_gain
 
-from . import naive_selection as naive
+from ..twins import naive_rules as naive
 from .small_libraries import SmallLibrary, as_lists, problem, user_problem
 
 INF = math.inf

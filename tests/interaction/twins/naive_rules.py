@@ -1,4 +1,8 @@
-"""Rules for selecting a policy as plain loops over types, policies, signals and posteriors: slow twins."""
+"""Rules for selecting a policy as plain loops over types, policies, signals and posteriors: slow twins.
+
+`mean`, `deviation` and `mean_deviation` are [type][policy]: the mean of an outcome, the deviation of an outcome,
+and that of the mean itself where it is not known. `laws` are [policy][type][signal].
+"""
 
 from math import exp, inf, log, pi, sqrt
 
@@ -113,14 +117,30 @@ def expected_improvement(belief, mean, deviation):
     return found
 
 
-def mean_improvement(belief, mean):
+def mean_excess(mean, deviation, threshold):
+    """E[max(m − threshold, 0)] of a normal m; of a known m where the deviation is 0."""
+    if deviation == 0:
+        return max(mean - threshold, 0.0)
+    end = max(threshold, mean) + 12 * deviation
+    points = [mean] if threshold < mean else None
+    return quad(lambda m: (m - threshold) * density(m, mean, deviation), threshold, end, points=points, limit=200)[
+        0
+    ]
+
+
+def excess_of_means(belief, mean, mean_deviation, policy, threshold):
+    """Σ β E[max(m − threshold, 0)] of a policy's mean pay m."""
+    return sum(
+        b * mean_excess(mean[i][policy], 0.0 if mean_deviation is None else mean_deviation[i][policy], threshold)
+        for i, b in enumerate(belief)
+    )
+
+
+def mean_improvement(belief, mean, mean_deviation=None):
     """How much the mean pays exceed the best utility, weighted by the belief; the utilities where none does."""
     now = utilities(belief, mean)
     best = max(now)
-    gained = [
-        sum(b * max(row[policy] - best, 0.0) for b, row in zip(belief, mean, strict=True))
-        for policy in range(len(mean[0]))
-    ]
+    gained = [excess_of_means(belief, mean, mean_deviation, policy, best) for policy in range(len(now))]
     every = [value for row in mean for value in row]
     return gained if max(gained) > 1e-9 * (max(every) - min(every)) else now
 
@@ -155,13 +175,29 @@ def information_ratio(belief, mean, laws):
     ]
 
 
-def perfect_gain(belief, mean):
+def perfect_gain(belief, mean, mean_deviation=None):
     """Expected rise of the best utility if a single policy's mean pay became known, by every type it may have."""
     now = utilities(belief, mean)
     best = max(range(len(now)), key=now.__getitem__)
     found = []
     for policy in range(len(now)):
-        other = max((u for q, u in enumerate(now) if q != policy), default=-inf)
-        known = sum(b * max(row[policy], other) for b, row in zip(belief, mean, strict=True))
+        others = [u for q, u in enumerate(now) if q != policy]
+        if not others:
+            return [0.0]
+        # The better of m and the best other policy, on average, less the best utility now.
+        known = max(others) + excess_of_means(belief, mean, mean_deviation, policy, max(others))
         found.append(known - now[best])
     return found
+
+
+# ---- scores, the support of a belief, and the choice ------------------------------------------------------------
+
+
+def tied_shares(scores, tolerance=1e-9):
+    """Probability that the choice takes each policy: equals at random, relative to the best score."""
+    best, least = max(scores), min((s for s in scores if s > -inf), default=0.0)
+    bar = best
+    if abs(best) < inf:
+        bar -= tolerance * abs(best) + 1e-15 * max(abs(best), abs(least))
+    tied = [score >= bar for score in scores]
+    return [1 / sum(tied) if one else 0.0 for one in tied]
