@@ -29,7 +29,7 @@ from lifelore.interaction.reuse.user_library import UserLibrary
 if TYPE_CHECKING:
     from lifelore.agent.reuse.history import Decision
     from lifelore.agent.reuse.study import Study
-    from lifelore.interaction.reuse.unknown_type import UnknownType
+    from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 
 FORMAT = 2
 KEPT = 4096
@@ -194,14 +194,14 @@ class WorkingBelief:
     ----------
     evidence : deque of Evidence
         Of the last outcomes that were learnt.
-    novelty : UnknownType or None
+    novelty : NoveltyDetector or None
         Takes in the same outcomes.
     """
 
     def __init__(self, study: "Study", start: Checkpoint) -> None:
         self._study, self._surprise = study, start.surprise
         self.evidence: deque[Evidence] = deque(maxlen=MAX_EVIDENCE)
-        self.novelty: UnknownType | None = None
+        self.novelty: NoveltyDetector | None = None
         self._row = study.algorithm.new_rows()
         self._row.log_belief[0] = start.log_belief
         if start.task:
@@ -218,9 +218,11 @@ class WorkingBelief:
         """
         belief = cls(study, Checkpoint(0, study.algorithm.start(prior), 0.0))
         if novelty:
-            from lifelore.interaction.reuse.unknown_type import UnknownType
+            from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 
-            belief.novelty = UnknownType(study.library, prior=prior, dynamics=study.dynamics, models=study.models)
+            belief.novelty = NoveltyDetector(
+                study.library, prior=prior, dynamics=study.dynamics, models=study.models
+            )
         return belief
 
     def learn(self, policy: str | None, outcome: float | None) -> None:

@@ -215,7 +215,9 @@ def available_mask(available: Available, names: Sequence[str], n_rows: int | Non
         mask = np.zeros(len(names), np.bool_)
         mask[[index_of(policy, names, "policy") for policy in listed]] = True
     if not mask.any(axis=-1).all():
-        raise InputError("available must hold at least one policy, got none; end the episode with end_episode() instead")
+        raise InputError(
+            "available must hold at least one policy, got none; end the episode with end_episode() instead"
+        )
     return mask
 
 
