@@ -37,19 +37,19 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.evaluation.clustered_estimate import clustered_estimate
 from lifelore.interaction.evaluation.importance_weights import weight_summary
 from lifelore.interaction.evaluation.outcome_models import policy_means
-from lifelore.interaction.library import signal_laws, storage_cost
+from lifelore.interaction.library import storage_cost
 from lifelore.interaction.library.offline_runs import run_offline
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.library.task_types import TaskTypes
 from lifelore.interaction.library.user_types import UserTypes
-from lifelore.interaction.novelty import calibration as novelty_calibration
-from lifelore.interaction.novelty import known_tasks
-from lifelore.interaction.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.outcomes import batch_likelihood, outcome_families, outcome_model
 from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 from lifelore.interaction.outcomes.frame_columns import FrameColumns
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.task_outcomes import SpreadWeights, TaskEvidence, TaskOutcomes
+from lifelore.interaction.reuse.novelty import calibration as novelty_calibration
+from lifelore.interaction.reuse.novelty import known_tasks
+from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.calibration import type_calibration
 from lifelore.interaction.reuse.outcome_laws import Shown
@@ -286,7 +286,7 @@ def detector(**options: Any) -> NoveltyDetector:
 
 def watches(signal: Any) -> Callable[[NoveltyDetector], Any]:
     def watch(detector: NoveltyDetector) -> Any:
-        detector.observe(np.full(N_TYPES, 1 / N_TYPES), 0, signal)
+        detector.observe(0, signal)
         return detector.probability, detector.score
 
     return watch
@@ -377,9 +377,8 @@ NOT_STATE = {
     TaskEvidence: "numbers of a call",
     DerivedArrays: "a cache of the module",
     novelty_calibration.Watched: "tasks that were played within `calibrate`",
-    known_tasks.CategoryTasks: "tasks drawn within `calibrate`",
+    known_tasks.CountedTasks: "tasks drawn within `calibrate`",
     known_tasks.NormalTasks: "tasks drawn within `calibrate`",
-    signal_laws.Cells: "numbers of a call",
     Shown: "a view of `UserOutcomes` within a call",
 }
 
