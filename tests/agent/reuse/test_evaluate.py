@@ -17,7 +17,7 @@ from lifelore.agent.reuse.one_user import choose, update
 from lifelore.agent.reuse.report import report
 from lifelore.agent.reuse.study import open_study
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.evaluation.outcome_models import user_folds
+from lifelore.interaction.evaluation.reward_models import user_folds
 from lifelore.memory import open_memory
 
 CHANCE = {"a": (0.9, 0.2, 0.5), "b": (0.1, 0.8, 0.5)}

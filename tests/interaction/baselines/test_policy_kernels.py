@@ -16,7 +16,6 @@ LINE = np.abs(np.arange(5.0)[:, None] - np.arange(5.0))
 def test_forms_by_hand():
     near = metric_kernel(LINE, length=2.0, deviation=3.0)
     assert near[0, :3] == pytest.approx(9 * np.exp([0, -1 / 8, -1 / 2]))
-    assert metric_kernel(LINE, length=2.0, form="exponential")[0, 2] == pytest.approx(np.exp(-1))
 
 
 def test_distances_by_hand():
@@ -67,7 +66,6 @@ def test_performance_kernel_holds_alike_policies_together(library):
         ([[0, -1], [-1, 0]], {"length": 1}, "at least 0"),
         ([[0, 1, 2]], {"length": 1}, "distances must be"),
         ([[0, 1], [1, 0]], {"length": 0}, "length and deviation must be positive"),
-        ([[0, 1], [1, 0]], {"length": 1, "form": "box"}, "form must be one of"),
     ],
 )
 def test_bad_input(gaps, settings, said):

@@ -23,7 +23,6 @@ from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
 from lifelore.interaction.adaptation.beat import Beat, epsilon_of
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 from lifelore.memory import Memory
 from lifelore.memory.byte_words import bytes_of, words_of
 
@@ -106,8 +105,7 @@ def select(memory: Memory, adaptation: Adaptation, user: str, seed: int = 0) -> 
         ``surprises`` (moves that no type explains), ``belief`` and ``expected`` value of each action set.
     """
     beat = _beat(memory, adaptation, user)
-    library, rule = adaptation.library, EpsilonGreedy(epsilon_of(adaptation.epsilon)(beat.step, beat.episode))
-    probs = rule.probabilities(library, beat.belief)
+    library, probs = adaptation.library, beat.algorithm.propensities(0, beat.rule)
     generator = stream(seed, "adapt", adaptation.name, adaptation.id, user, beat.step)
     chosen = int(generator.choice(len(probs), p=probs))
     expected = beat.belief @ library.performance.mean
@@ -191,7 +189,8 @@ def _beat(memory: Memory, adaptation: Adaptation, user: str) -> Beat:
     record = memory.recall(USER, key, VERSION)
     if record is not None and record.slots.size and record.about["id"] == adaptation.id:
         beat.step, beat.episode, beat.surprises = record.values[:_HEADER].tolist()
-        beat.log_belief = record.values[_HEADER : _HEADER + adaptation.library.n_types].view(np.float64).copy()
+        log_belief = record.values[_HEADER : _HEADER + adaptation.library.n_types].view(np.float64)
+        beat.algorithm.restore(0, log_belief, {})
     return beat
 
 

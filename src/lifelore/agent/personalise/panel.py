@@ -231,7 +231,7 @@ class Panel:
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """Probability of each policy in use, (n, n_active), and who is of the control group, (n,)."""
         study, library = self.study, self.study.library
-        columns = [library.index_of_policy(policy) for policy in study.active]
+        columns = study.active_numbers
         whole = np.zeros((len(rows), library.n_policies), bool)
         whole[:, columns] = may
         mask = None if whole.all() else whole

@@ -16,7 +16,6 @@ from lifelore.core.errors import InputError
 if TYPE_CHECKING:
     from lifelore.interaction.library.policy_library import PolicyLibrary
 
-FORMS = ("gaussian", "exponential")
 JITTER = 1e-10
 """Share of the mean variance added to the diagonal, so that a factorisation exists."""
 
@@ -35,10 +34,11 @@ def performance_distances(mean: ArrayLike) -> NDArray[np.float64]:
     return np.sqrt(squares)
 
 
-def metric_kernel(
-    distances: ArrayLike, *, length: float, deviation: float = 1.0, form: str = "gaussian"
-) -> NDArray[np.float64]:
-    """deviation²·exp(-d²/2ℓ²), or deviation²·exp(-d/ℓ), made positive semidefinite; (n_policies, n_policies).
+def metric_kernel(distances: ArrayLike, *, length: float, deviation: float = 1.0) -> NDArray[np.float64]:
+    """deviation²·exp(-d²/2ℓ²), made positive semidefinite; (n_policies, n_policies).
+
+    The Gaussian form of a metric that is not Euclidean (grid steps, largest coordinate) need not be a covariance:
+    negative eigenvalues are then set to 0 and the diagonal is restored.
 
     Parameters
     ----------
@@ -48,18 +48,12 @@ def metric_kernel(
         ℓ > 0, in units of the distances.
     deviation : float
         Prior deviation of a policy's mean payoff, > 0.
-    form : {"gaussian", "exponential"}
-        The Gaussian form of a metric that is not Euclidean (grid steps, largest coordinate) need not be a
-        covariance: negative eigenvalues are then set to 0 and the diagonal is restored.
     """
     gaps = np.asarray(distances, np.float64)
     _check_distances(gaps)
     if not (length > 0 and deviation > 0):
         raise InputError(f"length and deviation must be positive, got {length} and {deviation}")
-    if form not in FORMS:
-        raise InputError(f"form must be one of {', '.join(FORMS)}, got {form!r}")
-    like = np.exp(-0.5 * (gaps / length) ** 2) if form == "gaussian" else np.exp(-gaps / length)
-    return deviation**2 * _semidefinite(like)
+    return deviation**2 * _semidefinite(np.exp(-0.5 * (gaps / length) ** 2))
 
 
 def performance_kernel(

@@ -15,8 +15,8 @@ from lifelore.core.errors import InputError
 
 Array = NDArray[Any]
 
-FAR = {"d": 1e3, "f": 10.0}
-"""Largest log likelihood in size beside which a belief in float64 or float32 is not rounded away."""
+FAR = 100.0
+"""Largest log likelihood in size that a log belief is added to: beside larger numbers it would be rounded."""
 SUM_TOLERANCE = 1e-9
 """Largest distance from 1 of the sum of a caller's belief."""
 
@@ -83,33 +83,33 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
     >>> np.exp(after.log_belief).round(3).tolist(), float(np.exp(after.log_evidence).round(3))
     ([0.25, 0.75], 0.2)
     """
-    joint = np.add(log_belief, log_likelihood)
+    joint, best = np.add(log_belief, log_likelihood), None
     top = np.maximum.reduce(joint, axis=-1, keepdims=True)
-    if not (np.abs(top) <= FAR[joint.dtype.char]).all():
-        return _far_update(np.asarray(log_belief), np.asarray(log_likelihood))
-    # The largest is taken off first: beside a large number the logarithm of the sum would be rounded away.
-    joint -= top
-    log_total = np.log(np.add.reduce(np.exp(joint), axis=-1, keepdims=True))
-    joint -= log_total
-    return Updated(joint, (top + log_total)[..., 0])
+    if not (np.abs(top) <= FAR).all():
+        joint, top, best = _relative_to_possible(np.asarray(log_belief), np.asarray(log_likelihood))
+    log_evidence = np.log(np.add.reduce(np.exp(joint - top), axis=-1, keepdims=True))
+    log_evidence += top
+    joint -= log_evidence
+    return Updated(joint, (log_evidence if best is None else log_evidence + best)[..., 0])
 
 
-def _far_update(log_belief: Array, log_likelihood: Array) -> Updated:
-    """`update` where likelihoods are large, minus infinity for all types, or no numbers."""
+def _relative_to_possible(log_belief: Array, log_likelihood: Array) -> tuple[Array, Array, Array]:
+    """Sums of log beliefs and log likelihoods less the largest, that largest sum (0), and what was taken off.
+
+    Beside a large likelihood a belief would be rounded away. What is taken off is minus infinity where no type
+    explains the signal: the belief then stays.
+    """
     if not (log_likelihood < np.inf).all():
         raise InputError(
             "log_likelihood must be numbers below infinity (minus infinity is allowed), got NaN or infinity"
         )
-    # Likelihoods are taken relative to the best of the possible types, so that no belief is rounded away.
     possible = log_belief > -np.inf
     best = np.where(possible, log_likelihood, -np.inf).max(axis=-1, keepdims=True)
-    explained = best > -np.inf
     with np.errstate(invalid="ignore", over="ignore"):
-        relative = np.where(possible & explained, log_likelihood - best, 0.0)
+        relative = np.where(possible & (best > -np.inf), log_likelihood - best, 0.0)
     joint = log_belief + relative.astype(log_belief.dtype, copy=False)
     top = joint.max(axis=-1, keepdims=True)
-    log_total = top + np.log(np.exp(joint - top).sum(axis=-1, keepdims=True))
-    return Updated(np.minimum(joint - log_total, 0.0), (log_total + best)[..., 0])
+    return joint - top, np.zeros_like(top), best + top
 
 
 def entropy(belief: ArrayLike) -> Array:

@@ -100,6 +100,11 @@ class TypeDynamics:
         """Number of types that the dynamics are for; None where it does not matter."""
         return None if self.law is None else self.law.shape[-1]
 
+    @property
+    def moves(self) -> bool:
+        """Whether a step changes beliefs."""
+        return self.kind == "transitions" or self.rate > 0
+
     def step(self, log_belief: Array, users: Any = None, outcome: Any = None) -> Array:
         """The belief before the next episode, (..., n_types) to the same, normalised.
 
@@ -110,7 +115,7 @@ class TypeDynamics:
         outcome : optional
             how the episode ended; for dynamics that learn. These do not.
         """
-        if self.kind == "static":
+        if not self.moves:
             return log_belief
         return self._hazarded(log_belief) if self.kind == "hazard" else np.minimum(self._moved(log_belief), 0.0)
 
@@ -128,7 +133,7 @@ class TypeDynamics:
         terms = self._terms(log_belief.dtype)
         if not terms.small:
             return np.log(np.exp(log_belief) * terms.stay + terms.anew)
-        return np.logaddexp(log_belief + np.log(terms.stay), terms.log_anew)
+        return np.logaddexp(log_belief + terms.log_stay, terms.log_anew)
 
     def _terms(self, dtype: Any) -> "_HazardTerms":
         """The numbers of a hazard's step in the precision of the beliefs, computed once."""
@@ -136,10 +141,11 @@ class TypeDynamics:
             assert self.law is not None
             anew = self.rate * self.law
             with np.errstate(divide="ignore"):
-                log_anew = np.log(anew)
+                log_stay, log_anew = np.log1p(-self.rate), np.log(anew)
             small = bool((anew < np.finfo(dtype).tiny).any())
-            stay = np.asarray(1 - self.rate, dtype)
-            self._known[dtype] = _HazardTerms(stay, anew.astype(dtype), log_anew.astype(dtype), small)
+            terms = (1 - self.rate, log_stay, anew, log_anew)
+            stored = [np.asarray(term, dtype) for term in terms]
+            self._known[dtype] = _HazardTerms(small, *stored)
         return self._known[dtype]
 
     def _moved(self, log_belief: Array) -> Array:
@@ -154,12 +160,13 @@ class TypeDynamics:
 
 
 class _HazardTerms(NamedTuple):
-    """1 − h; h G₀ and its logarithm, (n_types,); whether some h G₀ is too small for a number."""
+    """Whether some h G₀ is too small for a number; 1 − h and h G₀ (n_types,), with their logarithms."""
 
+    small: bool
     stay: Array
+    log_stay: Array
     anew: Array
     log_anew: Array
-    small: bool
 
 
 def _log_sums(terms: Array) -> Array:

@@ -83,11 +83,7 @@ def joined_table(probs: Array, n_bins: int) -> SignalTable:
 
 def bin_probs(cumulative: Array) -> Array:
     """Probabilities of bins (..., n + 1) from distribution functions at their n cuts (..., n), at least 0."""
-    probs = np.empty((*cumulative.shape[:-1], cumulative.shape[-1] + 1))
-    probs[..., 0] = cumulative[..., 0]
-    np.subtract(cumulative[..., 1:], cumulative[..., :-1], out=probs[..., 1:-1])
-    np.subtract(1.0, cumulative[..., -1], out=probs[..., -1])
-    return np.maximum(probs, 0.0, out=probs)
+    return np.maximum(np.diff(cumulative, axis=-1, prepend=0.0, append=1.0), 0.0)
 
 
 def joined_ends(bins: Array, n_bins: int) -> Ints:

@@ -46,10 +46,8 @@ class SignalTable:
     def __init__(self, probs: ArrayLike) -> None:
         given = np.asarray(probs, np.float64)
         if given.ndim not in (3, 4) or not given.size:
-            raise InputError(
-                "probs must be (n_types, n_policies, n_signals) numbers, or such an array for each of k users, "
-                f"none of the sizes 0, got {given.shape}"
-            )
+            shape = "([k users,] n_types, n_policies, n_signals)"
+            raise InputError(f"probs must be {shape} numbers, none of them 0, got {given.shape}")
         sums = given.sum(axis=-1)
         near = np.abs(sums - 1) <= 1e-6 * max(1.0, given.shape[-1] ** 0.5)
         if not (near.all() and given.min() >= 0):
@@ -118,4 +116,4 @@ class SignalTable:
 def entropy_of_signals(probs: Array) -> Array:
     """Entropy in nats of distributions (..., n_signals), (...); 0 log 0 is 0."""
     # With any finite number in place of the logarithm of 0.
-    return -np.vecdot(probs, np.log(np.maximum(probs, 1e-300)))
+    return 0.0 - np.vecdot(probs, np.log(np.maximum(probs, 1e-300)))

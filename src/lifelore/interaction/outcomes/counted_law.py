@@ -46,7 +46,7 @@ class CountedLaw:
         A: the number of signals that the library's runs count as for a user.
     """
 
-    learns = True
+    learns, single = True, True
 
     def __init__(
         self,
@@ -97,10 +97,6 @@ class CountedLaw:
     def fade(self, shown: Shown, users: Numbers, keep: ArrayLike) -> None:
         """Let what distinct `users` have shown count `keep` (...) of what it did."""
         shown["counts"][users] *= np.asarray(keep, self.dtype)[..., None, None]
-
-    def tried(self, shown: Shown, users: Numbers) -> NDArray[np.bool_]:
-        """The policies that `users` have shown a signal of, (..., n_policies)."""
-        return shown["counts"][users].any(axis=-1)
 
     # ---- what rules read -----------------------------------------------------------------------------------
 
@@ -173,7 +169,9 @@ class CountedRows(CountedPrediction):
     def probs(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
         """P(next cell | type, policy), (..., n_types, n_policies, n_cells)."""
         expected = (self._tried[..., None] * self._by_spread).sum(axis=1)
-        return self._rows(np.broadcast_to(self._law.probs, (len(self._spread_weights), *self._law.probs.shape)), expected)
+        return self._rows(
+            np.broadcast_to(self._law.probs, (len(self._spread_weights), *self._law.probs.shape)), expected
+        )
 
     @cached_property
     def mean_variance(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]

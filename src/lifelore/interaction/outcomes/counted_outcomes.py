@@ -96,10 +96,6 @@ class CountedOutcomes(CountedPrediction):
         found = self._log_by_cell[policies, np.maximum(cells, 0)]
         return np.where(cells[..., None] < 0, -np.inf, found)
 
-    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
-        return self.probs[types, policy] @ (1 - self.cells.above(values[:, None])).T
-
     def table(self, n_bins: int = 8) -> SignalTable:
         """The cells as signals; above `n_bins` cells, neighbours are joined so that they tell the types apart."""
         return joined_table(self.probs, n_bins)
@@ -131,7 +127,10 @@ class CountedOutcomes(CountedPrediction):
         self._prepare()
 
     def absorb(self, type_: int, state: Mapping[str, Any]) -> None:
-        """Learn from all outcomes of a task whose type has become known, in place; `state` is `CountedLaw.state`."""
+        """Learn from all outcomes of a task whose type has become known, in place.
+
+        `state` is what its law gives of them, see `Law.state`.
+        """
         check_type(type_, self.n_types)
         self.counts[type_, state["policies"]] += state["shown"]
         self._prepare()
@@ -211,8 +210,17 @@ class CountedOutcomeLaw(CountedLaw):
         super().__init__(counts, spread, partial(_places, cells), np.log(cells.sizes), dtype)
         self.cells = cells
 
-    def prediction(self, shown: Any = None, users: Any = None, log_weights: Array | None = None) -> CountedPrediction:
-        """The next outcome of all users, or of `users` (...) with the spreads' log probabilities (..., n_spreads)."""
+    def prediction(
+        self, shown: Any = None, users: Any = None, log_weights: Array | None = None
+    ) -> CountedPrediction:
+        """The next outcome of all users, or of some.
+
+        Parameters
+        ----------
+        users : int or (k,) int64
+        log_weights : (..., n_spreads) float
+            Log probabilities of the spreads for each of `users`.
+        """
         if shown is None or log_weights is None:
             shown, users, log_weights = self.shown(1), 0, np.log(self.spread.weights)
         return CountedRows(self, self.cells, shown, users, log_weights)

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.outcome_moments import known_moments
 from lifelore.interaction.outcomes.prediction import over_types
-from lifelore.interaction.finite_signals.normal_distribution import ndtr
 
 Array = NDArray[np.float64]
 
@@ -49,13 +48,8 @@ class GaussianOutcomes(MomentOutcomes):
 
     def log_densities(self, policies: Any, values: Any) -> Array:
         """Log densities of many outcomes, (...) and (...) to (..., n_types); without checks."""
-        z = (over_types(values) - self._centre[policies]) * self._precision[policies]
-        return self._log_height[policies] - 0.5 * (z * z)
-
-    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
-        z = values - self._centre[policy, types][:, None]
-        return ndtr(z * self._precision[policy, types][:, None])
+        z = (over_types(values) - self._centre[policies]) * self._narrow[policies]
+        return self._log_height[policies] - z * z
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
         """Random outcomes of a pair: a number, or an array of shape `size`."""
@@ -65,5 +59,5 @@ class GaussianOutcomes(MomentOutcomes):
         self.mean, self.deviation = self.moments.mean, np.sqrt(self.moments.variance)
         # Policy first: an update reads the row of a policy.
         self._centre = np.ascontiguousarray(self.mean.T)
-        self._precision = np.ascontiguousarray(1 / self.deviation.T)
-        self._log_height = np.log(self._precision) - _LOG_ROOT_2_PI
+        self._narrow = np.ascontiguousarray(np.sqrt(0.5) / self.deviation.T)
+        self._log_height = -np.ascontiguousarray(np.log(self.deviation.T)) - _LOG_ROOT_2_PI

@@ -1,4 +1,4 @@
-"""The interface of laws: log likelihoods of signals for rows of users and all types, given what each user has shown.
+"""The interface of laws: log likelihoods of signals for users and all types, given what each user has shown.
 
 A library's runs leave open what a type pays. What a user shows then tells of the type and of the parameters of the
 user's own outcomes. A law has sufficient statistics of that, `Shown`, and predicts the next signal from them:
@@ -62,11 +62,14 @@ class Law(Protocol):
         Possible spreads of the users of a type.
     learns : bool
         Whether users' signals change the law.
+    single : bool
+        Whether a signal is a single number once it is checked, so that there must be one for each user.
     """
 
     n_types: int
     spread: Spread
     learns: bool
+    single: bool
 
     def checked(self, signals: Any) -> Any:
         """The signals (k,) as the other methods take them; InputError where the law cannot have made one."""
@@ -91,10 +94,6 @@ class Law(Protocol):
 
     def fade(self, shown: Shown, users: Numbers, keep: ArrayLike) -> None:
         """Let everything that distinct `users` have shown count `keep` (...) of what it did."""
-        ...
-
-    def tried(self, shown: Shown, users: Numbers) -> NDArray[np.bool_]:
-        """The policies that `users` have shown a signal of, (..., n_policies)."""
         ...
 
     def table(
@@ -141,7 +140,7 @@ class FixedLaw:
         check: Callable[[Any], Any] | None = None,
     ) -> None:
         self.model, self.n_types, self.spread = model, n_types, Spread.known(0.0)
-        self._many, self._check = log_likelihoods, check
+        self._many, self._check, self.single = log_likelihoods, check, check is not None
 
     def checked(self, signals: Any) -> Any:
         """The signals as the model takes them."""

@@ -124,10 +124,6 @@ class MomentOutcomes(NormalPrediction):
         cuts = informative_cuts(self.mean, self.deviation, n_bins)
         return SignalTable(normal_probs(self.mean, self.deviation, cuts))
 
-    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
-        raise NotImplementedError
-
     def observe(self, type_: int, policy: int, value: float) -> None:
         """Learn from another outcome of a known type, in place.
 
@@ -144,7 +140,10 @@ class MomentOutcomes(NormalPrediction):
         self._prepare()
 
     def absorb(self, type_: int, state: Mapping[str, Any]) -> None:
-        """Learn from all outcomes of a task whose type has become known, in place; `state` is `NormalLaw.state`."""
+        """Learn from all outcomes of a task whose type has become known, in place.
+
+        `state` is what its law gives of them, see `Law.state`.
+        """
         check_type(type_, self.n_types)
         for policy, (count, mean, squares) in zip(state["policies"], state["shown"], strict=True):
             if count > 0:

@@ -24,10 +24,10 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import informative_cuts, normal_probs, normal_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.law import Numbers, Shown
-from lifelore.interaction.outcomes.prediction import NormalPrediction
 from lifelore.interaction.outcomes.outcome_model import finite_outcomes
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
-from lifelore.interaction.outcomes.special_functions import gammaln
+from lifelore.interaction.outcomes.prediction import NormalPrediction
+from lifelore.interaction.outcomes.special_functions import gammaln, stdtr
 from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest
 
 Array = NDArray[Any]
@@ -36,6 +36,8 @@ EXACT = 1e30
 """Degrees of freedom of a variance that is known exactly: t is then normal to the last digit."""
 LARGEST_FREEDOM = 1e6
 """Degrees of freedom above which the height of a t distribution is that of a normal and a correction."""
+FARTHEST = 1e15
+"""Deviations as which outcomes that are farther count in float32: their squares stay numbers."""
 FEW = 256
 """Numbers up to which heights are computed one by one: SciPy is not needed for a single user."""
 LEAST_FREEDOM = 0.5
@@ -67,10 +69,10 @@ class NormalLaw:
     spread : Spread
     dtype : {"f8", "f4"}
         Precision of the statistics and of the likelihoods. float32 counts in deviations from the middle of the
-        types' means.
+        types' means, at most `FARTHEST`.
     """
 
-    learns = True
+    learns, single = True, True
 
     def __init__(self, moments: OutcomeMoments, spread: Spread, dtype: str = "f8") -> None:
         self.spread, self.dtype = spread, np.dtype(dtype)
@@ -96,6 +98,7 @@ class NormalLaw:
         factor = variance_factor(moments.freedom)
         self.mean, self.noise = moments.mean.copy(), moments.variance * factor
         self.of_runs, self.of_spread = self.noise / moments.count, self.noise
+        self.natural_mean = np.ascontiguousarray(self._stored(self.mean.T))
         self._bins: dict[int, tuple[Array, SignalTable]] = {}
 
     # ---- the law of signals --------------------------------------------------------------------------------
@@ -105,8 +108,8 @@ class NormalLaw:
         return finite_outcomes(signals)
 
     def shown(self, n_users: int) -> Shown:
-        """Number, mean and sum of squares around the mean of no outcomes, (n_users, n_policies) each."""
-        return Shown(**{name: np.zeros((n_users, self.n_policies), self.dtype) for name in STATISTICS})
+        """Number, mean and sum of squares around the mean of no outcomes, (n_users, n_policies, 3)."""
+        return Shown(moments=np.zeros((n_users, self.n_policies, 3), self.dtype))
 
     def log_likelihoods(
         self, policies: Numbers, signals: Any, shown: Shown | None = None, users: Numbers = None
@@ -123,38 +126,53 @@ class NormalLaw:
 
     def posterior(self, policies: Numbers, shown: Shown, users: Numbers) -> Posterior:
         """The law of the pairs of `policies` (...) given what `users` (...) have shown."""
-        n, mean, squares = (_over(shown[name][users, policies]) for name in STATISTICS)
+        n, mean, squares = _parts(shown["moments"][users, policies][..., None, None, :])
         location, doubt = self._location[policies], self._doubt[policies]
         grown, apart, freedom = 1 + n * doubt, mean - location, self._freedom[policies] + n
         doubt = doubt / grown
         variance = (self._weight[policies] + squares + n / grown * (apart * apart)) / freedom
         return Posterior(location + n * doubt * apart, doubt, variance, freedom)
 
+    def location(self, policies: Numbers, shown: Shown, users: Numbers) -> Array:
+        """The location of `posterior` alone."""
+        n, mean, _ = _parts(shown["moments"][users, policies][..., None, None, :])
+        pull, location = n * self._doubt[policies], self._location[policies]
+        return location + pull / (1 + pull) * (mean - location)
+
+    def natural(self, values: Array, policies: Any = None) -> Array:
+        """Means (..., n_policies), or (m, n_types) of `policies` (m,), in units of outcomes."""
+        if self.dtype != np.float32:
+            return values
+        middle, unit = self._stored(self.middle), self._stored(self.unit)
+        return (
+            middle + unit * values if policies is None else middle[policies, None] + unit[policies, None] * values
+        )
+
     def learn(self, shown: Shown, users: Numbers, policies: Numbers, signals: Any) -> None:
         """Add outcomes of distinct users (Welford's update)."""
-        count, mean, squares = (shown[name] for name in STATISTICS)
-        at = users, policies
-        n, before = count[at], self._scaled(policies, signals) - mean[at]
-        count[at] = n + 1
-        mean[at] += before / (n + 1)
-        squares[at] += before * before * (n / (n + 1))
+        n, mean, squares = _parts(shown["moments"][users, policies])
+        before = self._scaled(policies, signals) - mean
+        after = n + 1, mean + before / (n + 1), squares + before * before * (n / (n + 1))
+        shown["moments"][users, policies] = np.stack(after, axis=-1)
 
     def fade(self, shown: Shown, users: Numbers, keep: ArrayLike) -> None:
         """Let what distinct `users` have shown count `keep` (...) of what it did."""
-        share = self._stored(np.asarray(keep)[..., None])
-        shown["count"][users] *= share
-        shown["squares"][users] *= share
-
-    def tried(self, shown: Shown, users: Numbers) -> NDArray[np.bool_]:
-        """The policies that `users` have shown an outcome of, (..., n_policies)."""
-        return shown["count"][users] > 0
+        share = self._stored(keep)
+        shown["moments"][users] *= np.stack([share, np.ones_like(share), share], axis=-1)[..., None, :]
 
     # ---- what rules read -----------------------------------------------------------------------------------
 
     def prediction(
         self, shown: Shown | None = None, users: Numbers = None, log_weights: Array | None = None
     ) -> NormalPrediction:
-        """The next outcome of all users, or of `users` (...) with the spreads' log probabilities (..., n_spreads)."""
+        """The next outcome of all users, or of some.
+
+        Parameters
+        ----------
+        users : int or (k,) int64
+        log_weights : (..., n_spreads) float
+            Log probabilities of the spreads for each of `users`.
+        """
         if shown is None or log_weights is None:
             variance = self.of_runs + self.of_spread * self.spread.mean
             return NormalPrediction(self.mean, np.sqrt(self.noise + variance), variance)
@@ -179,8 +197,8 @@ class NormalLaw:
 
     def state(self, shown: Shown, user: int) -> dict[str, Array]:
         """``policies`` (m,) and ``shown`` (m, 3): number, mean and sum of squares of each policy's outcomes."""
-        policies = np.flatnonzero(shown["count"][user])
-        n, mean, squares = (shown[name][user, policies].astype(np.float64) for name in STATISTICS)
+        policies = np.flatnonzero(shown["moments"][user, :, 0])
+        n, mean, squares = _parts(shown["moments"][user, policies].astype(np.float64))
         unit, middle = self.unit[policies], self.middle[policies]
         return {"policies": policies, "shown": np.stack([n, middle + unit * mean, unit**2 * squares], axis=-1)}
 
@@ -191,19 +209,18 @@ class NormalLaw:
         if not good or (numbers[:, [0, 2]] < 0).any() or not np.isin(policies, range(self.n_policies)).all():
             raise InputError("a user's state must have policies and (count, mean, squares) of each")
         unit, middle = self.unit[policies], self.middle[policies]
-        n, mean, squares = numbers.T
+        n, mean, squares = _parts(numbers)
         shown.reset(user)
-        for name, column in zip(STATISTICS, (n, (mean - middle) / unit, squares / unit**2), strict=True):
-            shown[name][user, policies] = column
+        shown["moments"][user, policies] = np.stack([n, (mean - middle) / unit, squares / unit**2], axis=-1)
 
     def _scaled(self, policies: Numbers, signals: Any) -> Array:
-        return self._stored((signals - self.middle[policies]) / self.unit[policies])
+        if self.dtype != np.float32:
+            return signals
+        scaled = (signals - self.middle[policies]) / self.unit[policies]
+        return self._stored(np.clip(scaled, -FARTHEST, FARTHEST))
 
     def _stored(self, values: Any) -> Array:
         return np.asarray(values).astype(self.dtype, copy=False)
-
-
-STATISTICS = ("count", "mean", "squares")
 
 
 class NormalRows(NormalPrediction):
@@ -215,7 +232,7 @@ class NormalRows(NormalPrediction):
     def __init__(self, law: NormalLaw, shown: Shown, users: Numbers, log_weights: Array) -> None:
         self._law, self._shown, self._shape = law, shown, np.shape(users)
         self._users = np.atleast_1d(users)
-        self._weights = np.exp(log_weights).reshape(len(self._users), -1)
+        self._weights = np.exp(log_weights).astype(law.dtype).reshape(len(self._users), -1)
 
     @property
     def n_types(self) -> int:
@@ -228,18 +245,18 @@ class NormalRows(NormalPrediction):
     @cached_property
     def mean(self) -> Array:
         """Expected mean outcome of each pair, (..., n_types, n_policies)."""
-        return self._rows(np.broadcast_to(self._law.mean, self._full), self._pairs.mean)
+        return self._rows(self._law.mean, self._tried_mean)
 
     @cached_property
     def mean_variance(self) -> Array:
         """Variance of each pair's mean outcome, (..., n_types, n_policies)."""
         spread = (self._weights @ self._law.spread.values)[:, None, None]
-        return self._rows(self._law.of_runs + self._law.of_spread * spread, self._pairs.mean_variance)
+        return self._rows(self._law.of_runs + self._law.of_spread * spread, self._tried_variances[0])
 
     @cached_property
     def noise(self) -> Array:
         """Expected variance of each pair's outcomes around their mean, (..., n_types, n_policies)."""
-        return self._rows(np.broadcast_to(self._law.noise, self._full), self._pairs.noise)
+        return self._rows(self._law.noise, self._tried_variances[1])
 
     @cached_property
     def deviation(self) -> Array:
@@ -250,64 +267,61 @@ class NormalRows(NormalPrediction):
         """Mean outcomes on a type for each user, (...) to (..., n_policies), without those on other types."""
         law, types = self._law, np.atleast_1d(types)
         location = law._location[:, 0].T[types]
-        n, mean = self._shown["count"][self._users], self._shown["mean"][self._users]
-        # (n_types or 1, n_spreads, n_policies) to (k, n_spreads, n_policies)
-        doubt = law._doubt.T[types if law._doubt.shape[2] > 1 else np.zeros_like(types)]
+        n, mean, _ = _parts(self._shown["moments"][self._users])
+        # (n_types, n_spreads, n_policies), or (1, ...) where types are alike.
+        doubt = law._doubt.T if law._doubt.shape[2] == 1 else law._doubt.T[types]
         pull = n[:, None] * doubt
-        pull = np.matmul(self._weights[:, None].astype(law.dtype), pull / (1 + pull))[:, 0]
-        found = law.middle + law.unit * (location + pull * (mean - location))
-        return found.reshape(*self._shape, -1)
+        pull = (self._weights[:, :, None] * (pull / (1 + pull))).sum(axis=1)
+        return law.natural(location + pull * (mean - location)).reshape(*self._shape, -1)
 
     def expected(self, belief: Array) -> Array:
         """Ũ(π) of beliefs (..., n_types), (..., n_policies)."""
-        rows, policies = self._pairs.at
+        rows, policies = self._at
         flat = belief.reshape(len(self._users), -1)
         found = flat @ self._law.mean
-        more = (flat[rows] * (self._pairs.mean - self._law.mean.T[policies])).sum(axis=1)
+        more = np.vecdot(flat[rows], self._tried_mean - self._law.natural_mean[policies])
         found[rows, policies] += more
         return found.reshape(*self._shape, -1)
 
+    def cumulative(self, policy: int, values: Array) -> Array:
+        """P(U ≤ value | type, policy) of `values` (n,) for a single user, (n_types, n): t, mixed by spread."""
+        location, doubt, variance, freedom = self._law.posterior(policy, self._shown, self._users[0])
+        gap = _over(self._law._scaled(policy, values)) - location
+        below = stdtr(np.minimum(freedom, LARGEST_FREEDOM), gap / np.sqrt(variance * (1 + doubt)))
+        return (self._weights[0][:, None] * below).sum(axis=1).T
+
     def tried_pairs(self) -> tuple[tuple[Array, Array], Array, Array]:
-        """Row and policy (m,) of each tried pair, and the mean and deviation of its outcome by type, (m, n_types)."""
-        pairs = self._pairs
-        return pairs.at, pairs.mean, np.sqrt(pairs.mean_variance + pairs.noise)
+        """Row and policy (m,) of each tried pair; mean and deviation of its outcome by type, (m, n_types)."""
+        return self._at, self._tried_mean, np.sqrt(sum(self._tried_variances))
 
     @cached_property
-    def _pairs(self) -> "TriedPairs":
-        law, count = self._law, self._shown["count"][self._users]
-        rows, policies = np.nonzero(count)
-        location, doubt, variance, freedom = law.posterior(policies, self._shown, self._users[rows])
-        weights = self._weights[rows][:, :, None]
-        mean = (weights * location).sum(axis=1)
-        gap, factor = location - mean[:, None], variance_factor(freedom)
-        unknown = (weights * (factor * doubt * variance + gap * gap)).sum(axis=1)
-        noise = (weights * (factor * variance)).sum(axis=1)
-        unit = law.unit[policies][:, None]
-        shown = law.middle[policies][:, None] + unit * mean, unit**2 * noise, unit**2 * unknown
-        return TriedPairs((rows, policies), *shown)
+    def _at(self) -> tuple[Array, Array]:
+        """Row and policy, (m,) each, of the pairs of a user and a policy that the user has shown an outcome of."""
+        rows, policies = np.nonzero(self._shown["moments"][self._users, :, 0])
+        return rows, policies
 
-    @property
-    def _full(self) -> tuple[int, int, int]:
-        return len(self._users), self.n_types, self.n_policies
+    @cached_property
+    def _tried_mean(self) -> Array:
+        rows, policies = self._at
+        location = self._law.location(policies, self._shown, self._users[rows])
+        return self._law.natural((self._weights[rows][:, :, None] * location).sum(axis=1), policies)
+
+    @cached_property
+    def _tried_variances(self) -> tuple[Array, Array]:
+        """Variance of the mean outcome of tried pairs, and of outcomes around it, (m, n_types) each."""
+        rows, policies = self._at
+        location, doubt, variance, freedom = self._law.posterior(policies, self._shown, self._users[rows])
+        weights, square = self._weights[rows][:, :, None], self._law.unit[policies][:, None] ** 2
+        gap = location - (weights * location).sum(axis=1, keepdims=True)
+        noise = variance_factor(freedom) * variance
+        unknown = (weights * (doubt * noise + gap * gap)).sum(axis=1)
+        return square * unknown, square * (weights * noise).sum(axis=1)
 
     def _rows(self, untried: Array, tried: Array) -> Array:
-        rows, policies = self._pairs.at
-        found = np.array(untried)
+        rows, policies = self._at
+        found = np.array(np.broadcast_to(untried, (len(self._users), self.n_types, self.n_policies)))
         found[rows, :, policies] = tried
         return found.reshape(*self._shape, *found.shape[1:])
-
-
-class TriedPairs(NamedTuple):
-    """Pairs of a user and a policy that the user has shown an outcome of.
-
-    at : rows and policies, (m,) each
-    mean, noise, mean_variance : (m, n_types) float, as in `NormalRows`
-    """
-
-    at: tuple[Array, Array]
-    mean: Array
-    noise: Array
-    mean_variance: Array
 
 
 def variance_factor(freedom: Array) -> Array:
@@ -317,7 +331,12 @@ def variance_factor(freedom: Array) -> Array:
 
 def log_t_height(freedom: Array) -> Array:
     """Log density of Student's t at its location, scale 1, of degrees of freedom (...)."""
-    if freedom.size <= FEW:
+    if freedom.size > FEW:
+        # Users have often shown equally many outcomes.
+        distinct, place = np.unique(freedom, return_inverse=True)
+        if len(distinct) <= FEW:
+            return log_t_height(distinct)[place].reshape(freedom.shape)
+    else:
         return np.array([_height(value) for value in freedom.ravel().tolist()]).reshape(freedom.shape)
     few = np.minimum(freedom, LARGEST_FREEDOM)
     height = gammaln(0.5 * (few + 1)) - gammaln(0.5 * few) - 0.5 * np.log(np.pi * few)
@@ -335,6 +354,11 @@ def _height(freedom: float) -> float:
 def _alike(of_pairs: Array) -> Array:
     """(n_policies, n_types) as (n_policies, 1) where no policy's numbers differ between types."""
     return of_pairs[:, :1] if (of_pairs == of_pairs[:, :1]).all() else of_pairs
+
+
+def _parts(moments: Array) -> tuple[Array, Array, Array]:
+    """Number, mean and sum of squares of (..., 3)."""
+    return moments[..., 0], moments[..., 1], moments[..., 2]
 
 
 def _over(of_users: Any) -> Array:

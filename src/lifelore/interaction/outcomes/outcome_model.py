@@ -1,93 +1,20 @@
-"""The interface of outcome models, P(U | type, policy), and the rows of data that they are fitted to.
+"""Rows of outcomes that outcome models are fitted to, and checks of outcomes, types and policies.
 
-An outcome (utility, return, performance) is a number; larger is better. A model covers every pair of a type and a
-policy. `GaussianOutcomes` (with shrunk deviations) is the default. `StudentTOutcomes` accounts for the uncertainty
-of a few samples. `HistogramOutcomes` and `CategoricalOutcomes` are for other distributions. Thesis: §4.3.4, Def.
-4.3.4.
+An outcome (utility, return, performance) is a number; larger is better. Thesis: §4.3.4.
 """
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple, NoReturn, Protocol, Self
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.finite_signals.signal_table import SignalTable
 
 Array = NDArray[np.float64]
 
 LARGEST = 1e100
 """Largest size of outcomes and means, and with `LEAST_DEVIATION` the limit that keeps squares finite."""
 LEAST_DEVIATION = 1e-50
-
-
-class OutcomeModel(Protocol):
-    """P(U | type, policy) for every pair: a `Prediction` of the next outcome that also fits, learns and is stored."""
-
-    @property
-    def n_types(self) -> int: ...
-
-    @property
-    def n_policies(self) -> int: ...
-
-    @property
-    def mean(self) -> Array:
-        """E[U | type, policy], (n_types, n_policies)."""
-        ...
-
-    @property
-    def deviation(self) -> Array:
-        """Standard deviation of U, (n_types, n_policies)."""
-        ...
-
-    def log_density(self, policy: int, value: float) -> Array:
-        """Log density (log probability, where outcomes are discrete) of `value` per type, (n_types,); -inf allowed.
-
-        Raises
-        ------
-        InputError
-            `value` is no finite number.
-        NotFoundError
-            There is no such policy.
-        """
-        ...
-
-    def log_densities(self, policies: Any, values: Any) -> Array:
-        """`log_density` of many outcomes, (...) and (...) to (..., n_types); without checks."""
-        ...
-
-    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
-        ...
-
-    def bounds(self) -> tuple[float, float]:
-        """(U^min, U^max) over all pairs: the support, or four deviations around the means if unbounded."""
-        ...
-
-    def table(self, n_bins: int = 8) -> SignalTable:
-        """The outcome in at most `n_bins` bins, chosen for each policy to tell the types apart."""
-        ...
-
-    def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
-        """Random outcomes of a pair: a number, or an array of shape `size`."""
-        ...
-
-    def observe(self, type_: int, policy: int, value: float) -> None:
-        """Learn from another outcome of a known type, in place."""
-        ...
-
-    def with_type(self, samples: ArrayLike) -> Self:
-        """A new model with an additional type, from `samples` (n_policies, n), NaN where missing."""
-        ...
-
-    def with_policy(self, samples: ArrayLike) -> Self:
-        """A new model with an additional policy, from `samples` (n_types, n), NaN where missing."""
-        ...
-
-    def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
-        """A new model of some types and policies, in the order given; None means all."""
-        ...
 
 
 class OutcomeRows(NamedTuple):
@@ -213,25 +140,18 @@ def checked_rows(rows: OutcomeRows, gaps: bool = False) -> OutcomeRows:
     return rows
 
 
-def refuse_outcome(policy: Any, value: Any, n_policies: int) -> NoReturn:
-    """Raise the error for a wrong outcome: the policy is unknown, or the value is no finite number."""
-    check_policy(policy, n_policies)
-    raise InputError(
-        f"value must be a finite number of at most {LARGEST:g}, got {value!r:.80}; leave out what has no outcome"
-    )
-
-
 def finite_outcomes(values: Any) -> Any:
     """Outcomes, a number or (k,), as float64; InputError where one is not finite."""
     if isinstance(values, float) and -LARGEST <= values <= LARGEST:
         return values
     try:
-        found = np.asarray(values, np.float64)
+        found = np.asarray(np.nan if isinstance(values, str) else values, np.float64)
     except (TypeError, ValueError):
         found = np.asarray(np.nan)
     if not (np.abs(found) <= LARGEST).all():
         raise InputError(
-            f"value must be a finite number of at most {LARGEST:g}, got {values!r:.80}; leave out what has no outcome"
+            f"value must be a finite number of at most {LARGEST:g}, got {values!r:.80}; leave out what has no "
+            "outcome"
         )
     return found
 
@@ -250,15 +170,5 @@ def check_type(type_: Any, n_types: int) -> None:
 
 def check_outcome(policy: Any, value: Any, n_policies: int) -> None:
     """Raise an error for an unknown policy, or a value that is no finite number."""
-    if not is_outcome(policy, value, n_policies):
-        refuse_outcome(policy, value, n_policies)
-
-
-def is_outcome(policy: Any, value: Any, n_policies: int) -> bool:
-    """Whether `policy` is one of the model's and `value` a finite number of at most `LARGEST`."""
-    try:
-        # NaN fails the comparison.
-        known = 0 <= policy < n_policies and -LARGEST <= value <= LARGEST
-        return known and isinstance(policy, int | np.integer)
-    except (TypeError, ValueError):
-        return False
+    check_policy(policy, n_policies)
+    finite_outcomes(np.nan if np.ndim(value) else value)

@@ -51,24 +51,16 @@ class OutcomeMoments:
 
     def observe(self, type_: int, policy: int, value: float) -> None:
         """Learn from another outcome, in place."""
+        self.absorb(type_, policy, 1, value, 0.0)
+
+    def absorb(self, type_: int, policy: int, count: float, mean: float, squares: float) -> None:
+        """Learn from `count` outcomes at once, by their mean and sum of squares around it, in place."""
         pair = type_, policy
         if np.isinf(self.count[pair]):
             raise InputError(
                 f"type {type_} with policy {policy} is known exactly and learns nothing; build the model with "
                 "count= (the number of samples behind its numbers) to let it learn"
             )
-        self.count[pair] += 1
-        self.freedom[pair] += 1
-        before = value - self.mean[pair]
-        self.mean[pair] += before / self.count[pair]
-        square = before * (value - self.mean[pair])
-        self.variance[pair] += (square - self.variance[pair]) / self.freedom[pair]
-
-    def absorb(self, type_: int, policy: int, count: float, mean: float, squares: float) -> None:
-        """Learn from `count` outcomes at once, by their mean and sum of squares around it, in place."""
-        pair = type_, policy
-        if np.isinf(self.count[pair]):
-            raise InputError(f"type {type_} with policy {policy} is known exactly and learns nothing")
         known, apart = self.count[pair], mean - self.mean[pair]
         total = known + count
         gained = squares + known * count / total * apart**2

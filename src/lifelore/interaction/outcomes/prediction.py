@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.interaction.outcomes.cells import Cells
 from lifelore.interaction.finite_signals.normal_distribution import ndtr
+from lifelore.interaction.outcomes.cells import Cells
 
 Array = NDArray[Any]
 
@@ -60,6 +60,10 @@ class Prediction:
             return np.maximum(above, 0.0)
         return normal_excess(above, np.sqrt(self.mean_variance))
 
+    def cumulative(self, policy: int, values: Array) -> Array:
+        """P(U ≤ value | type, policy) of `values` (n,), (n_types, n); of a single user."""
+        raise NotImplementedError
+
     def mean_on(self, types: Any) -> Array:
         """Mean outcomes on a type for each row, (...) int to (..., n_policies)."""
         if self.mean.ndim == 2:
@@ -89,6 +93,9 @@ class NormalPrediction(Prediction):
 
     def exceedance(self, threshold: ArrayLike) -> Array:
         return ndtr((self.mean - over_pairs(threshold)) / self.deviation)
+
+    def cumulative(self, policy: int, values: Array) -> Array:
+        return ndtr((values - self.mean[:, policy, None]) / self.deviation[:, policy, None])
 
     def expected_excess(self, threshold: ArrayLike) -> Array:
         return normal_excess(self.mean - over_pairs(threshold), self.deviation)
@@ -134,6 +141,9 @@ class CountedPrediction(Prediction):
     def expected_excess(self, threshold: ArrayLike) -> Array:
         return self._expectation(self.cells.excess(np.asarray(threshold, np.float64)[..., None]))
 
+    def cumulative(self, policy: int, values: Array) -> Array:
+        return self.probs[:, policy] @ (1 - self.cells.above(values[:, None])).T
+
     def _expectation(self, of_cells: Array) -> Array:
         """Expectation of a number of each cell, (..., n_cells) to (..., n_types, n_policies)."""
         return np.matmul(self.probs, of_cells[..., None, :, None])[..., 0]
@@ -150,10 +160,24 @@ def normal_excess(above: Array, deviation: Array) -> Array:
 
 
 def weighted(belief: Array, values: Array) -> Array:
-    """Σ β(τ) v(τ, π): beliefs (..., n_types) and values (n_types, n), shared, or (..., n_types, n)."""
-    if values.ndim == 2:
-        return belief @ values
-    return np.matmul(belief[..., None, :], values)[..., 0, :]
+    """Σ β(τ) v(τ, ·), (n,) or (k, n).
+
+    Parameters
+    ----------
+    belief : (T,) or (k, T) float64
+    values : (T, n) float64, or (k, T, n) with values of their own for each row of the belief
+    """
+    if values.ndim > 2:
+        return np.matmul(belief[..., None, :], values)[..., 0, :]
+    if belief.ndim == 1:
+        belief, values = supported(belief, values)
+    return belief @ values
+
+
+def supported(belief: Array, *values: Array) -> tuple[Array, ...]:
+    """A belief (T,) and rows of `values` (T, n) for its types of positive probability, where these are few."""
+    some = belief.nonzero()[0]
+    return (belief, *values) if 2 * len(some) > len(belief) else tuple(each[some] for each in (belief, *values))
 
 
 def over_pairs(values: ArrayLike) -> Any:

@@ -1,14 +1,11 @@
-"""Distribution functions of the normal and of Student's t, from SciPy.
+"""The distribution function of Student's t and the gamma function, from SciPy.
 
-SciPy is imported at the first call that needs it: a choice by stored tables needs none of these functions.
+SciPy is imported at the first call: a choice for a single user needs none of these functions. The distribution
+function of the normal is in `finite_signals.normal_distribution`.
 """
 
 from functools import cache
 from typing import Any
-
-from lifelore.interaction.finite_signals.normal_distribution import ndtr
-
-__all__ = ["gammaln", "ndtr", "stdtr"]
 
 
 def stdtr(freedom: Any, t: Any) -> Any:

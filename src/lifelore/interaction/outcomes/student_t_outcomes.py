@@ -72,10 +72,11 @@ class StudentTOutcomes(MomentOutcomes):
         # Far below the threshold the two terms cancel, and rounding may leave a negative number.
         return np.maximum(self.scale * (peak + z * stdtr(self.freedom, z)), 0.0)
 
-    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
-        z = (values - self.mean[types, policy][:, None]) / self.scale[types, policy][:, None]
-        return stdtr(self.freedom[types, policy][:, None], z)
+    def cumulative(self, policy: int, values: Array) -> Array:
+        """P(U ≤ value | type, policy) of `values` (n,), (n_types, n)."""
+        return stdtr(
+            self.freedom[:, policy, None], (values - self.mean[:, policy, None]) / self.scale[:, policy, None]
+        )
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
         """Random outcomes of a pair: a number, or an array of shape `size`."""

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.user_library import UserLibrary
 
 Array = NDArray[np.float64]
 
@@ -115,11 +116,14 @@ def type_calibration(
     return _calibration(predicted, shares, np.bincount(bins)[used], len(np.unique(group)))
 
 
-def outcome_levels(library: PolicyLibrary, beliefs: ArrayLike, policies: ArrayLike, outcomes: ArrayLike) -> Array:
+def outcome_levels(
+    library: PolicyLibrary | UserLibrary, beliefs: ArrayLike, policies: ArrayLike, outcomes: ArrayLike
+) -> Array:
     """P(U < u) and P(U ≤ u) of outcomes under the belief before each, (n, 2); equal for densities.
 
     Parameters
     ----------
+    library : PolicyLibrary, or what is known of a single user
     beliefs : (n, n_types) float
     policies : (n,) int
     outcomes : (n,) float

@@ -48,7 +48,7 @@ class Explanation:
         log Σ F β of each of the last signals: how expected it was.
     surprise : float
         Sum of −log Σ F β over all signals, in nats. It depends on the noise, and is no sign of a new type; use
-        `interaction.novelty`.
+        `interaction.reuse.novelty`.
     unexplained : int
         Number of signals so far that no type explains.
     novelty : float or None

@@ -12,7 +12,8 @@ explanation, `UserBeliefs` many rows with names. Thesis: §4.2, Alg. 7; §4.5.2,
 """
 
 from collections.abc import Mapping
-from typing import Any, Literal, NamedTuple
+from copy import copy
+from typing import Any, Literal, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,7 +27,7 @@ from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.user_library import UserLibrary
 from lifelore.interaction.reuse.user_model import UserModel
 from lifelore.interaction.selection import SelectionRule
-from lifelore.interaction.selection.choice import choose, propensities, scored
+from lifelore.interaction.selection.choice import Mask, choose, propensities, scored
 from lifelore.interaction.signals.return_signal import ReturnSignal
 
 Array = NDArray[Any]
@@ -59,7 +60,8 @@ class ReuseAlgorithm:
         The library's by default.
     dynamics : TypeDynamics, optional
         By default a hazard of `DEFAULT_HAZARD` that draws from the library's prior; the thesis's types are static.
-        Any object with `step` and `changed_share` serves, and may learn from what `end_episode` gives it.
+        Any object with `moves`, `n_types`, `step` and `changed_share` serves, and may learn from what
+        `end_episode` gives it.
     models : {"uncertain", "plug-in"}
         Whether a model learnt from a finite number of runs is known to be uncertain.
     spread : Spread, optional
@@ -93,18 +95,30 @@ class ReuseAlgorithm:
             raise InputError(f"models must be 'uncertain' or 'plug-in', got {models!r}")
         if dtype not in ("f4", "f8"):
             raise InputError(f"dtype must be 'f4' or 'f8', got {dtype!r}")
-        self.library, self.models = library, models
+        self.library = library
+        self.models: Models = models
         self.dynamics = dynamics or TypeDynamics.hazard(DEFAULT_HAZARD, library.prior)
         if self.dynamics.n_types not in (None, library.n_types):
             raise InputError(f"dynamics are for {self.dynamics.n_types} types, the library has {library.n_types}")
         self._spread, self._dtype = spread, dtype
         self.log_prior: Array = self.start(prior)
+        signal_law = self._law(library.signal)
+        returns = isinstance(library.signal, ReturnSignal) and library.signal.outcomes is library.performance
+        self._begin(n_users, signal_law, None if returns else self._law(library.performance))
+
+    def _begin(self, n_users: int, signal_law: Any, outcome_law: Any) -> None:
+        """Set up rows with the prior; without `outcome_law` outcomes are the signals."""
         self.log_belief: Array = np.tile(self.log_prior, (n_users, 1))
         # Whether an episode has begun since the last signal: only then may the type have changed.
         self._begun = np.ones(n_users, bool)
-        self.signals = UserModel(self._law(library.signal), n_users)
-        returns = isinstance(library.signal, ReturnSignal) and library.signal.outcomes is library.performance
-        self.outcomes = self.signals if returns else UserModel(self._law(library.performance), n_users)
+        self.signals = UserModel(signal_law, n_users)
+        self.outcomes = self.signals if outcome_law is None else UserModel(outcome_law, n_users)
+
+    def new_rows(self, n_users: int = 1) -> Self:
+        """Another algorithm with the same laws and dynamics, whose `n_users` users have the prior."""
+        other = copy(self)
+        other._begin(n_users, self.signals.law, None if self.outcomes is self.signals else self.outcomes.law)
+        return other
 
     @property
     def n_users(self) -> int:
@@ -141,10 +155,10 @@ class ReuseAlgorithm:
         users: Numbers,
         rule: SelectionRule,
         generator: np.random.Generator,
-        available: ArrayLike | None = None,
+        available: Mask | None = None,
         episodes_left: float | None = None,
     ) -> tuple[Any, Array]:
-        """The policy to run next for `users` (...), (...) int64, and the scores of all policies, (..., n_policies).
+        """The policy to run next for `users` (...), (...) int64, and all policies' scores, (..., n_policies).
 
         Parameters
         ----------
@@ -163,7 +177,7 @@ class ReuseAlgorithm:
         users: Numbers,
         rule: SelectionRule,
         generator: np.random.Generator | None = None,
-        available: ArrayLike | None = None,
+        available: Mask | None = None,
         episodes_left: float | None = None,
     ) -> Array:
         """The rule's scores for `users` (...), (..., n_policies); arguments as for `select`."""
@@ -176,7 +190,7 @@ class ReuseAlgorithm:
         self,
         users: Numbers,
         rule: SelectionRule,
-        available: ArrayLike | None = None,
+        available: Mask | None = None,
         episodes_left: float | None = None,
     ) -> Array:
         """Probability that `select` takes each policy for `users` (...), (..., n_policies); rows sum to 1."""
@@ -201,13 +215,16 @@ class ReuseAlgorithm:
         InputError
             The model cannot have made a signal, or gave NaN or infinity. All stays as it was.
         """
-        signals, before = self.signals.law.checked(signals), self.log_belief[users]
+        before, signals = self.log_belief[users], self.signals.law.checked(signals)
         outcomes = None if outcomes is None else self.outcomes.law.checked(outcomes)
+        if self.signals.law.single and np.shape(signals) != np.shape(users):
+            raise InputError(f"there must be a signal for each user {np.shape(users)}, got {np.shape(signals)}")
         found = self.signals.evidence(users, policies, signals, before, self._changed(users, before))
         after, log_evidence = self._updated(before, found.log_likelihood)
         explained = log_evidence > -np.inf
         if found.changed is not None:
-            self._fade(users, 1 - np.where(explained, (np.exp(after) * found.changed).sum(axis=-1), 0.0))
+            changes = np.where(explained, (np.exp(after) * found.changed).sum(axis=-1), 0.0)
+            self._fade(users, 1 - np.minimum(changes, 1.0))
         if self.signals.law.learns and explained.any():
             self.signals.learn(*_explained(explained, users, policies, signals, found.gain))
         if outcomes is not None and self.outcomes is not self.signals:
@@ -216,9 +233,10 @@ class ReuseAlgorithm:
         return Observed(found.log_likelihood, log_evidence)
 
     def end_episode(self, users: Numbers, outcome: Any = None) -> None:
-        """Take the dynamics' step for `users`; `outcome` says how their episodes ended, for dynamics that learn."""
-        self.log_belief[users] = self.dynamics.step(self.log_belief[users], users, outcome)
-        self._begun[users] = True
+        """Take the dynamics' step for `users`; dynamics that learn read by `outcome` how the episodes ended."""
+        if self.dynamics.moves:
+            self.log_belief[users] = self.dynamics.step(self.log_belief[users], users, outcome)
+            self._begun[users] = True
 
     def update(self, users: Numbers, policies: Numbers, signals: Any, outcomes: Any = None) -> Observed:
         """`observe`, and `end_episode`."""
@@ -243,9 +261,11 @@ class ReuseAlgorithm:
             model.grow(n_users)
 
     def state(self, user: int) -> dict[str, Array]:
-        """What a user has shown, as small arrays; empty between episodes where nothing is learnt beside the belief."""
+        """What a user has shown, as small arrays; empty between episodes where only the belief learns."""
         parts = {"signal": self.signals} | ({} if self.outcomes is self.signals else {"outcomes": self.outcomes})
-        found = {f"{name}.{key}": array for name, model in parts.items() for key, array in model.state(user).items()}
+        found = {
+            f"{name}.{key}": array for name, model in parts.items() for key, array in model.state(user).items()
+        }
         return found if self._begun[user] else found | {"begun": np.array(False)}
 
     def restore(self, user: int, log_belief: ArrayLike, state: Mapping[str, Any]) -> None:
@@ -272,7 +292,7 @@ class ReuseAlgorithm:
         return law_of(model, self.library.n_types, self.models, dtype=self._dtype, **spread)
 
     def _changed(self, users: Numbers, log_belief: Array) -> Array | None:
-        """P(the type has just changed to this type), (..., n_types); None where it cannot have, or no law learns."""
+        """P(the type has just changed to this), (..., n_types); None where it cannot have, or no law learns."""
         if not self.signals.law.learns:
             return None
         begun = self._begun[users]
@@ -284,8 +304,8 @@ class ReuseAlgorithm:
             return update(log_belief, log_likelihood)
         except InputError:
             raise InputError(
-                f"signal model {type(self.library.signal).__name__} gave NaN or infinity as a log likelihood; minus "
-                "infinity is allowed, they are not"
+                f"signal model {type(self.library.signal).__name__} gave NaN or infinity as a log likelihood; "
+                "minus infinity is allowed, they are not"
             ) from None
 
     def _fade(self, users: Numbers, keep: Array) -> None:
@@ -293,9 +313,12 @@ class ReuseAlgorithm:
             model.fade(users, keep)
 
     def _learn_outcomes(self, users: Numbers, policies: Numbers, outcomes: Any, log_belief: Array) -> None:
-        if self.outcomes.law.learns:
-            gain = self.outcomes.evidence(users, policies, outcomes, log_belief, None).gain
-            self.outcomes.learn(users, policies, outcomes, gain)
+        if not self.outcomes.law.learns:
+            return
+        found = self.outcomes.evidence(users, policies, outcomes, log_belief, None)
+        explained = (found.log_likelihood > -np.inf).any(axis=-1)
+        if explained.any():
+            self.outcomes.learn(*_explained(explained, users, policies, outcomes, found.gain))
 
 
 def _explained(explained: Any, *of_users: Any) -> tuple[Any, ...]:
@@ -303,8 +326,10 @@ def _explained(explained: Any, *of_users: Any) -> tuple[Any, ...]:
     if explained.all():
         return of_users
     rows = np.flatnonzero(explained)
-    return tuple([each[row] for row in rows] if isinstance(each, list) else each if each is None else each[rows]
-                 for each in of_users)
+    return tuple(
+        [each[row] for row in rows] if isinstance(each, list) else each if each is None else each[rows]
+        for each in of_users
+    )
 
 
 def _part(state: Mapping[str, Any], prefix: str) -> dict[str, Any]:

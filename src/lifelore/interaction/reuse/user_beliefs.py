@@ -1,9 +1,9 @@
 """Beliefs about very many users, numbered or named: rows of Algorithm 7, updated and read in blocks.
 
 With float32 rows a user takes 4 bytes a type, and with models learnt from a finite number of runs 12 bytes more a
-policy (4 a cell, where outcomes are counted). float32 rows agree with float64 rows to 1e-5. A `BayesianPolicyReuse`
-for each user has the same numbers to 1e-12, where both know the same spread. Thesis: §4.2, Alg. 7, with many tasks
-side by side.
+policy (4 a cell, where outcomes are counted). float32 rows agree with float64 rows to 1e-5. A
+`BayesianPolicyReuse` for each user has the same numbers to 1e-12, where both know the same spread. Thesis: §4.2,
+Alg. 7, with many tasks side by side.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -21,14 +21,14 @@ from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.reuse_algorithm import Precision, ReuseAlgorithm
 from lifelore.interaction.reuse.user_names import UserNames, are_names
 from lifelore.interaction.selection import SelectionRule, rule_of
-from lifelore.interaction.selection.choice import best_policies
+from lifelore.interaction.selection.choice import available_mask, best_policies
 
 Array = NDArray[Any]
 Numbers = NDArray[np.int64]
 Users = ArrayLike | Sequence[str]
 """Numbers of users, or their names where the users have names."""
 
-BLOCK = 1 << 16
+BLOCK = 1 << 15
 """Numbers of a block's beliefs: they stay in the processor's cache."""
 LARGEST_BLOCK = 1 << 21
 """Numbers of the largest temporary arrays, which have a row for each user, type, policy and signal."""
@@ -99,7 +99,13 @@ class UserBeliefs:
             usual = ReuseAlgorithm(library, prior=prior, dynamics=dynamics, models=models)
             spread = usual.signals.law.spread.mean
         self.algorithm = ReuseAlgorithm(
-            library, n_users, prior=prior, dynamics=dynamics, models=models, spread=Spread.known(spread), dtype=dtype
+            library,
+            n_users,
+            prior=prior,
+            dynamics=dynamics,
+            models=models,
+            spread=Spread.known(spread),
+            dtype=dtype,
         )
         self.generator = stream(seed, "user beliefs") if isinstance(seed, int | np.integer) else seed
         self._n_users = n_users
@@ -291,7 +297,7 @@ class UserBeliefs:
             yield slice(start, min(start + size, len(rows)))
 
     def _distinct_blocks(self, rows: Numbers, rule: SelectionRule | None = None) -> Iterator[slice]:
-        """`_blocks` in none of which a user comes twice; a user's second signal needs what the first has changed."""
+        """`_blocks` in none of which a user comes twice: a second signal needs what the first has changed."""
         for at in self._blocks(rows, rule):
             own, start = rows[at].tolist(), at.start
             if len(set(own)) == len(own):
@@ -309,16 +315,8 @@ class UserBeliefs:
         """`available` as (n_rows, n_policies) bool; None stays None."""
         if available is None:
             return None
-        mask = np.asarray(available)
-        n_policies = self.library.n_policies
-        if mask.dtype != bool or mask.shape not in ((n_policies,), (n_rows, n_policies)):
-            raise InputError(
-                f"available must be bool ({n_policies},), or ({n_rows}, {n_policies}) with a row for each of users, "
-                f"got {mask.dtype} {mask.shape}"
-            )
-        if not mask.any(axis=-1).all():
-            raise InputError("available must have a policy for every user; leave out users that can get none")
-        return np.broadcast_to(mask, (n_rows, n_policies))
+        mask = available_mask(available, self.library.policies, n_rows)  # pyright: ignore
+        return np.broadcast_to(mask, (n_rows, self.library.n_policies))
 
     def _checked_signals(self, rows: Numbers, policies: Numbers, signals: Any) -> Any:
         if not len(rows) == len(policies) == len(signals):

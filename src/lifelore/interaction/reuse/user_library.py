@@ -34,7 +34,8 @@ class UserLibrary:
         model = self._outcomes
         if not model.law.learns:
             return self.library.performance  # pyright: ignore[reportReturnType]
-        return model.law.prediction(model.shown, self._users, model.log_weights[self._users])
+        law: Any = model.law
+        return law.prediction(model.shown, self._users, model.log_weights[self._users])
 
     def table(self, n_bins: int) -> SignalTable:
         """The next signal of each pair, in at most `n_bins` bins; errors as for `PolicyLibrary.table`."""
@@ -46,4 +47,5 @@ class UserLibrary:
     def part(self, rows: Any, policies: NDArray[np.bool_]) -> PartOfLibrary:
         """What rules read of some of the users and policies."""
         users = self._users if np.ndim(self._users) == 0 else self._users[rows]
-        return PartOfLibrary(UserLibrary(self.library, self._signals, self._outcomes, users), policies)
+        own: Any = UserLibrary(self.library, self._signals, self._outcomes, users)
+        return PartOfLibrary(own, policies)

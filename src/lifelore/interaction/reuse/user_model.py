@@ -72,14 +72,17 @@ class UserModel:
         changed : (..., n_types), optional
             w, as `TypeDynamics.changed_share` gives it.
         """
-        law, weigh = self.law, self.log_weights[users][..., None]
+        law = self.law
         if not law.learns:
             return Evidence(law.log_likelihoods(policies, signals), None, None)
         found = law.log_likelihoods(policies, signals, self.shown, users)
-        gain = _gain(found, np.exp(log_belief)) if found.shape[-2] > 1 else None
-        stayed = found + weigh.astype(found.dtype, copy=False)
+        if found.shape[-2] == 1:
+            stayed, gain = found, None
+        else:
+            gain = _gain(found, np.exp(log_belief))
+            stayed = found + self.log_weights[users][..., None].astype(found.dtype, copy=False)
         if changed is None:
-            return Evidence(_log_sum(stayed), None, gain)
+            return Evidence(stayed[..., 0, :] if gain is None else _log_sum(stayed), None, gain)
         anew = law.log_likelihoods(policies, signals) + self._log_first[:, None].astype(found.dtype, copy=False)
         top = np.maximum(stayed.max(axis=-2), np.where(changed > 0, anew.max(axis=-2), -np.inf))
         top = np.where(top > -np.inf, top, 0.0)
@@ -89,7 +92,7 @@ class UserModel:
             return Evidence(np.log(whole) + top, new / np.maximum(whole, LEAST), gain)
 
     def fade(self, users: Numbers, keep: Array) -> None:
-        """Let all that distinct `users` have shown count `keep` (...) of what it did: their types may have changed."""
+        """Let all that distinct `users` have shown count `keep` (...) of what it did: types may have changed."""
         if not self.law.learns:
             return
         self.law.fade(self.shown, users, keep)

@@ -20,9 +20,11 @@ from lifelore.interaction.selection.rule import (
     Variant,
     check_variant,
     range_of_means,
-    weighted,
 )
 from lifelore.interaction.selection.support import MASS, check_mass
+
+LEAST_PREDICTED = 1e-300
+"""Probability below which the printed form takes a signal as impossible: the inverse would not be a number."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +62,10 @@ class BeliefEntropy(Deterministic):
     def scores(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
         """Expected utilities plus κ times the information, (P,) or (k, P)."""
         mean, table = library.performance.mean, library.table(self.n_bins)
-        kappa, utility = range_of_means(mean) if self.kappa is None else self.kappa, library.performance.expected(belief)
+        kappa, utility = (
+            range_of_means(mean) if self.kappa is None else self.kappa,
+            library.performance.expected(belief),
+        )
         if self.variant == "thesis":
             return utility - kappa * _printed_entropy(printed_posterior(belief, table))
         return utility + kappa * mutual_information(belief, table, self.mass)
@@ -69,7 +74,7 @@ class BeliefEntropy(Deterministic):
 def printed_posterior(belief: Array, table: SignalTable) -> Array:
     """The thesis's βᵖ(τ) = Σ F(σ | τ)² β(τ) / Σ F β, (P, T) or (k, P, T); its sums exceed 1."""
     predicted = predicted_signals(belief, table)
-    inverse = np.divide(1.0, predicted, out=np.zeros_like(predicted), where=predicted > 0)
+    inverse = np.divide(1.0, predicted, out=np.zeros_like(predicted), where=predicted > LEAST_PREDICTED)
     return np.einsum("...tps,...ps->...pt", table.probs**2, inverse) * belief[..., None, :]
 
 

@@ -5,8 +5,9 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from lifelore.interaction.outcomes.prediction import weighted
 from lifelore.interaction.selection.choice import tied_shares
-from lifelore.interaction.selection.rule import Array, RuleLibrary, check_generator, weighted
+from lifelore.interaction.selection.rule import Array, RuleLibrary, check_generator
 
 
 @dataclass(frozen=True)
@@ -38,4 +39,4 @@ def drawn_types(belief: Array, generator: np.random.Generator) -> Any:
     if held.ndim == 1:
         return held.searchsorted(generator.random() * held[-1], side="right")
     level = generator.random(held.shape[:-1]) * held[..., -1]
-    return (held <= np.asarray(level)[..., None]).sum(axis=-1)
+    return (held > level[..., None]).argmax(axis=-1)

@@ -6,6 +6,7 @@ sampling draws. The belief is about all types and stays as it is. Shapes: T type
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +17,8 @@ from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.library_names import index_of
 
 if TYPE_CHECKING:
-    from lifelore.interaction.selection.rule import RuleLibrary, RuleOutcomes, SelectionRule
+    from lifelore.interaction.outcomes.prediction import Prediction
+    from lifelore.interaction.selection.rule import RuleLibrary, SelectionRule
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -25,6 +27,8 @@ Available = Sequence[str | int] | NDArray[Any]
 
 TOLERANCE = 1e-9
 """Scores this close to the best, relative to it, are equal: rounding moves sums of products by less."""
+LEAST_TOLERANCE = {"d": 0.0, "f": 1e-6}
+"""Least tolerance of scores in float64 and in float32, whose sums of products are rounded by so much."""
 ROUNDING = 1e-15
 """Differences below this share of a row's largest score are rounding, however small the best score is."""
 
@@ -58,14 +62,15 @@ def choose(scores: ArrayLike, generator: np.random.Generator, tolerance: float =
     >>> choose([1.0, 3.0, 2.0], np.random.default_rng(0))
     1
     """
-    scores = np.asarray(scores, np.float64)
+    scores = _floats(scores)
     if scores.ndim == 1:
         best = _best(scores, tolerance).nonzero()[0]
         return int(best[0]) if len(best) == 1 else int(best[int(generator.random() * len(best))])
     best = _best(scores, tolerance)
-    number = best.sum(axis=-1)
-    chosen, tie = best.argmax(axis=-1), number > 1
-    if tie.any():
+    chosen = best.argmax(axis=-1)
+    if np.count_nonzero(best) > chosen.size:
+        number = best.sum(axis=-1)
+        tie = number > 1
         place = (generator.random(int(tie.sum())) * number[tie]).astype(np.int64)
         chosen[tie] = (best[tie].cumsum(axis=-1) > place[:, None]).argmax(axis=-1)
     return chosen
@@ -73,7 +78,7 @@ def choose(scores: ArrayLike, generator: np.random.Generator, tolerance: float =
 
 def tied_shares(scores: ArrayLike, tolerance: float = TOLERANCE) -> Array:
     """Probability that `choose` takes each policy, (..., P); errors as there."""
-    best = _best(np.asarray(scores, np.float64), tolerance)
+    best = _best(_floats(scores), tolerance)
     return best / best.sum(axis=-1, keepdims=True)
 
 
@@ -96,14 +101,24 @@ def best_policies(scores: ArrayLike, k: int, generator: np.random.Generator) -> 
     return best
 
 
+def _floats(scores: ArrayLike) -> NDArray[Any]:
+    """The scores as floats in their own precision."""
+    found = np.asarray(scores)
+    return found if found.dtype.kind == "f" else found.astype(np.float64)
+
+
 def _best(scores: Array, tolerance: float) -> Mask:
     """Which policies are best or as good as the best, (..., P)."""
+    tolerance = max(tolerance, LEAST_TOLERANCE[scores.dtype.char])
     if scores.ndim == 1 and scores.size:
         # A single row of finite scores, quickly.
         largest, least = float(np.maximum.reduce(scores)), float(np.minimum.reduce(scores))
         if largest < np.inf and least > -np.inf:
             return scores >= _bar(largest, max(abs(largest), abs(least)), tolerance)
     largest = scores.max(axis=-1, keepdims=True, initial=-np.inf)
+    least = scores.min(axis=-1, keepdims=True, initial=np.inf)
+    if np.isfinite(largest).all() and (least > -np.inf).all():
+        return scores >= _bar(largest, np.maximum(np.abs(largest), np.abs(least)), tolerance)
     if not (largest > -np.inf).all():
         raise InputError("scores must be numbers, at least one of them above minus infinity, got NaN or nothing")
     least = scores.min(axis=-1, keepdims=True, where=scores > -np.inf, initial=np.inf)
@@ -144,16 +159,11 @@ def scored(
     generator : numpy generator, optional
         Needed by rules that draw.
     """
+    values = partial(rule.scores, episodes_left=episodes_left, generator=generator)
     if getattr(rule, "by_means", False):
-        scores = rule.scores(library, belief, episodes_left=episodes_left, generator=generator)
+        scores = values(library, belief)
         return scores if available is None else np.where(available, scores, -np.inf)
-    return _by_part(
-        lambda part, rows: rule.scores(part, rows, episodes_left=episodes_left, generator=generator),
-        library,
-        belief,
-        available,
-        -np.inf,
-    )
+    return _by_part(values, library, belief, available, -np.inf)
 
 
 def propensities(
@@ -165,13 +175,8 @@ def propensities(
     episodes_left: float | None = None,
 ) -> Array:
     """Probability that the rule selects each policy, (P,) or (k, P); rows sum to 1. Parameters as for `scored`."""
-    return _by_part(
-        lambda part, rows: rule.probabilities(part, rows, episodes_left=episodes_left),
-        library,
-        belief,
-        available,
-        0.0,
-    )
+    values = partial(rule.probabilities, episodes_left=episodes_left)
+    return _by_part(values, library, belief, available, 0.0)
 
 
 def available_mask(available: Available, names: Sequence[str], n_rows: int | None = None) -> Mask:
@@ -210,7 +215,9 @@ def available_mask(available: Available, names: Sequence[str], n_rows: int | Non
         mask = np.zeros(len(names), np.bool_)
         mask[[index_of(policy, names, "policy") for policy in listed]] = True
     if not mask.any(axis=-1).all():
-        raise InputError("available must hold at least one policy, got none; end the episode with skip() instead")
+        raise InputError(
+            "available must hold at least one policy, got none; end the episode with end_episode() instead"
+        )
     return mask
 
 
@@ -221,6 +228,8 @@ def _by_part(
     if available is None or available.all():
         return values(library, belief)
     found = np.full((*belief.shape[:-1], library.n_policies), missing)
+    if available.ndim > 1 and (available == available[:1]).all():
+        available = available[0]
     if available.ndim == 1:
         found[..., available] = values(_part(library, slice(None), available), belief)
         return found
@@ -232,12 +241,12 @@ def _by_part(
 
 
 def _part(library: Any, rows: Any, policies: Mask) -> Any:
-    """The library of some users and policies; see `SignalTable.part` for `rows`."""
+    """The library of some users and policies; only libraries that users do not share have a method `part`."""
     return library.part(rows, policies) if hasattr(library, "part") else PartOfLibrary(library, policies)
 
 
 class PartOfLibrary:
-    """Some policies of a library whose models all users share, as rules read it.
+    """Some policies of a library, as rules read it.
 
     Parameters
     ----------
@@ -258,9 +267,9 @@ class PartOfLibrary:
 
 
 class PartOfOutcomes:
-    """The outcomes of some policies; methods as in `RuleOutcomes`."""
+    """The outcomes of some policies; methods as in `Prediction`."""
 
-    def __init__(self, outcomes: "RuleOutcomes", policies: Mask) -> None:
+    def __init__(self, outcomes: "Prediction", policies: Mask) -> None:
         self._outcomes, self._policies = outcomes, policies
 
     @property

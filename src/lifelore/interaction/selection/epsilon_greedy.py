@@ -7,7 +7,7 @@ import numpy as np
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.selection.choice import tied_shares
-from lifelore.interaction.selection.rule import Array, RuleLibrary, check_generator, weighted
+from lifelore.interaction.selection.rule import Array, RuleLibrary, check_generator
 
 
 @dataclass(frozen=True)

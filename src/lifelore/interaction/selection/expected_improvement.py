@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.prediction import weighted
 from lifelore.interaction.selection.choice import TOLERANCE
 from lifelore.interaction.selection.rule import (
     Array,
@@ -23,7 +24,6 @@ from lifelore.interaction.selection.rule import (
     Variant,
     check_variant,
     range_of_means,
-    weighted,
 )
 
 Improving = Literal["pay", "outcome"]
@@ -50,6 +50,7 @@ class ExpectedImprovement(Deterministic):
 
     Examples
     --------
+    >>> from lifelore.interaction.library.policy_library import PolicyLibrary
     >>> library = PolicyLibrary.from_means([[10.0, 6.0]], [[1.0, 30.0]], policies=["A", "B"])
     >>> ExpectedImprovement().probabilities(library, library.prior).tolist()
     [1.0, 0.0]

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, weighted
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary
 
 
 @dataclass(frozen=True)

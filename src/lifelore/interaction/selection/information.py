@@ -8,7 +8,8 @@ thesis (§4.5.2.2) prints another expression; see the errata.
 import numpy as np
 
 from lifelore.interaction.finite_signals.signal_table import SignalTable, entropy_of_signals
-from lifelore.interaction.selection.rule import Array, weighted
+from lifelore.interaction.outcomes.prediction import weighted
+from lifelore.interaction.selection.rule import Array
 from lifelore.interaction.selection.support import truncated
 
 

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from lifelore.interaction.selection.information import mutual_information
-from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, weighted
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary
 from lifelore.interaction.selection.support import MASS, check_mass
 
 LEAST_INFORMATION = 1e-9

@@ -15,16 +15,9 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.prediction import supported, weighted
 from lifelore.interaction.selection.information import predicted_signals, signals_by_type
-from lifelore.interaction.selection.rule import (
-    Array,
-    Deterministic,
-    RuleLibrary,
-    Variant,
-    check_variant,
-    supported,
-    weighted,
-)
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, Variant, check_variant
 from lifelore.interaction.selection.support import MASS, check_mass, truncated
 
 Candidates = Literal["auto", "responses", "all"]

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.prediction import weighted
 from lifelore.interaction.selection.rule import (
     Array,
     Deterministic,
@@ -17,7 +18,6 @@ from lifelore.interaction.selection.rule import (
     Variant,
     check_variant,
     range_of_means,
-    weighted,
 )
 
 MARGIN_SHARE = 0.02

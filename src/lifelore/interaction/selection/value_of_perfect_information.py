@@ -16,7 +16,8 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, RuleOutcomes, weighted
+from lifelore.interaction.outcomes.prediction import Prediction, weighted
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary
 
 Counted = Literal["episodes", "once"]
 
@@ -44,6 +45,7 @@ class ValueOfPerfectInformation(Deterministic):
     Of two equally likely types, A pays 5 on both; B pays 0 on the first and 8 on the second, 4 on average. Knowing
     B's pay gains 3 in half of the cases, and knowing A's pay gains nothing.
 
+    >>> from lifelore.interaction.library.policy_library import PolicyLibrary
     >>> library = PolicyLibrary.from_means([[5.0, 0.0], [5.0, 8.0]], 1.0, policies=["A", "B"])
     >>> ValueOfPerfectInformation(counted="once").scores(library, library.prior).tolist()
     [5.0, 5.5]
@@ -69,12 +71,12 @@ class ValueOfPerfectInformation(Deterministic):
         return expected + (1.0 if self.counted == "once" else weight) * gain
 
 
-def perfect_gain(outcomes: RuleOutcomes, belief: Array, expected: Array) -> Array:
+def perfect_gain(outcomes: Prediction, belief: Array, expected: Array) -> Array:
     """VPI(π) of each policy, (P,) or (k, P), ≥ 0; 0 where there is a single policy.
 
     Parameters
     ----------
-    outcomes : RuleOutcomes
+    outcomes : Prediction
     belief : (T,) or (k, T) float64
     expected : (P,) or (k, P) float64
         Ũ under this belief.

@@ -140,12 +140,12 @@ class CategorySignal:
             if signals.size and not 0 <= signals.min() <= signals.max() < self.n_categories:
                 raise InputError(f"signals must be category numbers 0 to {self.n_categories - 1}")
             return signals.astype(np.int64, copy=False)
-        if isinstance(signals, np.ndarray | list) and np.ndim(signals):
+        if isinstance(signals, list) or (isinstance(signals, np.ndarray) and signals.ndim):
             return np.array([self.place_of(0, signal) for signal in signals], np.int64)
-        return self.place_of(0, signals)
+        return self.place_of(0, signals)  # pyright: ignore[reportArgumentType]
 
     def law(self, models: Models = "uncertain", *, spread: Spread | None = None, dtype: str = "f8") -> Any:
-        """The law of categories given what users have shown; a fixed law where all is exact, or taken for the truth."""
+        """The law of categories given what users have shown; fixed where all is exact, or taken for the truth."""
         if models == "plug-in" or self.totals is None:
             return FixedLaw(self, self.n_types, self.log_likelihoods, self.places_of)
         counts = self.probs * self.totals[:, :, None]

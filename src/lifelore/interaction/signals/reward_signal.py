@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.outcome_kinds import outcome_kind
+from lifelore.interaction.outcomes.outcome_kinds import OutcomeModel, outcome_kind
 from lifelore.interaction.outcomes.outcome_model import (
     LARGEST,
-    OutcomeModel,
     OutcomeRows,
     check_policy,
     checked_rows,

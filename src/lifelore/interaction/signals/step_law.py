@@ -32,7 +32,7 @@ class StepLaw:
         The library's, from counted steps; not changed.
     """
 
-    learns = True
+    learns, single = True, False
 
     def __init__(self, signal: "StepModel") -> None:
         assert signal.totals is not None

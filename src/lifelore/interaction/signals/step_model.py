@@ -103,7 +103,7 @@ class StepModel:
         return steps
 
     def law(self, models: Models = "uncertain", **_: Any) -> Any:
-        """The law of episodes given what users have shown; a fixed law where all is exact, or taken for the truth."""
+        """The law of episodes given what users have shown; fixed where all is exact, or taken for the truth."""
         return StepLaw(self) if models == "uncertain" and self.totals is not None else FixedLaw(self, self.n_types)
 
     def taken(

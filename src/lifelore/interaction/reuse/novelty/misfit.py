@@ -110,12 +110,13 @@ class MeanPairs:
         self._doubt = np.ascontiguousarray(np.broadcast_to(doubt, mean.shape).T)
 
     def misfit(self, shown: Shown, tasks: Numbers, policies: Numbers) -> Array:
-        count, mean = (shown[name][tasks, policies][..., None] for name in ("count", "mean"))
+        moments = shown["moments"][tasks, policies][..., None, :]
+        count, mean = moments[..., 0], moments[..., 1]
         variance = self._variance[policies] * (1 + count * self._doubt[policies])
         return np.minimum(count * (mean - self._mean[policies]) ** 2 / variance, LARGEST)
 
     def untried(self, shown: Shown, tasks: Numbers, policies: Numbers) -> Any:
-        return shown["count"][tasks, policies] == 0
+        return shown["moments"][tasks, policies][..., 0] == 0
 
 
 class CountedPairs:
