@@ -13,7 +13,7 @@ from lifelore.agent.reuse.user_belief import NAMED_TYPE, open_belief
 from lifelore.agent.reuse.warm import warm
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.reuse.unknown_type import MASS
+from lifelore.interaction.reuse.novelty.novelty_detector import MASS
 from lifelore.memory import open_memory
 
 HEAD = "user,policy,outcome\n"

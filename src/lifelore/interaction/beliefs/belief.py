@@ -85,7 +85,7 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
     """
     joint, best = np.add(log_belief, log_likelihood), None
     top = np.maximum.reduce(joint, axis=-1, keepdims=True)
-    if not (np.abs(top) <= FAR).all():
+    if not np.maximum.reduce(np.abs(top), axis=None) <= FAR:
         joint, top, best = _relative_to_possible(np.asarray(log_belief), np.asarray(log_likelihood))
     log_evidence = np.log(np.add.reduce(np.exp(joint - top), axis=-1, keepdims=True))
     log_evidence += top

@@ -217,7 +217,7 @@ class ReuseAlgorithm:
         """
         before, signals = self.log_belief[users], self.signals.law.checked(signals)
         outcomes = None if outcomes is None else self.outcomes.law.checked(outcomes)
-        if self.signals.law.single and np.shape(signals) != np.shape(users):
+        if self.signals.law.single and not isinstance(signals, float) and np.shape(signals) != np.shape(users):
             raise InputError(f"there must be a signal for each user {np.shape(users)}, got {np.shape(signals)}")
         found = self.signals.evidence(users, policies, signals, before, self._changed(users, before))
         after, log_evidence = self._updated(before, found.log_likelihood)

@@ -63,10 +63,10 @@ def choose(scores: ArrayLike, generator: np.random.Generator, tolerance: float =
     1
     """
     scores = _floats(scores)
-    if scores.ndim == 1:
-        best = _best(scores, tolerance).nonzero()[0]
-        return int(best[0]) if len(best) == 1 else int(best[int(generator.random() * len(best))])
     best = _best(scores, tolerance)
+    if scores.ndim == 1:
+        (best,) = best.nonzero()
+        return int(best[0]) if len(best) == 1 else int(best[int(generator.random() * len(best))])
     chosen = best.argmax(axis=-1)
     if np.count_nonzero(best) > chosen.size:
         number = best.sum(axis=-1)

@@ -108,8 +108,10 @@ def test_arrays_that_are_no_calibration_are_refused():
     good = NoveltyCalibration.of(np.random.default_rng(0).standard_normal((1000, 3)), 0.05).to_arrays()
     again = NoveltyCalibration.from_arrays(good)
     assert again.to_arrays()["calibration"].tolist() == good["calibration"].tolist()
-    for name, value in (("calibration_mean", np.zeros(2)), ("calibration_deviation", np.zeros(3))):
+    for value in (np.zeros((2, 3)), np.full((2, 3), np.nan)):
         with pytest.raises(InputError, match="novelty calibration must have"):
-            NoveltyCalibration.from_arrays(good | {name: value})
+            NoveltyCalibration.from_arrays(good | {"calibration_by_signal": value})
+    with pytest.raises(InputError, match="needs three numbers"):
+        NoveltyCalibration.from_arrays(good | {"calibration_by_signal": np.zeros(3)})
     with pytest.raises(InputError, match="needs three numbers"):
         NoveltyCalibration.from_arrays({})

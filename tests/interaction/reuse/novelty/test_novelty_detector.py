@@ -139,7 +139,7 @@ def test_without_a_calibration_there_is_a_probability_and_no_alarm():
         ({"numbers": np.array([0.5, np.nan])}, "must be finite"),
         ({"misfit": np.zeros(2)}, "no evidence of an unknown type"),
         ({"misfit_by_type": np.zeros(9)}, "no evidence of an unknown type"),
-        ({"calibration_mean": np.zeros(2)}, "novelty calibration must have"),
+        ({"calibration_by_signal": np.zeros((2, 12))}, "novelty calibration must have"),
     ],
 )
 def test_states_that_are_none_are_refused(change, message):

@@ -93,20 +93,17 @@ class NoveltyCalibration:
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """The calibration as arrays; `from_arrays` restores every bit."""
         numbers = np.array([self.false_alarm, self.threshold, self.n_tasks], np.float64)
-        return {"calibration": numbers, "calibration_mean": self.mean, "calibration_deviation": self.deviation}
+        return {"calibration": numbers, "calibration_by_signal": np.stack([self.mean, self.deviation])}
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "NoveltyCalibration":
         """The calibration of `to_arrays`; InputError where the arrays are none."""
         try:
-            false_alarm, threshold, n_tasks = np.asarray(arrays["calibration"], np.float64).tolist()
-            mean, deviation = (
-                np.array(arrays[f"calibration_{name}"], np.float64) for name in ("mean", "deviation")
-            )
+            false_alarm, threshold, n_tasks = arrays["calibration"].tolist()
+            mean, deviation = np.array(arrays["calibration_by_signal"], np.float64)
         except (KeyError, ValueError) as error:
             raise InputError(f"a novelty calibration needs three numbers, mean and deviation: {error}") from None
-        good = mean.ndim == 1 and mean.size and mean.shape == deviation.shape and (deviation > 0).all()
-        if not (good and 0 < false_alarm < 1 and np.isfinite(mean).all()):
+        if not (mean.ndim == 1 and 0 < false_alarm < 1 and np.isfinite(mean).all() and (deviation > 0).all()):
             raise InputError("a novelty calibration must have finite means and positive deviations by signal")
         return cls(false_alarm, mean, deviation, threshold, int(n_tasks))
 

@@ -64,7 +64,7 @@ class Misfit:
     def observe(self, tasks: Numbers, policies: Numbers, signals: Any) -> None:
         """Take in a signal of each of `tasks`; errors as for `UnknownEvidence.observe`."""
         shown, belief = self.evidence.broad.signals.shown, self.evidence.types.belief(tasks)
-        before, first = self._pairs.misfit(shown, tasks, policies), ~self._tried(tasks, policies)
+        before, first = self._pairs.misfit(shown, tasks, policies), self._pairs.untried(shown, tasks, policies)
         self.evidence.observe(tasks, policies, signals)
         self.by_type[tasks] += self._pairs.misfit(shown, tasks, policies) - before
         self.freedom[tasks] += self._pairs.freedom * first
@@ -77,10 +77,6 @@ class Misfit:
         n, freedom = np.maximum(self.n_signals[tasks], 1), np.maximum(self.freedom[tasks], 1)
         misfit = (self.by_type[tasks].min(axis=-1) - self.freedom[tasks]) / np.sqrt(2 * freedom)
         return misfit + self.shortfall[tasks] / np.sqrt(n)
-
-    def _tried(self, tasks: Numbers, policies: Numbers) -> Any:
-        broad = self.evidence.broad.signals
-        return np.take_along_axis(broad.law.tried(broad.shown, tasks), np.asarray(policies)[..., None], -1)[..., 0]
 
     def _fallen_short(self, belief: Array, policies: Numbers, outcomes: Any) -> Any:
         mean = (belief * self._mean[policies]).sum(axis=-1)  # pyright: ignore[reportOptionalSubscript]
@@ -99,6 +95,10 @@ class Pairs(Protocol):
         """χ² of `tasks` (...) and `policies` (...) against each type, (..., n_types); 0 where nothing is shown."""
         ...
 
+    def untried(self, shown: Shown, tasks: Numbers, policies: Numbers) -> Any:
+        """Whether `tasks` (...) have shown nothing of `policies` (...)."""
+        ...
+
 
 class MeanPairs:
     """χ² of mean outcomes; `mean`, `variance` and `doubt` (1/n + ρ) are (n_types, n_policies)."""
@@ -110,9 +110,13 @@ class MeanPairs:
         self._doubt = np.ascontiguousarray(np.broadcast_to(doubt, mean.shape).T)
 
     def misfit(self, shown: Shown, tasks: Numbers, policies: Numbers) -> Array:
-        count, mean = (shown[name][tasks, policies][..., None] for name in ("count", "mean"))
+        moments = shown["moments"][tasks, policies][..., None, :]
+        count, mean = moments[..., 0], moments[..., 1]
         variance = self._variance[policies] * (1 + count * self._doubt[policies])
         return np.minimum(count * (mean - self._mean[policies]) ** 2 / variance, LARGEST)
+
+    def untried(self, shown: Shown, tasks: Numbers, policies: Numbers) -> Any:
+        return shown["moments"][tasks, policies][..., 0] == 0
 
 
 class CountedPairs:
@@ -135,6 +139,9 @@ class CountedPairs:
         total = np.maximum(counts.sum(axis=-1, keepdims=True), 1)
         best = (counts * np.log(np.maximum(counts, 1) / total)).sum(axis=-1)
         return np.clip(2 * (best[..., None] - self._log_likelihood(counts[..., None, :], policies)), 0, LARGEST)
+
+    def untried(self, shown: Shown, tasks: Numbers, policies: Numbers) -> Any:
+        return ~shown["counts"][tasks, policies].any(axis=-1)
 
     def _log_likelihood(self, counts: Array, policies: Numbers) -> Array:
         """log P of sequences with counts (..., 1, n_cells), (..., n_types)."""
