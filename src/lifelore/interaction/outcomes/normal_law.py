@@ -271,7 +271,8 @@ class NormalRows(NormalPrediction):
         # (n_types, n_spreads, n_policies), or (1, ...) where types are alike.
         doubt = law._doubt.T if law._doubt.shape[2] == 1 else law._doubt.T[types]
         pull = n[:, None] * doubt
-        pull = (self._weights[:, :, None] * (pull / (1 + pull))).sum(axis=1)
+        pull /= 1 + pull
+        pull = pull[:, 0] if pull.shape[1] == 1 else (self._weights[:, :, None] * pull).sum(axis=1)
         return law.natural(location + pull * (mean - location)).reshape(*self._shape, -1)
 
     def expected(self, belief: Array) -> Array:

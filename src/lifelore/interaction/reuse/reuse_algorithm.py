@@ -229,7 +229,9 @@ class ReuseAlgorithm:
             self.signals.learn(*_explained(explained, users, policies, signals, found.gain))
         if outcomes is not None and self.outcomes is not self.signals:
             self._learn_outcomes(users, policies, outcomes, before)
-        self.log_belief[users], self._begun[users] = after, False
+        self.log_belief[users] = after
+        if self.dynamics.moves:
+            self._begun[users] = False
         return Observed(found.log_likelihood, log_evidence)
 
     def end_episode(self, users: Numbers, outcome: Any = None) -> None:

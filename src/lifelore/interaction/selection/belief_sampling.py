@@ -34,9 +34,10 @@ class BeliefSampling:
 
 
 def drawn_types(belief: Array, generator: np.random.Generator) -> Any:
-    """Draw a type for each row of beliefs (..., T); never a type of belief 0."""
-    held = np.add.accumulate(belief, axis=-1)
-    if held.ndim == 1:
+    """Draw a type for each row of beliefs (T,) or (k, T); never a type of belief 0."""
+    if belief.ndim == 1:
+        held = np.add.accumulate(belief)
         return held.searchsorted(generator.random() * held[-1], side="right")
-    level = generator.random(held.shape[:-1]) * held[..., -1]
-    return (held > level[..., None]).argmax(axis=-1)
+    # Types first: sums over types then run over many rows at a time.
+    held = np.add.accumulate(np.ascontiguousarray(belief.T), axis=0)
+    return (held <= generator.random(len(belief)) * held[-1]).sum(axis=0)

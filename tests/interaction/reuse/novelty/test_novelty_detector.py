@@ -21,6 +21,7 @@ def _played(pay, episodes=8, noise=1.0, seed=0):
     for _ in range(episodes):
         policy = agent.select()
         agent.update(policy, pay[policy] + noise * random.standard_normal())
+    assert agent.novelty is not None
     return agent, agent.novelty
 
 
@@ -36,6 +37,7 @@ def test_a_user_whom_no_type_fits_raises_an_alarm():
     for seed in range(5):
         _, detector = _played([5.0, 5.0], seed=seed)
         assert detector.alarm
+        assert detector.alarm_episode is not None
         assert detector.alarm_episode <= 3
         assert detector.probability > 0.9
 
@@ -80,7 +82,8 @@ def test_the_probability_is_bayes_rule_with_the_prior_mass():
 
 def test_no_alarm_after_the_horizon():
     detector = DETECTOR.restart()
-    for _ in range(DETECTOR.calibration.horizon):
+    assert detector.calibration is not None
+    for _ in range(detector.calibration.horizon):
         detector.update("left", 10.0)
     for _ in range(20):
         detector.update("left", 4.0)
