@@ -83,10 +83,17 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
     >>> np.exp(after.log_belief).round(3).tolist(), float(np.exp(after.log_evidence).round(3))
     ([0.25, 0.75], 0.2)
     """
-    joint, best = np.add(log_belief, log_likelihood), None
+    log_belief, log_likelihood, best = np.asarray(log_belief), np.asarray(log_likelihood), None
+    if log_likelihood.dtype != log_belief.dtype:
+        # Of likelihoods in float64, rows in float32 take what is left beside the best.
+        best = np.maximum.reduce(log_likelihood, axis=-1, keepdims=True)
+        best = np.where(np.isfinite(best), best, 0.0)
+        log_likelihood = (log_likelihood - best).astype(log_belief.dtype)
+    joint = log_belief + log_likelihood
     top = np.maximum.reduce(joint, axis=-1, keepdims=True)
     if not np.maximum.reduce(np.abs(top), axis=None) <= FAR:
-        joint, top, best = _relative_to_possible(np.asarray(log_belief), np.asarray(log_likelihood))
+        joint, top, more = _relative_to_possible(log_belief, log_likelihood)
+        best = more if best is None else best + more
     log_evidence = np.log(np.add.reduce(np.exp(joint - top), axis=-1, keepdims=True))
     log_evidence += top
     joint -= log_evidence

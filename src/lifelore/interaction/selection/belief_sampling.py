@@ -10,6 +10,10 @@ from lifelore.interaction.selection.choice import tied_shares
 from lifelore.interaction.selection.rule import Array, RuleLibrary, check_generator
 
 
+MOST_TYPES = 128
+"""Number of types up to which running sums of many beliefs are computed as a product."""
+
+
 @dataclass(frozen=True)
 class BeliefSampling:
     """Selects the best response to a type drawn from the belief; also called posterior or Thompson sampling."""
@@ -38,6 +42,7 @@ def drawn_types(belief: Array, generator: np.random.Generator) -> Any:
     if belief.ndim == 1:
         held = np.add.accumulate(belief)
         return held.searchsorted(generator.random() * held[-1], side="right")
-    # Types first: sums over types then run over many rows at a time.
-    held = np.add.accumulate(np.ascontiguousarray(belief.T), axis=0)
-    return (held <= generator.random(len(belief)) * held[-1]).sum(axis=0)
+    # A product with ones above the diagonal is twice as fast as a running sum, up to some hundred types.
+    n = belief.shape[1]
+    held = belief @ np.triu(np.ones((n, n), belief.dtype)) if n <= MOST_TYPES else np.cumsum(belief, axis=1)
+    return (held <= generator.random((len(belief), 1)) * held[:, -1:]).sum(axis=1)
