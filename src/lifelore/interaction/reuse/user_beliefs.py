@@ -28,7 +28,7 @@ Numbers = NDArray[np.int64]
 Users = ArrayLike | Sequence[str]
 """Numbers of users, or their names where the users have names."""
 
-BLOCK = 1 << 16
+BLOCK = 1 << 15
 """Numbers of a block's beliefs: they stay in the processor's cache."""
 LARGEST_BLOCK = 1 << 21
 """Numbers of the largest temporary arrays, which have a row for each user, type, policy and signal."""
