@@ -9,7 +9,6 @@ from lifelore.interaction.outcomes.prediction import weighted
 from lifelore.interaction.selection.choice import tied_shares
 from lifelore.interaction.selection.rule import Array, RuleLibrary, check_generator
 
-
 MOST_TYPES = 128
 """Number of types up to which running sums of many beliefs are computed as a product."""
 
