@@ -220,9 +220,8 @@ class WorkingBelief:
         if novelty:
             from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 
-            belief.novelty = NoveltyDetector(
-                study.library, prior=prior, dynamics=study.dynamics, models=study.models
-            )
+            models: Any = study.models
+            belief.novelty = NoveltyDetector(study.library, prior=prior, dynamics=study.dynamics, models=models)
         return belief
 
     def learn(self, policy: str | None, outcome: float | None) -> None:

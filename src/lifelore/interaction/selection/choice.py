@@ -228,12 +228,11 @@ def _by_part(
     if available is None or available.all():
         return values(library, belief)
     found = np.full((*belief.shape[:-1], library.n_policies), missing)
-    if available.ndim > 1 and (available == available[:1]).all():
-        available = available[0]
-    if available.ndim == 1:
-        found[..., available] = values(_part(library, slice(None), available), belief)
+    sets = np.atleast_2d(available)
+    if (sets == sets[:1]).all():
+        found[..., sets[0]] = values(_part(library, slice(None), sets[0]), belief)
         return found
-    sets, group = np.unique(available, axis=0, return_inverse=True)
+    sets, group = np.unique(sets, axis=0, return_inverse=True)
     for number, policies in enumerate(sets):
         rows = np.flatnonzero(group.ravel() == number)
         found[np.ix_(rows, policies)] = values(_part(library, rows, policies), belief[rows])
