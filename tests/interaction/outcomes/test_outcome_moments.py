@@ -46,7 +46,7 @@ def test_against_the_naive_twin(seed, shrinkage):
 def test_one_at_a_time_is_all_at_once_with_the_same_pooled_variance(values):
     first = moments(rows_of_samples([[values[:1]]]), 5.0, pooled=2.0)
     for value in values[1:]:
-        first.observe(0, 0, value)
+        first.absorb(0, 0, 1, value, 0.0)
     whole = moments(rows_of_samples([[values]]), 5.0, pooled=2.0)
     np.testing.assert_allclose(first.mean, whole.mean, rtol=1e-9, atol=1e-6)
     np.testing.assert_allclose(first.variance, whole.variance, rtol=1e-7)

@@ -105,14 +105,13 @@ def _packed(part: Any, name: str, library: Library, arrays: Arrays) -> dict[str,
     if part is library.performance:
         return {"kind": "performance"}
     kind = getattr(part, "kind", None)
-    if kind in OUTCOMES:
-        arrays.update({f"{name}.{key}": value for key, value in part.to_arrays().items()})
-        return {"kind": kind}
-    if kind not in SIGNALS:
+    if kind not in OUTCOMES and kind not in SIGNALS:
         return {"kind": "own", "class": type(part).__name__}
-    arrays.update({f"{name}.{key}": value for key, value in part.to_arrays().items()})
-    parts = [_packed(inner, f"{name}.{i}", library, arrays) for i, inner in enumerate(part.parts())]
-    return {"kind": kind, "parts": parts}
+    inner = part.parts() if hasattr(part, "parts") else ()
+    if not inner:
+        arrays.update({f"{name}.{key}": value for key, value in part.to_arrays().items()})
+    parts = [_packed(model, f"{name}.{i}", library, arrays) for i, model in enumerate(inner)]
+    return {"kind": kind} if kind in OUTCOMES else {"kind": kind, "parts": parts}
 
 
 def _unpacked(
@@ -127,13 +126,14 @@ def _unpacked(
         )
     if depth > DEEPEST:
         raise ValueError("signals within signals go too deep")
-    if kind in OUTCOMES:
-        return OUTCOMES[kind].from_arrays(_under(name, arrays))
+    model = OUTCOMES[kind] if kind in OUTCOMES else SIGNALS[kind]
+    if not hasattr(model, "parts"):
+        return model.from_arrays(_under(name, arrays))
     parts = [
         _unpacked(inner, f"{name}.{i}", performance, arrays, where, depth + 1)
         for i, inner in enumerate(node["parts"])
     ]
-    return SIGNALS[kind].from_arrays(_under(name, arrays), tuple(parts))
+    return model.from_parts(parts)
 
 
 def _under(name: str, arrays: Arrays) -> Arrays:

@@ -7,7 +7,7 @@ except for the pooled variance, which stays. Thesis: §4.4.1, step 4.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 
 FLOOR = 1e-3
 """Least deviation learnt from samples, as a share of their range: equal samples do not prove a deviation of 0."""
+OF_PAIRS = ("mean", "variance", "count", "freedom")
+"""Fields of `OutcomeMoments` with a number for each pair."""
 
 
 @dataclass
@@ -49,10 +51,6 @@ class OutcomeMoments:
     shrinkage: float
     spread: Spread | None = None
 
-    def observe(self, type_: int, policy: int, value: float) -> None:
-        """Learn from another outcome, in place."""
-        self.absorb(type_, policy, 1, value, 0.0)
-
     def absorb(self, type_: int, policy: int, count: float, mean: float, squares: float) -> None:
         """Learn from `count` outcomes at once, by their mean and sum of squares around it, in place."""
         pair = type_, policy
@@ -68,18 +66,15 @@ class OutcomeMoments:
         self.mean[pair] += count / total * apart
         self.count[pair], self.freedom[pair] = total, self.freedom[pair] + count
 
-    def joined(self, other: "OutcomeMoments", axis: int) -> "OutcomeMoments":
-        """With the types (axis 0) or policies (axis 1) of `other` after these."""
-        pairs = zip(self._fields(), other._fields(), strict=True)
-        return self._with([np.concatenate(pair, axis=axis) for pair in pairs])
-
     def more(self, samples: ArrayLike, axis: int, gaps: bool = False) -> "OutcomeMoments":
         """With an additional type (axis 0) or policy (axis 1), from `samples` (size of the other axis, n).
 
         With `gaps`, pairs without a sample are guessed (`guess_gaps`).
         """
         rows = rows_of_more(samples, self.mean.shape[1 - axis], axis, gaps)
-        found = self.joined(_moments(rows, self.shrinkage, self.pooled), axis)
+        new = _moments(rows, self.shrinkage, self.pooled)
+        both = {name: (getattr(self, name), getattr(new, name)) for name in OF_PAIRS}
+        found = replace(self, **{name: np.concatenate(pair, axis=axis) for name, pair in both.items()})
         found.guess_gaps()
         return found
 
@@ -104,7 +99,7 @@ class OutcomeMoments:
     def take(self, types: Sequence[int] | None, policies: Sequence[int] | None) -> "OutcomeMoments":
         """The moments of some types and policies."""
         chosen = np.ix_(chosen_of(types, self.mean.shape[0]), chosen_of(policies, self.mean.shape[1]))
-        return self._with([field[chosen] for field in self._fields()])
+        return replace(self, **{name: getattr(self, name)[chosen] for name in OF_PAIRS})
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """All fields by name; the spread only where it is known."""
@@ -114,7 +109,7 @@ class OutcomeMoments:
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> "OutcomeMoments":
         """The moments of `to_arrays`; InputError where the arrays are no moments."""
-        fields = [np.array(arrays[name], np.float64) for name in ("mean", "variance", "count", "freedom")]
+        fields = [np.array(arrays[name], np.float64) for name in OF_PAIRS]
         mean, variance, count, freedom = fields
         spread = Spread.of_array(arrays["spread"]) if "spread" in arrays else None
         found = cls(mean, variance, count, freedom, float(arrays["pooled"]), float(arrays["shrinkage"]), spread)
@@ -124,13 +119,6 @@ class OutcomeMoments:
         if not (good & (count > 0) & (freedom > 0)).all() or not found.pooled > 0:
             raise InputError("means must be finite, variances, counts and degrees of freedom positive")
         return found
-
-    def _with(self, fields: list[Array]) -> "OutcomeMoments":
-        mean, variance, count, freedom = fields
-        return OutcomeMoments(mean, variance, count, freedom, self.pooled, self.shrinkage, self.spread)
-
-    def _fields(self) -> tuple[Array, Array, Array, Array]:
-        return self.mean, self.variance, self.count, self.freedom
 
 
 def known_moments(mean: ArrayLike, deviation: ArrayLike, count: ArrayLike | None = None) -> OutcomeMoments:

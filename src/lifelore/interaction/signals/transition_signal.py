@@ -76,18 +76,6 @@ class TransitionSignal(StepModel):
         counts = step_counts(steps, n_types, n_policies, (n_states, n_actions, n_states))
         return cls.from_counts(counts, pseudo_count, possible)
 
-    def log_likelihood(self, policy: int, signal: ArrayLike) -> Array:
-        """Log likelihood of the transitions (n, 3) or (n, 2) per type, (n_types,).
-
-        Raises
-        ------
-        InputError
-            A number is not whole, or outside the table.
-        NotFoundError
-            There is no such policy.
-        """
-        return self.log_sum(policy, self.steps_of(signal))
-
     def steps_of(self, signal: ArrayLike) -> NDArray[np.int64]:
         """A signal as steps (n, 3): state, action, next state."""
         return _triples(signal)
@@ -97,7 +85,7 @@ class TransitionSignal(StepModel):
         return type(self)(*self.taken(types, policies))
 
     @classmethod
-    def from_arrays(cls, arrays: dict[str, NDArray[Any]], parts: tuple[Any, ...]) -> Self:
+    def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self:
         """The model of `to_arrays`, bit for bit."""
         return cls.__new__(cls)._restore(arrays)
 
