@@ -10,7 +10,7 @@ name, and the reader takes the model from the caller.
 """
 
 from collections.abc import Callable
-from typing import Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from lifelore.core.errors import InputError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
@@ -23,6 +23,9 @@ from lifelore.interaction.signals.return_signal import ReturnSignal
 from lifelore.interaction.signals.reward_signal import RewardSignal
 from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
 from lifelore.interaction.signals.transition_signal import TransitionSignal
+
+if TYPE_CHECKING:
+    from lifelore.interaction.library.policy_library import PolicyLibrary
 
 FORMAT = PackedFormat("lifelore policy library", 1, "policy library", "save")
 SIGNALS: dict[str, Any] = {
@@ -42,20 +45,10 @@ DEEPEST = 8
 """Largest depth of signals within signals in a file."""
 
 
-class Library(Protocol):
-    """The attributes of a `PolicyLibrary` that a file holds."""
-
-    performance: Any
-    signal: SignalModel
-    types: tuple[str, ...]
-    policies: tuple[str, ...]
-    prior: Any
+L = TypeVar("L")
 
 
-L = TypeVar("L", bound=Library)
-
-
-def packed_library(library: Library) -> bytes:
+def packed_library(library: "PolicyLibrary") -> bytes:
     """The library as the bytes of an npz file; InputError where the performance model is the caller's own."""
     kind = getattr(library.performance, "kind", None)
     if kind not in OUTCOMES:
@@ -100,7 +93,7 @@ def unpacked_library(content: bytes, where: str, signal: SignalModel | None, mak
         raise FORMAT.damaged(where, error) from None
 
 
-def _packed(part: Any, name: str, library: Library, arrays: Arrays) -> dict[str, Any]:
+def _packed(part: Any, name: str, library: "PolicyLibrary", arrays: Arrays) -> dict[str, Any]:
     """The description of a model as JSON; its arrays go into `arrays` under `name`."""
     if part is library.performance:
         return {"kind": "performance"}

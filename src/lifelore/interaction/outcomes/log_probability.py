@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.outcome_model import numbers
+from lifelore.interaction.outcomes.outcome_model import numbers, of_shape
 
 Array = NDArray[np.float64]
 
@@ -38,9 +38,7 @@ def checked_counts(count: ArrayLike, shape: tuple[int, ...]) -> Array:
     InputError
         It has another shape, or is not positive and finite.
     """
-    found = np.asarray(count, np.float64)
-    if found.ndim and found.shape != shape:
-        raise InputError(f"count must be one number or of shape {shape}, got {found.shape}")
+    found = of_shape(count, shape, "count")
     if not ((found > 0) & np.isfinite(found)).all():
         raise InputError(f"count must be positive and finite, got {count!r:.80}; omit it for exact probabilities")
-    return np.broadcast_to(found, shape).copy()
+    return found

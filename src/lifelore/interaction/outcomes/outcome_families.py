@@ -2,9 +2,15 @@
 
 The policy's mean or probabilities over all users count as `PSEUDO` outcomes of each type. A type whose users never
 met a policy then has the outcomes of all users. Rows of outcomes have users in place of types.
-"""
 
-from typing import Protocol
+A family has
+
+    stats            sufficient statistics of each user's outcomes, (n_users, n_stats)
+    fit(shares)      the most likely types, (n_types, n_stats), given the users' shares in types (n_users, n_types)
+    n_parameters(n)  number of free parameters of n types and their weights
+
+so that ``stats @ fit(shares).T`` are log likelihoods (n_users, n_types).
+"""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,24 +23,6 @@ PSEUDO = 1.0
 """Number of outcomes of each type that a policy's distribution over all users counts as."""
 FLOOR = 1e-3
 """Least deviation of a policy's outcomes within a type, as a share of the deviation of all outcomes."""
-
-
-class OutcomeFamily(Protocol):
-    """Log likelihoods (n_users, n_types) as a product: ``stats @ fit(shares).T``.
-
-    stats : (n_users, n_stats) float64
-        Sufficient statistics of each user's outcomes.
-    """
-
-    stats: Array
-
-    def fit(self, shares: Array) -> Array:
-        """The most likely types, (n_types, n_stats), given the users' membership `shares` (n_users, n_types)."""
-        ...
-
-    def n_parameters(self, n_types: int) -> int:
-        """Number of free parameters of `n_types` types and their weights."""
-        ...
 
 
 class GaussianFamily:
@@ -86,8 +74,6 @@ class CategoricalFamily:
         return counts.reshape(len(counts), self._n_values, -1)
 
 
-FAMILIES: dict[str, type[GaussianFamily] | type[CategoricalFamily]] = {
-    "gaussian": GaussianFamily,
-    "categorical": CategoricalFamily,
-}
+OutcomeFamily = GaussianFamily | CategoricalFamily
+FAMILIES: dict[str, type[OutcomeFamily]] = {"gaussian": GaussianFamily, "categorical": CategoricalFamily}
 """Every family by its name."""

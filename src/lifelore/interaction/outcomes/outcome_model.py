@@ -92,6 +92,14 @@ def numbers(values: ArrayLike, rule: str) -> Array:
         raise InputError(f"{rule}, got {values!r:.80}") from None
 
 
+def of_shape(values: ArrayLike, shape: tuple[int, ...], name: str) -> Array:
+    """A number, or an array of `shape`, as a new float64 array of `shape`; InputError for another shape."""
+    found = numbers(values, f"{name} must be one number or of shape {shape}")
+    if found.ndim and found.shape != shape:
+        raise InputError(f"{name} must be one number or of shape {shape}, got {found.shape}")
+    return np.broadcast_to(found, shape).copy()
+
+
 def rows_of_samples(samples: ArrayLike, weights: ArrayLike | None = None, gaps: bool = False) -> OutcomeRows:
     """The outcomes of `samples` (n_types, n_policies, n), NaN where missing, every pair run unless `gaps`.
 

@@ -19,6 +19,8 @@ from lifelore.interaction.outcomes.outcome_model import (
     LEAST_DEVIATION,
     OutcomeRows,
     checked_rows,
+    numbers,
+    of_shape,
     rows_of_samples,
 )
 from lifelore.interaction.outcomes.spread import Spread
@@ -132,7 +134,8 @@ def known_moments(mean: ArrayLike, deviation: ArrayLike, count: ArrayLike | None
     mean = np.array(mean, np.float64)
     if mean.ndim != 2 or not mean.size:
         raise InputError(f"mean must be (n_types, n_policies) numbers, none of them 0, got {mean.shape}")
-    deviation, count = _spread_out(deviation, mean, "deviation"), _spread_out(count, mean, "count")
+    deviation = of_shape(deviation, mean.shape, "deviation")
+    count = of_shape(np.inf if count is None else count, mean.shape, "count")
     if not (np.abs(mean) <= LARGEST).all():
         raise InputError(
             f"mean must be finite and of at most {LARGEST:g} in every pair; leave out types or policies never run"
@@ -180,7 +183,7 @@ def _moments(rows: OutcomeRows, shrinkage: float, pooled: float | None = None) -
 
 def rows_of_more(samples: ArrayLike, n_others: int, axis: int, gaps: bool = False) -> OutcomeRows:
     """`samples` (n_others, n) of an additional type (axis 0) or policy (axis 1); see `rows_of_samples`."""
-    samples = np.asarray(samples, np.float64)
+    samples = numbers(samples, "samples must be numbers in rows of one length, NaN where missing")
     if samples.ndim != 2 or len(samples) != n_others:
         others = "policies" if axis == 0 else "types"
         raise InputError(f"samples must be ({n_others}, n), one row for each of the {others}, got {samples.shape}")
@@ -195,13 +198,6 @@ def chosen_of(chosen: Sequence[int] | None, n: int) -> NDArray[np.int64]:
     if index.ndim != 1 or not index.size or index.min() < 0 or index.max() >= n:
         raise InputError(f"the chosen numbers must be one or more of 0 to {n - 1}, got {chosen}")
     return index
-
-
-def _spread_out(values: ArrayLike | None, mean: Array, name: str) -> Array:
-    values = np.asarray(np.inf if values is None else values, np.float64)
-    if values.ndim > 0 and values.shape != mean.shape:
-        raise InputError(f"{name} must be one number or of mean's shape {mean.shape}, got {values.shape}")
-    return np.broadcast_to(values, mean.shape).copy()
 
 
 def _pooled(squares: Array, count: Array, mean: Array) -> float:

@@ -126,16 +126,18 @@ class StepModel:
         totals = {} if self.totals is None else {"totals": self.totals}
         return {"log": self.log_table, "shared": np.array([self.shared, self.n_policies or 0]), **totals}
 
-    def _restore(self, arrays: dict[str, NDArray[Any]]) -> Self:
-        """Restore the arrays of `to_arrays`, bit for bit."""
+    @classmethod
+    def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        """The model of `to_arrays`, bit for bit."""
         log, (shared, n_policies) = np.array(arrays["log"], np.float64), arrays["shared"].tolist()
         if log.ndim != 5 or not log.size or not (log <= _ABOVE).all() or (shared and len(log) != 1):
             raise InputError("log must be logarithms of probabilities by policy, state, action, outcome, type")
-        self.log_table, self.shared, self.n_policies = log, bool(shared), int(n_policies) or None
-        self.totals = np.array(arrays["totals"], np.float64) if "totals" in arrays else None
-        if self.totals is not None and self.totals.shape != (*log.shape[:3], log.shape[4]):
+        model = cls.__new__(cls)
+        model.log_table, model.shared, model.n_policies = log, bool(shared), int(n_policies) or None
+        model.totals = np.array(arrays["totals"], np.float64) if "totals" in arrays else None
+        if model.totals is not None and model.totals.shape != (*log.shape[:3], log.shape[4]):
             raise InputError("totals must be the steps behind each row, by policy, state, action, type")
-        return self
+        return model
 
 
 def check_steps(steps: NDArray[np.int64], shape: tuple[int, int, int]) -> None:
@@ -143,21 +145,6 @@ def check_steps(steps: NDArray[np.int64], shape: tuple[int, int, int]) -> None:
     if len(steps) and not ((steps >= 0).all() and (steps < shape).all()):
         bad = steps[((steps < 0) | (steps >= shape)).any(axis=1)][0]
         raise InputError(f"each step must be below {shape} (states, actions, outcomes), got {tuple(bad.tolist())}")
-
-
-def whole_numbers(steps: ArrayLike, what: str) -> NDArray[np.int64]:
-    """A sequence of rows of whole numbers, (n, columns); InputError for anything else."""
-    try:
-        found = np.asarray(steps)
-    except ValueError:
-        found = np.array(None)
-    if not found.size:
-        return np.empty((0, 3), np.int64)
-    if found.dtype.kind in "iuf" and found.ndim == 2 and (np.abs(found) < 2**53).all():
-        whole = found.astype(np.int64)
-        if (whole == found).all():
-            return whole
-    raise InputError(f"a signal must be rows of {what}, whole numbers, got {steps!r:.80}")
 
 
 def step_counts(

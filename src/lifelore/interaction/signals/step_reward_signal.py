@@ -79,7 +79,7 @@ class StepRewardSignal(StepModel):
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self:
         """The model of `to_arrays`, bit for bit."""
-        model = cls.__new__(cls)._restore(arrays)
+        model = super().from_arrays(arrays)
         model.rewards = np.array(arrays["rewards"], np.float64)
         model._index = _index_of(model.rewards, model.shape[2])
         return model
