@@ -121,9 +121,7 @@ def _extended(
     found = user_types(part, generator, **settings)
     shares = np.zeros((rows.shape[0], found.n_types))
     shares[sample] = found.probs
-    likelihood = made.stats @ made.fit(shares).T + np.log(found.weights)
-    each = np.asarray(logsumexp(likelihood, axis=1, keepdims=True))
-    probs, weights, _ = _maximised(made, np.exp(likelihood - each))
+    probs, weights, _ = _maximised(made, _expected(made, shares, found.weights)[0])
     return _named(_Fit(probs, weights, min(found.criteria)), found.criteria)
 
 
@@ -176,15 +174,19 @@ def _maximised(family: OutcomeFamily, shares: Array) -> tuple[Array, Array, floa
     """Shares, weights and log likelihood at the end of expectation–maximisation from `shares`."""
     likelihood, before = -np.inf, -np.inf
     for _ in range(STEPS):
-        weights = shares.mean(axis=0)
-        with np.errstate(divide="ignore"):
-            joint = family.stats @ family.fit(shares).T + np.log(weights)
-        each = np.asarray(logsumexp(joint, axis=1, keepdims=True))
-        shares, likelihood = np.exp(joint - each), float(each.sum())
+        shares, likelihood = _expected(family, shares, shares.mean(axis=0))
         if likelihood - before < ENOUGH * abs(likelihood):
             break
         before = likelihood
     return shares, shares.mean(axis=0), likelihood
+
+
+def _expected(family: OutcomeFamily, shares: Array, weights: Array) -> tuple[Array, float]:
+    """Each user's shares in the types fitted to `shares`, and the log likelihood of all outcomes."""
+    with np.errstate(divide="ignore"):
+        joint = family.stats @ family.fit(shares).T + np.log(weights)
+    each = np.asarray(logsumexp(joint, axis=1, keepdims=True))
+    return np.exp(joint - each), float(each.sum())
 
 
 def _named(fit: _Fit, criteria: tuple[float, ...]) -> UserTypes:

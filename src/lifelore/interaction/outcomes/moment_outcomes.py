@@ -63,7 +63,7 @@ class MomentOutcomes(NormalPrediction):
     @classmethod
     def from_rows(cls, rows: OutcomeRows, shrinkage: float = 5.0, gaps: bool = False) -> Self:
         """The model fitted to rows of outcomes; see `from_samples`."""
-        return cls.of(moments(rows, shrinkage, gaps=gaps))
+        return cls.of(moments(rows, shrinkage, gaps))
 
     @classmethod
     def of(cls, found: OutcomeMoments) -> Self:

@@ -151,10 +151,8 @@ def known_moments(mean: ArrayLike, deviation: ArrayLike, count: ArrayLike | None
     return OutcomeMoments(mean, variance, count, count.copy(), float(variance.mean()), 5.0)
 
 
-def moments(
-    rows: OutcomeRows, shrinkage: float = 5.0, pooled: float | None = None, gaps: bool = False
-) -> OutcomeMoments:
-    """Moments of the outcomes, variances shrunk towards `pooled`, by default the variance within all pairs.
+def moments(rows: OutcomeRows, shrinkage: float = 5.0, gaps: bool = False) -> OutcomeMoments:
+    """Moments of the outcomes, variances shrunk towards the variance within all pairs.
 
     Raises
     ------
@@ -163,15 +161,13 @@ def moments(
     """
     if not (shrinkage > 0 and np.isfinite(shrinkage)):
         raise InputError(f"shrinkage must be positive and finite, got {shrinkage}")
-    if pooled is not None and not (pooled > 0 and np.isfinite(pooled)):
-        raise InputError(f"pooled must be a positive variance, got {pooled}")
-    found = _moments(checked_rows(rows, gaps), shrinkage, pooled)
+    found = _moments(checked_rows(rows, gaps), shrinkage)
     found.guess_gaps()
     return found
 
 
 def _moments(rows: OutcomeRows, shrinkage: float, pooled: float | None = None) -> OutcomeMoments:
-    """As `moments`; a pair without a sample has the count 0."""
+    """As `moments`, variances shrunk towards `pooled` where given; a pair without a sample has the count 0."""
     count = rows.sums()
     mean = rows.sums(rows.values) / np.where(count > 0, count, 1.0)
     squares = rows.sums((rows.values - mean[rows.types, rows.policies]) ** 2)
