@@ -4,7 +4,7 @@ import numpy as np
 from scipy.stats import norm
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.finite_signals.signal_bins import informative_cuts, normal_table
+from lifelore.interaction.finite_signals.signal_bins import normal_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 
 
@@ -49,8 +49,7 @@ class SmallLibrary:
             raise InputError("no finite alphabet of signals")
         if self.probs is not None:
             return SignalTable(self.probs)
-        model = self.performance
-        return normal_table(model.mean, model.deviation, informative_cuts(model.mean, model.deviation, n_bins))
+        return normal_table(self.performance.mean, self.performance.deviation, n_bins)[1]
 
     def take(self, policies):
         """The library of some policies, made anew."""

@@ -414,12 +414,12 @@ def test_a_flat_belief_over_symmetric_types_ties_all_policies():
 WITHOUT = """
 import sys
 import numpy as np
-from lifelore.interaction.finite_signals.signal_bins import informative_cuts, normal_table
+from lifelore.interaction.finite_signals.signal_bins import normal_table
 from lifelore.interaction.selection import choose
 from lifelore.interaction.selection.information import mutual_information
 from lifelore.interaction.selection.knowledge_gradient import knowledge_gain
 mean, belief, deviation = np.arange(9.0).reshape(3, 3) % 5, np.full(3, 1 / 3), np.ones((3, 3))
-table = normal_table(mean, deviation, informative_cuts(mean, deviation, 8))
+_, table = normal_table(mean, deviation, 8)
 for scores in (mutual_information(belief, table), knowledge_gain(belief, mean, table)):
     choose(scores, np.random.default_rng(0))
 print([name for name in ("numba", "scipy") if name in sys.modules])

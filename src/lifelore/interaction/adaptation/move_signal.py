@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.law import FixedLaw, Numbers
-from lifelore.interaction.outcomes.outcome_model import check_policy
+from lifelore.interaction.outcomes.outcome_model import check_known
 
 Array = NDArray[np.float64]
 
@@ -74,7 +74,7 @@ class MoveSignal:
         NotFoundError
             There is no such policy.
         """
-        check_policy(policy, self.n_policies)
+        check_known("policy", policy, self.n_policies)
         return self.log_table[policy, self._checked(signal)]
 
     def law(self, models: Any = "uncertain", **_: Any) -> FixedLaw:

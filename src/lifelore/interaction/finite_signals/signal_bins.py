@@ -44,7 +44,7 @@ def informative_cuts(mean: Array, deviation: Array, n_bins: int) -> Array:
     InputError
         `n_bins` is below 2.
     """
-    check_bins(n_bins)
+    _check_bins(n_bins)
     n_types, n_policies = mean.shape
     if n_types > MOST_TYPES:
         # Types spread evenly over the range of means suffice: a thousand give the same cuts.
@@ -58,27 +58,28 @@ def informative_cuts(mean: Array, deviation: Array, n_bins: int) -> Array:
     return np.concatenate(parts)
 
 
-def normal_table(mean: Array, deviation: Array, cuts: Array) -> SignalTable:
-    """P(bin | type, policy) of normal outcomes; the first and the last bin reach to infinity.
-
-    Parameters
-    ----------
-    mean, deviation : (..., T, P) float64
-    cuts : (P, n) float64
-        As `informative_cuts` gives them; there are n + 1 bins.
-    """
-    return SignalTable(normal_probs(mean, deviation, cuts))
+def normal_table(mean: Array, deviation: Array, n_bins: int) -> tuple[Array, SignalTable]:
+    """The `informative_cuts` of normal outcomes, and P(bin | type, policy) between them; parameters as there."""
+    cuts = informative_cuts(mean, deviation, n_bins)
+    return cuts, SignalTable(normal_probs(mean, deviation, cuts))
 
 
 def normal_probs(mean: Array, deviation: Array, cuts: Array) -> Array:
-    """P(bin) of normals (...) between rising cuts (..., n), (..., n + 1)."""
+    """P(bin) of normals (...) between rising cuts (..., n), (..., n + 1); the outer bins reach to infinity."""
     return bin_probs(_below(mean, deviation, cuts))
 
 
-def joined_table(probs: Array, n_bins: int) -> SignalTable:
-    """P(bin | type, policy) of cells (T, P, n), neighbours joined until at most `n_bins` are left."""
-    check_bins(n_bins)
-    return SignalTable(joined(probs, joined_ends(probs.transpose(1, 0, 2), n_bins)))
+def joined_table(probs: Array, n_bins: int) -> tuple[Ints, SignalTable]:
+    """The `joined_ends` of cells (T, P, n) joined until at most `n_bins` are left, and P(bin | type, policy).
+
+    Raises
+    ------
+    InputError
+        `n_bins` is below 2.
+    """
+    _check_bins(n_bins)
+    ends = joined_ends(probs.transpose(1, 0, 2), n_bins)
+    return ends, SignalTable(joined(probs, ends))
 
 
 def bin_probs(cumulative: Array) -> Array:
@@ -136,7 +137,7 @@ def joined(probs: Array, ends: Ints) -> Array:
     return np.matmul(probs[..., None, :], member.astype(np.float64))[..., 0, :]
 
 
-def check_bins(n_bins: int) -> None:
+def _check_bins(n_bins: int) -> None:
     """Raise InputError for fewer than two bins."""
     if n_bins < 2:
         raise InputError(f"n_bins must be at least 2, got {n_bins}")

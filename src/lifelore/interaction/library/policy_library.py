@@ -21,6 +21,7 @@ from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.outcome_columns import rows_of_columns
 from lifelore.interaction.outcomes.outcome_kinds import OutcomeModel, outcome_kind
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows, rows_of_samples
+from lifelore.interaction.outcomes.outcome_moments import chosen_of
 from lifelore.interaction.signals.return_signal import ReturnSignal
 
 Array = NDArray[np.float64]
@@ -290,15 +291,14 @@ class PolicyLibrary:
             )
         else:
             signal = cut(types, policies)
-        chosen = range(self.n_types) if types is None else types
-        left = self.prior[list(chosen)]
-        if prior is None and not left.sum() > 0:
-            raise InputError("the types taken have no prior mass; give prior=")
-        names = tuple(self.types[i] for i in chosen)
-        policy_names = tuple(self.policies[i] for i in (range(self.n_policies) if policies is None else policies))
-        return type(self)(
-            performance, signal, names, policy_names, left / left.sum() if prior is None else np.asarray(prior)
-        )
+        chosen, left_policies = chosen_of(types, self.n_types), chosen_of(policies, self.n_policies)
+        if prior is None:
+            left = self.prior[chosen]
+            if not left.sum() > 0:
+                raise InputError("the types taken have no prior mass; give prior=")
+            prior = left / left.sum()
+        names = tuple(self.types[i] for i in chosen), tuple(self.policies[i] for i in left_policies)
+        return type(self)(performance, signal, *names, np.asarray(prior))
 
     def save(self, path: str | Path) -> None:
         """Write the library as one npz file; see `library_file`.

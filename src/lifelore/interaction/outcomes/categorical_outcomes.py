@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.cells import ValueCells, distinct_values
 from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
-from lifelore.interaction.outcomes.log_probability import checked_distributions, checked_weight
+from lifelore.interaction.outcomes.log_probability import checked_counts, checked_distributions
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows, rows_of_samples
 from lifelore.interaction.outcomes.pseudo_counts import PseudoCount
 
@@ -51,7 +51,7 @@ class CategoricalOutcomes(CountedOutcomes):
         if values.shape != (probs.shape[2],):
             raise InputError(f"values must be {probs.shape[2]} numbers, one a column of probs, got {values.shape}")
         order = np.argsort(values)
-        counts = np.ascontiguousarray(probs[:, :, order]) * checked_weight(count)
+        counts = np.ascontiguousarray(probs[:, :, order]) * (1.0 if count is None else checked_counts(count, ()))
         super().__init__(ValueCells(values[order]), counts, 0.0 if count is None else 0.5, count is None)
 
     @property

@@ -1,6 +1,13 @@
-"""Cells that outcomes are counted in: distinct values, or bins between edges within which outcomes are uniform."""
+"""Cells that outcomes are counted in: distinct values, or bins between edges within which outcomes are uniform.
 
-from typing import Any, Protocol
+Cells have
+
+    places           the values, or the edges of the bins
+    means, variances of U within each cell, (n_cells,)
+    sizes            divisors that turn probabilities of cells into densities, (n_cells,)
+"""
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,46 +18,6 @@ Array = NDArray[np.float64]
 
 SAME = 1e-9
 """Outcomes that differ by less, relative to the larger of 1 and their size, are the same value."""
-
-
-class Cells(Protocol):
-    """Cells of outcomes.
-
-    Attributes
-    ----------
-    places : (n,) float64
-        The values, or the edges of the bins.
-    means, variances : (n_cells,) float64
-        Of U within each cell.
-    sizes : (n_cells,) float64
-        Divisors that turn probabilities of cells into densities.
-    """
-
-    places: Array
-    means: Array
-    variances: Array
-    sizes: Array
-
-    @property
-    def extent(self) -> str:
-        """The cells in words."""
-        ...
-
-    def of(self, values: ArrayLike) -> NDArray[np.int64]:
-        """The cells of values (...), -1 where a value has none."""
-        ...
-
-    def above(self, threshold: Array) -> Array:
-        """P(U > threshold) within each cell, (..., 1) to (..., n_cells)."""
-        ...
-
-    def excess(self, threshold: Array) -> Array:
-        """E[max(U − threshold, 0)] within each cell, (..., 1) to (..., n_cells)."""
-        ...
-
-    def sample(self, generator: np.random.Generator, cells: Any) -> Any:
-        """Random outcomes within cells (...)."""
-        ...
 
 
 class ValueCells:
@@ -153,6 +120,9 @@ class BinCells:
     def sample(self, generator: np.random.Generator, cells: Any) -> Any:
         """Uniform outcomes within bins (...)."""
         return generator.uniform(self.places[cells], self.places[np.asarray(cells) + 1])
+
+
+Cells = ValueCells | BinCells
 
 
 def distinct_values(values: Array) -> Array:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.finite_signals.signal_bins import check_bins, joined, joined_ends
+from lifelore.interaction.finite_signals.signal_bins import joined, joined_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.cells import Cells
 from lifelore.interaction.outcomes.law import Numbers, Shown
@@ -125,9 +125,7 @@ class CountedLaw:
     ) -> SignalTable:
         """The cells as signals; above `n_bins` cells, neighbours are joined so that they tell the types apart."""
         if n_bins not in self._bins:
-            check_bins(n_bins)
-            ends = joined_ends(self.probs.transpose(1, 0, 2), n_bins)
-            self._bins[n_bins] = ends, SignalTable(joined(self.probs, ends))
+            self._bins[n_bins] = joined_table(self.probs, n_bins)
         ends, table = self._bins[n_bins]
         if shown is None or log_weights is None:
             return table

@@ -1,7 +1,6 @@
 """Base of outcome models by counts in cells: bins of a histogram, or distinct values."""
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 from typing import Any, ClassVar, Self
 
 import numpy as np
@@ -14,7 +13,7 @@ from lifelore.interaction.outcomes.cells import Cells
 from lifelore.interaction.outcomes.counted_law import CountedLaw, CountedRows, spread_of_counts
 from lifelore.interaction.outcomes.law import FixedLaw, Models
 from lifelore.interaction.outcomes.log_probability import log_of
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows, check_outcome, check_type, finite_outcomes
+from lifelore.interaction.outcomes.outcome_model import OutcomeRows, check_known, check_outcome, finite_outcomes
 from lifelore.interaction.outcomes.outcome_moments import chosen_of, rows_of_more
 from lifelore.interaction.outcomes.prediction import CountedPrediction
 from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
@@ -98,7 +97,7 @@ class CountedOutcomes(CountedPrediction):
 
     def table(self, n_bins: int = 8) -> SignalTable:
         """The cells as signals; above `n_bins` cells, neighbours are joined so that they tell the types apart."""
-        return joined_table(self.probs, n_bins)
+        return joined_table(self.probs, n_bins)[1]
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
         """Random outcomes of a pair: a number, or an array of shape `size`."""
@@ -119,7 +118,7 @@ class CountedOutcomes(CountedPrediction):
         NotFoundError
             There is no such type or policy.
         """
-        check_type(type_, self.n_types)
+        check_known("type", type_, self.n_types)
         check_outcome(policy, value, self.n_policies)
         if self.exact:
             raise InputError("exact probabilities cannot learn; build the model from samples, or give count=")
@@ -131,7 +130,7 @@ class CountedOutcomes(CountedPrediction):
 
         `state` is what its law gives of them, see `Law.state`.
         """
-        check_type(type_, self.n_types)
+        check_known("type", type_, self.n_types)
         self.counts[type_, state["policies"]] += state["shown"]
         self._prepare()
 
@@ -207,8 +206,12 @@ class CountedOutcomeLaw(CountedLaw):
     """The law of outcomes that are counted in cells."""
 
     def __init__(self, cells: Cells, counts: Array, spread: Spread, dtype: str) -> None:
-        super().__init__(counts, spread, partial(_places, cells), np.log(cells.sizes), dtype)
+        super().__init__(counts, spread, cells.of, np.log(cells.sizes), dtype)
         self.cells = cells
+
+    def checked(self, signals: Any) -> NDArray[np.int64]:
+        """The cells of finite outcomes (...), -1 where an outcome has none."""
+        return super().checked(finite_outcomes(signals))
 
     def prediction(
         self, shown: Any = None, users: Any = None, log_weights: Array | None = None
@@ -232,11 +235,6 @@ def known_cells(cells: Cells, values: Array) -> NDArray[np.int64]:
     if (found < 0).any():
         raise InputError(f"outcome {values[found < 0][0]} is outside the model's {cells.extent}; widen them")
     return found
-
-
-def _places(cells: Cells, signals: Any) -> NDArray[np.int64]:
-    """The cells of finite outcomes (...), -1 where an outcome has none."""
-    return cells.of(finite_outcomes(signals))
 
 
 def _counted(cells: Cells, rows: OutcomeRows) -> Array:

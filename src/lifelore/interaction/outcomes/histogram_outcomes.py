@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.cells import BinCells
 from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
-from lifelore.interaction.outcomes.log_probability import checked_distributions, checked_weight
+from lifelore.interaction.outcomes.log_probability import checked_counts, checked_distributions
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows, rows_of_samples
 from lifelore.interaction.outcomes.pseudo_counts import PseudoCount
 
@@ -48,7 +48,7 @@ class HistogramOutcomes(CountedOutcomes):
 
     def __init__(self, edges: ArrayLike, probs: ArrayLike, count: float | None = None) -> None:
         probs = checked_distributions(probs, "probs", ("n_types", "n_policies", "n_bins"))
-        counts = probs * checked_weight(count)
+        counts = probs * (1.0 if count is None else checked_counts(count, ()))
         super().__init__(BinCells(edges), counts, 0.0 if count is None else 0.5, count is None)
 
     @property

@@ -7,14 +7,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.finite_signals.signal_bins import informative_cuts, normal_probs
+from lifelore.interaction.finite_signals.signal_bins import normal_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.law import FixedLaw, Models
 from lifelore.interaction.outcomes.normal_law import NormalLaw, spread_of_moments
 from lifelore.interaction.outcomes.outcome_model import (
     OutcomeRows,
+    check_known,
     check_outcome,
-    check_type,
     finite_outcomes,
     rows_of_samples,
 )
@@ -63,7 +63,7 @@ class MomentOutcomes(NormalPrediction):
     @classmethod
     def from_rows(cls, rows: OutcomeRows, shrinkage: float = 5.0, gaps: bool = False) -> Self:
         """The model fitted to rows of outcomes; see `from_samples`."""
-        return cls.of(moments(rows, shrinkage, gaps=gaps))
+        return cls.of(moments(rows, shrinkage, gaps))
 
     @classmethod
     def of(cls, found: OutcomeMoments) -> Self:
@@ -121,8 +121,7 @@ class MomentOutcomes(NormalPrediction):
 
     def table(self, n_bins: int = 8) -> SignalTable:
         """The outcome, taken as normal, in bins that tell the types apart, see `signal_bins`."""
-        cuts = informative_cuts(self.mean, self.deviation, n_bins)
-        return SignalTable(normal_probs(self.mean, self.deviation, cuts))
+        return normal_table(self.mean, self.deviation, n_bins)[1]
 
     def observe(self, type_: int, policy: int, value: float) -> None:
         """Learn from another outcome of a known type, in place.
@@ -134,9 +133,9 @@ class MomentOutcomes(NormalPrediction):
         NotFoundError
             There is no such type or policy.
         """
-        check_type(type_, self.n_types)
+        check_known("type", type_, self.n_types)
         check_outcome(policy, value, self.n_policies)
-        self.moments.observe(type_, policy, value)
+        self.moments.absorb(type_, policy, 1, value, 0.0)
         self._prepare()
 
     def absorb(self, type_: int, state: Mapping[str, Any]) -> None:
@@ -144,7 +143,7 @@ class MomentOutcomes(NormalPrediction):
 
         `state` is what its law gives of them, see `Law.state`.
         """
-        check_type(type_, self.n_types)
+        check_known("type", type_, self.n_types)
         for policy, (count, mean, squares) in zip(state["policies"], state["shown"], strict=True):
             if count > 0:
                 self.moments.absorb(type_, policy, count, mean, squares)

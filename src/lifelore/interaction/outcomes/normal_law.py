@@ -21,12 +21,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.finite_signals.signal_bins import informative_cuts, normal_probs, normal_table
+from lifelore.interaction.finite_signals.signal_bins import normal_probs, normal_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.law import Numbers, Shown
 from lifelore.interaction.outcomes.outcome_model import finite_outcomes
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
-from lifelore.interaction.outcomes.prediction import NormalPrediction
+from lifelore.interaction.outcomes.prediction import NormalPrediction, over_pairs
 from lifelore.interaction.outcomes.special_functions import gammaln, stdtr
 from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest
 
@@ -115,13 +115,13 @@ class NormalLaw:
         self, policies: Numbers, signals: Any, shown: Shown | None = None, users: Numbers = None
     ) -> Array:
         """Log densities of outcomes (...) given what `users` (...) have shown, (..., n_spreads, n_types)."""
-        value = _over(self._scaled(policies, signals))
+        value = over_pairs(self._scaled(policies, signals))
         if shown is None:
             gap = value - self._location[policies]
             return self._top[policies] - self._power[policies] * np.log1p(gap * gap * self._narrow[policies])
         location, doubt, variance, freedom = self.posterior(policies, shown, users)
         square, gap = variance * (1 + doubt), value - location
-        height = self._stored(log_t_height(freedom)) - _over(self._log_unit[policies])
+        height = self._stored(log_t_height(freedom)) - over_pairs(self._log_unit[policies])
         return height - 0.5 * np.log(square) - 0.5 * (freedom + 1) * np.log1p(gap * gap / (square * freedom))
 
     def posterior(self, policies: Numbers, shown: Shown, users: Numbers) -> Posterior:
@@ -184,8 +184,7 @@ class NormalLaw:
         """The next outcome in bins that tell the types apart; the bins are those of users who showed nothing."""
         if n_bins not in self._bins:
             known = self.prediction()
-            cuts = informative_cuts(known.mean, known.deviation, n_bins)
-            self._bins[n_bins] = cuts, normal_table(known.mean, known.deviation, cuts)
+            self._bins[n_bins] = normal_table(known.mean, known.deviation, n_bins)
         cuts, table = self._bins[n_bins]
         if shown is None or log_weights is None:
             return table
@@ -287,7 +286,7 @@ class NormalRows(NormalPrediction):
     def cumulative(self, policy: int, values: Array) -> Array:
         """P(U ≤ value | type, policy) of `values` (n,) for a single user, (n_types, n): t, mixed by spread."""
         location, doubt, variance, freedom = self._law.posterior(policy, self._shown, self._users[0])
-        gap = _over(self._law._scaled(policy, values)) - location
+        gap = over_pairs(self._law._scaled(policy, values)) - location
         below = stdtr(np.minimum(freedom, LARGEST_FREEDOM), gap / np.sqrt(variance * (1 + doubt)))
         return (self._weights[0][:, None] * below).sum(axis=1).T
 
@@ -360,11 +359,6 @@ def _alike(of_pairs: Array) -> Array:
 def _parts(moments: Array) -> tuple[Array, Array, Array]:
     """Number, mean and sum of squares of (..., 3)."""
     return moments[..., 0], moments[..., 1], moments[..., 2]
-
-
-def _over(of_users: Any) -> Array:
-    """(...) as (..., 1, 1), which broadcasts against spreads and types."""
-    return np.asarray(of_users)[..., None, None]
 
 
 def spread_of_moments(moments: OutcomeMoments) -> Spread:

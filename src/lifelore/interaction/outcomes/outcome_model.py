@@ -68,7 +68,11 @@ class OutcomeRows(NamedTuple):
         >>> rows.with_weights([2.0, 1.0, 1.0]).sums().round(3).tolist()  # 4² / 6
         [[2.667]]
         """
-        weights = checked_weights(weights, self.values.shape)
+        weights = numbers(weights, f"weights must be numbers of shape {self.values.shape}")
+        if weights.shape != self.values.shape:
+            raise InputError(f"weights must be {self.values.shape}, one for each outcome, got {weights.shape}")
+        if not ((weights >= 0) & np.isfinite(weights)).all():
+            raise InputError("weights must be at least 0 and finite, a weight of 0 leaves the outcome out")
         used = weights > 0
         rows = checked_rows(OutcomeRows(self.types[used], self.policies[used], self.values[used], self.shape))
         pair, weights = rows.pair, weights[used]
@@ -80,17 +84,20 @@ class OutcomeRows(NamedTuple):
         return rows._replace(weights=weights * scale)
 
 
-def checked_weights(weights: ArrayLike, shape: tuple[int, ...]) -> Array:
-    """The weights as float64; InputError where one is negative or not finite, or the shape differs."""
+def numbers(values: ArrayLike, rule: str) -> Array:
+    """The values as float64; InputError with the `rule` that they break where they are no such array."""
     try:
-        weights = np.asarray(weights, np.float64)
+        return np.asarray(values, np.float64)
     except (TypeError, ValueError):
-        raise InputError(f"weights must be numbers of shape {shape}, got {weights!r:.80}") from None
-    if weights.shape != shape:
-        raise InputError(f"weights must be {shape}, one for each outcome, got {weights.shape}")
-    if not ((weights >= 0) & np.isfinite(weights)).all():
-        raise InputError("weights must be at least 0 and finite, a weight of 0 leaves the outcome out")
-    return weights
+        raise InputError(f"{rule}, got {values!r:.80}") from None
+
+
+def of_shape(values: ArrayLike, shape: tuple[int, ...], name: str) -> Array:
+    """A number, or an array of `shape`, as a new float64 array of `shape`; InputError for another shape."""
+    found = numbers(values, f"{name} must be one number or of shape {shape}")
+    if found.ndim and found.shape != shape:
+        raise InputError(f"{name} must be one number or of shape {shape}, got {found.shape}")
+    return np.broadcast_to(found, shape).copy()
 
 
 def rows_of_samples(samples: ArrayLike, weights: ArrayLike | None = None, gaps: bool = False) -> OutcomeRows:
@@ -107,12 +114,7 @@ def rows_of_samples(samples: ArrayLike, weights: ArrayLike | None = None, gaps: 
         The shape differs, a value is infinite, a weight negative, or a pair of type and policy has no sample and
         `gaps` is false.
     """
-    try:
-        samples = np.asarray(samples, np.float64)
-    except (TypeError, ValueError):
-        raise InputError(
-            "samples must be numbers of one shape (n_types, n_policies, n); fill up with NaN"
-        ) from None
+    samples = numbers(samples, "samples must be numbers of one shape (n_types, n_policies, n), NaN where missing")
     if samples.ndim != 3 or not samples.size:
         raise InputError(f"samples must be (n_types, n_policies, n) numbers, none of them 0, got {samples.shape}")
     types, policies, place = np.nonzero(~np.isnan(samples))
@@ -156,19 +158,13 @@ def finite_outcomes(values: Any) -> Any:
     return found
 
 
-def check_policy(policy: Any, n_policies: int) -> None:
-    """Raise NotFoundError for a policy outside 0 … n_policies - 1."""
-    if not isinstance(policy, int | np.integer) or not 0 <= policy < n_policies:
-        raise NotFoundError(f"unknown policy {policy!r}; this model knows 0 to {n_policies - 1}")
-
-
-def check_type(type_: Any, n_types: int) -> None:
-    """Raise NotFoundError for a type outside 0 … n_types - 1."""
-    if not isinstance(type_, int | np.integer) or not 0 <= type_ < n_types:
-        raise NotFoundError(f"unknown type {type_!r}; this model knows 0 to {n_types - 1}")
+def check_known(what: str, number: Any, n: int) -> None:
+    """Raise NotFoundError for a number outside 0 … n - 1; `what` is "policy" or "type"."""
+    if not isinstance(number, int | np.integer) or not 0 <= number < n:
+        raise NotFoundError(f"unknown {what} {number!r}; this model knows 0 to {n - 1}")
 
 
 def check_outcome(policy: Any, value: Any, n_policies: int) -> None:
     """Raise an error for an unknown policy, or a value that is no finite number."""
-    check_policy(policy, n_policies)
+    check_known("policy", policy, n_policies)
     finite_outcomes(np.nan if np.ndim(value) else value)

@@ -4,22 +4,18 @@ SciPy is imported at the first call: a choice for a single user needs none of th
 function of the normal is in `finite_signals.normal_distribution`.
 """
 
-from functools import cache
 from typing import Any
 
 
 def stdtr(freedom: Any, t: Any) -> Any:
     """Distribution function of Student's t."""
-    return _special().stdtr(freedom, t)
+    from scipy import special
+
+    return special.stdtr(freedom, t)
 
 
 def gammaln(x: Any) -> Any:
     """Logarithm of the gamma function's absolute value."""
-    return _special().gammaln(x)
-
-
-@cache
-def _special() -> Any:
     from scipy import special
 
-    return special
+    return special.gammaln(x)

@@ -28,15 +28,7 @@ class ReturnSignal:
     kind: ClassVar[str] = "return"
 
     def __init__(self, outcomes: OutcomeModel) -> None:
-        self.outcomes = outcomes
-
-    @property
-    def n_types(self) -> int:
-        return self.outcomes.n_types
-
-    @property
-    def n_policies(self) -> int:
-        return self.outcomes.n_policies
+        self.outcomes, self.n_types, self.n_policies = outcomes, outcomes.n_types, outcomes.n_policies
 
     def log_likelihood(self, policy: int, signal: float) -> Array:
         """Log density of the return per type, (n_types,).
@@ -68,11 +60,7 @@ class ReturnSignal:
         """The models that it uses."""
         return (self.outcomes,)
 
-    def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """Empty: the parts hold the state."""
-        return {}
-
     @classmethod
-    def from_arrays(cls, arrays: dict[str, NDArray[Any]], parts: tuple[Any, ...]) -> Self:
-        """The model of `to_arrays` and `parts`."""
+    def from_parts(cls, parts: Sequence[Any]) -> Self:
+        """The model of `parts`."""
         return cls(*parts)

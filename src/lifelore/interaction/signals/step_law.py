@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.law import Numbers, Shown
-from lifelore.interaction.outcomes.outcome_model import check_policy
 from lifelore.interaction.outcomes.special_functions import gammaln
 from lifelore.interaction.outcomes.spread import Spread
 
@@ -62,7 +61,7 @@ class StepLaw:
         if np.ndim(policies) == 0:
             policies, signals, users = np.array([policies]), [signals], [users]
         for user, policy, signal in zip(users, policies, signals, strict=True):
-            np.add.at(shown["counts"][user], self._places(policy, signal), 1.0)
+            np.add.at(shown["counts"][user], self.signal.places_of(policy, signal), 1.0)
 
     def fade(self, shown: Shown, users: Numbers, keep: ArrayLike) -> None:
         """Let what distinct `users` have shown count `keep` (...) of what it did."""
@@ -83,16 +82,8 @@ class StepLaw:
         shown.reset(user)
         shown["counts"][user][tuple(places.T)] = counts
 
-    def _places(self, policy: int, signal: Any) -> tuple[Array, ...]:
-        """Table, state, action and outcome of each step, (n,) each."""
-        if self.signal.n_policies is not None:
-            check_policy(policy, self.signal.n_policies)
-        steps = self.signal.checked_steps(signal)
-        tables = np.full(len(steps), 0 if self.signal.shared else policy)
-        return tables, *steps.T
-
     def _of_one(self, policy: int, signal: Any, counts: Array | None) -> Array:
-        *places, outcomes = self._places(policy, signal)
+        *places, outcomes = self.signal.places_of(policy, signal)
         rows, of_row = np.unique(np.stack(places), axis=1, return_inverse=True)
         at = tuple(rows)
         new = np.zeros((rows.shape[1], self.signal.shape[2]))
