@@ -45,7 +45,11 @@ def metric_kernel(distances: ArrayLike, *, length: float, deviation: float = 1.0
         Prior deviation of a policy's mean payoff, > 0.
     """
     gaps = np.asarray(distances, np.float64)
-    _check_distances(gaps)
+    square = gaps.ndim == 2 and gaps.shape[0] == gaps.shape[1] and gaps.size > 0
+    if not square or not np.isfinite(gaps).all() or (gaps < 0).any():
+        raise InputError("distances must be (n_policies, n_policies), finite and at least 0")
+    if not np.allclose(gaps, gaps.T, rtol=1e-9, atol=1e-12) or np.diag(gaps).any():
+        raise InputError("distances must be symmetric and 0 on the diagonal")
     if not (length > 0 and deviation > 0):
         raise InputError(f"length and deviation must be positive, got {length} and {deviation}")
     return deviation**2 * _semidefinite(np.exp(-0.5 * (gaps / length) ** 2))
@@ -113,14 +117,6 @@ def _log_density(covariance: NDArray[np.float64], rows: NDArray[np.float64]) -> 
     factor = cho_factor(covariance, lower=True)
     size = 2 * np.log(np.diag(factor[0])).sum()
     return float(-0.5 * (rows * cho_solve(factor, rows.T).T).sum() - 0.5 * len(rows) * size)
-
-
-def _check_distances(gaps: NDArray[np.float64]) -> None:
-    square = gaps.ndim == 2 and gaps.shape[0] == gaps.shape[1] and gaps.size > 0
-    if not square or not np.isfinite(gaps).all() or (gaps < 0).any():
-        raise InputError("distances must be (n_policies, n_policies), finite and at least 0")
-    if not np.allclose(gaps, gaps.T, rtol=1e-9, atol=1e-12) or np.diag(gaps).any():
-        raise InputError("distances must be symmetric and 0 on the diagonal")
 
 
 def _semidefinite(like: NDArray[np.float64]) -> NDArray[np.float64]:
