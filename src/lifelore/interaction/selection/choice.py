@@ -158,7 +158,7 @@ def scored(
     values = partial(rule.scores, episodes_left=episodes_left, generator=generator)
     if getattr(rule, "by_means", False):
         scores = values(library, belief)
-        return scores if available is None else np.where(available, scores, -np.inf)
+        return scores if available is None or available.all() else np.where(available, scores, -np.inf)
     return _by_part(values, library, belief, available, -np.inf)
 
 
