@@ -59,7 +59,8 @@ def bench_users(repeats: int, after: Callable[[str], None]) -> Part:
     for (name, rule), label in labels.items():
         rows.append(row_beside(label, rates, "M/s", None if name == EXACT else labels[EXACT, rule]))
     rows += [
-        row(f"memory a user, {name} models", users[name].nbytes / users[name].n_users, "bytes") for name in users
+        row(f"memory a user, {name} models", users[name].algorithm.nbytes / users[name].n_users, "bytes")
+        for name in users
     ]
     goals = [
         at_least(f"{labels[name, 'sampling']}, M/s", least, median(rates[labels[name, "sampling"]]))

@@ -6,13 +6,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.domains.ball_game.simulated_player import Balls
-from lifelore.interaction.adaptation.beat import Exploration, epsilon_of
+from lifelore.interaction.adaptation.beat import rule_at
 from lifelore.interaction.baselines.exp3 import EXP3
 from lifelore.interaction.beliefs.belief import log_prior
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
-from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 from reproduction.chapter4.ball_game.play import Floats, Ints, Learner, Moves
 
 
@@ -25,7 +24,7 @@ class BeatLearner(Learner):
         Types × speeds, whose signals are moves.
     n_players : int
     prior : (n_types,) or (n_players, n_types) float, optional
-    epsilon : see `beat.Exploration`
+    epsilon : float or str, as for `Beat`
     seed : numpy generator
 
     Attributes
@@ -42,7 +41,7 @@ class BeatLearner(Learner):
         n_players: int,
         *,
         prior: ArrayLike | None = None,
-        epsilon: Exploration = 0.0,
+        epsilon: float | str = 0.0,
         seed: int | np.random.Generator = 0,
     ) -> None:
         static = TypeDynamics.static()
@@ -50,13 +49,12 @@ class BeatLearner(Learner):
         if prior is not None:
             self.players.log_belief[:] = log_prior(prior)
         self.named: list[NDArray[np.int8]] = []
-        self._epsilon, self._step, self._first = epsilon_of(epsilon), 0, True
+        self._epsilon, self._step, self._first = epsilon, 0, True
         self._generator = np.random.default_rng(seed)
         self._every = np.arange(n_players)
 
     def select(self, balls: Balls, episode: int) -> Ints:
-        rule = EpsilonGreedy(self._epsilon(self._step, episode))
-        return self.players.select(self._every, rule, self._generator)[0]
+        return self.players.select(self._every, rule_at(self._epsilon, self._step, episode), self._generator)[0]
 
     def observe(self, speed: Ints, moves: Moves) -> None:
         self.players.observe(moves.rows, speed[moves.rows], moves.signal[moves.rows])

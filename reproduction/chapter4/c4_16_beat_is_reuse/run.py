@@ -15,7 +15,7 @@ from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import MAX_STEPS, BallGame, LossScale, draw_sigma
 from lifelore.domains.ball_game.moves import N_CONTEXTS, N_OUTCOMES, read_moves
 from lifelore.domains.ball_game.simulated_player import advance, new_balls, random_states
-from lifelore.interaction.adaptation.beat import epsilon_of
+from lifelore.interaction.adaptation.beat import rule_at
 from lifelore.interaction.adaptation.move_signal import PRIOR_MOVES
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -94,14 +94,14 @@ def _session(
     world: np.random.Generator,
 ) -> dict:
     """One user's episodes: steps, those decided alike, the largest difference of beliefs, when products vanish."""
-    epsilon_at, steps, alike, apart, vanished = epsilon_of(schedule), 0, 0, 0.0, 0
+    steps, alike, apart, vanished = 0, 0, 0.0, 0
     beliefs: list[list[float]] = []
     heading, signal, before = np.empty(1, np.int64), np.empty(1, np.int64), np.empty((1, 2), np.int64)
     for episode in range(EPISODES):
         balls = new_balls(game, [kind], draw_sigma(world), random_states(world, 1))
         while balls.playing[0]:
-            epsilon = epsilon_at(steps, episode)
-            reuse.rule, mine = EpsilonGreedy(epsilon), beat.probabilities(epsilon)
+            reuse.rule = rule_at(schedule, steps, episode)
+            mine = beat.probabilities(reuse.rule.epsilon)
             alike += bool(np.abs(reuse.probabilities() - mine).max() < 1e-9)
             speed = int(world.choice(len(mine), p=mine))
             advance(game.field, balls, np.array([speed]), 0, MAX_STEPS, heading, before)

@@ -17,7 +17,7 @@ from lifelore.domains.surveillance.surveillance import Surveillance
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.novelty.calibration import NoveltyCalibration, known_statistic, watch
-from lifelore.interaction.reuse.novelty.known_tasks import NormalTasks
+from lifelore.interaction.reuse.novelty.known_tasks import normal_tasks
 from lifelore.interaction.selection import BeliefSampling
 
 Array = NDArray[np.float64]
@@ -50,7 +50,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     for kind, mean in means.items():
         n = settings["known" if kind == KNOWN else "unseen"]
         chosen = mean[generator.integers(len(mean), size=n)]
-        tasks = NormalTasks(chosen, np.full_like(chosen, world.deviation), generator)
+        tasks = normal_tasks(chosen, np.full_like(chosen, world.deviation), generator)
         seen[kind] = watch(library, rule, tasks, n, horizon, generator, **AGENT)
         raised = calibration.standardised(seen[kind].statistic) > calibration.threshold
         first = raised.argmax(axis=1)[raised.any(axis=1)] + 1

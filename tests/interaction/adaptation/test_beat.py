@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.adaptation.beat import EPSILONS, Beat, epsilon_of
+from lifelore.interaction.adaptation.beat import EPSILONS, Beat, rule_at
 from lifelore.interaction.adaptation.move_signal import MoveSignal
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -59,11 +59,10 @@ def test_the_algorithm_as_printed_gives_the_same_decisions(epsilon):
     beat = Beat(lib, epsilon=epsilon, seed=np.random.default_rng(9))
     draws, world = np.random.default_rng(9), np.random.default_rng(1)
     belief, state = np.full(N_TYPES, 1 / N_TYPES), 0
-    schedule = epsilon_of(epsilon)
     for step in range(60):
         episode = step // 20
         chosen = beat.select()
-        explores = draws.random() < schedule(step, episode)
+        explores = draws.random() < rule_at(epsilon, step, episode).epsilon
         assert chosen == int((draws.random(N_SETS) if explores else belief @ value).argmax())
         triple = move(world, probs, 2, chosen, state)
         belief = belief * probs[:, chosen, triple[0], triple[1], triple[2]]
@@ -110,15 +109,13 @@ def test_logs_hold_what_products_lose():
 
 
 def test_printed_schedules_by_hand():
-    assert [epsilon_of("1/n")(step, 0) for step in range(3)] == [1, 1 / 2, 1 / 3]
-    assert [epsilon_of("by episode")(7, episode) for episode in range(7)] == pytest.approx(
-        [0.5, 0.4, 0.3, 0.2, 0.1, 0, 0]
-    )
+    assert [rule_at("1/n", step).epsilon for step in range(3)] == [1, 1 / 2, 1 / 3]
+    by_episode = [rule_at("by episode", 7, episode).epsilon for episode in range(7)]
+    assert by_episode == pytest.approx([0.5, 0.4, 0.3, 0.2, 0.1, 0, 0])
     # Σ 1/n diverges as Algorithm 9 asks; the experiments' schedule sums to 1.5 steps' worth an episode and stops.
     assert sum(EPSILONS["1/n"](step, 0) for step in range(10_000)) > 9
     assert sum(EPSILONS["by episode"](0, episode) for episode in range(10_000)) == pytest.approx(1.5)
-    assert epsilon_of(0.2)(5, 5) == 0.2
-    assert epsilon_of(lambda step, episode: 0.1 * episode)(0, 3) == pytest.approx(0.3)
+    assert rule_at(0.2, 5, 5) == EpsilonGreedy(0.2)
 
 
 def test_bad_input():

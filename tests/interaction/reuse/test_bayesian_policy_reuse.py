@@ -156,8 +156,8 @@ def test_types_may_change_once_after_all_signals_of_an_episode():
 
 def test_types_may_change_unless_they_are_static():
     agent = BayesianPolicyReuse(coin_library(prior=[0.6, 0.4]), prior=[1.0, 0.0])
-    assert (agent.dynamics.kind, agent.dynamics.rate) == ("hazard", 0.002)
-    assert agent.dynamics.law == pytest.approx([0.6, 0.4])
+    assert (agent.algorithm.dynamics.kind, agent.algorithm.dynamics.rate) == ("hazard", 0.002)
+    assert agent.algorithm.dynamics.law == pytest.approx([0.6, 0.4])
     agent.end_episode()
     assert agent.belief == pytest.approx([0.9992, 0.0008])
 

@@ -119,9 +119,9 @@ def test_users_take_four_bytes_a_type_and_twelve_a_policy_of_learnt_models():
     beliefs = UserBeliefs(PolicyLibrary.from_means(mean, 1.0), n)
     assert beliefs.log_belief.nbytes / n == 4 * 68
     # Beside it, whether an episode has begun, and the probability of the only spread: 9 bytes.
-    assert beliefs.nbytes / n <= 4 * 68 + 9
+    assert beliefs.algorithm.nbytes / n <= 4 * 68 + 9
     learnt = UserBeliefs(PolicyLibrary.from_means(mean, 1.0, count=5), n)
-    assert learnt.nbytes / n <= 4 * 68 + 12 * 50 + 9
+    assert learnt.algorithm.nbytes / n <= 4 * 68 + 12 * 50 + 9
 
 
 def test_a_user_may_come_twice_across_and_within_blocks(monkeypatch):
@@ -207,14 +207,14 @@ def test_users_that_are_reset_are_new_and_the_others_stay():
     )
     for policy in range(N_POLICIES):
         users.update(every, np.full(n, policy), random.normal(size=n))
-    before, size = users.belief(every[1::2]), users.nbytes
+    before, size = users.belief(every[1::2]), users.algorithm.nbytes
     users.reset([*every[::2], 0])
     assert users.belief([0])[0] == pytest.approx(users.library.prior)
     assert np.array_equal(users.belief(every[1::2]), before)
     users.update([14], [1], [7.0])
     fresh.update([0], [1], [7.0])
     assert users.belief([14]) == pytest.approx(fresh.belief([0]), abs=1e-12)
-    assert users.nbytes == size
+    assert users.algorithm.nbytes == size
 
     # (5 · 10 + 40 · 6) / 45 = 6.44 < 8.
 

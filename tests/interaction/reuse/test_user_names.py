@@ -47,7 +47,9 @@ def test_users_come_while_the_others_go_on(make):
     assert few.n_users == 100
     assert np.array_equal(few.log_belief, many.log_belief[:100])
     assert few.add_users(["x", "y"]).tolist() == [100, 101]
-    assert np.array_equal(few.belief(["y"])[0], np.exp(few.log_prior) / np.exp(few.log_prior).sum())
+    assert np.array_equal(
+        few.belief(["y"])[0], np.exp(few.algorithm.log_prior) / np.exp(few.algorithm.log_prior).sum()
+    )
     assert many.add_users(3).tolist() == [300, 301, 302]
     many.update([302], [0], [1.0])
     with pytest.raises(NotFoundError, match="unknown user 303"):

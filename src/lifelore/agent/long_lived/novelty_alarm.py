@@ -54,7 +54,7 @@ def calibrated_alarm(
     tasks = known_tasks(library, n_tasks, generator)
     found = np.empty((n_tasks, horizon))
     for place, causes in enumerate(order.T):
-        misfit.observe(every, causes, tasks.signals(causes))
+        misfit.observe(every, causes, tasks(causes))
         found[:, place] = misfit.statistic(every)
     known = NoveltyCalibration.of(found, false_alarm)
     return NoveltyDetector(library, mass, dynamics=dynamics, calibration=known)

@@ -21,7 +21,7 @@ from lifelore.agent.reuse.study import check_study_name
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
-from lifelore.interaction.adaptation.beat import Beat, epsilon_of
+from lifelore.interaction.adaptation.beat import Beat, rule_at
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.memory import Memory
 from lifelore.memory.byte_words import bytes_of, words_of
@@ -42,7 +42,7 @@ class Adaptation:
     library : PolicyLibrary
         Its policies are the action sets, its signal is a move.
     epsilon : float or str
-        See `beat.Exploration`.
+        As for `Beat`.
     id : str
         Changes with each other library of this name; a user's belief holds for one of them.
     """
@@ -62,7 +62,7 @@ def register_adaptation(memory: Memory, name: str, library: PolicyLibrary, epsil
         A name or ε breaks its rule.
     """
     check_study_name(name)
-    epsilon_of(epsilon)
+    rule_at(epsilon)
     content = library.to_bytes()
     digest = hashlib.sha256(content + repr(epsilon).encode()).hexdigest()[:32]
     earlier = memory.recall_state(LIBRARY, name, VERSION)

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, Evidence, surprise_of
+from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, Evidence
 from lifelore.interaction.reuse.user_library import UserLibrary
 
 if TYPE_CHECKING:
@@ -234,7 +234,7 @@ class WorkingBelief:
             index = self._study.library.index_of_policy(policy)
             found = self._row.observe(0, index, outcome)
             self.evidence.append(Evidence(index, found.log_likelihood, float(found.log_evidence)))
-            self._surprise += surprise_of(float(found.log_evidence))
+            self._surprise += self.evidence[-1].surprise
             if self.novelty is not None:
                 self.novelty.observe(index, outcome)
         self._row.end_episode(0)

@@ -11,7 +11,6 @@ gains no information, and the default is 0.
 """
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -26,44 +25,29 @@ from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 
 Array = NDArray[np.float64]
 
-Exploration = float | str | Callable[[int, int], float]
-"""Type of ε: a number, a name of `EPSILONS`, or a function of the step and the episode, both counted from 0."""
+EPSILONS: dict[str, Callable[[int, int], float]] = {
+    "1/n": lambda step, episode: 1.0 / (step + 1),
+    "by episode": lambda step, episode: max(0.5 - 0.1 * episode, 0.0),
+}
+"""The thesis's schedules, functions of the step and the episode, both counted from 0.
+
+1/n as in §4.8.4.2; 0.5 less 0.1 an episode as in its experiments (§4.8.5.1).
+"""
 
 
-# Named functions, because a learner with a lambda could not be pickled.
-
-
-def _by_step(step: int, episode: int) -> float:
-    return 1.0 / (step + 1)
-
-
-def _by_episode(step: int, episode: int) -> float:
-    return max(0.5 - 0.1 * episode, 0.0)
-
-
-def _constant(epsilon: float, step: int, episode: int) -> float:
-    return epsilon
-
-
-EPSILONS: dict[str, Callable[[int, int], float]] = {"1/n": _by_step, "by episode": _by_episode}
-"""The thesis's schedules: 1/n as in §4.8.4.2; 0.5 less 0.1 an episode as in its experiments (§4.8.5.1)."""
-
-
-def epsilon_of(exploration: Exploration) -> Callable[[int, int], float]:
-    """ε as a function of the step and the episode.
+def rule_at(epsilon: float | str, step: int = 0, episode: int = 0) -> EpsilonGreedy:
+    """The selection rule at a step of an episode, for ε as a number or a name of `EPSILONS`.
 
     Raises
     ------
     InputError
         A number outside [0, 1], or an unknown name.
     """
-    if callable(exploration):
-        return exploration
-    if isinstance(exploration, str):
-        if exploration not in EPSILONS:
-            raise InputError(f"epsilon must be a number or one of {', '.join(EPSILONS)}, got {exploration!r}")
-        return EPSILONS[exploration]
-    return partial(_constant, EpsilonGreedy(float(exploration)).epsilon)
+    if not isinstance(epsilon, str):
+        return EpsilonGreedy(float(epsilon))
+    if epsilon not in EPSILONS:
+        raise InputError(f"epsilon must be a number or one of {', '.join(EPSILONS)}, got {epsilon!r}")
+    return EpsilonGreedy(EPSILONS[epsilon](step, episode))
 
 
 class Beat:
@@ -73,8 +57,8 @@ class Beat:
     ----------
     library : PolicyLibrary
         Types × action sets; its performance is V (§4.8.3.1), its signal model that of single transitions.
-    epsilon : float, str or callable
-        See `Exploration`.
+    epsilon : float or str
+        A number in [0, 1], or a name of `EPSILONS`.
     prior : (n_types,) float, optional
         β⁰; the library's by default.
     seed : int or numpy generator
@@ -98,14 +82,15 @@ class Beat:
         self,
         library: PolicyLibrary,
         *,
-        epsilon: Exploration = 0.0,
+        epsilon: float | str = 0.0,
         prior: ArrayLike | None = None,
         seed: int | np.random.Generator = 0,
     ) -> None:
+        rule_at(epsilon)
         self.library = library
         self.algorithm = ReuseAlgorithm(library, prior=prior, dynamics=TypeDynamics.static(), models="plug-in")
         self.step = self.episode = self.surprises = 0
-        self._epsilon = epsilon_of(epsilon)
+        self._epsilon = epsilon
         self._generator = seed if isinstance(seed, np.random.Generator) else stream(seed, "beat")
 
     @property
@@ -121,7 +106,7 @@ class Beat:
     @property
     def rule(self) -> EpsilonGreedy:
         """The selection rule of the next step."""
-        return EpsilonGreedy(self._epsilon(self.step, self.episode))
+        return rule_at(self._epsilon, self.step, self.episode)
 
     def select(self) -> int:
         """The action set for the next step; before the first step that of Eq. 4.8."""

@@ -125,6 +125,9 @@ def entropy(belief: ArrayLike) -> Array:
     return -(belief * np.log(np.where(belief > 0, belief, 1.0))).sum(axis=-1)
 
 
-def expected_utility(belief: ArrayLike, mean: ArrayLike) -> Array:
-    """Ũ(π) = Σ β(τ) E[U | τ, π] (Eq. 4.5) of beliefs (..., n_types) and means (n_types, n_policies)."""
-    return np.asarray(belief, np.float64) @ np.asarray(mean, np.float64)
+def log_sum(terms: Array) -> Array:
+    """log Σ exp over the last axis but one, (..., k, n_types) to (..., n_types); minus infinity where all are."""
+    top = terms.max(axis=-2, keepdims=True)
+    top = np.where(top > -np.inf, top, 0.0)
+    with np.errstate(divide="ignore"):
+        return (np.log(np.exp(terms - top).sum(axis=-2, keepdims=True)) + top)[..., 0, :]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import SUM_TOLERANCE, log_prior
+from lifelore.interaction.beliefs.belief import SUM_TOLERANCE, log_prior, log_sum
 
 Array = NDArray[Any]
 DEFAULT_HAZARD = 0.002
@@ -155,7 +155,7 @@ class TypeDynamics:
         n_types = len(log_law)
         rows = log_belief.reshape(-1, n_types)
         block = max(1, ROWS_AT_ONCE // n_types**2)
-        moved = [_log_sums(rows[at : at + block, :, None] + log_law) for at in range(0, len(rows), block)]
+        moved = [log_sum(rows[at : at + block, :, None] + log_law) for at in range(0, len(rows), block)]
         return np.concatenate(moved).reshape(log_belief.shape)
 
 
@@ -167,11 +167,3 @@ class _HazardTerms(NamedTuple):
     log_stay: Array
     anew: Array
     log_anew: Array
-
-
-def _log_sums(terms: Array) -> Array:
-    """log Σ exp over the middle axis of (n, from, to); minus infinity where all are."""
-    top = terms.max(axis=1, keepdims=True)
-    top = np.where(top == -np.inf, 0.0, top)
-    with np.errstate(divide="ignore"):
-        return np.log(np.exp(terms - top).sum(axis=1)) + top[:, 0]

@@ -15,7 +15,7 @@ FOLDS = 5
 """Parts of the users; a model is learnt on all parts but one. More parts cost time and learn from more users."""
 
 
-def user_folds(users: ArrayLike, generator: np.random.Generator, n_folds: int = FOLDS) -> Numbers:
+def user_folds(users: ArrayLike, generator: np.random.Generator) -> Numbers:
     """A random part of the users for each row, (n,) int64 from 0; parts differ by at most one user.
 
     All rows of a user are in the same part. There are as many parts as users where those are fewer.
@@ -23,13 +23,13 @@ def user_folds(users: ArrayLike, generator: np.random.Generator, n_folds: int = 
     Raises
     ------
     InputError
-        There are fewer than two users, or fewer than two parts.
+        There are fewer than two users.
     """
     codes = user_codes(users)
     n_users = int(codes.max(initial=-1)) + 1
-    if n_users < 2 or n_folds < 2:
-        raise InputError(f"cross-fitting needs at least 2 users and 2 parts, got {n_users} and {n_folds}")
-    return (generator.permutation(n_users) % min(n_folds, n_users))[codes]
+    if n_users < 2:
+        raise InputError(f"cross-fitting needs at least 2 users, got {n_users}")
+    return (generator.permutation(n_users) % min(FOLDS, n_users))[codes]
 
 
 @dataclass(frozen=True, eq=False)

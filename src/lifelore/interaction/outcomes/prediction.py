@@ -174,6 +174,11 @@ def weighted(belief: Array, values: Array) -> Array:
     return belief @ values
 
 
+def range_of_means(mean: Array) -> Array:
+    """Largest less smallest mean of a library, (1,), or of each user's, (k, 1)."""
+    return np.ptp(mean, axis=(-2, -1))[..., None]
+
+
 def supported(belief: Array, *values: Array) -> tuple[Array, ...]:
     """A belief (T,) and rows of `values` (T, n) for its types of positive probability, where these are few."""
     some = belief.nonzero()[0]

@@ -19,14 +19,7 @@ from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Models
-from lifelore.interaction.reuse.explanation import (
-    MAX_EVIDENCE,
-    Evidence,
-    Explanation,
-    relative_evidence,
-    surprise_of,
-    two_best,
-)
+from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, Evidence, Explanation, relative_evidence, two_best
 from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection import SelectionRule, rule_of
@@ -193,7 +186,7 @@ class BayesianPolicyReuse:
         index = self.library.index_of_policy(policy)
         log_likelihood, log_evidence = self.algorithm.observe(0, index, signal, outcome)
         self._evidence.append(Evidence(index, log_likelihood, float(log_evidence)))
-        self.surprise += surprise_of(float(log_evidence))
+        self.surprise += self._evidence[-1].surprise
         self.unexplained += bool(log_evidence == -np.inf)
         if self.novelty is not None:
             self.novelty.observe(index, signal)
@@ -245,11 +238,6 @@ class BayesianPolicyReuse:
         return self.library.types[type_]
 
     # ---- the belief and its explanation ----------------------------------------------------------------
-
-    @property
-    def dynamics(self) -> TypeDynamics:
-        """How types change between episodes."""
-        return self.algorithm.dynamics
 
     @property
     def belief(self) -> Array:

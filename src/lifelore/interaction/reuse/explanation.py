@@ -27,6 +27,11 @@ class Evidence(NamedTuple):
     log_likelihood: Array
     log_evidence: float
 
+    @property
+    def surprise(self) -> float:
+        """−log Σ F β in nats, at most `MAX_SURPRISE`; negative for densities above 1."""
+        return min(-self.log_evidence, MAX_SURPRISE)
+
 
 @dataclass(frozen=True)
 class Explanation:
@@ -72,16 +77,9 @@ class Explanation:
         return asdict(self)
 
 
-def surprise_of(log_evidence: float) -> float:
-    """The surprise of a signal in nats, −log Σ F β, at most `MAX_SURPRISE`; negative for densities above 1."""
-    return min(-log_evidence, MAX_SURPRISE)
-
-
 def relative_evidence(evidence: Sequence[Evidence], n_types: int) -> Array:
     """Log likelihoods less each signal's best, (n_signals, n_types), at most 0."""
-    if not evidence:
-        return np.zeros((0, n_types))
-    rows = np.array([signal.log_likelihood for signal in evidence])
+    rows = np.array([signal.log_likelihood for signal in evidence]).reshape(-1, n_types)
     best = rows.max(axis=1, keepdims=True)
     return np.where(best > -np.inf, rows - np.where(best > -np.inf, best, 0.0), 0.0)
 

@@ -100,24 +100,27 @@ class ReuseAlgorithm:
         self.dynamics = dynamics or TypeDynamics.hazard(DEFAULT_HAZARD, library.prior)
         if self.dynamics.n_types not in (None, library.n_types):
             raise InputError(f"dynamics are for {self.dynamics.n_types} types, the library has {library.n_types}")
-        self._spread, self._dtype = spread, dtype
+        self._dtype = dtype
         self.log_prior: Array = self.start(prior)
-        signal_law = self._law(library.signal)
-        returns = isinstance(library.signal, ReturnSignal) and library.signal.outcomes is library.performance
-        self._begin(n_users, signal_law, None if returns else self._law(library.performance))
+        settings: dict[str, Any] = {"dtype": dtype} if spread is None else {"dtype": dtype, "spread": spread}
+        laws = {"signal": law_of(library.signal, library.n_types, models, **settings)}
+        if not (isinstance(library.signal, ReturnSignal) and library.signal.outcomes is library.performance):
+            laws["outcomes"] = law_of(library.performance, library.n_types, models, **settings)
+        self._begin(n_users, laws)
 
-    def _begin(self, n_users: int, signal_law: Any, outcome_law: Any) -> None:
-        """Set up rows with the prior; without `outcome_law` outcomes are the signals."""
+    def _begin(self, n_users: int, laws: Mapping[str, Any]) -> None:
+        """Set up rows with the prior; without a law of outcomes these are the signals."""
         self.log_belief: Array = np.tile(self.log_prior, (n_users, 1))
         # Whether an episode has begun since the last signal: only then may the type have changed.
         self._begun = np.ones(n_users, bool)
-        self.signals = UserModel(signal_law, n_users)
-        self.outcomes = self.signals if outcome_law is None else UserModel(outcome_law, n_users)
+        self._models = {name: UserModel(law, n_users) for name, law in laws.items()}
+        self.signals = self._models["signal"]
+        self.outcomes = self._models.get("outcomes", self.signals)
 
     def new_rows(self, n_users: int = 1) -> Self:
         """Another algorithm with the same laws and dynamics, whose `n_users` users have the prior."""
         other = copy(self)
-        other._begin(n_users, self.signals.law, None if self.outcomes is self.signals else self.outcomes.law)
+        other._begin(n_users, {name: model.law for name, model in self._models.items()})
         return other
 
     @property
@@ -220,14 +223,21 @@ class ReuseAlgorithm:
         if self.signals.law.single and not isinstance(signals, float) and np.shape(signals) != np.shape(users):
             raise InputError(f"there must be a signal for each user {np.shape(users)}, got {np.shape(signals)}")
         found = self.signals.evidence(users, policies, signals, before, self._changed(users, before))
-        after, log_evidence = self._updated(before, found.log_likelihood)
+        try:
+            after, log_evidence = update(before, found.log_likelihood)
+        except InputError:
+            raise InputError(
+                f"signal model {type(self.library.signal).__name__} gave NaN or infinity as a log likelihood; "
+                "minus infinity is allowed, they are not"
+            ) from None
         explained = log_evidence > -np.inf
         if found.changed is not None:
             changes = np.where(explained, (np.exp(after) * found.changed).sum(axis=-1), 0.0)
-            self._fade(users, 1 - np.minimum(changes, 1.0))
+            for model in self._models.values():
+                model.fade(users, 1 - np.minimum(changes, 1.0))
         if self.signals.law.learns and explained.any():
             self.signals.learn(*_explained(explained, users, policies, signals, found.gain))
-        if outcomes is not None and self.outcomes is not self.signals:
+        if outcomes is not None and self.outcomes is not self.signals and self.outcomes.law.learns:
             self._learn_outcomes(users, policies, outcomes, before)
         self.log_belief[users] = after
         if self.dynamics.moves:
@@ -251,7 +261,7 @@ class ReuseAlgorithm:
     def reset(self, users: Numbers) -> None:
         """Set `users` back to the prior, and forget what they have shown."""
         self.log_belief[users], self._begun[users] = self.log_prior, True
-        for model in self._models():
+        for model in self._models.values():
             model.reset(users)
 
     def grow(self, n_users: int) -> None:
@@ -259,15 +269,13 @@ class ReuseAlgorithm:
         more = n_users - self.n_users
         self.log_belief = np.concatenate([self.log_belief, np.tile(self.log_prior, (more, 1))])
         self._begun = np.concatenate([self._begun, np.ones(more, bool)])
-        for model in self._models():
+        for model in self._models.values():
             model.grow(n_users)
 
     def state(self, user: int) -> dict[str, Array]:
         """What a user has shown, as small arrays; empty between episodes where only the belief learns."""
-        parts = {"signal": self.signals} | ({} if self.outcomes is self.signals else {"outcomes": self.outcomes})
-        found = {
-            f"{name}.{key}": array for name, model in parts.items() for key, array in model.state(user).items()
-        }
+        states = {name: model.state(user) for name, model in self._models.items()}
+        found = {f"{name}.{key}": array for name, state in states.items() for key, array in state.items()}
         return found if self._begun[user] else found | {"begun": np.array(False)}
 
     def restore(self, user: int, log_belief: ArrayLike, state: Mapping[str, Any]) -> None:
@@ -275,23 +283,15 @@ class ReuseAlgorithm:
         row = np.asarray(log_belief)
         if row.shape != (self.library.n_types,) or not abs(np.exp(row.astype(np.float64)).sum() - 1) < 1e-5:
             raise InputError(f"log_belief must be the logs of a belief over {self.library.n_types} types")
-        self.signals.restore(user, _part(state, "signal."))
-        if self.outcomes is not self.signals:
-            self.outcomes.restore(user, _part(state, "outcomes."))
+        for name, model in self._models.items():
+            model.restore(user, named_part(state, f"{name}."))
         self.log_belief[user], self._begun[user] = row, bool(state.get("begun", True))
 
     @property
     def nbytes(self) -> int:
         """Memory of all rows in bytes."""
-        statistics = sum(model.shown.nbytes + model.log_weights.nbytes for model in self._models())
+        statistics = sum(model.shown.nbytes + model.log_weights.nbytes for model in self._models.values())
         return self.log_belief.nbytes + self._begun.nbytes + statistics
-
-    def _models(self) -> list[UserModel]:
-        return [self.signals] if self.outcomes is self.signals else [self.signals, self.outcomes]
-
-    def _law(self, model: Any) -> Any:
-        spread = {} if self._spread is None else {"spread": self._spread}
-        return law_of(model, self.library.n_types, self.models, dtype=self._dtype, **spread)
 
     def _changed(self, users: Numbers, log_belief: Array) -> Array | None:
         """P(the type has just changed to this), (..., n_types); None where it cannot have, or no law learns."""
@@ -301,22 +301,7 @@ class ReuseAlgorithm:
         share = self.dynamics.changed_share(log_belief) if begun.any() else None
         return None if share is None else share * begun[..., None]
 
-    def _updated(self, log_belief: Array, log_likelihood: Array) -> tuple[Array, Array]:
-        try:
-            return update(log_belief, log_likelihood)
-        except InputError:
-            raise InputError(
-                f"signal model {type(self.library.signal).__name__} gave NaN or infinity as a log likelihood; "
-                "minus infinity is allowed, they are not"
-            ) from None
-
-    def _fade(self, users: Numbers, keep: Array) -> None:
-        for model in self._models():
-            model.fade(users, keep)
-
     def _learn_outcomes(self, users: Numbers, policies: Numbers, outcomes: Any, log_belief: Array) -> None:
-        if not self.outcomes.law.learns:
-            return
         found = self.outcomes.evidence(users, policies, outcomes, log_belief, None)
         explained = (found.log_likelihood > -np.inf).any(axis=-1)
         if explained.any():
@@ -334,5 +319,6 @@ def _explained(explained: Any, *of_users: Any) -> tuple[Any, ...]:
     )
 
 
-def _part(state: Mapping[str, Any], prefix: str) -> dict[str, Any]:
+def named_part(state: Mapping[str, Any], prefix: str) -> dict[str, Any]:
+    """The arrays whose names begin with `prefix`, by the rest of their names."""
     return {name.removeprefix(prefix): array for name, array in state.items() if name.startswith(prefix)}

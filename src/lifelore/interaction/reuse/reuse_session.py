@@ -25,6 +25,7 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.explanation import Evidence
 from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
+from lifelore.interaction.reuse.reuse_algorithm import named_part
 from lifelore.interaction.selection import RULES, restored_rule
 
 FORMAT = PackedFormat("lifelore policy reuse session", 3, "session", "save_session", oldest=1)
@@ -77,8 +78,8 @@ def session_bytes(agent: BayesianPolicyReuse) -> bytes:
     header = {
         "rule": agent.rule.name,
         "settings": asdict(agent.rule),  # pyright: ignore[reportArgumentType]
-        "dynamics": agent.dynamics.kind,
-        "rate": agent.dynamics.rate,
+        "dynamics": agent.algorithm.dynamics.kind,
+        "rate": agent.algorithm.dynamics.rate,
         "models": agent.models,
         "horizon": agent.horizon,
         "episode": agent.episode,
@@ -121,8 +122,8 @@ def _arrays(agent: BayesianPolicyReuse) -> Arrays:
         "log_evidence": np.array([signal.log_evidence for signal in last], np.float64),
         "log_likelihood": np.array([signal.log_likelihood for signal in last]).reshape(-1, agent.library.n_types),
     }
-    if agent.dynamics.law is not None:
-        arrays["law"] = agent.dynamics.law
+    if agent.algorithm.dynamics.law is not None:
+        arrays["law"] = agent.algorithm.dynamics.law
     arrays |= {f"task.{name}": array for name, array in agent.algorithm.state(0).items()}
     if agent.novelty is not None:
         arrays |= {f"novelty.{name}": array for name, array in agent.novelty.state().items()}
@@ -132,10 +133,10 @@ def _arrays(agent: BayesianPolicyReuse) -> Arrays:
 
 
 def _restore(agent: BayesianPolicyReuse, header: dict[str, Any], arrays: Arrays) -> None:
-    agent.algorithm.restore(0, arrays["log_belief"], _part(arrays, "task."))
+    agent.algorithm.restore(0, arrays["log_belief"], named_part(arrays, "task."))
     # Files of versions 1 and 2 have none.
-    if novelty := _part(arrays, "novelty."):
-        agent.novelty = NoveltyDetector.restored(novelty, agent.library, agent.dynamics, agent.models)
+    if novelty := named_part(arrays, "novelty."):
+        agent.novelty = NoveltyDetector.restored(novelty, agent.library, agent.algorithm.dynamics, agent.models)
     agent.episode, agent.unexplained = int(header["episode"]), int(header["unexplained"])
     agent.surprise, agent._taught = float(header["surprise"]), bool(header.get("taught", False))
     last = zip(arrays["evidence_policy"], arrays["log_likelihood"], arrays["log_evidence"], strict=True)
@@ -144,10 +145,6 @@ def _restore(agent: BayesianPolicyReuse, header: dict[str, Any], arrays: Arrays)
         # Until version 3, scores of policies that were not available were NaN.
         scores = arrays["scores"]
         agent._selected = int(header["selected"]), np.where(np.isnan(scores), -np.inf, scores)
-
-
-def _part(arrays: Arrays, prefix: str) -> Arrays:
-    return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
 
 
 def generator_state(generator: np.random.Generator) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.outcomes.law import Models
+from lifelore.interaction.outcomes.law import Models, law_of
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.reuse_algorithm import Precision, ReuseAlgorithm
 from lifelore.interaction.reuse.user_names import UserNames, are_names
@@ -59,6 +59,10 @@ class UserBeliefs:
         Whether a new name in `select` or `update` is an error, or adds a user. Numbers never add users.
     seed : int or numpy generator
 
+    Attributes
+    ----------
+    n_users : int
+
     Raises
     ------
     InputError
@@ -95,40 +99,18 @@ class UserBeliefs:
         if spread is not None and not 0 <= spread < np.inf:
             raise InputError(f"spread must be at least 0 and finite, got {spread}")
         self.library, self.unknown = library, unknown
-        if spread is None:
-            usual = ReuseAlgorithm(library, prior=prior, dynamics=dynamics, models=models)
-            spread = usual.signals.law.spread.mean
+        known = law_of(library.signal, library.n_types, models).spread.mean if spread is None else spread
         self.algorithm = ReuseAlgorithm(
-            library,
-            n_users,
-            prior=prior,
-            dynamics=dynamics,
-            models=models,
-            spread=Spread.known(spread),
-            dtype=dtype,
-        )
+            library, n_users,
+            prior=prior, dynamics=dynamics, models=models, spread=Spread.known(known), dtype=dtype,
+        )  # fmt: skip
         self.generator = stream(seed, "user beliefs") if isinstance(seed, int | np.integer) else seed
-        self._n_users = n_users
-
-    @property
-    def n_users(self) -> int:
-        """Number of users."""
-        return self._n_users
+        self.n_users = n_users
 
     @property
     def log_belief(self) -> Array:
         """Normalised logs of the beliefs, (n_users, n_types) float32 or float64; not a copy."""
-        return self.algorithm.log_belief[: self._n_users]
-
-    @property
-    def log_prior(self) -> Array:
-        """Log belief about a new user, (n_types,)."""
-        return self.algorithm.log_prior
-
-    @property
-    def nbytes(self) -> int:
-        """Memory of all users in bytes, without their names."""
-        return self.algorithm.nbytes
+        return self.algorithm.log_belief[: self.n_users]
 
     def add_users(self, users: int | Iterable[str]) -> Numbers:
         """Add a number of users, or users of these names; their numbers, (k,).
@@ -146,13 +128,13 @@ class UserBeliefs:
         if self.names is None:
             if users < 0:  # pyright: ignore[reportOperatorIssue]
                 raise InputError(f"users must be at least 0, got {users}")
-            new = self._n_users + np.arange(int(users))  # pyright: ignore[reportArgumentType]
+            new = self.n_users + np.arange(int(users))  # pyright: ignore[reportArgumentType]
         else:
             new = self.names.add(users)  # pyright: ignore[reportArgumentType]
-        total = self._n_users + len(new)
+        total = self.n_users + len(new)
         if total > self.algorithm.n_users:
             self.algorithm.grow(max(total, 2 * self.algorithm.n_users))
-        self._n_users = total
+        self.n_users = total
         return new
 
     # ---- many users at once ----------------------------------------------------------------------------
@@ -178,7 +160,7 @@ class UserBeliefs:
         rows, rule = self._checked_users(users), rule_of(rule, self.library)
         mask, chosen = self._mask(available, len(rows)), np.empty(len(rows), np.int64)
         for at in self._blocks(rows, rule):
-            chosen[at] = self._select(rows[at], rule, None if mask is None else mask[at], episodes_left)
+            chosen[at] = self.algorithm.select(rows[at], rule, self.generator, mask[at], episodes_left)[0]
         return chosen
 
     def select_top(
@@ -201,13 +183,12 @@ class UserBeliefs:
         """
         rows, rule = self._checked_users(users), rule_of(rule, self.library)
         mask = self._mask(available, len(rows))
-        most = self.library.n_policies if mask is None or not len(rows) else int(mask.sum(axis=1).min())
+        most = int(mask.sum(axis=1).min(initial=self.library.n_policies))
         if not 1 <= k <= most:
             raise InputError(f"k must be 1 to {most}, the number of policies available to every user, got {k}")
         best = np.empty((len(rows), k), np.int64)
         for at in self._blocks(rows, rule):
-            own = None if mask is None else mask[at]
-            scores = self.algorithm.scores(rows[at], rule, self.generator, own, episodes_left)
+            scores = self.algorithm.scores(rows[at], rule, self.generator, mask[at], episodes_left)
             best[at] = best_policies(scores, k, self.generator)
         return best
 
@@ -232,8 +213,8 @@ class UserBeliefs:
         InputError
             The model cannot have made a signal, or gave NaN. Blocks before that signal are updated.
         """
-        rows, policies = self._checked_users(users), self._checked_policies(policies)
-        signals, log_evidence = self._checked_signals(rows, policies, signals), np.empty(len(rows))
+        rows, policies, signals = self._checked_signals(users, policies, signals)
+        log_evidence = np.empty(len(rows))
         for at in self._distinct_blocks(rows):
             log_evidence[at] = self.algorithm.update(rows[at], policies[at], signals[at]).log_evidence
         return log_evidence
@@ -249,12 +230,12 @@ class UserBeliefs:
         episodes_left: float | None = None,
     ) -> Numbers:
         """`update`, and the policy to run next, (k,), in one pass."""
-        rows, policies = self._checked_users(users), self._checked_policies(policies)
-        rule, signals = rule_of(rule, self.library), self._checked_signals(rows, policies, signals)
+        rows, policies, signals = self._checked_signals(users, policies, signals)
+        rule = rule_of(rule, self.library)
         mask, chosen = self._mask(available, len(rows)), np.empty(len(rows), np.int64)
         for at in self._distinct_blocks(rows, rule):
             self.algorithm.update(rows[at], policies[at], signals[at])
-            chosen[at] = self._select(rows[at], rule, None if mask is None else mask[at], episodes_left)
+            chosen[at] = self.algorithm.select(rows[at], rule, self.generator, mask[at], episodes_left)[0]
         return chosen
 
     def belief(self, users: Users) -> Array:
@@ -274,16 +255,12 @@ class UserBeliefs:
         rows, rule = self._checked_users(users), rule_of(rule, self.library)
         mask, found = self._mask(available, len(rows)), np.empty((len(rows), self.library.n_policies))
         for at in self._blocks(rows, rule):
-            own = None if mask is None else mask[at]
-            found[at] = self.algorithm.propensities(rows[at], rule, own, episodes_left)
+            found[at] = self.algorithm.propensities(rows[at], rule, mask[at], episodes_left)
         return found
 
     def reset(self, users: Users) -> None:
         """Set the beliefs about `users` back to the prior, and forget what they have shown."""
         self.algorithm.reset(np.unique(self._checked_users(users)))
-
-    def _select(self, rows: Numbers, rule: SelectionRule, mask: Any, episodes_left: float | None) -> Numbers:
-        return self.algorithm.select(rows, rule, self.generator, mask, episodes_left)[0]
 
     def _blocks(self, rows: Numbers, rule: SelectionRule | None = None) -> Iterator[slice]:
         """Blocks of users whose beliefs fit the cache, and whose scores by `rule` fit the memory."""
@@ -311,20 +288,20 @@ class UserBeliefs:
                 inside.add(user)
             yield slice(start, at.stop)
 
-    def _mask(self, available: ArrayLike | None, n_rows: int) -> Any:
-        """`available` as (n_rows, n_policies) bool; None stays None."""
-        if available is None:
-            return None
-        mask = available_mask(available, self.library.policies, n_rows)  # pyright: ignore
+    def _mask(self, available: ArrayLike | None, n_rows: int) -> NDArray[np.bool_]:
+        """`available` as (n_rows, n_policies); all policies where it is None."""
+        mask = np.True_ if available is None else available_mask(available, self.library.policies, n_rows)  # pyright: ignore
         return np.broadcast_to(mask, (n_rows, self.library.n_policies))
 
-    def _checked_signals(self, rows: Numbers, policies: Numbers, signals: Any) -> Any:
+    def _checked_signals(self, users: Users, policies: ArrayLike, signals: Any) -> tuple[Numbers, Numbers, Any]:
+        """Rows of users, numbers of policies and signals, equally many."""
+        rows, policies = self._checked_users(users), _checked(policies, self.library.n_policies, "policy")
         if not len(rows) == len(policies) == len(signals):
             raise InputError(
                 f"users, policies and signals must be equally many, got {len(rows)}, {len(policies)} and "
                 f"{len(signals)}"
             )
-        return signals if isinstance(signals, np.ndarray) else list(signals)
+        return rows, policies, signals if isinstance(signals, np.ndarray) else list(signals)
 
     def _checked_users(self, users: Users) -> Numbers:
         if self.names is None or not are_names(users):
@@ -335,9 +312,6 @@ class UserBeliefs:
         if self.unknown == "add" and (new := self.names.unknown(named)):  # pyright: ignore[reportArgumentType]
             self.add_users(new)
         return self.names.rows(named)  # pyright: ignore[reportArgumentType]
-
-    def _checked_policies(self, policies: ArrayLike) -> Numbers:
-        return _checked(policies, self.library.n_policies, "policy")
 
 
 def _checked(numbers: ArrayLike, n: int, what: str) -> Numbers:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.beliefs.belief import log_sum
 from lifelore.interaction.outcomes.law import Law, Numbers
 
 Array = NDArray[Any]
@@ -82,7 +83,7 @@ class UserModel:
             gain = _gain(found, np.exp(log_belief))
             stayed = found + self.log_weights[users][..., None].astype(found.dtype, copy=False)
         if changed is None:
-            return Evidence(stayed[..., 0, :] if gain is None else _log_sum(stayed), None, gain)
+            return Evidence(stayed[..., 0, :] if gain is None else log_sum(stayed), None, gain)
         anew = law.log_likelihoods(policies, signals) + self._log_first[:, None].astype(found.dtype, copy=False)
         top = np.maximum(stayed.max(axis=-2), np.where(changed > 0, anew.max(axis=-2), -np.inf))
         top = np.where(top > -np.inf, top, 0.0)
@@ -105,7 +106,7 @@ class UserModel:
         """Take in signals of distinct users; `gain` as in their `Evidence`."""
         if gain is not None:
             found = self.log_weights[users] + gain
-            total = _log_sum(found[..., None])
+            total = log_sum(found[..., None])
             self.log_weights[users] = np.where(total > -np.inf, found - total, self.log_weights[users])
         self.law.learn(self.shown, users, policies, signals)
 
@@ -136,14 +137,6 @@ class UserModel:
         except (KeyError, IndexError, ValueError, TypeError) as error:
             raise InputError(f"the user's state is not of this library: {error}") from None
         self.log_weights[user] = log_weights
-
-
-def _log_sum(terms: Array) -> Array:
-    """log Σ exp over the spreads, (..., n_spreads, n_types) to (..., n_types); minus infinity where all are."""
-    top = terms.max(axis=-2)
-    top = np.where(top > -np.inf, top, 0.0)
-    with np.errstate(divide="ignore"):
-        return np.log(np.exp(terms - top[..., None, :]).sum(axis=-2)) + top
 
 
 def _gain(by_spread: Array, belief: Array) -> Array:

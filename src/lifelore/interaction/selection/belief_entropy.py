@@ -11,16 +11,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.beliefs.belief import entropy
 from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.prediction import range_of_means
 from lifelore.interaction.selection.information import mutual_information, predicted_signals
-from lifelore.interaction.selection.rule import (
-    Array,
-    Deterministic,
-    RuleLibrary,
-    Variant,
-    check_variant,
-    range_of_means,
-)
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, Variant, check_variant
 from lifelore.interaction.selection.support import MASS, check_mass
 
 LEAST_PREDICTED = 1e-300
@@ -62,12 +57,10 @@ class BeliefEntropy(Deterministic):
     def scores(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
         """Expected utilities plus κ times the information, (P,) or (k, P)."""
         mean, table = library.performance.mean, library.table(self.n_bins)
-        kappa, utility = (
-            range_of_means(mean) if self.kappa is None else self.kappa,
-            library.performance.expected(belief),
-        )
+        kappa = range_of_means(mean) if self.kappa is None else self.kappa
+        utility = library.performance.expected(belief)
         if self.variant == "thesis":
-            return utility - kappa * _printed_entropy(printed_posterior(belief, table))
+            return utility - kappa * entropy(printed_posterior(belief, table))
         return utility + kappa * mutual_information(belief, table, self.mass)
 
 
@@ -76,7 +69,3 @@ def printed_posterior(belief: Array, table: SignalTable) -> Array:
     predicted = predicted_signals(belief, table)
     inverse = np.divide(1.0, predicted, out=np.zeros_like(predicted), where=predicted > LEAST_PREDICTED)
     return np.einsum("...tps,...ps->...pt", table.probs**2, inverse) * belief[..., None, :]
-
-
-def _printed_entropy(vector: Array) -> Array:
-    return -(vector * np.log(np.where(vector > 0, vector, 1.0))).sum(axis=-1)

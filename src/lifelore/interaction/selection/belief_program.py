@@ -54,7 +54,7 @@ def best_plan(library: Any, horizon: int, belief: Array | None = None, n_bins: i
         The horizon is below 1, the tree would be too large, or the belief is no distribution over the types.
     """
     table, mean = library.table(n_bins), library.performance.mean
-    layers = _layers(table, _start(library, belief), horizon)
+    layers = _layers(table, library, belief, horizon)
     values = layers[-1] @ mean
     for weights in reversed(layers[:-1]):
         values = weights @ mean + _after_signals(values.max(axis=1), table)
@@ -72,7 +72,7 @@ def value_of_rule(
         The horizon is below 1, the tree would be too large, or the belief is no distribution over the types.
     """
     table, mean = library.table(n_bins), library.performance.mean
-    layers = _layers(table, _start(library, belief), horizon)
+    layers = _layers(table, library, belief, horizon)
     value = np.zeros(0)
     for left, weights in enumerate(reversed(layers)):
         values = weights @ mean
@@ -82,11 +82,7 @@ def value_of_rule(
     return float(value[0])
 
 
-def _start(library: Any, belief: Array | None) -> Array:
-    return library.prior if belief is None else checked_prior(belief, library.n_types)
-
-
-def _layers(table: SignalTable, belief: Array, horizon: int) -> list[Array]:
+def _layers(table: SignalTable, library: Any, belief: Array | None, horizon: int) -> list[Array]:
     """Unnormalised beliefs before each episode: layer k is ((n_policies n_signals)^k, n_types)."""
     if horizon < 1:
         raise InputError(f"horizon must be at least 1, got {horizon}")
@@ -96,7 +92,7 @@ def _layers(table: SignalTable, belief: Array, horizon: int) -> list[Array]:
             f"a tree of {branches} branches and horizon {horizon} is too large; take fewer bins or episodes"
         )
     law = table.probs.transpose(1, 2, 0).reshape(branches, table.n_types)
-    layers = [belief[None]]
+    layers = [(library.prior if belief is None else checked_prior(belief, library.n_types))[None]]
     for _ in range(horizon - 1):
         layers.append((layers[-1][:, None, :] * law).reshape(-1, table.n_types))
     return layers

@@ -21,12 +21,7 @@ class BeliefSampling:
     by_means: ClassVar[bool] = True
 
     def scores(
-        self,
-        library: RuleLibrary,
-        belief: Array,
-        *,
-        episodes_left: float | None = None,
-        generator: np.random.Generator | None = None,
+        self, library: RuleLibrary, belief: Array, *, generator: np.random.Generator | None = None, **_: Any
     ) -> Array:
         """Mean utilities on the type drawn, (P,) or (k, P)."""
         return library.performance.mean_on(drawn_types(belief, check_generator(self.name, generator)))

@@ -27,8 +27,8 @@ Available = Sequence[str | int] | NDArray[Any]
 
 TOLERANCE = 1e-9
 """Scores this close to the best, relative to it, are equal: rounding moves sums of products by less."""
-LEAST_TOLERANCE = {"d": 0.0, "f": 1e-6}
-"""Least tolerance of scores in float64 and in float32, whose sums of products are rounded by so much."""
+TOLERANCE_OF = {"d": TOLERANCE, "f": 1e-6}
+"""Tolerance of scores in float64, and in float32, whose sums of products are rounded by more."""
 ROUNDING = 1e-15
 """Differences below this share of a row's largest score are rounding, however small the best score is."""
 
@@ -36,8 +36,10 @@ ROUNDING = 1e-15
 # ---- the largest score -------------------------------------------------------------------------------------
 
 
-def choose(scores: ArrayLike, generator: np.random.Generator, tolerance: float = TOLERANCE) -> Any:
+def choose(scores: ArrayLike, generator: np.random.Generator) -> Any:
     """The policy of the largest score, equals at random.
+
+    Scores that differ from the largest by no more than the tolerance of their precision are equal to it.
 
     Parameters
     ----------
@@ -45,8 +47,6 @@ def choose(scores: ArrayLike, generator: np.random.Generator, tolerance: float =
         Minus infinity where a policy is not available; infinity is allowed.
     generator : numpy generator
         Draws a number for each row in which policies tie, and no other.
-    tolerance : float
-        Scores this close to the best, relative to it, are equal; ≥ 0.
 
     Returns
     -------
@@ -62,9 +62,8 @@ def choose(scores: ArrayLike, generator: np.random.Generator, tolerance: float =
     >>> choose([1.0, 3.0, 2.0], np.random.default_rng(0))
     1
     """
-    scores = _floats(scores)
-    best = _best(scores, tolerance)
-    if scores.ndim == 1:
+    best = _best(scores)
+    if best.ndim == 1:
         (best,) = best.nonzero()
         return int(best[0]) if len(best) == 1 else int(best[int(generator.random() * len(best))])
     chosen = best.argmax(axis=-1)
@@ -76,9 +75,9 @@ def choose(scores: ArrayLike, generator: np.random.Generator, tolerance: float =
     return chosen
 
 
-def tied_shares(scores: ArrayLike, tolerance: float = TOLERANCE) -> Array:
+def tied_shares(scores: ArrayLike) -> Array:
     """Probability that `choose` takes each policy, (..., P); errors as there."""
-    best = _best(_floats(scores), tolerance)
+    best = _best(scores)
     return best / best.sum(axis=-1, keepdims=True)
 
 
@@ -101,15 +100,12 @@ def best_policies(scores: ArrayLike, k: int, generator: np.random.Generator) -> 
     return best
 
 
-def _floats(scores: ArrayLike) -> NDArray[Any]:
-    """The scores as floats in their own precision."""
-    found = np.asarray(scores)
-    return found if found.dtype.kind == "f" else found.astype(np.float64)
-
-
-def _best(scores: Array, tolerance: float) -> Mask:
-    """Which policies are best or as good as the best, (..., P)."""
-    tolerance = max(tolerance, LEAST_TOLERANCE[scores.dtype.char])
+def _best(scores: ArrayLike) -> Mask:
+    """Which policies are best or as good as the best in the precision of the scores, (..., P)."""
+    scores = np.asarray(scores)
+    if scores.dtype.kind != "f":
+        scores = scores.astype(np.float64)
+    tolerance = TOLERANCE_OF[scores.dtype.char]
     if scores.ndim == 1 and scores.size:
         # A single row of finite scores, quickly.
         largest, least = float(np.maximum.reduce(scores)), float(np.minimum.reduce(scores))
@@ -162,7 +158,7 @@ def scored(
     values = partial(rule.scores, episodes_left=episodes_left, generator=generator)
     if getattr(rule, "by_means", False):
         scores = values(library, belief)
-        return scores if available is None else np.where(available, scores, -np.inf)
+        return scores if available is None or available.all() else np.where(available, scores, -np.inf)
     return _by_part(values, library, belief, available, -np.inf)
 
 

@@ -34,20 +34,15 @@ class EpsilonGreedy:
             raise InputError(f"epsilon must lie in [0, 1], got {self.epsilon}")
 
     def scores(
-        self,
-        library: RuleLibrary,
-        belief: Array,
-        *,
-        episodes_left: float | None = None,
-        generator: np.random.Generator | None = None,
+        self, library: RuleLibrary, belief: Array, *, generator: np.random.Generator | None = None, **_: Any
     ) -> Array:
         """Expected utilities, or with probability ε random numbers, (P,) or (k, P)."""
         generator = check_generator(self.name, generator)
         utility = library.performance.expected(belief)
         explores = np.asarray(generator.random(utility.shape[:-1]) < self.epsilon)
-        return (
-            np.where(explores[..., None], generator.random(utility.shape), utility) if explores.any() else utility
-        )
+        if not explores.any():
+            return utility
+        return np.where(explores[..., None], generator.random(utility.shape), utility)
 
     def probabilities(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
         """Probability of selecting each policy, (P,) or (k, P); rows sum to 1."""

@@ -15,16 +15,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.prediction import weighted
+from lifelore.interaction.outcomes.prediction import range_of_means, weighted
 from lifelore.interaction.selection.choice import TOLERANCE
-from lifelore.interaction.selection.rule import (
-    Array,
-    Deterministic,
-    RuleLibrary,
-    Variant,
-    check_variant,
-    range_of_means,
-)
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, Variant, check_variant
 
 Improving = Literal["pay", "outcome"]
 

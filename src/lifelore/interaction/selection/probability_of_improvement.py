@@ -10,15 +10,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.prediction import weighted
-from lifelore.interaction.selection.rule import (
-    Array,
-    Deterministic,
-    RuleLibrary,
-    Variant,
-    check_variant,
-    range_of_means,
-)
+from lifelore.interaction.outcomes.prediction import range_of_means, weighted
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, Variant, check_variant
 
 MARGIN_SHARE = 0.02
 """Default margin of the printed form, as a share of the utilities' range; the thesis gives no number."""

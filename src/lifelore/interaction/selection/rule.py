@@ -1,4 +1,4 @@
-"""The interface of a selection rule, what a rule reads of a library, and the sums that several rules share.
+"""The interface of a selection rule, what a rule reads of a library, and the checks that several rules share.
 
 A rule gives every policy a score under a belief. The policy of the largest score is selected, equals at random.
 Under a flat belief many scores are equal up to rounding, so all rules share the tolerance of `choice`.
@@ -80,11 +80,6 @@ class Deterministic:
     def probabilities(self, library: RuleLibrary, belief: Array, *, episodes_left: float | None = None) -> Array:
         """Probability of selecting each policy, (P,) or (k, P); rows sum to 1."""
         return tied_shares(self.scores(library, belief, episodes_left=episodes_left))  # pyright: ignore
-
-
-def range_of_means(mean: Array) -> Array:
-    """Largest less smallest mean of a library, (1,), or of each user's, (k, 1)."""
-    return np.ptp(mean, axis=(-2, -1))[..., None]
 
 
 def check_variant(variant: str) -> None:

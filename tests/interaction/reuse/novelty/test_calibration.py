@@ -7,7 +7,7 @@ from lifelore.interaction.beliefs.belief import entropy
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.novelty.calibration import NoveltyCalibration, check_rate, known_statistic, watch
-from lifelore.interaction.reuse.novelty.known_tasks import NormalTasks, known_tasks
+from lifelore.interaction.reuse.novelty.known_tasks import known_tasks, normal_tasks
 from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.selection import BeliefSampling, EpsilonGreedy, ExpectedImprovement, Greedy
 
@@ -42,12 +42,12 @@ def test_false_alarms_of_learnt_models_come_at_the_requested_rate():
         found = NoveltyCalibration.of(known_statistic(library, BeliefSampling(), 10, 2000, random), rate)
         types = random.integers(0, 3, 2000)
         model = library.performance
-        estimates = NormalTasks(model.mean[types], model.deviation[types], random)
+        estimates = normal_tasks(model.mean[types], model.deviation[types], random)
         blind = NoveltyCalibration.of(
             watch(library, BeliefSampling(), estimates, 2000, 10, random).statistic, rate
         )
         means = MEAN[random.integers(0, 3, 1000)]
-        tasks = NormalTasks(means, np.full_like(means, 2.0), random)
+        tasks = normal_tasks(means, np.full_like(means, 2.0), random)
         statistic = watch(library, BeliefSampling(), tasks, 1000, 10, random).statistic
         shares.append((found.standardised(statistic) > found.threshold).any(axis=1).mean())
         trusting.append((blind.standardised(statistic) > blind.threshold).any(axis=1).mean())
@@ -72,15 +72,12 @@ def test_simulated_tasks_are_played_as_an_agent_plays():
     random = np.random.default_rng(0)
     pays = MEAN[2] + 2 * random.standard_normal((6, 3))
 
-    class Recorded:
-        def __init__(self):
-            self.chosen = []
+    chosen = []
 
-        def signals(self, policies):
-            self.chosen.append(int(policies[0]))
-            return pays[len(self.chosen) - 1, policies]
+    def tasks(policies):
+        chosen.append(int(policies[0]))
+        return pays[len(chosen) - 1, policies]
 
-    tasks = Recorded()
     seen = watch(EXACT, ExpectedImprovement(), tasks, 1, 6, np.random.default_rng(0))
     plain = NoveltyCalibration(0.05, np.zeros(6), np.ones(6), 99.0, 400)
     agent = BayesianPolicyReuse(EXACT, ExpectedImprovement(), novelty=NoveltyDetector(EXACT, calibration=plain))
@@ -88,8 +85,8 @@ def test_simulated_tasks_are_played_as_an_agent_plays():
         assert entropy(agent.belief) == pytest.approx(seen.entropy[0, episode])
         scores = agent.rule.scores(EXACT, agent.belief)
         # Equals are drawn at random.
-        assert scores[tasks.chosen[episode]] == pytest.approx(scores.max())
-        agent.update(tasks.chosen[episode], float(pays[episode, tasks.chosen[episode]]))
+        assert scores[chosen[episode]] == pytest.approx(scores.max())
+        agent.update(chosen[episode], float(pays[episode, chosen[episode]]))
         assert agent.novelty is not None
         assert agent.novelty.score == pytest.approx(seen.statistic[0, episode])
         assert agent.novelty.log_odds == pytest.approx(seen.log_odds[0, episode])

@@ -9,6 +9,7 @@ from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.novelty.known_tasks import (
     _inverse_trigamma,
     drawn_moments,
+    drawn_probs,
     known_tasks,
     posterior_variance,
 )
@@ -20,7 +21,7 @@ N = 20_000
 
 def test_exact_models_give_their_own_means_and_deviations():
     library = PolicyLibrary.from_means([[1.0, 5.0], [3.0, 9.0]], [[1.0, 2.0], [1.0, 2.0]], prior=[0.0, 1.0])
-    signals = known_tasks(library, N, np.random.default_rng(0)).signals(np.full(N, 1))
+    signals = known_tasks(library, N, np.random.default_rng(0))(np.full(N, 1))
     assert signals.mean() == pytest.approx(9, abs=5 * 2 / N**0.5)
     assert signals.std() == pytest.approx(2, rel=0.03)
 
@@ -74,28 +75,27 @@ def test_the_inverse_of_the_trigamma_function():
 def test_learnt_categories_vary_with_their_count_and_exact_ones_do_not():
     probs = [[[0.5, 0.5, 0.0]]]
     exact = PolicyLibrary.from_means([[1.0]], 1.0, signal=CategorySignal(probs))
-    tasks = known_tasks(exact, 500, np.random.default_rng(0))
-    assert np.unique(tasks.cumulative[:, 0, 0]).tolist() == [0.5]
+    types = np.zeros(5000, np.int64)
+    assert np.unique(drawn_probs(exact.signal, types, np.random.default_rng(0))[:, 0, 0]).tolist() == [0.5]
     learnt = PolicyLibrary.from_means([[1.0]], 1.0, signal=CategorySignal(probs, count=9))
-    tasks = known_tasks(learnt, 5000, np.random.default_rng(0))
-    share = tasks.cumulative[:, 0, 0]
+    share = drawn_probs(learnt.signal, types, np.random.default_rng(0))[:, 0, 0]
     assert share.var() == pytest.approx(0.25 / 10, rel=0.1)  # Dirichlet: p (1 - p) / (count + 1)
-    assert (tasks.signals(np.zeros(5000, np.int64)) < 2).all()
+    assert (known_tasks(learnt, 5000, np.random.default_rng(0))(types) < 2).all()
 
 
 def test_named_categories_come_by_name():
     signal = CategorySignal([[[0.5, 0.5]]], categories=["near", "far"])
     tasks = known_tasks(PolicyLibrary.from_means([[1.0]], 1.0, signal=signal), 50, np.random.default_rng(0))
-    assert set(tasks.signals(np.zeros(50, np.int64))) == {"near", "far"}
+    assert set(tasks(np.zeros(50, np.int64))) == {"near", "far"}
 
 
 def test_outcomes_of_a_few_values_and_of_bins():
     random = np.random.default_rng(0)
     library = PolicyLibrary.from_samples(random.choice([0.0, 1.0], (2, 2, 20)), model="categorical")
-    signals = known_tasks(library, 200, random).signals(np.zeros(200, np.int64))
+    signals = known_tasks(library, 200, random)(np.zeros(200, np.int64))
     assert set(signals.tolist()) == {0.0, 1.0}
     library = PolicyLibrary(HistogramOutcomes.from_samples(random.normal(0, 1, (2, 2, 80)), 10))
-    signals = known_tasks(library, 200, random).signals(np.zeros(200, np.int64))
+    signals = known_tasks(library, 200, random)(np.zeros(200, np.int64))
     low, high = library.performance.bounds()
     assert (signals >= low).all()
     assert (signals <= high).all()

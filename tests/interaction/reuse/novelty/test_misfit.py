@@ -85,8 +85,9 @@ def test_rows_are_single_tasks_and_sums_are_those_of_all_pairs(kind):
     singles = [one.statistic(0) for one in alone]
     np.testing.assert_allclose(many.statistic(np.arange(20)), singles, rtol=1e-9, atol=1e-9)
     # The naive sum over all pairs of what has been shown.
-    shown, pairs = many.evidence.broad.signals.shown, pairs_of(library.signal)
-    whole = sum(pairs.misfit(shown, np.arange(20), np.full(20, policy)) for policy in range(4))
+    pairs = pairs_of(library.signal)
+    shown = many.evidence.broad.signals.shown[pairs.statistics]
+    whole = sum(pairs.misfit(shown[:, policy], np.full(20, policy)) for policy in range(4))
     np.testing.assert_allclose(many.by_type, whole, rtol=1e-9, atol=1e-9)
 
 

@@ -163,7 +163,7 @@ def watch(
     for episode in range(horizon):
         seen.entropy[:, episode] = entropy(users.belief(every))
         policies = users.select(every, rule)
-        signals = tasks.signals(policies)
+        signals = tasks(policies)
         users.update(every, policies, signals)
         misfit.observe(every, policies, signals)
         misfit.evidence.end_episode(every)

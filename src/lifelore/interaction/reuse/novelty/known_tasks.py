@@ -7,7 +7,7 @@ tasks then differ from the model as much as real tasks do.
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,27 +26,21 @@ Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 
-class Tasks(Protocol):
-    """Tasks whose signals a rule may ask for."""
-
-    def signals(self, policies: Numbers) -> Any:
-        """The next signal of each task under its policy (n,), as the library's signal model takes it."""
-        ...
+Tasks = Callable[[Numbers], Any]
+"""The next signal of each of n tasks under its policy, (n,), as the library's signal model takes it."""
 
 
-class NormalTasks:
+def normal_tasks(mean: Array, deviation: Array, generator: np.random.Generator) -> Tasks:
     """Tasks with normal outcomes of `mean` and `deviation`, (n, n_policies) each."""
 
-    def __init__(self, mean: Array, deviation: Array, generator: np.random.Generator) -> None:
-        self.mean, self.deviation, self.generator = mean, deviation, generator
-
-    def signals(self, policies: Numbers) -> Array:
-        """Outcomes."""
+    def outcomes(policies: Numbers) -> Array:
         at = np.arange(len(policies)), policies
-        return self.mean[at] + self.deviation[at] * self.generator.standard_normal(len(policies))
+        return mean[at] + deviation[at] * generator.standard_normal(len(policies))
+
+    return outcomes
 
 
-class CountedTasks:
+def counted_tasks(probs: Array, generator: np.random.Generator, signals_of: Callable[[Numbers], Any]) -> Tasks:
     """Tasks with cells of probabilities `probs` (n, n_policies, n_cells).
 
     Parameters
@@ -54,15 +48,14 @@ class CountedTasks:
     signals_of : callable
         Numbers of cells (n,) to signals.
     """
+    cumulative = probs.cumsum(axis=2)
 
-    def __init__(self, probs: Array, generator: np.random.Generator, signals_of: Callable[[Numbers], Any]) -> None:
-        self.cumulative, self.generator, self._signals_of = probs.cumsum(axis=2), generator, signals_of
+    def signals(policies: Numbers) -> Any:
+        rows = cumulative[np.arange(len(policies)), policies]
+        level = generator.random(len(rows)) * rows[:, -1]
+        return signals_of((rows <= level[:, None]).sum(axis=1))
 
-    def signals(self, policies: Numbers) -> Any:
-        """Outcomes, or categories."""
-        rows = self.cumulative[np.arange(len(policies)), policies]
-        level = self.generator.random(len(rows)) * rows[:, -1]
-        return self._signals_of((rows <= level[:, None]).sum(axis=1))
+    return signals
 
 
 def known_tasks(library: PolicyLibrary, n: int, generator: np.random.Generator) -> Tasks:
@@ -77,15 +70,14 @@ def known_tasks(library: PolicyLibrary, n: int, generator: np.random.Generator) 
     signal = library.signal
     model: Any = signal.outcomes if isinstance(signal, ReturnSignal) else None
     if isinstance(model, MomentOutcomes):
-        return NormalTasks(*drawn_moments(model, types, generator), generator)
+        return normal_tasks(*drawn_moments(model, types, generator), generator)
     if isinstance(model, CountedOutcomes):
-        return CountedTasks(
-            drawn_probs(model, types, generator), generator, partial(model.cells.sample, generator)
-        )
+        probs = drawn_probs(model, types, generator)
+        return counted_tasks(probs, generator, partial(model.cells.sample, generator))
     if isinstance(signal, CategorySignal):
         names = signal.categories
         named = np.arange(signal.n_categories) if names is None else np.fromiter(names, object, len(names))
-        return CountedTasks(drawn_probs(signal, types, generator), generator, lambda cells: named[cells])
+        return counted_tasks(drawn_probs(signal, types, generator), generator, lambda cells: named[cells])
     raise InputError(f"known tasks have outcomes or categories as signals, got {type(signal).__name__}")
 
 

@@ -13,13 +13,13 @@ runs of a pair, spread ρ of the tasks of a type):
 The misfit sees that no single type fits all policies. The shortfall sees that the policy that seems best is not.
 """
 
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
-from lifelore.interaction.outcomes.law import Numbers, Shown
+from lifelore.interaction.outcomes.law import Numbers
 from lifelore.interaction.outcomes.log_probability import log_of
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.special_functions import gammaln
@@ -63,10 +63,12 @@ class Misfit:
 
     def observe(self, tasks: Numbers, policies: Numbers, signals: Any) -> None:
         """Take in a signal of each of `tasks`; errors as for `UnknownEvidence.observe`."""
-        shown, belief = self.evidence.broad.signals.shown, self.evidence.types.belief(tasks)
-        before, first = self._pairs.misfit(shown, tasks, policies), self._pairs.untried(shown, tasks, policies)
+        belief = self.evidence.types.belief(tasks)
+        statistics = self.evidence.broad.signals.shown[self._pairs.statistics]
+        before = self._pairs.misfit(statistics[tasks, policies], policies)
+        first = ~statistics[tasks, policies].any(axis=-1)
         self.evidence.observe(tasks, policies, signals)
-        self.by_type[tasks] += self._pairs.misfit(shown, tasks, policies) - before
+        self.by_type[tasks] += self._pairs.misfit(statistics[tasks, policies], policies) - before
         self.freedom[tasks] += self._pairs.freedom * first
         self.n_signals[tasks] += 1
         if self._mean is not None:
@@ -85,42 +87,32 @@ class Misfit:
         return np.clip((mean - outcomes) / deviation, -LARGEST_TERM, LARGEST_TERM)
 
 
-class Pairs(Protocol):
-    """χ² of what tasks have shown of a policy."""
-
-    freedom: float
-    """Degrees of freedom of a policy."""
-
-    def misfit(self, shown: Shown, tasks: Numbers, policies: Numbers) -> Array:
-        """χ² of `tasks` (...) and `policies` (...) against each type, (..., n_types); 0 where nothing is shown."""
-        ...
-
-    def untried(self, shown: Shown, tasks: Numbers, policies: Numbers) -> Any:
-        """Whether `tasks` (...) have shown nothing of `policies` (...)."""
-        ...
-
-
 class MeanPairs:
-    """χ² of mean outcomes; `mean`, `variance` and `doubt` (1/n + ρ) are (n_types, n_policies)."""
+    """χ² of mean outcomes; `mean`, `variance` and `doubt` (1/n + ρ) are (n_types, n_policies).
 
-    freedom = 1.0
+    Attributes
+    ----------
+    freedom : float
+        Degrees of freedom of a policy.
+    statistics : str
+        Name of the statistics in `Shown`.
+    """
+
+    freedom, statistics = 1.0, "moments"
 
     def __init__(self, mean: Array, variance: Array, doubt: Any) -> None:
         self._mean, self._variance = np.ascontiguousarray(mean.T), np.ascontiguousarray(variance.T)
         self._doubt = np.ascontiguousarray(np.broadcast_to(doubt, mean.shape).T)
 
-    def misfit(self, shown: Shown, tasks: Numbers, policies: Numbers) -> Array:
-        moments = shown["moments"][tasks, policies][..., None, :]
-        count, mean = moments[..., 0], moments[..., 1]
+    def misfit(self, moments: Array, policies: Numbers) -> Array:
+        """χ² of moments shown of `policies` (...) against each type, (..., n_types); 0 where nothing is shown."""
+        count, mean = moments[..., None, 0], moments[..., None, 1]
         variance = self._variance[policies] * (1 + count * self._doubt[policies])
         return np.minimum(count * (mean - self._mean[policies]) ** 2 / variance, LARGEST)
 
-    def untried(self, shown: Shown, tasks: Numbers, policies: Numbers) -> Any:
-        return shown["moments"][tasks, policies][..., 0] == 0
-
 
 class CountedPairs:
-    """χ² of counts by their likelihood ratio.
+    """χ² of counts by their likelihood ratio; attributes as of `MeanPairs`.
 
     Parameters
     ----------
@@ -129,19 +121,18 @@ class CountedPairs:
         Number of signals that the probabilities count as for a task; without it they are exact.
     """
 
+    statistics = "counts"
+
     def __init__(self, probs: Array, weight: Array | None) -> None:
         self.freedom = float(probs.shape[2] - 1)
         self._probs = np.ascontiguousarray(probs.transpose(1, 0, 2))
         self._weight = None if weight is None else np.ascontiguousarray(weight.T)
 
-    def misfit(self, shown: Shown, tasks: Numbers, policies: Numbers) -> Array:
-        counts = shown["counts"][tasks, policies]
+    def misfit(self, counts: Array, policies: Numbers) -> Array:
+        """χ² of counts shown of `policies` (...) against each type, (..., n_types); 0 where nothing is shown."""
         total = np.maximum(counts.sum(axis=-1, keepdims=True), 1)
         best = (counts * np.log(np.maximum(counts, 1) / total)).sum(axis=-1)
         return np.clip(2 * (best[..., None] - self._log_likelihood(counts[..., None, :], policies)), 0, LARGEST)
-
-    def untried(self, shown: Shown, tasks: Numbers, policies: Numbers) -> Any:
-        return ~shown["counts"][tasks, policies].any(axis=-1)
 
     def _log_likelihood(self, counts: Array, policies: Numbers) -> Array:
         """log P of sequences with counts (..., 1, n_cells), (..., n_types)."""
@@ -158,7 +149,7 @@ class CountedPairs:
         return np.where(possible, terms, np.where(counts > 0, -LARGEST, 0.0)).sum(axis=-1) - total
 
 
-def pairs_of(signal: Any) -> Pairs:
+def pairs_of(signal: Any) -> MeanPairs | CountedPairs:
     """χ² against the runs of a signal model whose signals are outcomes or categories."""
     model: Any = signal.outcomes if isinstance(signal, ReturnSignal) else signal
     if isinstance(model, MomentOutcomes):

@@ -21,6 +21,7 @@ from lifelore.interaction.outcomes.law import Models
 from lifelore.interaction.reuse.novelty.calibration import NoveltyCalibration, check_rate, known_statistic
 from lifelore.interaction.reuse.novelty.misfit import Misfit
 from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
+from lifelore.interaction.reuse.reuse_algorithm import named_part
 from lifelore.interaction.selection import SelectionRule, rule_of
 
 MASS = 0.05
@@ -239,9 +240,8 @@ class NoveltyDetector:
         try:
             mass, log_odds = np.asarray(state["numbers"], np.float64).tolist()
             detector = cls(library, mass, None, dynamics, models, known)
-            task = {name.removeprefix("task."): array for name, array in state.items() if name.startswith("task.")}
             shown = {f"signal.{name}": state[name] for name in ("policies", "shown")}
-            detector._evidence.types.restore(0, state["log_belief"], task)
+            detector._evidence.types.restore(0, state["log_belief"], named_part(state, "task."))
             detector._evidence.broad.restore(0, np.zeros(1), shown)
             detector._evidence.log_odds[0] = log_odds
             if known is not None:

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.outcomes.law import Models, Numbers
+from lifelore.interaction.outcomes.law import Models, Numbers, law_of
 from lifelore.interaction.reuse.explanation import MAX_SURPRISE
 from lifelore.interaction.reuse.novelty.broad_library import broad_library
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
@@ -56,8 +56,7 @@ class UnknownEvidence:
         models: Models = "uncertain",
     ) -> None:
         self.broad = ReuseAlgorithm(broad_library(library), n_tasks, dynamics=TypeDynamics.static())
-        usual = ReuseAlgorithm(library, prior=prior, dynamics=dynamics, models=models)
-        least = usual.signals.law.spread.least
+        least = law_of(library.signal, library.n_types, models).spread.least
         self.types = ReuseAlgorithm(library, n_tasks, prior=prior, dynamics=dynamics, models=models, spread=least)
         self.log_odds = np.zeros(n_tasks)
 
