@@ -21,6 +21,13 @@ BASELINES: dict[str, type[Baseline]] = {
 """Every baseline by its name."""
 
 __all__ = [
-    "BASELINES", "EXP3", "GPUCB", "UCB1", "Baseline", "EpsilonGreedyMeans", "GaussianThompson",
-    "IntervalEstimation", "TryAll",
-]  # fmt: skip
+    "BASELINES",
+    "EXP3",
+    "GPUCB",
+    "UCB1",
+    "Baseline",
+    "EpsilonGreedyMeans",
+    "GaussianThompson",
+    "IntervalEstimation",
+    "TryAll",
+]

@@ -101,9 +101,14 @@ class UserBeliefs:
         self.library, self.unknown = library, unknown
         known = law_of(library.signal, library.n_types, models).spread.mean if spread is None else spread
         self.algorithm = ReuseAlgorithm(
-            library, n_users,
-            prior=prior, dynamics=dynamics, models=models, spread=Spread.known(known), dtype=dtype,
-        )  # fmt: skip
+            library,
+            n_users,
+            prior=prior,
+            dynamics=dynamics,
+            models=models,
+            spread=Spread.known(known),
+            dtype=dtype,
+        )
         self.generator = stream(seed, "user beliefs") if isinstance(seed, int | np.integer) else seed
         self.n_users = n_users
 

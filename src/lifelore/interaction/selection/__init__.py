@@ -24,10 +24,17 @@ from lifelore.interaction.selection.value_of_perfect_information import ValueOfP
 RULES: dict[str, type] = {
     rule.name: rule
     for rule in (
-        Greedy, EpsilonGreedy, BeliefSampling, ProbabilityOfImprovement, ExpectedImprovement, BeliefEntropy,
-        KnowledgeGradient, ValueOfPerfectInformation, InformationDirected,
+        Greedy,
+        EpsilonGreedy,
+        BeliefSampling,
+        ProbabilityOfImprovement,
+        ExpectedImprovement,
+        BeliefEntropy,
+        KnowledgeGradient,
+        ValueOfPerfectInformation,
+        InformationDirected,
     )
-}  # fmt: skip
+}
 """Every rule by the name that sessions and the command line use."""
 
 DEFAULT_RULE = "information-directed"
