@@ -120,15 +120,11 @@ class CountedLaw:
         weights = np.exp(log_weights).reshape(len(own), -1)[rows]
         return (rows, policies), weights, (prior + counts[:, None, None]) / total[..., None], total
 
-    def table(
-        self, n_bins: int, shown: Shown | None = None, users: Numbers = None, log_weights: Array | None = None
-    ) -> SignalTable:
+    def table(self, n_bins: int, shown: Shown, users: Numbers, log_weights: Array) -> SignalTable:
         """The cells as signals; above `n_bins` cells, neighbours are joined so that they tell the types apart."""
         if n_bins not in self._bins:
             self._bins[n_bins] = joined_table(self.probs, n_bins)
         ends, table = self._bins[n_bins]
-        if shown is None or log_weights is None:
-            return table
         at, weights, probs, _ = self.predicted(shown, users, log_weights)
         expected = (weights[:, :, None, None] * probs).sum(axis=1)
         binned = joined(expected.transpose(1, 0, 2), ends[at[1]]).transpose(1, 0, 2)

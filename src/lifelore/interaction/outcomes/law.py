@@ -96,10 +96,8 @@ class Law(Protocol):
         """Let everything that distinct `users` have shown count `keep` (...) of what it did."""
         ...
 
-    def table(
-        self, n_bins: int, shown: Shown | None = None, users: Numbers = None, log_weights: Array | None = None
-    ) -> SignalTable:
-        """P(next signal | type, policy) in at most `n_bins` bins, of all users or with a leading axis of `users`.
+    def table(self, n_bins: int, shown: Shown, users: Numbers, log_weights: Array) -> SignalTable:
+        """P(next signal | type, policy) of `users` in at most `n_bins` bins; laws without one have no such method.
 
         Parameters
         ----------
@@ -118,7 +116,7 @@ class Law(Protocol):
 
 
 class FixedLaw:
-    """The law of a model that users' signals do not change.
+    """The law of a model that users' signals do not change: nothing is learnt, forgotten or stored.
 
     Parameters
     ----------
@@ -159,25 +157,6 @@ class FixedLaw:
         if np.ndim(policies) == 0:
             return self._one(policies, signals)
         return np.array([self._one(*pair) for pair in zip(policies.tolist(), signals, strict=True)])
-
-    def learn(self, shown: Shown, users: Numbers, policies: Numbers, signals: Any) -> None:
-        """Nothing is to be learnt."""
-
-    def fade(self, shown: Shown, users: Numbers, keep: ArrayLike) -> None:
-        """Nothing was shown."""
-
-    def table(
-        self, n_bins: int, shown: Shown | None = None, users: Numbers = None, log_weights: Array | None = None
-    ) -> SignalTable:
-        """The model's own table, of all users."""
-        return self.model.table(n_bins)
-
-    def state(self, shown: Shown, user: int) -> dict[str, Array]:
-        """Empty."""
-        return {}
-
-    def restore(self, shown: Shown, user: int, state: Mapping[str, Array]) -> None:
-        """There is nothing to take over."""
 
     def _one(self, policy: int, signal: Any) -> Array:
         # A copy: callers keep it, and a model may write its next answer into the same array.

@@ -178,16 +178,12 @@ class NormalLaw:
             return NormalPrediction(self.mean, np.sqrt(self.noise + variance), variance)
         return NormalRows(self, shown, users, log_weights)
 
-    def table(
-        self, n_bins: int, shown: Shown | None = None, users: Numbers = None, log_weights: Array | None = None
-    ) -> SignalTable:
+    def table(self, n_bins: int, shown: Shown, users: Numbers, log_weights: Array) -> SignalTable:
         """The next outcome in bins that tell the types apart; the bins are those of users who showed nothing."""
         if n_bins not in self._bins:
             known = self.prediction()
             self._bins[n_bins] = normal_table(known.mean, known.deviation, n_bins)
         cuts, table = self._bins[n_bins]
-        if shown is None or log_weights is None:
-            return table
         rows = NormalRows(self, shown, users, log_weights)
         at, mean, deviation = rows.tried_pairs()
         return table.replaced(np.shape(users), at, normal_probs(mean, deviation, cuts[at[1]][:, None]))

@@ -133,7 +133,8 @@ class UserModel:
             log_weights = np.array(state.get("log_weights", self._log_first), np.float64)
             if log_weights.shape != self._log_first.shape or not abs(np.exp(log_weights).sum() - 1) < SLACK:
                 raise InputError(f"a user's state must have {len(self._log_first)} probabilities of spreads")
-            self.law.restore(self.shown, user, state)  # pyright: ignore[reportArgumentType]
+            if self.law.learns:
+                self.law.restore(self.shown, user, state)  # pyright: ignore[reportArgumentType]
         except (KeyError, IndexError, ValueError, TypeError) as error:
             raise InputError(f"the user's state is not of this library: {error}") from None
         self.log_weights[user] = log_weights
