@@ -18,12 +18,9 @@ endif
 DEEP := .venv-deep
 DEEP_TESTS = $(shell grep -rl --include='*.py' 'mark\.deep' tests)
 
-# So has CUDA: numba-cuda redirects numba.cuda, and its compiler takes half a gigabyte. No test needs a GPU.
-CUDA := .venv-cuda
-
 PYTHON_FILES := src reproduction benchmarks tests examples docs/conf.py docs/pictures
 
-.PHONY: help setup setup-test demo test test-fast test-deep test-cluster test-cuda coverage check format bench soak docs reproduction-pages \
+.PHONY: help setup setup-test demo test test-fast test-deep test-cluster coverage check format bench soak docs reproduction-pages \
 	wheel-test reproduce clean
 
 help: ## Name every target
@@ -71,16 +68,6 @@ test-cluster: setup-test ## The tests of the extra cluster (dask.distributed), i
 	$(BIN)/python -c "import distributed"
 	$(BIN)/python -m pytest tests/reproduction/test_cluster.py
 
-test-cuda: $(CUDA)/.ready ## The tests of the extra cuda (numba-cuda; a GPU is used if there is one), in .venv-cuda
-	$(CUDA)/bin/python -c "import numba_cuda"
-	$(CUDA)/bin/python -m pytest -m cuda tests/core/compiled/test_cuda.py
-
-$(CUDA)/.ready: pyproject.toml constraints.txt constraints-cuda.txt
-	test -x $(CUDA)/bin/python || $(PYTHON) -m venv $(CUDA)
-	$(CUDA)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt \
-		--constraint constraints-cuda.txt --editable '.[cuda,postgres]' pytest hypothesis
-	touch $@
-
 check: setup-test ## Formatting, lint, types, direction of imports
 	$(BIN)/ruff format --check $(PYTHON_FILES)
 	$(BIN)/ruff check $(PYTHON_FILES)
@@ -115,4 +102,4 @@ reproduce: setup ## Every built claim at full size
 	$(BIN)/lifelore reproduce --full
 
 clean: ## Remove the environment and caches
-	rm -rf $(VENV) $(DEEP) $(CUDA) .pytest_cache .ruff_cache .hypothesis out
+	rm -rf $(VENV) $(DEEP) .pytest_cache .ruff_cache .hypothesis out

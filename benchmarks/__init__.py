@@ -16,7 +16,7 @@ BENCHES = {
     "start": "time to a first answer: of a learner, and of each verb from the shell",
     "perceive": "a scene stage by stage, and a cloud from the shell",
     "separator": "the support vector machine between two clouds, beside scikit-learn",
-    "reuse": "a decision of policy reuse, beside loops, MABWiser and BoTorch; a million users",
+    "reuse": "an episode of policy reuse, beside MABWiser and Vowpal Wabbit; a million users",
     "serve": "decisions and outcomes over HTTP, beside a bare FastAPI route",
     "memory": "learners, contexts and memory files of growing size; many memories merged, beside one by one",
     "buildings": "the first and a later task in buildings of 5,000 to 300,000 places",

@@ -57,7 +57,6 @@ from lifelore.app import command_line, console
 from lifelore.app.perceive_command import _one_thread_for_matrices
 _one_thread_for_matrices()
 from lifelore.agent.perceive import perceive
-from lifelore.core.compiled import machine_code
 from lifelore.perception import perceived_scene, scene_json
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.contacts.interface import interfaces

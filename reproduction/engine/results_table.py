@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.intervals import t_interval
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
 from reproduction.engine.cell_store import canonical
 
@@ -146,13 +147,11 @@ class ResultsTable:
 
 def curve_of(curves: ArrayLike, digits: int | None = None, parts: Sequence[str] = PARTS) -> dict[str, list[float]]:
     """The `parts` asked for of `curves` (n, length): mean, standard deviation, 95 % t interval, each (length,)."""
-    from scipy.stats import t
-
     curves = np.asarray(curves, float)
     n, mean = len(curves), curves.mean(axis=0)
     deviation = curves.std(axis=0, ddof=1) if n > 1 else np.zeros(curves.shape[1])
-    half = t.ppf(0.975, n - 1) * deviation / np.sqrt(n) if n > 1 else deviation
-    found = {"mean": mean, "deviation": deviation, "low": mean - half, "high": mean + half}
+    low, high = t_interval(mean, deviation / np.sqrt(n), n - 1) if n > 1 else (mean, mean)
+    found = {"mean": mean, "deviation": deviation, "low": low, "high": high}
     return {part: (found[part] if digits is None else np.round(found[part], digits)).tolist() for part in parts}
 
 

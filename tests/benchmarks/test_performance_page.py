@@ -63,11 +63,12 @@ def separator() -> str:
 
 def reuse() -> str:
     value, ratio = measured("reuse")
-    less, more = (ratio[f"{name}, 68 x 68 x 50: loops"] for name in ("update", "expected improvement"))
+    default, sampling = (value[f"an episode, {rule}, exact models"] for rule in ("default rule", "sampling"))
+    mabwiser, wabbit = (ratio[f"an episode, {name}"] for name in ("MABWiser UCB1", "Vowpal Wabbit cb_explore"))
     return (
-        f"{less:.0f} to {more:,.0f} × loops; {ratio['select and learn: MABWiser UCB1']:.1f} × MABWiser; "
-        f"{ratio['select and learn: BoTorch GP-UCB, refitted every 10']:.0f} × BoTorch; a million users: "
-        f"{value['1000000 users, sampling']:.1f} million/s, {value['memory a user']:.0f} bytes each"
+        f"{default:.0f} µs, sampling {sampling:.0f} µs: {mabwiser:.1f} × MABWiser, {wabbit:.1f} × Vowpal Wabbit; "
+        f"a million users: {value['users, sampling, exact models']:.1f} million/s, "
+        f"{value['memory a user, exact models']:.0f} bytes each"
     )
 
 

@@ -7,8 +7,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
+from lifelore.core.intervals import RESAMPLES
 from lifelore.core.metrics import (
-    RESAMPLES,
     difference_estimate,
     entropy,
     interquartile_mean_estimate,

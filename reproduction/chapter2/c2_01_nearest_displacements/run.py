@@ -10,7 +10,8 @@ from itertools import product
 
 import numpy as np
 
-from lifelore.core.metrics import RESAMPLES, Estimate
+from lifelore.core.intervals import RESAMPLES, percentile_interval
+from lifelore.core.metrics import Estimate
 from lifelore.core.relations import BOTH, CORE_RELATIONS, ON
 from lifelore.core.streams import stream
 from reproduction.chapter2.scenes import tabletop_pairs
@@ -77,8 +78,7 @@ def hardest_margin(pairs: Sequence[Answer]) -> Estimate:
     drawn = {name: rng.binomial(counts[name], recalls[name], RESAMPLES) / counts[name] for name in recalls}
     both, of_both = recalls.pop(BOTH), drawn.pop(BOTH)
     value, spread = min(recalls.values()) - both, np.min(list(drawn.values()), axis=0) - of_both
-    low, high = np.quantile(spread, [0.025, 0.975])
-    return Estimate(value, value, (float(low), float(high)), len(pairs))
+    return Estimate(value, value, percentile_interval(spread), len(pairs))
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

@@ -11,6 +11,7 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.intervals import percentile_interval
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ADJACENT, CORE_RELATIONS, ON
 from lifelore.core.streams import stream
@@ -121,9 +122,9 @@ def sideways_of_rise(plot: Plot, resamples: int) -> Estimate:
     own = [plot.at[on & (plot.row == owner)] for owner in np.unique(plot.row[on])]
     draws = stream(len(own), "C2.3", "pairs resampled").integers(0, len(own), (resamples, len(own)))
     middles = [np.median(np.concatenate([own[i] for i in draw]), axis=0) for draw in draws]
-    low, high = np.quantile([_slope(middle) for middle in middles], [0.025, 0.975])
+    interval = percentile_interval([_slope(middle) for middle in middles])
     value = _slope(plot.middle_of_on)
-    return Estimate(value, value, (float(low), float(high)), int(on.sum()))
+    return Estimate(value, value, interval, int(on.sum()))
 
 
 def _slope(middle: NDArray[np.float64]) -> float:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lifelore.core.intervals import percentile_interval
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, CORE_RELATIONS, NONE, ON, SYMMETRIC, PairLabel
@@ -188,7 +189,7 @@ def difference(
     sums = _sums_by_scene(first, differences)
     drawn = _draws(len(sums)) @ sums
     value = float(sums[:, 0].sum() / sums[:, 1].sum())
-    return Estimate(value, value, _percentiles(drawn[:, 0] / drawn[:, 1]), len(first))
+    return Estimate(value, value, percentile_interval(drawn[:, 0] / drawn[:, 1]), len(first))
 
 
 def _macro_f1(judged: Sequence[JudgedPair], classes: Sequence[str]) -> Estimate:
@@ -203,7 +204,7 @@ def _macro_f1(judged: Sequence[JudgedPair], classes: Sequence[str]) -> Estimate:
     counts = _sums_by_scene(judged, answers)
     value = float(_mean_f1(counts.sum(axis=0)[None])[0])
     resampled = _mean_f1(np.tensordot(_draws(len(counts)), counts, axes=1))
-    return Estimate(value, value, _percentiles(resampled), len(judged))
+    return Estimate(value, value, percentile_interval(resampled), len(judged))
 
 
 def _mean_f1(counts: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -224,8 +225,3 @@ def _sums_by_scene(judged: Sequence[JudgedPair], numbers: ArrayLike) -> NDArray[
 def _draws(n: int) -> NDArray[np.float64]:
     """How often each of `n` scenes is drawn in each resample, ``(RESAMPLES, n)``; the same for the same n."""
     return stream(n, "scenes resampled").multinomial(n, np.full(n, 1 / n), size=RESAMPLES).astype(float)
-
-
-def _percentiles(values: NDArray[np.float64]) -> tuple[float, float]:
-    low, high = np.quantile(values, [0.025, 0.975])
-    return float(low), float(high)

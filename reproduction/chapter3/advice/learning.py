@@ -61,7 +61,7 @@ def reached_by_learner(
     return reached
 
 
-@kernel(allocates=False)
+@kernel
 def _learn(task, schedule, q, rows, guide, rule, agent, world, own, reached):
     """The Q-learning of `core.learning.q_learning`, row by row; its context is the state where advice is given."""
     next_state, reward_of, event_of, starts = task

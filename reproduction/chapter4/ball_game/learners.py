@@ -6,22 +6,25 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.domains.ball_game.simulated_player import Balls
-from lifelore.interaction.adaptation.beat import Exploration, epsilon_of
-from lifelore.interaction.adaptation.beat_users import BeatUsers
+from lifelore.interaction.adaptation.beat import rule_at
 from lifelore.interaction.baselines.exp3 import EXP3
+from lifelore.interaction.beliefs.belief import log_prior
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from reproduction.chapter4.ball_game.play import Floats, Ints, Learner, Moves
 
 
 class BeatLearner(Learner):
-    """BEAT for all players; it records the type that it names after each step of the first episode.
+    """BEAT for all players, a row each; it records the type that it names after each step of the first episode.
 
     Parameters
     ----------
-    value, signal_table : arrays
-        See `BeatUsers`.
+    library : PolicyLibrary
+        Types × speeds, whose signals are moves.
     n_players : int
     prior : (n_types,) or (n_players, n_types) float, optional
-    epsilon : see `beat.Exploration`
+    epsilon : float or str, as for `Beat`
     seed : numpy generator
 
     Attributes
@@ -34,27 +37,30 @@ class BeatLearner(Learner):
 
     def __init__(
         self,
-        value: Floats,
-        signal_table: Floats,
+        library: PolicyLibrary,
         n_players: int,
         *,
         prior: ArrayLike | None = None,
-        epsilon: Exploration = 0.0,
+        epsilon: float | str = 0.0,
         seed: int | np.random.Generator = 0,
     ) -> None:
-        self.users = BeatUsers(value, signal_table, n_players, prior=prior, seed=seed)
+        static = TypeDynamics.static()
+        self.players = ReuseAlgorithm(library, n_players, dynamics=static, models="plug-in")
+        if prior is not None:
+            self.players.log_belief[:] = log_prior(prior)
         self.named: list[NDArray[np.int8]] = []
-        self._epsilon, self._step, self._first = epsilon_of(epsilon), 0, True
+        self._epsilon, self._step, self._first = epsilon, 0, True
+        self._generator = np.random.default_rng(seed)
         self._every = np.arange(n_players)
 
     def select(self, balls: Balls, episode: int) -> Ints:
-        return self.users.select(self._every, self._epsilon(self._step, episode))
+        return self.players.select(self._every, rule_at(self._epsilon, self._step, episode), self._generator)[0]
 
     def observe(self, speed: Ints, moves: Moves) -> None:
-        self.users.update(moves.rows, speed[moves.rows], moves.signal[moves.rows])
+        self.players.observe(moves.rows, speed[moves.rows], moves.signal[moves.rows])
         self._step += 1
         if self._first:
-            self.named.append(self.users.log_belief.argmax(axis=1).astype(np.int8))
+            self.named.append(self.players.log_belief.argmax(axis=1).astype(np.int8))
 
     def end_episode(self, speed: Ints, loss: Floats) -> None:
         self._first = False

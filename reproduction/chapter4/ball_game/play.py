@@ -13,7 +13,8 @@ from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import MAX_STEPS, BallGame, LossScale, draw_sigma
 from lifelore.domains.ball_game.moves import N_OUTCOMES, N_SIGNALS, read_moves
 from lifelore.domains.ball_game.simulated_player import Balls, advance, new_balls, random_states
-from lifelore.interaction.adaptation.move_model import PSEUDO_COUNT, log_shares
+from lifelore.interaction.adaptation.move_signal import MoveSignal
+from lifelore.interaction.library.policy_library import PolicyLibrary
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -38,9 +39,13 @@ class Trained(NamedTuple):
         """V: minus the mean loss of each type at each speed, (n_types, n_speeds)."""
         return -scale.loss(self.steps, self.hits).mean(axis=-1)
 
-    def signal_table(self, pseudo_count: float = PSEUDO_COUNT) -> Floats:
-        """Log T(s' | s, a; type) in classes, (n_speeds, N_SIGNALS, n_types)."""
-        return log_shares(self.signals, N_OUTCOMES, 4 * pseudo_count / N_OUTCOMES)
+    def move_signal(self) -> MoveSignal:
+        """T(s' | s, a; type) in classes."""
+        return MoveSignal.from_counts(self.signals, N_OUTCOMES)
+
+    def library(self, scale: LossScale) -> PolicyLibrary:
+        """Types × speeds as a policy library whose signals are moves."""
+        return PolicyLibrary.from_samples(-scale.loss(self.steps, self.hits), signal=self.move_signal())
 
 
 def scale_of(normalisation: str, steps: Ints, hits: Ints) -> LossScale:

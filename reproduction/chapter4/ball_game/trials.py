@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import SIZES, BallGame, LossScale
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from reproduction.chapter4.ball_game import play
 from reproduction.chapter4.ball_game.games import N_TYPES, Game, choices
 from reproduction.chapter4.ball_game.learners import BeatLearner, PrintedExp3, exp3_by_episode
@@ -54,9 +55,8 @@ class Known(NamedTuple):
     """
 
     game: BallGame
-    signal_table: Floats
+    library: PolicyLibrary
     scale: LossScale
-    value: Floats
     worst: float
     horizon: int
 
@@ -69,7 +69,7 @@ def known_of(words: str, normalisation: str, training: int, seed: int) -> Known:
     scale = trained.scale(normalisation)
     worst = float(scale.loss(trained.steps, trained.hits).max())
     horizon = round(EPISODES * float(trained.steps.mean()))
-    return Known(game, trained.signal_table(), scale, trained.value(scale), worst, horizon)
+    return Known(game, trained.library(scale), scale, worst, horizon)
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -99,9 +99,8 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     n = len(players.kinds)
     for method in BEATS if cell["all"] else (BEAT,):
         prior = _population_prior(n) if method == BEAT_TOLD else None
-        learner = BeatLearner(
-            known.value, known.signal_table, n, prior=prior, epsilon=BEATS[method], seed=stream(seed, name, method)
-        )
+        random = stream(seed, name, method)
+        learner = BeatLearner(known.library, n, prior=prior, epsilon=BEATS[method], seed=random)
         played = play_all(known.game, players, learner, known.scale)
         found[method], lengths = known.scale.loss(*played), played.steps[:, 0]
         halves[method] = confusion(players.kinds, learner.named_halfway(lengths)).tolist()
@@ -129,13 +128,13 @@ def by_size(lost: Floats) -> Floats:
 
 def _constant_speeds(known: Known, players: Players, by_speed: Floats) -> dict[str, Floats]:
     """The population's best speed in training, its best as it turns out, and each type's best."""
-    runs = len(players.kinds) // len(POPULATIONS)
-    expected = [known.value[list(population)].mean(axis=0).argmax() for population in POPULATIONS]
+    runs, value = len(players.kinds) // len(POPULATIONS), known.library.performance.mean
+    expected = [value[list(population)].mean(axis=0).argmax() for population in POPULATIONS]
     turned_out = by_speed.reshape(len(POPULATIONS), -1, known.game.n_speeds).mean(axis=1).argmin(axis=1)
     speeds = {
         STATIC: np.repeat(expected, runs),
         HINDSIGHT: np.repeat(turned_out, runs),
-        ORACLE: known.value.argmax(axis=1)[players.kinds],
+        ORACLE: value.argmax(axis=1)[players.kinds],
     }
     return {method: by_speed[np.arange(len(by_speed)), :, speed] for method, speed in speeds.items()}
 

@@ -11,11 +11,11 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
-from lifelore.interaction.library.storage_cost import StorageSizes, storage_cost
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.outcome_model import rows_of_samples
 from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
 from lifelore.interaction.signals.transition_signal import TransitionSignal
+from reproduction.chapter4.c4_09_model_storage.storage_cost import StorageSizes, storage_cost
 from reproduction.engine.estimates import UNMEASURED, share_of
 
 SIGNALS = ("performance", "reward", "state_action_state")

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
 from lifelore.domains.surveillance.surveillance import Surveillance
-from lifelore.interaction.library.task_types import epsilon_types, member_regret
+from lifelore.interaction.library.task_types import TaskTypes, epsilon_types
 from reproduction.engine.estimates import exact_value, mean_or_unmeasured
 
 Array = NDArray[np.float64]
@@ -65,6 +65,18 @@ def parted(table: Array, share: float) -> dict:
         "past": int((regret > 1 + 1e-9).sum()),
         "counts": counts.tolist(),
     }
+
+
+def member_regret(utilities: Array, types: TaskTypes) -> Array:
+    """The largest regret of each task's landmark over all choices of the landmark in its type, (n_tasks,)."""
+    regret = np.zeros(len(utilities))
+    for type_ in range(types.n_types):
+        members = np.flatnonzero(types.labels == type_)
+        own = utilities[members]
+        for stands_for_all in own:
+            left = own[:, stands_for_all == stands_for_all.max()].min(axis=1)
+            regret[members] = np.maximum(regret[members], own.max(axis=1) - left)
+    return regret
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:

@@ -15,8 +15,8 @@ from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import MAX_STEPS, BallGame, LossScale, draw_sigma
 from lifelore.domains.ball_game.moves import N_CONTEXTS, N_OUTCOMES, read_moves
 from lifelore.domains.ball_game.simulated_player import advance, new_balls, random_states
-from lifelore.interaction.adaptation.beat import epsilon_of
-from lifelore.interaction.adaptation.move_model import PSEUDO_COUNT
+from lifelore.interaction.adaptation.beat import rule_at
+from lifelore.interaction.adaptation.move_signal import PRIOR_MOVES
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
@@ -46,7 +46,7 @@ class Algorithm9:
 
     def __init__(self, counts: NDArray[np.float64], value: NDArray[np.float64]) -> None:
         n_speeds, _, n_types = counts.shape
-        seen = counts.reshape(n_speeds, N_CONTEXTS, N_OUTCOMES, n_types) + 4 * PSEUDO_COUNT / N_OUTCOMES
+        seen = counts.reshape(n_speeds, N_CONTEXTS, N_OUTCOMES, n_types) + PRIOR_MOVES / N_OUTCOMES
         self.transitions = seen / seen.sum(axis=2, keepdims=True)
         self.value, self.belief = value, np.full(n_types, 1 / n_types)
         self.printed = self.belief.copy()
@@ -94,14 +94,14 @@ def _session(
     world: np.random.Generator,
 ) -> dict:
     """One user's episodes: steps, those decided alike, the largest difference of beliefs, when products vanish."""
-    epsilon_at, steps, alike, apart, vanished = epsilon_of(schedule), 0, 0, 0.0, 0
+    steps, alike, apart, vanished = 0, 0, 0.0, 0
     beliefs: list[list[float]] = []
     heading, signal, before = np.empty(1, np.int64), np.empty(1, np.int64), np.empty((1, 2), np.int64)
     for episode in range(EPISODES):
         balls = new_balls(game, [kind], draw_sigma(world), random_states(world, 1))
         while balls.playing[0]:
-            epsilon = epsilon_at(steps, episode)
-            reuse.rule, mine = EpsilonGreedy(epsilon), beat.probabilities(epsilon)
+            reuse.rule = rule_at(schedule, steps, episode)
+            mine = beat.probabilities(reuse.rule.epsilon)
             alike += bool(np.abs(reuse.probabilities() - mine).max() < 1e-9)
             speed = int(world.choice(len(mine), p=mine))
             advance(game.field, balls, np.array([speed]), 0, MAX_STEPS, heading, before)
@@ -126,7 +126,7 @@ def library_of(game: BallGame, trained: Trained, scale: LossScale) -> PolicyLibr
 
 def transition_signal(trained: Trained) -> TransitionSignal:
     """T(s' | s; type, speed) in classes: from the context of a command to its outcome."""
-    table = np.exp(trained.signal_table())
+    table = np.exp(trained.move_signal().log_table)
     n_speeds, _, n_types = table.shape
     probs = np.zeros((n_types, n_speeds, N_STATES, 1, N_STATES))
     shares = table.reshape(n_speeds, N_CONTEXTS, N_OUTCOMES, n_types).transpose(3, 0, 1, 2)

@@ -11,14 +11,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.metrics import RESAMPLES, Estimate, mean_estimate
+from lifelore.core.intervals import LEAST_VALUES, RESAMPLES, percentile_interval
+from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.interaction.baselines import Baseline
 from lifelore.interaction.beliefs.belief import entropy
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.reuse.reuse_algorithm import LEAST_SCORED, ReuseAlgorithm
+from lifelore.interaction.outcomes.law import Models
+from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection import SelectionRule
 
 Array = NDArray[np.float64]
@@ -54,60 +55,31 @@ def play_rule(
     n_episodes: int,
     generator: np.random.Generator,
     first: int | None = None,
+    models: Models = "plug-in",
 ) -> Played:
     """Bayesian policy reuse (Alg. 7, 8) on `n_tasks` tasks at once; types are static, as in the thesis.
 
-    `generator` serves the rule and the choice among equals. `first`, if given, is the policy of the first episode,
-    in place of the rule's choice.
+    Parameters
+    ----------
+    generator : numpy generator
+        Serves the rule and the choice among equals.
+    first : int, optional
+        The policy of the first episode, in place of the rule's choice.
+    models : {"plug-in", "uncertain"}
+        Whether models are taken for the truth, as in the thesis, or learnt models are known to be uncertain.
     """
-    reuse = ReuseAlgorithm(library, TypeDynamics.static(), least=LEAST_SCORED)
-    log_belief, every = np.tile(reuse.start(), (n_tasks, 1)), np.arange(n_tasks)
+    reuse = ReuseAlgorithm(library, n_tasks, dynamics=TypeDynamics.static(), models=models)
+    every = np.arange(n_tasks)
     policies = np.empty((n_tasks, n_episodes), np.int64)
     entropies = np.empty((n_tasks, n_episodes + 1))
     for t in range(n_episodes):
-        belief = reuse.belief(log_belief)
-        entropies[:, t] = entropy(belief)
+        entropies[:, t] = entropy(reuse.belief(every))
         if t == 0 and first is not None:
-            chosen = np.full(n_tasks, first)
+            policies[:, t] = first
         else:
-            chosen, _ = reuse.select(belief, rule, generator, n_episodes - 1 - t)
-        policies[:, t] = chosen
-        reuse.update(log_belief, every, chosen, signals(t, chosen))
-    entropies[:, -1] = entropy(np.exp(log_belief))
-    return Played(policies, entropies)
-
-
-def play_doubting(
-    rule: SelectionRule,
-    library: PolicyLibrary,
-    signals: Signals,
-    n_tasks: int,
-    n_episodes: int,
-    stream_of: tuple,
-    *,
-    outcomes: Signals | None = None,
-) -> Played:
-    """`play_rule` with a belief over types and the parameters of their models, task by task.
-
-    `stream_of` names the streams of the agents. `outcomes` are the returns where signals are something else.
-    """
-    agents = [
-        BayesianPolicyReuse(
-            library, rule, horizon=n_episodes, seed=stream(*stream_of, task), dynamics=TypeDynamics.static()
-        )
-        for task in range(n_tasks)
-    ]
-    policies = np.empty((n_tasks, n_episodes), np.int64)
-    entropies = np.empty((n_tasks, n_episodes + 1))
-    for t in range(n_episodes):
-        entropies[:, t] = [entropy(agent.belief) for agent in agents]
-        policies[:, t] = [agent.select() for agent in agents]
-        shown = signals(t, policies[:, t])
-        paid = None if outcomes is None else outcomes(t, policies[:, t])
-        for task, agent in enumerate(agents):
-            outcome = None if paid is None else float(paid[task])
-            agent.update(int(policies[task, t]), shown[task].item(), outcome)
-    entropies[:, -1] = [entropy(agent.belief) for agent in agents]
+            policies[:, t], _ = reuse.select(every, rule, generator, episodes_left=n_episodes - 1 - t)
+        reuse.update(every, policies[:, t], signals(t, policies[:, t]))
+    entropies[:, -1] = entropy(reuse.belief(every))
     return Played(policies, entropies)
 
 
@@ -144,8 +116,7 @@ def grouped_quantile(values: ArrayLike, q: float) -> Estimate:
     """Quantile of all `values` (n_groups, n_each), with a bootstrap interval over groups; none below three."""
     values, interval = np.asarray(values, float), None
     n = len(values)
-    if n >= 3:
+    if n >= LEAST_VALUES:
         draws = stream(n, "bootstrap of a quantile").integers(0, n, size=(RESAMPLES, n))
-        low, high = np.quantile(np.quantile(values[draws].reshape(RESAMPLES, -1), q, axis=1), [0.025, 0.975])
-        interval = (float(low), float(high))
+        interval = percentile_interval(np.quantile(values[draws].reshape(RESAMPLES, -1), q, axis=1))
     return Estimate(float(np.quantile(values, q)), float(np.median(values)), interval, values.size)

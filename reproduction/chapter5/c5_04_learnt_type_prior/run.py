@@ -17,7 +17,7 @@ from lifelore.interaction.beliefs.belief import log_prior
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.regret import library_regret
-from lifelore.interaction.reuse.reuse_algorithm import LEAST_SCORED, ReuseAlgorithm
+from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection import default_rule
 from reproduction.engine.results_table import BAND, curve_of
 
@@ -70,7 +70,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         noise[life] = random.standard_normal((n_tasks, n_episodes))
     half_lives = (np.inf,) if cell["agent"] == NO_DECAY else HALF_LIVES
     learnt = [TypePrior(library.prior, half_lives=half_lives) for _ in range(n_lives)]
-    reuse = ReuseAlgorithm(library, TypeDynamics.static(), least=LEAST_SCORED)
+    reuse = ReuseAlgorithm(library, n_lives, dynamics=TypeDynamics.static(), models="plug-in")
     rule, every = default_rule(library), np.arange(n_lives)
     generator = stream(seed, "C5.4", "chooser", cell["world"])
     early = np.empty((n_lives, n_tasks))
@@ -83,15 +83,15 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
             priors = popular[:, task]
         else:
             priors = np.array([own.prior(int(c), date) for own, c in zip(learnt, seen, strict=True)])
-        log_belief = log_prior(priors)
+        reuse.log_belief[:] = log_prior(priors)
         mean = reserve.mean[types[:, task]]
         policies = np.empty((n_lives, n_episodes), np.int64)
         for t in range(n_episodes):
-            policies[:, t], _ = reuse.select(reuse.belief(log_belief), rule, generator, None)
+            policies[:, t], _ = reuse.select(every, rule, generator)
             pays = mean[every, policies[:, t]] + reserve.deviation * noise[:, task, t]
-            reuse.update(log_belief, every, policies[:, t], pays)
+            reuse.update(every, policies[:, t], pays)
         if cell["agent"] not in (LIBRARY, TRUE):
-            for own, context, belief in zip(learnt, seen, np.exp(log_belief), strict=True):
+            for own, context, belief in zip(learnt, seen, reuse.belief(every), strict=True):
                 own.learn(int(context), belief / belief.sum(), date)
         early[:, task] = library_regret(mean, policies)[:, : min(settings["early"], n_episodes)].sum(axis=1)
     return {**cell, "early": early.round(3).tolist()}

@@ -19,6 +19,7 @@ from lifelore.agent.long_lived.knowledge import Knowledge
 from lifelore.agent.long_lived.live_task import LivingSettings, attempt_task, live_task
 from lifelore.agent.long_lived.task_family import AGENTS
 from lifelore.agent.long_lived.task_log import TaskLog
+from lifelore.core.intervals import percentile_interval
 from lifelore.core.metrics import Estimate, entropy, ratio_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.factory.customer_orders import CUSTOMERS
@@ -175,9 +176,8 @@ def auc_over_lives(lives: Sequence[Mapping], sign: str) -> Estimate:
     draws = stream(len(lives), "lives resampled").integers(len(lives), size=(RESAMPLES, len(lives)))
     draws = draws[n[draws].sum(axis=1) > 0]
     found = [wins[np.ix_(draw, draw)].sum() / (len(lives) * n[draw].sum()) for draw in draws]
-    low, high = np.quantile(found, [0.025, 0.975])
     value = wins.sum() / (len(lives) * n.sum())
-    return Estimate(float(value), float(np.median(found)), (float(low), float(high)), len(lives))
+    return Estimate(float(value), float(np.median(found)), percentile_interval(found), len(lives))
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

@@ -24,7 +24,7 @@ from lifelore.interaction.selection import (
     KnowledgeGradient,
     SelectionRule,
 )
-from reproduction.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN, late_regret, play_doubting, play_rule
+from reproduction.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN, late_regret, play_rule
 from reproduction.own.o_01_default_rule.worlds import CALLS, EQUAL, NOISES, world_of
 
 RULES: dict[str, SelectionRule] = {
@@ -90,8 +90,8 @@ def _group(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict[str,
     if model == LEARNT:
         found[UNCERTAIN] = {}
         for word in CANDIDATES:
-            of_agents = (seed, "O1", "doubting", word, name, noise, group)
-            played = play_doubting(RULES[word], library, signals, n_tasks, n_episodes, of_agents)
+            generator = stream(seed, "O1", "doubting", word, name, noise, group)
+            played = play_rule(RULES[word], library, signals, n_tasks, n_episodes, generator, models="uncertain")
             found[UNCERTAIN][word] = judged(played.policies)
     return found
 

@@ -16,9 +16,8 @@ from lifelore.core.streams import stream
 from lifelore.domains.surveillance.surveillance import Surveillance
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.novelty.calibration import calibrate, watch
-from lifelore.interaction.novelty.known_tasks import NormalTasks
-from lifelore.interaction.novelty.novelty_statistics import NoveltyStatistics
+from lifelore.interaction.reuse.novelty.calibration import NoveltyCalibration, known_statistic, watch
+from lifelore.interaction.reuse.novelty.known_tasks import normal_tasks
 from lifelore.interaction.selection import BeliefSampling
 
 Array = NDArray[np.float64]
@@ -42,18 +41,17 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     held, types = np.sort(order[: settings["held_out"]]), np.sort(order[settings["held_out"] :])
     library = _library(world, types, cell["models"], generator)
     rule, horizon = BeliefSampling(), settings["horizon"]
-    calibration = calibrate(
-        library, rule, settings["false_alarm"], horizon, settings["simulated"], generator, **AGENT
-    )
+    simulated = known_statistic(library, rule, horizon, settings["simulated"], generator, **AGENT)
+    calibration = NoveltyCalibration.of(simulated, settings["false_alarm"])
     near = world.cells_near_hills
     others = near[(near[:, None] != world.targets).any(axis=-1).all(axis=1)]
     means = {KNOWN: world.mean[types], HELD: world.mean[held], CELLS: world.mean_at(others)}
-    statistics, found, seen = NoveltyStatistics(library), {}, {}
+    found, seen = {}, {}
     for kind, mean in means.items():
         n = settings["known" if kind == KNOWN else "unseen"]
         chosen = mean[generator.integers(len(mean), size=n)]
-        tasks = NormalTasks(chosen, np.full_like(chosen, world.deviation), generator)
-        seen[kind] = watch(statistics, rule, tasks, n, horizon, generator, **AGENT)
+        tasks = normal_tasks(chosen, np.full_like(chosen, world.deviation), generator)
+        seen[kind] = watch(library, rule, tasks, n, horizon, generator, **AGENT)
         raised = calibration.standardised(seen[kind].statistic) > calibration.threshold
         first = raised.argmax(axis=1)[raised.any(axis=1)] + 1
         found[kind] = {

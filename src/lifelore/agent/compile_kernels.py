@@ -1,4 +1,4 @@
-"""Compiles the kernels of `live`, `perceive` and `reuse` before their first use (`lifelore doctor --warm`)."""
+"""Compiles the kernels of `live` and `perceive` before their first use (`lifelore doctor --warm`)."""
 
 import tempfile
 import time
@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.core.compiled.kernel_cache import kernel_cache_dir
-from lifelore.core.compiled.machine_code import SUFFIX, machine_code_folder, used_files
+from lifelore.core.compiled.kernel_cache import cache_folder
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Progress
 
@@ -25,36 +24,34 @@ def compile_kernels(progress: Progress | None = None) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``folder`` of the cache; ``compiled``: number of new kernels; ``kernels``: number of all kernels;
-        ``seconds``.
+        ``folder`` of the cache; ``compiled``: number of new kernels; ``seconds``.
 
     Raises
     ------
     StoreError
         No kernel was stored: the folder cannot be written, or compiling is switched off.
     """
-    began, before = time.perf_counter(), _compiled() | set(machine_code_folder().glob(f"*{SUFFIX}"))
+    began, before = time.perf_counter(), _compiled()
     with tempfile.TemporaryDirectory() as folder:
         for done, (label, run) in enumerate(VERBS.items(), start=1):
             run(Path(folder))
             if progress:
                 progress(done, len(VERBS), label)
-    after = _compiled() | used_files()
+    after = _compiled()
     if not after:
         raise StoreError(
-            f"no kernel could be stored in {kernel_cache_dir()}: make the folder writable or set NUMBA_CACHE_DIR, "
+            f"no kernel could be stored in {cache_folder()}: make the folder writable or set NUMBA_CACHE_DIR, "
             "and leave NUMBA_DISABLE_JIT unset"
         )
     return {
-        "folder": str(kernel_cache_dir()),
+        "folder": str(cache_folder()),
         "compiled": len(after - before),
-        "kernels": len(after),
         "seconds": round(time.perf_counter() - began, 3),
     }
 
 
 def _compiled() -> set[Path]:
-    return set(kernel_cache_dir().rglob("*.nbc"))
+    return set(cache_folder().rglob("*.nbc"))
 
 
 def _live(folder: Path) -> None:
@@ -99,30 +96,5 @@ def _two_boxes_on_a_table() -> tuple[np.ndarray, np.ndarray]:
     return np.vstack(parts), np.repeat(np.arange(3), [len(part) for part in parts])
 
 
-def _reuse(folder: Path) -> None:
-    from lifelore.agent.reuse.fit import FitSettings, fit
-    from lifelore.agent.reuse.one_user import choose, update
-    from lifelore.agent.reuse.study import open_study
-    from lifelore.memory import open_memory
-
-    random, log = np.random.default_rng(0), folder / "log.csv"
-    for model in ("categorical", "gaussian", "student-t"):
-        lines = ["user,policy,outcome"]
-        for user in range(8):
-            for turn in range(6):
-                mean = float(turn % 2 == user % 2)
-                outcome = (
-                    int(random.random() < 0.1 + 0.8 * mean) if model == "categorical" else mean + random.normal()
-                )
-                lines.append(f"u{user},p{turn % 2},{outcome}")
-        log.write_text("\n".join(lines))
-        with open_memory(str(folder / f"{model}.db")) as memory:
-            fit([log], memory, FitSettings(model=model))
-            study = open_study(memory)
-            for _ in range(2):
-                chosen = choose(memory, study, "new")
-                update(memory, study, chosen["decision"], 1.0)
-
-
-VERBS: dict[str, Callable[[Path], None]] = {"live": _live, "perceive": _perceive, "reuse": _reuse}
+VERBS: dict[str, Callable[[Path], None]] = {"live": _live, "perceive": _perceive}
 """Verbs with kernels, each with a function that runs it in an empty folder."""

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lifelore.core.compiled.kernel_cache import kernel_cache_dir
+from lifelore.core.compiled.kernel_cache import cache_folder
 from lifelore.core.errors import LifeloreError
 from lifelore.core.learning.curve import TOTAL
 from lifelore.core.learning.q_learner import QLearning
@@ -37,7 +37,7 @@ PACKAGES = {
     "rosbags": "clouds from rosbags (extra ros)",
     "stable-baselines3": "priors in deep Q-learning (extra deep)",
     "mabwiser": "a peer in benchmarks (extra peers)",
-    "botorch": "a peer in benchmarks (extra peers)",
+    "vowpalwabbit": "a peer in benchmarks (extra peers)",
 }
 SLOW = 5.0
 """Million Q-learning steps a second; slower kernels are probably not compiled."""
@@ -88,7 +88,7 @@ def _kernels() -> dict:
 
 
 def _kernel_cache() -> dict:
-    folder = kernel_cache_dir()
+    folder = cache_folder()
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):

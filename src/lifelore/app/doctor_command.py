@@ -47,7 +47,7 @@ def _compile(as_json: bool) -> None:
     if as_json:
         print_json(done)
     else:
-        print(f"{done['compiled']} kernels compiled, {done['kernels']} ready in {done['folder']}")
+        print(f"{done['compiled']} kernels compiled in {done['folder']}")
 
 
 def _print(report: dict) -> None:

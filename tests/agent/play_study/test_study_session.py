@@ -156,4 +156,4 @@ def test_beat_learns_a_large_ball_from_moves_alone():
         if result.planned.method == BEAT:
             named = result.column("named")[-1]
             assert SIZES[named] == result.planned.size
-    assert np.exp(beat.log_belief).tolist() == [[0.5, 0.5]]
+    assert beat.belief.tolist() == [0.5, 0.5]

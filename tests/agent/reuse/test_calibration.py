@@ -10,6 +10,7 @@ from lifelore.agent.reuse.one_user import choose, update
 from lifelore.agent.reuse.report import report
 from lifelore.agent.reuse.study import open_study
 from lifelore.agent.reuse.warm import warm
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.calibration import outcome_calibration, outcome_levels, type_calibration
 from lifelore.memory import open_memory
@@ -57,7 +58,7 @@ def test_outcomes_are_those_of_agents_that_live_the_same(memory, study):
         agent = BayesianPolicyReuse(study.library)
         for policy, outcome in rows:
             beliefs.append(agent.belief)
-            levels.append(outcome_levels(agent.algorithm.library, [agent.belief], [policy], [outcome])[0])
+            levels.append(outcome_levels(agent.algorithm.known(0), [agent.belief], [policy], [outcome])[0])
             groups.append(user)
             agent.update(policy, outcome)
     found = report(memory, study)["calibration"]
@@ -66,6 +67,31 @@ def test_outcomes_are_those_of_agents_that_live_the_same(memory, study):
     assert found["outcomes"]["observed"] == pytest.approx(expected["observed"])
     assert found["outcomes"]["ci95"] == [one and pytest.approx(one) for one in expected["ci95"]]
     assert (found["outcomes"]["n"][0], found["outcomes"]["groups"]) == (18, 6)
+
+
+@pytest.mark.parametrize("model", ["gaussian", "categorical"])
+def test_predicted_quantiles_are_sums_of_the_predicted_density(model):
+    """P(U ≤ u) given a user's outcomes is the integral of the likelihoods by which the belief learns."""
+    random = np.random.default_rng(4)
+    samples = random.integers(0, 4, (3, 2, 5)).astype(float) + np.arange(3)[:, None, None]
+    agent = BayesianPolicyReuse(PolicyLibrary.from_samples(samples, model=model))
+    for policy, outcome in ((0, 2.0), (1, 4.0), (0, 3.0)):
+        agent.update(policy, outcome)
+    grid = np.linspace(-300, 300, 600_001) if model == "gaussian" else np.arange(6.0)
+    model_of_user = agent.algorithm.signals
+    by_spread = model_of_user.law.log_likelihoods(
+        np.zeros(len(grid), np.int64),
+        model_of_user.law.checked(grid),
+        model_of_user.shown,
+        np.zeros(len(grid), int),
+    )
+    density = (np.exp(by_spread) * np.exp(model_of_user.log_weights[0])[:, None]).sum(axis=1)
+    step = grid[1] - grid[0]
+    for value in (1.0, 3.0, 4.0):
+        part = density[grid <= value + 1e-9]
+        expected = part.sum(axis=0) * step - (0.5 * step * part[-1] if model == "gaussian" else 0)
+        found = agent.algorithm.known(0).performance.cumulative(0, np.array([value]))[:, 0]
+        assert found == pytest.approx(expected, abs=1e-4)
 
 
 def test_types_are_known_from_a_log_and_the_name_is_no_evidence(memory, study):

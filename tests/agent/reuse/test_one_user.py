@@ -301,7 +301,7 @@ def test_a_process_killed_in_between_loses_nothing_it_had_told(tmp_path):
         agent = BayesianPolicyReuse(study.library)
         for one in history.decisions:
             if one.outcome is None:
-                agent.skip()
+                agent.end_episode()
             else:
                 agent.update(one.policy, one.outcome)
         assert np.array_equal(belief_of(memory, study, "ann"), agent.log_belief)
@@ -336,36 +336,21 @@ def test_a_study_of_static_types_stays_so_although_the_default_is_another(memory
     assert study_of().change == FitSettings().change == DEFAULT_HAZARD == 0.002
 
 
-def of_earlier_lifelore(study):
-    """The record that a Lifelore without signal tables stored."""
+def of_earlier_lifelore(study, *, table=False):
+    """The record of a Lifelore without settings of rules, with or without a signal table behind the library."""
     record = study.to_record()
-    n = -(-record.about["bytes"] // 8)
-    about = {name: value for name, value in record.about.items() if name not in ("table", "rule_settings")}
-    return Record(record.kind, record.key, 1, "newest", record.slots[:n], record.values[:n], about)
-
-
-@pytest.mark.parametrize("rule", ["belief-entropy", "information-directed", "knowledge-gradient"])
-def test_the_signal_table_of_the_policies_in_use_comes_back_bit_for_bit(memory, rule):
-    study_of(rule=rule).keep(memory)
-    first = open_study(memory, "s")
-    assert list(first.tables) == [8]
-    assert first.choice_of.table(8) is first.tables[8].table
-    retire(memory, first, "dark")
-    for study in (first, open_study(memory, "s")):
-        made = study.library.take(policies=[POLICIES.index(policy) for policy in study.active]).table(8)
-        assert study.tables[8].table.probs.tobytes() == made.probs.tobytes()
-        assert study.tables[8].table.conditional_entropy.tobytes() == made.conditional_entropy.tobytes()
+    about = {name: value for name, value in record.about.items() if name != "rule_settings"}
+    values = record.values
+    if table:
+        about |= {"table": [8, 3, 8, 2], "cuts": [3, 7]}
+        values = np.append(values, np.full(3 * 8 * 2 + 3 * 7, np.float64(0.125).view(np.int64)))
+    return Record(record.kind, record.key, 1, "newest", np.arange(len(values)), values, about)
 
 
 @pytest.mark.parametrize("model", ["gaussian", "categorical"])
-def test_the_table_and_bins_of_uncertain_models_come_back_bit_for_bit(memory, model):
+def test_a_study_from_memory_decides_as_before_it_was_stored(memory, model):
     study = learnt_study(model, rule="information-directed")
     study.keep(memory)
-    table, cuts = study.library.task_table(8)
-    stored = open_study(memory, "s").tables[8]
-    assert stored.table.probs.tobytes() == table.probs.tobytes()
-    assert stored.cuts is not None
-    assert all(np.array_equal(*pair) for pair in zip(stored.cuts, cuts, strict=True))
     said = []
     for one in (study, open_study(memory, "s")):
         update(memory, one, choose(memory, one, "ann", seed=1)["decision"], 1.0)
@@ -373,21 +358,13 @@ def test_the_table_and_bins_of_uncertain_models_come_back_bit_for_bit(memory, mo
     assert said[0] == said[1]
 
 
-def test_a_rule_that_reads_no_table_stores_none_nor_is_a_large_one_stored(memory, monkeypatch):
-    study_of().keep(memory)
-    assert open_study(memory, "s").tables == {}
-    monkeypatch.setattr("lifelore.agent.reuse.study.LARGEST_TABLE", 2 * 3 * 8 - 1)
-    study_of(rule="belief-entropy").keep(memory)
-    assert open_study(memory, "s").tables == {}
-    assert choose(memory, open_study(memory, "s"), "ann")["number"] == 0
-
-
+@pytest.mark.parametrize("table", [False, True])
 @pytest.mark.parametrize("rule", ["sampling", "belief-entropy", "information-directed", "knowledge-gradient"])
-def test_a_study_of_an_earlier_lifelore_chooses_the_same(tmp_path, rule):
+def test_a_study_of_an_earlier_lifelore_chooses_the_same(tmp_path, rule, table):
     said = []
     with open_memory(tmp_path / "new.db") as new, open_memory(tmp_path / "old.db") as old:
         study_of(rule=rule).keep(new)
-        earlier = of_earlier_lifelore(study_of(rule=rule))
+        earlier = of_earlier_lifelore(study_of(rule=rule), table=table)
         old.contribute("reuse s", [earlier], process="study", seq=0, task={})
         for memory in (new, old):
             study = open_study(memory, "s")
@@ -409,22 +386,6 @@ def test_a_study_of_an_earlier_lifelore_improves_the_outcome(tmp_path):
             retire(memory, open_study(memory, "s"), "plain")
             said.append(choose(memory, open_study(memory, "s"), "ann")["policy"])
     assert said == ["big", "dark"]
-
-
-@pytest.mark.parametrize(
-    ("spoil", "said"),
-    [
-        (lambda values, n: values[: n + 1], "must have 48 numbers, got 1"),
-        (lambda values, n: np.append(values[:n], values[n:] * 0 + np.int64(2**62)), "sum to 1"),
-    ],
-)
-def test_a_damaged_signal_table_is_refused(memory, spoil, said):
-    record = study_of(rule="belief-entropy").to_record()
-    values = spoil(record.values, -(-record.about["bytes"] // 8))
-    broken = Record(record.kind, "s", 1, "newest", np.arange(len(values)), values, record.about)
-    memory.contribute("x", [broken], process="p", seq=0, task={})
-    with pytest.raises(StoreError, match=f"{said}.*; fit the study anew"):
-        open_study(memory, "s")
 
 
 def test_studies_that_are_not_there_newer_or_damaged(memory):
@@ -492,10 +453,10 @@ def test_models_of_few_runs_learn_from_the_user_in_the_order_of_decisions(memory
         agent.update(one["policy"], outcome)
     head = open_belief(memory, study, user_key("s", "ann")).state.head
     assert np.array_equal(head.log_belief, agent.log_belief)
-    assert agent.task is not None
     assert {name: array.tolist() for name, array in head.task.items()} == {
-        name: array.tolist() for name, array in agent.task.state().items()
+        name: array.tolist() for name, array in agent.algorithm.state(0).items()
     }
+    assert head.task
     answer = choose(memory, study, "ann")
     assert answer["expected"] == pytest.approx(dict(zip(POLICIES, agent.expected_utility(), strict=True)))
 

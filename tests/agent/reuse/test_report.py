@@ -68,13 +68,13 @@ def test_numbers_by_hand(memory, study):
 
 
 @pytest.mark.slow
-def test_the_interval_of_many_users_is_the_normal_one(memory, study, monkeypatch):
+def test_the_interval_of_many_users_is_students(memory, study, monkeypatch):
     said = lived(memory, study, 20)
     resampled = report(memory, study)["personal"]
     monkeypatch.setattr(reuse_report, "MANY", 4)
     document = report(memory, study)
     means = [np.mean([outcome for _, outcome in rows]) for (_, held), rows in said.items() if not held]
-    half = 1.96 * stats.sem(means)
+    half = stats.t.ppf(0.975, len(means) - 1) * stats.sem(means)
     assert document["personal"] == {
         "value": pytest.approx(np.mean(means)), "median": pytest.approx(np.median(means)),
         "ci95": pytest.approx([np.mean(means) - half, np.mean(means) + half]), "n": len(means),

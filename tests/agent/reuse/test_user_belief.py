@@ -54,7 +54,7 @@ def naive(study, decisions):
     agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics)
     for one in decisions:
         if one.outcome is None or one.policy not in study.library.policies:
-            agent.skip()
+            agent.end_episode()
         else:
             agent.update(one.policy, one.outcome)
     return agent

@@ -13,7 +13,7 @@ from lifelore.agent.reuse.user_belief import NAMED_TYPE, open_belief
 from lifelore.agent.reuse.warm import warm
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.reuse.unknown_type import MASS
+from lifelore.interaction.reuse.novelty.novelty_detector import MASS
 from lifelore.memory import open_memory
 
 HEAD = "user,policy,outcome\n"
@@ -95,7 +95,7 @@ def test_the_probability_that_no_known_type_fits_counts_past_and_decisions(memor
         made = choose(memory, study, "h5", novelty=True)
         agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics, novelty=MASS)
         for policy, seen in rows:
-            agent.skip() if seen is None else agent.update(policy, seen)
+            agent.end_episode() if seen is None else agent.update(policy, seen)
         assert agent.novelty is not None
         assert made["novelty"] == agent.novelty.probability
         if outcome is not None:

@@ -22,7 +22,7 @@ from lifelore.core.learning.known_world import (
     goal_distances,
     known_policy,
 )
-from lifelore.core.learning.model_learning import new_model_learner
+from lifelore.core.learning.model_learning import StateInfo, new_model_learner
 from lifelore.core.learning.search_plan import NO_CRUMBS, OUT_OF_REACH, plan_search
 from lifelore.core.streams import stream
 
@@ -48,23 +48,10 @@ def planned(
 ) -> list[int]:
     """The actions of `plan_search`, first one first; OUT_OF_REACH alone if the wanted place is out of reach."""
     desk = new_model_learner(*target.shape, stream(0, "world"), stream(0, "own"))
-    own = random_state(stream(seed, "own"))
-    length = plan_search(
-        start,
-        target,
-        place,
-        bool((place == GOAL).any()),
-        cost_row,
-        try_cost,
-        exhaustive,
-        wanted,
-        np.isin(np.arange(len(place)), later),
-        desk.plan,
-        desk.queue,
-        desk.parent,
-        desk.parent_action,
-        own,
-    )
+    own, on_tour = random_state(stream(seed, "own")), np.isin(np.arange(len(place)), later)
+    learner = desk._replace(place=place, own_random=own, later=on_tour)
+    info = StateInfo(np.zeros(len(place), np.int64), cost_row, try_cost)
+    length = plan_search(start, target, info, learner, bool((place == GOAL).any()), exhaustive, wanted)
     assert (desk.parent == UNKNOWN).all()  # as it was, whatever the search reached
     if length == OUT_OF_REACH:
         return [OUT_OF_REACH]

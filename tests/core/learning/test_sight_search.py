@@ -198,10 +198,8 @@ def test_a_plan_leads_to_a_best_place_on_a_shortest_path(seed, purpose):
     remembered = random.choice([UNKNOWN, 5], n)
     gain = random.choice([0, 0, 1, 2, 6], n).astype(np.int32)
     desk = new_model_learner(n, n_actions, stream(0, "world"), stream(0, "own"))
-    length = plan_by_sight(
-        0, target, remembered, place, gain, purpose,
-        desk.plan, desk.queue, desk.parent, desk.parent_action, random_state(stream(seed, "own")),
-    )  # fmt: skip
+    learner = desk._replace(place=place, own_random=random_state(stream(seed, "own")))
+    length = plan_by_sight(0, WorldModel(target, remembered), learner, gain, purpose)
     assert (desk.parent == UNKNOWN).all()
     best, steps = naive_best(target, remembered, place, gain, purpose)
     assert bool(length) == bool(best)

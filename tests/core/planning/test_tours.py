@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.sparse import csgraph
 
-from lifelore.core.planning.closed_tour import closed_length, closed_tour, nearest_walk
+from lifelore.core.planning.closed_tour import closed_tour, nearest_walk
 from lifelore.core.planning.near_distances import (
     BEYOND,
     NearDistances,
@@ -42,12 +42,14 @@ def rooms(seed: int) -> tuple[np.ndarray, np.ndarray]:
 
 def walk_of(target) -> np.ndarray:
     n = len(target)
-    graph, walk = known_neighbours(target), np.empty(n, np.int32)
+    graph = known_neighbours(target)
     begin, ends = graph.indptr.astype(np.int32), graph.indices.astype(np.int32)
-    count = nearest_walk(
-        0, begin, ends, np.zeros(n, np.bool_), np.empty(n, np.int32), np.full(n, -1, np.int32), walk
-    )
-    return walk[:count]
+    return nearest_walk(0, begin, ends, np.zeros(n, np.bool_), n)
+
+
+def closed_length(near: NearDistances, tour: np.ndarray) -> int:
+    """Steps of a closed tour."""
+    return int(sum(steps_between(a, b, near) for a, b in zip(tour, np.roll(tour, -1), strict=True)))
 
 
 @pytest.mark.parametrize("seed", range(3))

@@ -185,7 +185,8 @@ def test_a_ball_that_stays_makes_whole_moves_or_none(data):
     in_goal = x + dx * moved >= 840 and y + dy * moved >= 840
     made = moved if moved == distance or in_goal or (x >= 840 and y >= 840) else 0
     expected = (x + dx * made, y + dy * made, moved < distance)
-    assert travel(STAYS, STAYS.radius[kind], x, y, dx, dy, distance) == expected
+    found = travel(STAYS.clearance, STAYS.goal, True, STAYS.radius[kind], x, y, dx, dy, distance)
+    assert found == expected
 
 
 @pytest.mark.slow

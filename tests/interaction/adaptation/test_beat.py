@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.adaptation.beat import EPSILONS, Adaptation, Beat, epsilon_of
-from lifelore.interaction.adaptation.beat_users import BeatUsers
+from lifelore.interaction.adaptation.beat import EPSILONS, Beat, rule_at
+from lifelore.interaction.adaptation.move_signal import MoveSignal
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
-from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.transition_signal import TransitionSignal
 
 N_TYPES, N_SETS, N_STATES = 4, 3, 5
@@ -59,11 +59,10 @@ def test_the_algorithm_as_printed_gives_the_same_decisions(epsilon):
     beat = Beat(lib, epsilon=epsilon, seed=np.random.default_rng(9))
     draws, world = np.random.default_rng(9), np.random.default_rng(1)
     belief, state = np.full(N_TYPES, 1 / N_TYPES), 0
-    schedule = epsilon_of(epsilon)
     for step in range(60):
         episode = step // 20
         chosen = beat.select()
-        explores = draws.random() < schedule(step, episode)
+        explores = draws.random() < rule_at(epsilon, step, episode).epsilon
         assert chosen == int((draws.random(N_SETS) if explores else belief @ value).argmax())
         triple = move(world, probs, 2, chosen, state)
         belief = belief * probs[:, chosen, triple[0], triple[1], triple[2]]
@@ -109,42 +108,14 @@ def test_logs_hold_what_products_lose():
     assert beat.log_belief.min() < -745  # less than any float
 
 
-def test_actions_are_a_second_factor_judged_by_the_set_she_is_adapted_to():
-    lib, _, _ = library()
-    # Actions tell the type under set 0 only.
-    told = np.full((N_TYPES, N_SETS, 2), 0.5)
-    told[:, 0] = [[0.9, 0.1], [0.2, 0.8], [0.5, 0.5], [0.5, 0.5]]
-    plain, with_actions, lagging = (
-        Beat(lib),
-        Beat(lib, actions=CategorySignal(told)),
-        Beat(lib, actions=CategorySignal(told), lag=3),
-    )
-    for beat in (plain, with_actions, lagging):
-        for policy in (0, 1):  # the second move is made under set 1; who lags still acts by set 0
-            beat.update(policy, [(0, 0, 1)], *(() if beat is plain else (0,)))
-    odds = np.exp(with_actions.log_belief - plain.log_belief)
-    assert odds[0] / odds[1] == pytest.approx(0.9 / 0.2)
-    odds = np.exp(lagging.log_belief - plain.log_belief)
-    assert odds[0] / odds[1] == pytest.approx((0.9 / 0.2) ** 2)
-
-
-def test_adaptation_by_hand():
-    adapts = Adaptation(2)
-    assert [adapts.after_step(p) for p in (2, 2, 4, 4, 4, 1, 4)] == [2, 2, 2, 2, 4, 4, 4]
-    at_once = Adaptation(0)
-    assert [at_once.after_step(p) for p in (2, 4, 1)] == [2, 4, 1]
-
-
 def test_printed_schedules_by_hand():
-    assert [epsilon_of("1/n")(step, 0) for step in range(3)] == [1, 1 / 2, 1 / 3]
-    assert [epsilon_of("by episode")(7, episode) for episode in range(7)] == pytest.approx(
-        [0.5, 0.4, 0.3, 0.2, 0.1, 0, 0]
-    )
+    assert [rule_at("1/n", step).epsilon for step in range(3)] == [1, 1 / 2, 1 / 3]
+    by_episode = [rule_at("by episode", 7, episode).epsilon for episode in range(7)]
+    assert by_episode == pytest.approx([0.5, 0.4, 0.3, 0.2, 0.1, 0, 0])
     # Σ 1/n diverges as Algorithm 9 asks; the experiments' schedule sums to 1.5 steps' worth an episode and stops.
     assert sum(EPSILONS["1/n"](step, 0) for step in range(10_000)) > 9
     assert sum(EPSILONS["by episode"](0, episode) for episode in range(10_000)) == pytest.approx(1.5)
-    assert epsilon_of(0.2)(5, 5) == 0.2
-    assert epsilon_of(lambda step, episode: 0.1 * episode)(0, 3) == pytest.approx(0.3)
+    assert rule_at(0.2, 5, 5) == EpsilonGreedy(0.2)
 
 
 def test_bad_input():
@@ -152,37 +123,17 @@ def test_bad_input():
     for arguments, rule in (
         ({"epsilon": 1.5}, "epsilon must lie in"),
         ({"epsilon": "never"}, "epsilon must be a number or one of 1/n, by episode"),
-        ({"lag": -1}, "lag must be at least 0"),
         ({"prior": [0.5, 0.5]}, "prior must be"),
     ):
         with pytest.raises(InputError, match=rule):
             Beat(lib, **arguments)
     beat = Beat(lib)
-    with pytest.raises(InputError, match="no model of actions"):
-        beat.update(0, [(0, 0, 1)], 1)
+    with pytest.raises(InputError, match="each step must be below"):
+        beat.update(0, [(0, 0, 99)])
     with pytest.raises(NotFoundError):
         beat.update("none such", [(0, 0, 1)])
     assert beat.step == 0
-    for told in (np.full((1, N_SETS, 2), 0.5), np.full((N_TYPES, 1, 2), 0.5)):
-        with pytest.raises(InputError, match="actions has n_"):
-            Beat(lib, actions=CategorySignal(told))
-
-
-def test_a_refused_move_changes_nothing():
-    lib, _, _ = library()
-    told = np.full((N_TYPES, N_SETS, 2), 0.5)
-    told[:, 0] = [[0.9, 0.1], [0.2, 0.8], [0.5, 0.5], [0.5, 0.5]]
-    spared, refused = (Beat(lib, actions=CategorySignal(told), lag=1) for _ in range(2))
-    for beat in (spared, refused):
-        beat.update(0, [(0, 0, 1)], 0)
-    for bad in ((1, [(0, 0, 99)], 0), (1, [(0, 0, 1)], 7)):
-        with pytest.raises(InputError):
-            refused.update(*bad)
-    # The first move under set 1 is the one that counts as adaptation, not those refused.
-    for beat in (spared, refused):
-        beat.update(1, [(0, 0, 1)], 0)
-    assert np.array_equal(refused.log_belief, spared.log_belief)
-    assert refused.step == 2
+    assert beat.belief == pytest.approx(np.full(N_TYPES, 1 / N_TYPES))
 
 
 def test_a_model_that_answers_for_many_at_once_is_named():
@@ -192,64 +143,20 @@ def test_a_model_that_answers_for_many_at_once_is_named():
         Beat(lib).update(0, [(0, 0, 1)])
 
 
-def tables(probs):
-    """Log likelihood of each (s, a, s') by number, (sets, signals, types)."""
-    return np.log(probs).reshape(N_TYPES, N_SETS, -1).transpose(1, 2, 0)
-
-
 def test_many_users_equal_single_ones():
     lib, probs, value = library(3)
-    users, world = BeatUsers(value, tables(probs), 20), np.random.default_rng(5)
-    singles = [Beat(lib) for _ in range(20)]
+    # The same moves by number, (sets, signals, types).
+    table = np.log(probs).reshape(N_TYPES, N_SETS, -1).transpose(1, 2, 0)
+    by_number = PolicyLibrary.from_means(value, 1.0, signal=MoveSignal(table))
+    users = ReuseAlgorithm(by_number, 20, dynamics=TypeDynamics.static(), models="plug-in")
+    singles, world, generator = [Beat(lib) for _ in range(20)], np.random.default_rng(5), np.random.default_rng(6)
     for _ in range(100):
         playing = np.flatnonzero(world.random(20) < 0.7)
-        chosen = users.select(playing)
+        chosen, _ = users.select(playing, EpsilonGreedy(0.0), generator)
         assert chosen.tolist() == [singles[u].select() for u in playing]
         triples = [move(world, probs, u % N_TYPES, p, 0) for u, p in zip(playing, chosen, strict=True)]
-        signals = np.array([(s * 2 + a) * N_STATES + s1 for s, a, s1 in triples])
-        users.update(playing, chosen, signals)
+        users.observe(playing, chosen, np.array([(s * 2 + a) * N_STATES + s1 for s, a, s1 in triples]))
         for u, p, triple in zip(playing, chosen, triples, strict=True):
             singles[u].update(int(p), [triple])
     for u, beat in enumerate(singles):
         np.testing.assert_allclose(users.log_belief[u], beat.log_belief, atol=1e-12)
-
-
-def test_many_users_explore_as_often_as_asked_and_take_a_second_factor():
-    _, probs, value = library()
-    users = BeatUsers(value, tables(probs), 30_000, prior=[1.0, 0, 0, 0], seed=1)
-    every, best = np.arange(30_000), value[0].argmax()
-    others = (users.select(every, 0.6) != best).mean()
-    assert others == pytest.approx(0.6 * 2 / 3, abs=0.012)  # 4 deviations of a binomial
-    assert (users.select(every) == best).all()
-    flat = BeatUsers(value, tables(probs), 1)
-    extra = np.log([[0.1, 0.2, 0.3, 0.4]])
-    flat.update(np.array([0]), np.array([1]), np.array([3]), extra)
-    expected = np.exp(tables(probs)[1, 3] + extra[0])
-    assert np.exp(flat.log_belief[0]) == pytest.approx(expected / expected.sum())
-
-
-def test_tables_must_fit():
-    _, probs, value = library()
-    with pytest.raises(InputError, match="log_table must be"):
-        BeatUsers(value, tables(probs)[:2], 1)
-    for change, rule in (
-        ({"prior": [1.0]}, "prior must be"),
-        ({"prior": np.full((2, N_TYPES), 0.25)}, "prior must be"),
-        ({"log_table": np.full((N_SETS, 2, N_TYPES), np.nan)}, "log_table must be below infinity"),
-        ({"value": value[0]}, "value must be"),
-        ({"value": value * np.nan}, "value must be"),
-    ):
-        with pytest.raises(InputError, match=rule):
-            BeatUsers(**({"value": value, "log_table": tables(probs), "n_users": 3} | change))
-
-
-def test_many_users_refuse_what_they_would_get_wrong():
-    _, probs, value = library()
-    users = BeatUsers(value, tables(probs), 3)
-    before, zeros = users.log_belief.copy(), np.zeros(2, int)
-    with pytest.raises(InputError, match="users must be distinct"):
-        users.update(np.array([1, 1]), zeros, zeros)
-    for bad in (np.nan, np.inf):
-        with pytest.raises(InputError, match="extra must be"):
-            users.update(np.array([0, 1]), zeros, zeros, np.array([[0.0] * 4, [bad] * 4]))
-    assert np.array_equal(users.log_belief, before)

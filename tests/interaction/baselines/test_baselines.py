@@ -53,7 +53,7 @@ def test_one_task_is_a_batch_of_one(name, library):
 @pytest.mark.parametrize("name", NAMES)
 def test_the_best_policy_of_each_task_is_played_in_the_end(name, library):
     noise = np.random.default_rng(2).normal(0, 0.1, (1500, 6, 4))
-    settings = {"exploration": 0.2} if name in ("ucb1", "clustered-ucb") else {}
+    settings = {"exploration": 0.2} if name == "ucb1" else {}
     if name == "exp3":
         settings = {"gamma": 0.1}
     player = BASELINES[name].from_library(library, n_tasks=6, seed=4, **settings)
@@ -87,12 +87,12 @@ def test_bad_input_is_refused_and_nothing_is_learnt_from_it(name, library):
             player.update(policies, rewards)
     assert player.episode == 0
     assert np.array_equal(player.select(), twin.select())
-    assert np.array_equal(player._scores(), twin._scores()) if name not in ("clustered-ucb", "thompson") else True
+    assert np.array_equal(player._scores(), twin._scores()) if name != "thompson" else True
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_no_policies_or_tasks_is_refused(name, library):
-    extra = {"gp-ucb": {"kernel": np.eye(1), "noise": 1.0}, "clustered-ucb": {"clusters": [0]}}.get(name, {})
+    extra = {"gp-ucb": {"kernel": np.eye(1), "noise": 1.0}}.get(name, {})
     extra |= SETTINGS.get(name, {})
     with pytest.raises(InputError, match="n_policies must be at least 1, got 0"):
         BASELINES[name](0, **extra)

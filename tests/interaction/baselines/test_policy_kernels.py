@@ -16,7 +16,6 @@ LINE = np.abs(np.arange(5.0)[:, None] - np.arange(5.0))
 def test_forms_by_hand():
     near = metric_kernel(LINE, length=2.0, deviation=3.0)
     assert near[0, :3] == pytest.approx(9 * np.exp([0, -1 / 8, -1 / 2]))
-    assert metric_kernel(LINE, length=2.0, form="exponential")[0, 2] == pytest.approx(np.exp(-1))
 
 
 def test_distances_by_hand():
@@ -41,8 +40,8 @@ def test_the_length_that_made_the_rows_is_found():
     true = metric_kernel(np.abs(np.linspace(0, 10, 40)[:, None] - np.linspace(0, 10, 40)), length=1.5)
     rows = np.random.default_rng(0).multivariate_normal(np.zeros(40), true + 1e-8 * np.eye(40), 60)
     gaps = np.abs(np.linspace(0, 10, 40)[:, None] - np.linspace(0, 10, 40))
-    found = likeliest_length(gaps, rows, deviation=1.0, lengths=[0.3, 0.75, 1.5, 3.0, 6.0])
-    assert found == 1.5
+    # Neighbours among the lengths that are compared differ by a factor of 1.30.
+    assert likeliest_length(gaps, rows, deviation=1.0) == pytest.approx(1.5, rel=0.3)
 
 
 def test_the_prior_covariance_is_that_of_drawn_types(library):
@@ -67,11 +66,10 @@ def test_performance_kernel_holds_alike_policies_together(library):
         ([[0, -1], [-1, 0]], {"length": 1}, "at least 0"),
         ([[0, 1, 2]], {"length": 1}, "distances must be"),
         ([[0, 1], [1, 0]], {"length": 0}, "length and deviation must be positive"),
-        ([[0, 1], [1, 0]], {"length": 1, "form": "box"}, "form must be one of"),
     ],
 )
 def test_bad_input(gaps, settings, said):
     with pytest.raises(InputError, match=said):
         metric_kernel(gaps, **settings)
-    with pytest.raises(InputError, match="deviation must be given"):
+    with pytest.raises(InputError, match="must differ between types"):
         performance_kernel(np.ones((2, 3)))

@@ -2,10 +2,14 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.belief import log_prior, update
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD, TypeDynamics
+
+from ..twins import naive_reuse as naive
 
 INF = np.inf
 
@@ -29,6 +33,45 @@ def test_a_hazard_is_its_matrix():
     assert one.shape == other.shape == (2, 4, 3)
     assert np.exp(one) == pytest.approx(np.exp(other), rel=1e-12)
     assert np.exp(one) == pytest.approx(np.exp(beliefs) @ matrix, rel=1e-12)
+
+
+@settings(deadline=None, max_examples=100)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, DEFAULT_HAZARD, 0.3, 1.0, 1e-12, 1e-295]))
+def test_steps_agree_with_the_slow_twin(seed, rate):
+    """Beliefs and priors with zeros, beliefs below the range of numbers, rates too small for a float32."""
+    random = np.random.default_rng(seed)
+    prior = random.dirichlet(np.full(5, 0.2))
+    prior[random.random(5) < 0.2] = 0
+    prior = prior / prior.sum() if prior.sum() else np.full(5, 0.2)
+    rows = random.normal(scale=10.0 ** random.integers(4), size=(3, 5))
+    rows[:, 1:][random.random((3, 4)) < 0.3] = -INF
+    rows = np.array([naive.normalised(row) for row in rows])
+    matrix = random.dirichlet(np.full(5, 0.3), 5)
+    for dynamics, step in (
+        (TypeDynamics.hazard(rate, prior), naive.hazard(rate, (prior / prior.sum()).tolist())),
+        (
+            TypeDynamics.transitions(matrix),
+            naive.transitions((matrix / matrix.sum(axis=1, keepdims=True)).tolist()),
+        ),
+    ):
+        expected = np.array([step(row) for row in rows.tolist()])
+        np.testing.assert_allclose(dynamics.step(rows), expected, rtol=1e-12, atol=1e-12)
+        single = dynamics.step(rows.astype(np.float32))
+        assert single.dtype == np.float32 or dynamics.kind == "transitions"
+        np.testing.assert_allclose(single, expected, rtol=1e-5, atol=1e-5)
+
+
+def test_the_probability_that_a_type_has_just_changed():
+    """Of a type's belief after the step, the part that was drawn anew; by hand."""
+    changing = TypeDynamics.hazard(0.2, [0.5, 0.5, 0.0])
+    after = changing.step(log_prior([0.9, 0.1, 0.0]))
+    assert np.exp(after) == pytest.approx([0.82, 0.18, 0.0])
+    share = changing.changed_share(after)
+    assert share is not None
+    assert share[:2] == pytest.approx([0.1 / 0.82, 0.1 / 0.18])
+    assert TypeDynamics.static().changed_share(after) is None
+    assert TypeDynamics.hazard(0.0, [0.5, 0.5]).changed_share(after[:2]) is None
+    assert TypeDynamics.transitions(np.eye(3)).changed_share(after) is None
 
 
 def test_transitions_keep_what_lies_below_the_range_of_numbers():

@@ -1,14 +1,22 @@
 """Bins that tell types apart: the joining against a slow twin, and what is lost of the information."""
 
-import itertools
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.stats import norm
 
-from lifelore.interaction.finite_signals.signal_bins import informative_cuts, joined_bins
-from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
+from lifelore.core.errors import InputError
+from lifelore.interaction.finite_signals import normal_distribution, signal_bins
+from lifelore.interaction.finite_signals.normal_distribution import ndtr
+from lifelore.interaction.finite_signals.signal_bins import (
+    bin_probs,
+    informative_cuts,
+    joined,
+    joined_ends,
+    normal_probs,
+    normal_table,
+)
 
 
 def information(probs):
@@ -34,59 +42,118 @@ def slow_joined(fine, n_bins):
     return fine
 
 
+def joined_bins(fine, n_bins):
+    """Bins (P, T, n) joined, (P, T, at most n_bins)."""
+    return joined(fine.transpose(1, 0, 2), joined_ends(fine, n_bins)).transpose(1, 0, 2)
+
+
 @settings(deadline=None, max_examples=40)
-@given(st.integers(0, 10_000), st.integers(1, 5), st.integers(2, 9), st.integers(2, 5))
-def test_against_the_slow_twin(seed, n_types, n_fine, n_bins):
-    fine = np.random.default_rng(seed).dirichlet(np.full(n_fine, 0.7), n_types)
-    joined = joined_bins(fine.copy(), n_bins)
-    assert joined.shape == (n_types, min(n_bins, n_fine))
-    np.testing.assert_allclose(joined.sum(axis=1), 1)
+@given(st.integers(0, 10_000), st.integers(1, 3), st.integers(1, 5), st.integers(2, 9), st.integers(1, 5))
+def test_against_the_slow_twin(seed, n_policies, n_types, n_fine, n_bins):
+    fine = np.random.default_rng(seed).dirichlet(np.full(n_fine, 0.7), (n_policies, n_types))
+    found = joined_bins(fine, n_bins)
+    assert found.shape == (n_policies, n_types, min(n_bins, n_fine))
+    np.testing.assert_allclose(found.sum(axis=2), 1)
     # Equal losses may be joined in another order, and then nothing is lost by it.
-    assert information(joined) == pytest.approx(information(slow_joined(fine, n_bins)), abs=1e-6)
+    for ours, own in zip(found, fine, strict=True):
+        assert information(ours) == pytest.approx(information(slow_joined(own, n_bins)), abs=1e-6)
 
 
 def test_bins_nobody_fills_are_joined_first():
-    fine = np.array([[0.5, 0.0, 0.0, 0.5], [0.9, 0.0, 0.0, 0.1]])
-    np.testing.assert_allclose(joined_bins(fine, 2), [[0.5, 0.5], [0.9, 0.1]])
+    fine = np.array([[[0.5, 0.0, 0.0, 0.5], [0.9, 0.0, 0.0, 0.1]], [[0.0, 0.5, 0.5, 0.0], [0.0, 0.9, 0.1, 0.0]]])
+    np.testing.assert_allclose(joined_bins(fine, 2), [[[0.5, 0.5], [0.9, 0.1]]] * 2)
+    assert joined_ends(fine, 2)[:, -1].tolist() == [4, 4]
+    assert joined_ends(fine, 9).tolist() == [[1, 2, 3, 4]] * 2
+
+
+def test_joined_bins_of_users_by_hand():
+    probs = np.array([[[[0.1, 0.2, 0.3, 0.4], [0.4, 0.3, 0.2, 0.1]]], [[[0.7, 0.1, 0.1, 0.1], [0.25] * 4]]])
+    found = joined(probs, np.array([[1, 4], [3, 4]]))
+    np.testing.assert_allclose(found, [[[[0.1, 0.9], [0.9, 0.1]]], [[[0.7, 0.3], [0.75, 0.25]]]])
 
 
 def test_bins_are_not_spent_on_the_noise_of_the_many():
     """Sixty types alike and four apart: eight bins of equal mass lose what tells the four apart."""
     mean = np.r_[np.zeros(60), [140.0, 160.0, 180.0, 200.0]][:, None]
-    model = GaussianOutcomes(mean, 20.0)
-    every = np.linspace(-100, 300, 2001)
+    deviation = np.full_like(mean, 20.0)
 
-    def cut(cuts):
-        return np.diff(model.cumulative(0, cuts), axis=1, prepend=0, append=1)
+    def kept(cuts):
+        return information(bin_probs(norm.cdf(cuts, mean, deviation)))
 
-    whole = information(cut(every))
-    ours = information(cut(informative_cuts(model, 0, 8)))
+    whole, ours = kept(np.linspace(-100, 300, 2001)), kept(informative_cuts(mean, deviation, 8)[0])
     drawn = np.random.default_rng(0).normal(mean, 20.0, (64, 1000))
-    equal_mass = information(cut(np.quantile(drawn, np.arange(1, 8) / 8)))
+    equal_mass = kept(np.quantile(drawn, np.arange(1, 8) / 8))
     assert ours > 0.95 * whole
     assert equal_mass < 0.75 * whole
     assert ours <= whole
 
 
+def test_policies_are_cut_as_alone_and_in_blocks_as_at_once(monkeypatch):
+    random = np.random.default_rng(0)
+    mean, deviation = random.normal(0, 50, (7, 5)), random.uniform(5, 30, (7, 5))
+    cuts = informative_cuts(mean, deviation, 6)
+    assert (np.diff(cuts, axis=1) >= 0).all()
+    for policy in range(5):
+        alone = informative_cuts(mean[:, [policy]], deviation[:, [policy]], 6)
+        np.testing.assert_allclose(alone, cuts[[policy]], rtol=1e-12)
+    monkeypatch.setattr(signal_bins, "_AT_ONCE", 1)
+    np.testing.assert_allclose(informative_cuts(mean, deviation, 6), cuts, rtol=1e-12)
+
+
+def test_a_table_holds_the_shares_of_normal_outcomes():
+    random = np.random.default_rng(1)
+    mean, deviation = random.normal(0, 50, (3, 7, 5)), random.uniform(5, 30, (3, 7, 5))
+    cuts = informative_cuts(mean[0], deviation[0], 6)
+    users = normal_probs(mean, deviation, cuts)
+    edges = np.concatenate([np.full((5, 1), -np.inf), cuts, np.full((5, 1), np.inf)], axis=1)
+    below = norm.cdf(edges, mean[..., None], deviation[..., None])
+    np.testing.assert_allclose(users, np.diff(below, axis=-1), atol=1e-8)
+    same, table = normal_table(mean[0], deviation[0], 6)
+    assert np.array_equal(same, cuts)
+    np.testing.assert_allclose(table.probs, users[0], atol=1e-8)
+
+
 def test_identical_types_give_a_table_all_the_same():
-    table = GaussianOutcomes([[1.0], [1.0], [1.0]], 2.0).table()
-    assert (table.probs[0] == table.probs[0, 0]).all()
+    mean, deviation = np.ones((3, 1)), np.full((3, 1), 2.0)
+    _, table = normal_table(mean, deviation, 8)
+    assert (table.probs == table.probs[:1]).all()
 
 
 def test_many_types_are_cut_on_some_of_them():
     mean = np.random.default_rng(0).normal(0, 50, (400, 1))
-    few, many = GaussianOutcomes(mean[:100], 20.0), GaussianOutcomes(mean, 20.0)
-    assert many.table(6).probs.shape == (1, 400, 6)
-    shares = [
-        information(model.table(6).probs[0]) / information(model.table(60).probs[0]) for model in (few, many)
-    ]
+
+    def kept(mean, n_bins):
+        deviation = np.full_like(mean, 20.0)
+        return information(normal_table(mean, deviation, n_bins)[1].probs[:, 0])
+
+    shares = [kept(of, 6) / kept(of, 60) for of in (mean[:100], mean)]
     # A hundred are all looked at, of four hundred only some: hardly worse.
     assert shares[1] > shares[0] - 0.03 > 0.8
 
 
-def test_any_number_of_bins_may_be_asked_for():
-    model = GaussianOutcomes([[0.0], [1.0]], 1.0)
-    for n_bins, found in itertools.product([2, 3, 300], [model]):
-        table = found.table(n_bins)
-        assert table.n_signals == n_bins
-        np.testing.assert_allclose(table.probs.sum(axis=2), 1)
+@pytest.mark.parametrize("n_bins", [2, 3, 300])
+def test_any_number_of_bins_may_be_asked_for(n_bins):
+    mean, deviation = np.array([[0.0], [1.0]]), np.ones((2, 1))
+    cuts, table = normal_table(mean, deviation, n_bins)
+    assert table.n_signals == n_bins
+    # There are at most 97 bins; the others are empty.
+    assert np.isfinite(cuts).sum() == min(n_bins - 1, 96)
+    np.testing.assert_allclose(table.probs.sum(axis=2), 1)
+
+
+def test_fewer_than_two_bins_are_refused():
+    with pytest.raises(InputError, match="n_bins must be at least 2, got 1"):
+        informative_cuts(np.zeros((2, 1)), np.ones((2, 1)), 1)
+
+
+def test_few_numbers_and_many_have_the_same_distribution_function(monkeypatch):
+    z = np.concatenate([np.linspace(-38, 38, 8002), [-np.inf, np.inf]]).reshape(-1, 3)
+    found = []
+    for few in (1 << 30, 0):
+        monkeypatch.setattr(normal_distribution, "FEW", few)
+        found.append(ndtr(z))
+        assert ndtr(0.0) == 0.5
+        assert np.isnan(ndtr(np.nan))
+    assert found[0].shape == z.shape
+    np.testing.assert_allclose(found[0], found[1], rtol=1e-13, atol=1e-300)
+    np.testing.assert_allclose(found[0], norm.cdf(z), rtol=1e-13, atol=1e-300)

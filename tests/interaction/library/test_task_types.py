@@ -16,7 +16,6 @@ from lifelore.interaction.library.task_types import (
     landmark_library,
     landmark_regret,
     landmark_regret_bound,
-    member_regret,
     pooled_samples,
 )
 
@@ -39,21 +38,6 @@ def test_the_landmark_never_costs_more_than_two_epsilon(utilities, epsilon, form
     """The property that holds where the printed one, ε, does not (see the test below)."""
     types = epsilon_types(utilities, epsilon, form)
     assert (landmark_regret(utilities, types) <= landmark_regret_bound(epsilon)).all()
-
-
-@pytest.mark.slow
-@settings(deadline=None, max_examples=100)
-@given(TABLES, EPSILONS)
-def test_nor_does_any_other_member_in_the_landmarks_place(utilities, epsilon):
-    types = epsilon_types(utilities, epsilon)
-    worst = np.zeros(len(utilities))
-    for i, j in np.ndindex(len(utilities), len(utilities)):
-        if types.labels[i] == types.labels[j]:
-            best = [policy for policy, value in enumerate(utilities[i]) if value == max(utilities[i])]
-            worst[j] = max([worst[j], *(max(utilities[j]) - utilities[j][policy] for policy in best)])
-    np.testing.assert_array_equal(member_regret(utilities, types), worst)
-    assert (worst <= 2 * epsilon).all()
-    assert (landmark_regret(utilities, types) <= worst).all()
 
 
 def test_no_more_than_epsilon_as_printed_can_be_broken_and_two_epsilon_is_reached():
@@ -188,9 +172,8 @@ def test_the_bound_holds_for_every_type_a_task_could_belong_to(utilities, epsilo
 
 def test_tasks_must_be_those_of_the_types():
     types = epsilon_types([[0.0], [1.0], [9.0]], 1.0)
-    for regret in (landmark_regret, member_regret):
-        with pytest.raises(InputError, match="of the 3 tasks"):
-            regret([[0.0], [1.0]], types)
+    with pytest.raises(InputError, match="of the 3 tasks"):
+        landmark_regret([[0.0], [1.0]], types)
     for prior in ([0.5, 0.5], [2.0, -1.0, 0.0], [np.nan, 0.5, 0.5]):
         with pytest.raises(InputError, match="prior must be"):
             types.type_prior(prior)

@@ -6,7 +6,8 @@ from scipy.stats import norm
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.user_types import user_types
-from lifelore.interaction.outcomes.outcome_families import PSEUDO, CategoricalFamily, GaussianFamily, UserRows
+from lifelore.interaction.outcomes.outcome_families import PSEUDO, CategoricalFamily, GaussianFamily
+from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 
 MEANS = np.array([[0.9, 0.1, 0.5], [0.1, 0.9, 0.5], [0.5, 0.5, 0.05]])
 
@@ -20,7 +21,7 @@ def drawn(n_users=120, each=15, family="gaussian", seed=0, means=MEANS):
     policies[: means.shape[1]] = range(means.shape[1])
     mean = means[true[users], policies]
     values = generator.normal(mean, 0.2) if family == "gaussian" else (generator.random(len(mean)) < mean) * 1.0
-    return UserRows(users, policies, values, (n_users, means.shape[1])), true
+    return OutcomeRows(users, policies, values, (n_users, means.shape[1])), true
 
 
 @pytest.mark.slow
@@ -77,19 +78,19 @@ def test_the_product_is_the_log_likelihood_of_every_outcome(family):
     logs = made.stats @ made.fit(shares).T
     expected = np.zeros((9, 3))
     for type_ in range(3):
-        for user, policy, value in zip(rows.users, rows.policies, rows.values, strict=True):
+        for user, policy, value in zip(rows.types, rows.policies, rows.values, strict=True):
             overall = rows.values[rows.policies == policy]
-            own = rows.values[(rows.policies == policy) & (true[rows.users] == type_)]
+            own = rows.values[(rows.policies == policy) & (true[rows.types] == type_)]
             if family is CategoricalFamily:
                 probability = ((own == value).sum() + PSEUDO * (overall == value).mean()) / (len(own) + PSEUDO)
                 expected[user, type_] += np.log(probability)
                 continue
             mean = {
-                t: (rows.values[(rows.policies == policy) & (true[rows.users] == t)].sum() + overall.mean())
-                / ((true[rows.users[rows.policies == policy]] == t).sum() + 1)
+                t: (rows.values[(rows.policies == policy) & (true[rows.types] == t)].sum() + overall.mean())
+                / ((true[rows.types[rows.policies == policy]] == t).sum() + 1)
                 for t in range(3)
             }
-            of_row = true[rows.users[rows.policies == policy]]
+            of_row = true[rows.types[rows.policies == policy]]
             spread = np.sqrt(np.mean([(v - mean[t]) ** 2 for v, t in zip(overall, of_row, strict=True)]))
             expected[user, type_] += norm.logpdf(value, mean[type_], spread)
     assert logs == pytest.approx(expected)
@@ -111,9 +112,9 @@ def test_the_same_seed_finds_the_same_types():
 
 @pytest.mark.slow
 def test_constant_outcomes_and_single_users():
-    one = UserRows(np.zeros(2, int), np.arange(2), np.ones(2), (1, 2))
+    one = OutcomeRows(np.zeros(2, int), np.arange(2), np.ones(2), (1, 2))
     assert user_types(one, np.random.default_rng(0)).n_types == 1
-    same = UserRows(np.repeat(np.arange(5), 2), np.tile(np.arange(2), 5), np.ones(10), (5, 2))
+    same = OutcomeRows(np.repeat(np.arange(5), 2), np.tile(np.arange(2), 5), np.ones(10), (5, 2))
     for family in ("gaussian", "categorical"):
         found = user_types(same, np.random.default_rng(0), family=family, n_types=3)
         assert np.isfinite(found.probs).all()

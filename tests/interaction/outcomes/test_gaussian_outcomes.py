@@ -57,7 +57,7 @@ def test_an_exact_model_learns_nothing_and_says_so():
         (([1.0], 1.0), "mean must be"),
         (([[1.0]], 0.0), "deviation must be positive"),
         (([[1.0]], np.inf), "deviation must be positive"),
-        (([[1.0]], [1.0, 2.0]), "deviation must be one number or of mean's shape"),
+        (([[1.0]], [1.0, 2.0]), "deviation must be one number or of shape"),
         (([[1.0]], 1.0, 0.0), "count must be positive"),
         (([[1.0]], 1.0, np.nan), "count must be positive"),
     ],

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.cells import BinCells
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 
 
@@ -44,7 +45,7 @@ def test_pseudo_counts_keep_what_was_never_seen_possible():
 def test_edges_from_the_samples():
     model = HistogramOutcomes.from_samples([[[0.0, 10.0]]], edges=5)
     assert model.bounds() == (-0.5, 10.5)
-    assert model.n_cells == 5
+    assert model.probs.shape == (1, 1, 5)
 
 
 def test_large_numbers_keep_their_deviation():
@@ -56,10 +57,11 @@ def test_large_numbers_keep_their_deviation():
 @pytest.mark.parametrize(
     ("edges", "message"),
     [
-        ([0.0, 1.0], "edges must be 3 finite numbers"),
+        ([0.0, 1.0], r"counts must be \(n_types, n_policies, 1\), got \(1, 1, 2\)"),
+        ([0.0], "edges must be finite numbers, one more than bins"),
         ([0.0, 2.0, 1.0], "edges must rise"),
         ([0.0, 1.0, 1.0], "edges must rise"),
-        ([0.0, 1.0, np.inf], "edges must be 3 finite numbers"),
+        ([0.0, 1.0, np.inf], "edges must be finite numbers"),
     ],
 )
 def test_bad_edges_are_refused(edges, message):
@@ -77,9 +79,7 @@ def test_other_bad_input_is_refused():
     with pytest.raises(InputError, match="at least 1 bin"):
         HistogramOutcomes.from_samples([[[1.0]]], edges=0)
     with pytest.raises(InputError, match="with a positive one"):
-        HistogramOutcomes.from_samples([[[0.5]]], edges=[0.0, 1.0], pseudo_count=0.0).take(types=[0]).of(
-            np.array([0.0, 1.0]), np.zeros((1, 1, 1)), 0.0
-        )
+        HistogramOutcomes.of(BinCells([0.0, 1.0]), np.zeros((1, 1, 1)), 0.0)
     with pytest.raises(InputError, match="exact probabilities cannot learn"):
         by_hand().observe(0, 0, 0.5)
     learning = HistogramOutcomes([0.0, 1.0, 3.0], [[[0.75, 0.25]]], count=4)

@@ -4,15 +4,16 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.log_probability import log_of, with_pseudo_counts
+from lifelore.interaction.outcomes.log_probability import checked_counts, log_of
 
 
 def test_log_of_zero_is_minus_infinity_without_a_warning():
     assert log_of(np.array([1.0, 0.0])).tolist() == [0.0, -np.inf]
 
 
-def test_counts_become_probabilities():
-    np.testing.assert_allclose(with_pseudo_counts([[3, 1], [0, 0]], 0.5), [[0.7, 0.3], [0.5, 0.5]])
-    np.testing.assert_allclose(with_pseudo_counts([[3, 1], [0, 0]], 0.0), [[0.75, 0.25], [0.5, 0.5]])
-    with pytest.raises(InputError, match="counts must be"):
-        with_pseudo_counts([[np.inf]], 0.5)
+def test_counts_behind_rows_are_one_number_or_a_number_for_each():
+    assert checked_counts(3, (2, 1)).tolist() == [[3.0], [3.0]]
+    assert checked_counts([[1], [2]], (2, 1)).tolist() == [[1.0], [2.0]]
+    for bad in (0, np.inf, [1.0, 2.0], [[1], [-1]]):
+        with pytest.raises(InputError, match="count must be"):
+            checked_counts(bad, (2, 1))

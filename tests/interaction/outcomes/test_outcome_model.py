@@ -59,7 +59,6 @@ def test_sizes_and_shapes(name):
             np.testing.assert_allclose(found[place], query(float(batch[place])), rtol=1e-12, atol=1e-15)
     assert model.log_density(1, 1.0).shape == (3,)
     assert model.cumulative(0, np.arange(4.0)).shape == (3, 4)
-    assert model.cumulative(0, np.arange(4.0), np.array([2, 0])).shape == (2, 4)
 
 
 @every_model
@@ -160,8 +159,6 @@ def test_cumulative_and_exceedance_add_up(name):
     for value in (-5.0, 0.0, 2.2, 6.0):
         together = [model.cumulative(policy, np.array([value]))[:, 0] for policy in range(2)]
         np.testing.assert_allclose(np.stack(together, axis=1) + model.exceedance(value), 1, atol=1e-12)
-        some = model.cumulative(1, np.array([value]), np.array([2, 0]))[:, 0]
-        np.testing.assert_allclose(some, together[1][[2, 0]])
 
 
 @every_model
@@ -178,10 +175,10 @@ def test_draws_have_the_mean_and_deviation(name):
 @every_model
 def test_table_rows_are_distributions_and_tell_the_types_apart(name):
     table = models()[name].table(4)
-    assert table.probs.shape == (2, 3, 4)
+    assert table.probs.shape == (3, 2, 4)
     np.testing.assert_allclose(table.probs.sum(axis=2), 1, atol=1e-12)
     # Types 0 and 2 are eight apart under policy 0; pseudo-counts on six samples blur counted ones.
-    assert np.abs(table.probs[0, 0] - table.probs[0, 2]).sum() > 0.7
+    assert np.abs(table.probs[0, 0] - table.probs[2, 0]).sum() > 0.7
     with pytest.raises(InputError, match="n_bins must be at least 2"):
         models()[name].table(1)
 
@@ -225,7 +222,7 @@ def test_a_type_and_a_policy_more(name):
 def test_some_types_and_policies(name):
     model = models()[name]
     some = model.take(types=[2, 0], policies=[1])
-    np.testing.assert_array_equal(some.mean, model.mean[[2, 0]][:, [1]])
+    np.testing.assert_allclose(some.mean, model.mean[[2, 0]][:, [1]], rtol=1e-14)
     np.testing.assert_array_equal(some.log_density(0, 3.0), model.log_density(1, 3.0)[[2, 0]])
     for bad in ([], [3], [-1], [[0]]):
         with pytest.raises(InputError, match="the chosen numbers must be"):

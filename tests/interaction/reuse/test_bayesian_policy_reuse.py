@@ -14,7 +14,6 @@ from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, MAX_SURPRISE
 from lifelore.interaction.selection import RULES, Greedy, KnowledgeGradient, rule_named
 from lifelore.interaction.signals.category_signal import CategorySignal
-from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
 INF = math.inf
 STATIC = TypeDynamics.static()
@@ -144,18 +143,22 @@ def test_the_horizon_counts_the_episodes_that_follow():
     assert BayesianPolicyReuse(coin_library()).episodes_left is None
 
 
-def test_types_that_change_take_their_step_after_each_signal():
-    changing = TypeDynamics.hazard(0.1, [0.5, 0.5])
-    agent = BayesianPolicyReuse(coin_library(), dynamics=changing)
-    agent.update(0, 0)
-    assert agent.belief == pytest.approx([0.77, 0.23])
+def test_types_may_change_once_after_all_signals_of_an_episode():
+    agent = BayesianPolicyReuse(coin_library(), dynamics=TypeDynamics.hazard(0.1, [0.5, 0.5]))
+    agent.observe("left", 0)
+    agent.observe("left", 0)
+    assert agent.belief == pytest.approx([16 / 17, 1 / 17])
+    assert agent.episode == 0
+    agent.end_episode()
+    assert agent.belief == pytest.approx([0.9 * 16 / 17 + 0.05, 0.9 / 17 + 0.05])
+    assert agent.episode == 1
 
 
 def test_types_may_change_unless_they_are_static():
     agent = BayesianPolicyReuse(coin_library(prior=[0.6, 0.4]), prior=[1.0, 0.0])
-    assert (agent.dynamics.kind, agent.dynamics.rate) == ("hazard", 0.002)
-    assert agent.dynamics.law == pytest.approx([0.6, 0.4])
-    agent.skip()
+    assert (agent.algorithm.dynamics.kind, agent.algorithm.dynamics.rate) == ("hazard", 0.002)
+    assert agent.algorithm.dynamics.law == pytest.approx([0.6, 0.4])
+    agent.end_episode()
     assert agent.belief == pytest.approx([0.9992, 0.0008])
 
 
@@ -213,16 +216,6 @@ def test_a_model_that_answers_wrongly_is_named(answer, message):
     with pytest.raises(InputError, match=f"Broken.*{message}"):
         agent.update(0, 0)
     assert agent.belief.tolist() == [0.5, 0.5]
-
-
-def test_an_own_likelihood_serves_as_a_signal():
-    signal = LikelihoodSignal(lambda policy, words: [len(words) * -1.0, -INF if "no" in words else -2.0], 2)
-    library = PolicyLibrary.from_means(np.eye(2), 1.0, signal=signal)
-    agent = BayesianPolicyReuse(library, Greedy(), dynamics=STATIC)
-    agent.update(0, ["yes"])
-    assert agent.belief == pytest.approx(np.exp([-1, -2]) / np.exp([-1, -2]).sum())
-    agent.update(0, ["no"])
-    assert agent.belief.tolist() == [1.0, 0.0]
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ MEANS = np.array([[6.0, 0.0, 3.0], [0.0, 6.0, 3.0], [2.0, 2.0, 5.0]])
 
 
 def test_types_by_hand():
-    found = type_calibration([[0.9, 0.1], [0.7, 0.3], [0.7, 0.3]], [0, 1, 0], n_bins=10)
+    found = type_calibration([[0.9, 0.1], [0.7, 0.3], [0.7, 0.3]], [0, 1, 0])
     assert found.predicted == pytest.approx([0.1, 0.3, 0.7, 0.9])
     assert found.observed.tolist() == [0, 0.5, 0.5, 1]
     assert found.n.tolist() == [1, 2, 2, 1]
@@ -143,5 +143,3 @@ def test_bad_levels_groups_and_bins_are_refused():
             outcome_calibration(levels, at=at)
     with pytest.raises(InputError, match="groups must be"):
         outcome_calibration([[0.1, 0.4]], [1, 2])
-    with pytest.raises(InputError, match="n_bins must be at least 1"):
-        type_calibration([[1.0, 0.0]], [0], n_bins=0)

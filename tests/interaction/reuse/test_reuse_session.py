@@ -14,6 +14,8 @@ from lifelore.interaction.selection import RULES, ExpectedImprovement, Greedy, K
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
+from .families import FAMILIES
+
 
 def library(**options) -> PolicyLibrary:
     place = np.arange(6)
@@ -74,6 +76,23 @@ def test_a_type_certain_after_a_change_comes_back(tmp_path):
         agent = BayesianPolicyReuse(one, dynamics=TypeDynamics.hazard(rate, [1.0]))
         agent.update(0, 1.0)
         assert session_from_bytes(session_bytes(agent)).log_belief.tobytes() == agent.log_belief.tobytes()
+
+
+@pytest.mark.parametrize("name", ["gaussian", "categorical", "transition", "exact outcomes"])
+def test_a_session_saved_within_an_episode_goes_on_to_the_bit(name):
+    family, random = FAMILIES[name], np.random.default_rng(0)
+    agent = BayesianPolicyReuse(family.library(), seed=5)
+    agent.update(0, family.draw(random))
+    agent.observe(1, family.draw(random))
+    loaded = session_from_bytes(session_bytes(agent))
+    signals = [family.draw(random) for _ in range(3)]
+    for one in (agent, loaded):
+        one.observe(1, signals[0])
+        one.end_episode()
+        one.update(0, signals[1])
+        one.update(1, signals[2])
+    assert loaded.log_belief.tobytes() == agent.log_belief.tobytes()
+    assert session_bytes(loaded) == session_bytes(agent)
 
 
 def test_an_own_signal_model_is_given_again(tmp_path):
@@ -164,9 +183,9 @@ def test_sessions_of_earlier_versions_have_no_evidence_of_an_unknown_type(versio
         (lambda h, a: h.update(settings={"wish": 1}), "wish"),
         (lambda h, a: h.update(horizon=0), "horizon must be at least 1"),
         (lambda h, a: h["generator"].update(bit_generator="Dice"), "unknown random generator"),
-        (lambda h, a: a.update(log_belief=np.zeros(3)), "log_belief has shape"),
-        (lambda h, a: a.update(log_belief=np.zeros(6)), "log_belief is no belief"),
-        (lambda h, a: a.update(log_belief=np.full(6, np.nan)), "log_belief is no belief"),
+        (lambda h, a: a.update(log_belief=np.zeros(3)), "log_belief must be the logs of a belief"),
+        (lambda h, a: a.update(log_belief=np.zeros(6)), "log_belief must be the logs of a belief"),
+        (lambda h, a: a.update(log_belief=np.full(6, np.nan)), "log_belief must be the logs of a belief"),
         (lambda h, a: a.pop("library"), "library"),
     ],
 )

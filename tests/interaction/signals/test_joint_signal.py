@@ -24,7 +24,7 @@ def test_factors_add():
 
 def test_table_is_the_product():
     table = JointSignal([COIN, COIN]).table(4)
-    np.testing.assert_allclose(table.probs[0, 1], [0.81, 0.09, 0.09, 0.01])
+    np.testing.assert_allclose(table.probs[1, 0], [0.81, 0.09, 0.09, 0.01])
     # Entropies of independent factors add.
     np.testing.assert_allclose(table.conditional_entropy, 2 * COIN.table().conditional_entropy)
     assert JointSignal([RETURN, COIN]).table(8).n_signals == 4

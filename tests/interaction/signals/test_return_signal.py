@@ -16,8 +16,6 @@ def test_likelihood_is_the_outcomes_density_even_after_learning():
     np.testing.assert_array_equal(signal.log_likelihood(1, 0.5), outcomes.log_density(1, 0.5))
     outcomes.observe(0, 1, 9.0)
     np.testing.assert_array_equal(signal.log_likelihood(1, 0.5), outcomes.log_density(1, 0.5))
-    many = signal.log_likelihoods(np.array([0, 1]), np.array([0.5, 0.5]))
-    np.testing.assert_array_equal(many[1], signal.log_likelihood(1, 0.5))
     assert signal.table(4).n_signals == 4
     assert (signal.n_types, signal.n_policies) == (2, 2)
 

@@ -4,9 +4,23 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
+from lifelore.interaction.signals.step_model import step_probs
 from lifelore.interaction.signals.transition_signal import TransitionSignal
 
 EPISODES = [(0, 0, [(0, 0, 1), (1, 1, 0)]), (1, 0, [(0, 0, 0)]), (1, 1, [(0, 0, 1)])]
+
+
+def test_counts_become_probabilities():
+    counts = [[3, 1], [0, 0]]
+    for pseudo_count, expected, totals in (
+        (0.5, [[0.7, 0.3], [0.5, 0.5]], [5, 1]),
+        (0, [[0.75, 0.25], [0.5, 0.5]], [4, 1]),
+    ):
+        probs, behind = step_probs(counts, pseudo_count, None)
+        np.testing.assert_allclose(probs, expected)
+        assert behind.tolist() == totals
+    with pytest.raises(InputError, match="counts must be"):
+        step_probs([[np.inf]], 0.5, None)
 
 
 def test_fitted_by_hand_and_shared_by_all_policies():

@@ -1,9 +1,11 @@
-"""PLY against trimesh, and headers that lie."""
+"""PLY as trimesh and hands write it, and headers that lie."""
 
 import numpy as np
 import pytest
+import trimesh
 
 from lifelore.core.errors import InputError
+from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.ply_file import read_ply
 
 HEADER = (
@@ -49,7 +51,6 @@ def test_binary_in_both_byte_orders(order):
 
 @pytest.mark.parametrize("encoding", ["ascii", "binary_little_endian"])
 def test_what_trimesh_writes_is_read_back(encoding):
-    trimesh = pytest.importorskip("trimesh")
     mesh = trimesh.creation.box((0.1, 0.2, 0.3))
     mesh.visual.vertex_colors = np.arange(32, dtype=np.uint8).reshape(8, 4)
     mesh.vertex_attributes["label"] = np.arange(2, 10, dtype=np.int32)
@@ -58,6 +59,31 @@ def test_what_trimesh_writes_is_read_back(encoding):
     np.testing.assert_allclose(cloud.points, mesh.vertices, atol=1e-7)
     assert cloud.colours.tolist() == np.asarray(mesh.visual.vertex_colors)[:, :3].tolist()
     assert cloud.labels.tolist() == list(range(2, 10))
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [("\n", "\r\n"), (" ", "\t"), (" ", "  "), ("\n", " \n "), ("\n", "\n\n"), (" 20\n", " 20.0\n")],
+)
+def test_text_may_be_spaced_in_any_way(old, new):
+    cloud = read_ply((HEADER + ROWS.replace(old, new)).encode(), "plain")
+    np.testing.assert_array_equal(cloud.points, [[0, 0.25, 0.5], [1, np.nan, 2]])
+    assert cloud.labels.tolist() == [2, 20]
+
+
+@pytest.mark.parametrize(("old", "new"), [("nan", "hm"), (" 20\n", "\n")])
+def test_text_that_breaks_off_within_a_line_is_refused_in_one_line(tmp_path, old, new):
+    path = tmp_path / "damaged.ply"
+    path.write_text(HEADER + ROWS.replace(old, new))
+    with pytest.raises(InputError, match=r"damaged\.ply: is damaged or not a cloud .*; write it again"):
+        read_cloud(path)
+
+
+def test_polygons_of_different_sizes_after_the_vertices_are_passed_over():
+    header = HEADER.replace("ascii", "binary_little_endian").replace("face 1", "face 2")
+    rows = np.array([(1, 2, 3, 4, 5, 6, 2)] * 2, "<f4,<f4,<f4,u1,u1,u1,<i4").tobytes()
+    faces = b"\x03" + bytes(12) + b"\x04" + bytes(16)
+    assert read_ply(header.encode() + bytes(4) + rows + faces).points.tolist() == [[1, 2, 3]] * 2
 
 
 @pytest.mark.parametrize(
@@ -72,6 +98,7 @@ def test_what_trimesh_writes_is_read_back(encoding):
         ("property float x", "property quad x", "not understood"),
         ("property float x", "property list uchar int x", "lists inside or before"),
         ("property float x\n", "", "has no field x"),
+        ("property float y", "property float x", "property twice"),
         ("format ascii 1.0", "format ebcdic 1.0", "not understood"),
         ("format ascii 1.0\n", "", "names no format"),
         ("end_header", "end", "no end_header"),

@@ -1,4 +1,4 @@
-"""The separator's kernels: compiled equals plain Python to the bit; few versions of each are compiled."""
+"""The separator's kernels: compiled equals plain Python to the bit."""
 
 import os
 import subprocess
@@ -28,17 +28,3 @@ def test_compiled_and_plain_python_agree_to_the_bit(tmp_path):
         assert compiled[name].size > 0, name
         assert compiled[name].dtype == plain[name].dtype, name
         assert np.array_equal(compiled[name], plain[name]), name
-
-
-def test_the_stored_machine_code_is_enough(monkeypatch):
-    """No cloud needs a kernel for other types, which would import Numba."""
-    from lifelore.core.compiled.stored_kernel import StoredKernel
-    from lifelore.perception.separation.separator import separate
-
-    asked = []
-    monkeypatch.setattr(StoredKernel, "dispatcher", property(lambda kernel: asked.append(kernel.__name__)))
-    random = np.random.default_rng(0)
-    cloud = random.uniform(0, 0.1, (4000, 3))
-    separate(cloud, cloud + np.array([0.1, 0, 0])).decision(cloud)
-    separate(list(cloud[:5]), np.asfortranarray(cloud[:7]).astype(np.float32))
-    assert asked == []

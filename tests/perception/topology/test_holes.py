@@ -1,5 +1,6 @@
 """Holes: Fig. 2.6's loop is found, one long contact split in two is not, whatever the density of points."""
 
+import networkx as nx
 import numpy as np
 import pytest
 
@@ -8,7 +9,7 @@ from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.streams import stream
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.scene import Scene
-from lifelore.perception.topology.holes import contact_loops, find_holes, opening_along
+from lifelore.perception.topology.holes import contact_graph, contact_loops, find_holes, opening_along
 
 
 def bridge(box, spacing=0.005, legs=((0, 0.04), (0.16, 0.2))):
@@ -124,6 +125,23 @@ def test_contacts_found_by_the_separator_give_the_same_answers(box):
         labels = np.repeat(list(clouds), [len(cloud) for cloud in clouds.values()])
         cloud = LabelledCloud(points, labels)
         assert len(find_holes(Scene(cloud, interfaces(cloud)))) == n_holes
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_loops_are_as_many_as_independent_cycles_and_pass_a_node_once(make_scene, meet, seed):
+    # Six objects that meet in points of a coarse lattice: many ways are equally long, and many have no length.
+    rng = stream(seed, "loops")
+    pairs = [(a, b) for a in range(2, 8) for b in range(a + 1, 8) if rng.random() < 0.6]
+    parts = [meet(a, b, rng.integers(0, 3, (rng.integers(1, 4), 3)) / 10) for a, b in pairs]
+    clouds = {label: np.zeros((1, 3)) for label in range(2, 8)}
+    scene = make_scene(clouds, parts)
+    loops, graph = contact_loops(scene), contact_graph(scene)
+    beyond_forest = graph.number_of_edges() - len(graph) + nx.number_connected_components(graph)
+    assert len(loops) == beyond_forest > 0
+    for loop in loops:
+        assert len(set(loop)) == len(loop) >= 3
+        assert all(graph.has_edge(x, y) for x, y in zip(loop, loop[1:] + loop[:1], strict=True))
+    assert loops == contact_loops(make_scene(clouds, parts))
 
 
 def test_opening_by_hand():

@@ -40,7 +40,7 @@ def test_training_counts_every_move_once():
 
 
 def test_learnt_transitions_are_distributions_and_tell_of_slips():
-    table = np.exp(TRAINED.signal_table()).reshape(5, -1, N_OUTCOMES, 6)
+    table = np.exp(TRAINED.move_signal().log_table).reshape(5, -1, N_OUTCOMES, 6)
     np.testing.assert_allclose(table.sum(axis=2), 1)
     # In mid corridor with room ahead (class 6 of both) balls of 60 slip 30 times as often as balls of 2.
     slips = 1 - table[2, 6 * 7 + 6].reshape(4, N_AFTER, 6)[0].sum(axis=0)
@@ -104,7 +104,7 @@ def test_beat_learner_knows_types_that_it_is_told():
     everyone = players(60, 1)
     told = np.eye(6)[everyone.kinds]
     value = TRAINED.value(SCALE)
-    learner = BeatLearner(value, TRAINED.signal_table(), 60, prior=told)
+    learner = BeatLearner(TRAINED.library(SCALE), 60, prior=told)
     lost = SCALE.loss(*play_all(GAME, everyone, learner, SCALE))
     best = losses_by_speed(GAME, everyone, SCALE)[np.arange(60), :, value.argmax(axis=1)[everyone.kinds]]
     np.testing.assert_array_equal(lost, best)
@@ -115,7 +115,7 @@ def test_the_library_says_what_the_tables_say():
     assert library.types[3] == "b = 20"
     assert library.policies[1] == "speed 40"
     np.testing.assert_allclose(library.performance.mean, TRAINED.value(SCALE))
-    table = TRAINED.signal_table()
+    table = TRAINED.move_signal().log_table
     for signal in (0, 77, 1234, table.shape[1] - 1):
         found = library.signal.log_likelihood(2, transition_of(signal))
         np.testing.assert_allclose(found, table[2, signal], atol=1e-12)
@@ -124,7 +124,7 @@ def test_the_library_says_what_the_tables_say():
 def test_the_type_named_halfway_through_the_first_episode():
     everyone = players(12, 2)
     told = np.eye(6)[everyone.kinds]
-    learner = BeatLearner(TRAINED.value(SCALE), TRAINED.signal_table(), 12, prior=told)
+    learner = BeatLearner(TRAINED.library(SCALE), 12, prior=told)
     lengths = play_all(GAME, everyone, learner, SCALE).steps[:, 0]
     assert len(learner.named) == lengths.max()  # nothing of the second episode
     assert learner.named_halfway(lengths).tolist() == everyone.kinds.tolist()

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from lifelore.interaction.library.storage_cost import StorageSizes
 from reproduction.chapter4.c4_09_model_storage.run import measure, run_cell, table_sizes
+from reproduction.chapter4.c4_09_model_storage.storage_cost import StorageSizes
 
 
 def test_entries_by_hand():

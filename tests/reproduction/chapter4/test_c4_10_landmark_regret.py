@@ -2,8 +2,25 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
-from reproduction.chapter4.c4_10_landmark_regret.run import BINS, EXAMPLE, measure, parted, run_cell, smooth_table
+from lifelore.interaction.library.task_types import epsilon_types, landmark_regret
+from reproduction.chapter4.c4_10_landmark_regret.run import (
+    BINS,
+    EXAMPLE,
+    measure,
+    member_regret,
+    parted,
+    run_cell,
+    smooth_table,
+)
+
+TABLES = st.tuples(st.integers(1, 12), st.integers(1, 5)).flatmap(
+    lambda shape: arrays(np.float64, shape, elements=st.integers(-20, 20).map(lambda k: k / 4))
+)
+"""Multiples of a quarter: sums and differences are exact."""
 
 
 def test_the_example_reaches_two_epsilon():
@@ -40,3 +57,18 @@ def test_measures_by_hand():
     # Past ε: 0, 1 and 2 of 8 tasks; the example costs 2 ε.
     assert measured["within"].value == pytest.approx(1 - 3 / 24)
     assert measured["largest_regret"].value == 2.0
+
+
+@pytest.mark.slow
+@settings(deadline=None, max_examples=100)
+@given(TABLES, st.integers(0, 40).map(lambda k: k / 8))
+def test_the_worst_landmark_by_loops_costs_no_more_than_two_epsilon(utilities, epsilon):
+    types = epsilon_types(utilities, epsilon)
+    worst = np.zeros(len(utilities))
+    for i, j in np.ndindex(len(utilities), len(utilities)):
+        if types.labels[i] == types.labels[j]:
+            best = [policy for policy, value in enumerate(utilities[i]) if value == max(utilities[i])]
+            worst[j] = max([worst[j], *(max(utilities[j]) - utilities[j][policy] for policy in best)])
+    np.testing.assert_array_equal(member_regret(utilities, types), worst)
+    assert (worst <= 2 * epsilon).all()
+    assert (landmark_regret(utilities, types) <= worst).all()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.domains.ball_game.moves import N_OUTCOMES, N_SIGNALS
-from lifelore.interaction.adaptation.move_model import PSEUDO_COUNT
+from lifelore.interaction.adaptation.move_signal import PRIOR_MOVES
 from reproduction.chapter4.c4_16_beat_is_reuse.run import Algorithm9, measure, rows
 
 
@@ -15,7 +15,7 @@ def test_algorithm_9_by_hand():
     counts[1, 1] = [0, 4]
     beat = Algorithm9(counts, np.array([[1.0, 0.0], [0.0, 2.0]]))
     assert beat.probabilities(0.4).tolist() == pytest.approx([0.2, 0.8])  # 0.5 to 1.0
-    small, total = 4 * PSEUDO_COUNT / N_OUTCOMES, 8 + 4 * PSEUDO_COUNT
+    small, total = PRIOR_MOVES / N_OUTCOMES, 8 + PRIOR_MOVES
     first, second = (8 + small) / total, (4 + small) / total
     for _ in range(2):
         beat.update(1, 0, 0)

@@ -90,19 +90,21 @@ def new_watched_agent(guide: Guide, window: int) -> WatchedAgent:
     )
 
 
-@kernel(allocates=False)
+@kernel
 def observe(guide, rule, agent, s, a, advised):
     """The agent tried action `a` in state `s`; `advised` if this was the advice. Action -1 is no evidence."""
+    # Unpacked once, because reading an array of a tuple inside a loop would count references.
     ring, total, _, cursor, dropped, _ = agent
-    if guide.goal_of_state[s] >= 0:
+    log_models, goal = guide.log_models, guide.goal_of_state[s]
+    if goal >= 0:
         # The agent was at this goal and walked on.
-        dropped[guide.goal_of_state[s]] = True
+        dropped[goal] = True
     if a >= 0 and not (advised and rule.own_steps_only):
-        h = cursor[PREVIOUS] + 1 if guide.log_models.shape[2] > 1 else 0
+        h = cursor[PREVIOUS] + 1 if log_models.shape[2] > 1 else 0
         slot, window = cursor[SLOT], len(ring)
         for m in range(total.size):
-            total[m] += guide.log_models[m, s, h, a] - ring[slot, m]
-            ring[slot, m] = guide.log_models[m, s, h, a]
+            total[m] += log_models[m, s, h, a] - ring[slot, m]
+            ring[slot, m] = log_models[m, s, h, a]
         cursor[SLOT] = slot + 1
         cursor[FILLED] = min(cursor[FILLED] + 1, window)
         if slot + 1 == window:
@@ -115,7 +117,7 @@ def observe(guide, rule, agent, s, a, advised):
     cursor[PREVIOUS] = a
 
 
-@kernel(allocates=False)
+@kernel
 def consider(guide, rule, agent, s):
     """Whether to advise the agent in state `s`, and the gain in nats; sets the goal in the cursor."""
     _, _, _, cursor, _, saved = agent
@@ -138,24 +140,25 @@ def consider(guide, rule, agent, s):
     return advised, gain
 
 
-@kernel(allocates=False)
+@kernel
 def _update_posterior(guide, agent):
     """Set P(M | H) (Eq. 3.15); models of dropped goals get probability 0."""
     _, total, posterior, _, dropped, _ = agent
+    goal_of_model, log_prior = guide.goal_of_model, guide.log_prior
     if dropped.all():
         # The agent has left every known goal, so it has an unknown goal or a new one: allow all again.
         dropped[:] = False
     best = -np.inf
     for m in range(total.size):
-        goal = guide.goal_of_model[m]
-        if (goal < 0 or not dropped[goal]) and guide.log_prior[m] + total[m] > best:
-            best = guide.log_prior[m] + total[m]
+        goal = goal_of_model[m]
+        if (goal < 0 or not dropped[goal]) and log_prior[m] + total[m] > best:
+            best = log_prior[m] + total[m]
     mass = 0.0
     for m in range(total.size):
-        goal = guide.goal_of_model[m]
+        goal = goal_of_model[m]
         posterior[m] = 0.0
         if goal < 0 or not dropped[goal]:
-            posterior[m] = np.exp(guide.log_prior[m] + total[m] - best)
+            posterior[m] = np.exp(log_prior[m] + total[m] - best)
         mass += posterior[m]
     for m in range(total.size):
         posterior[m] /= mass
@@ -171,24 +174,25 @@ def _is_shown(guide, g, s):
 def _target_goal(guide, agent, s):
     """The goal that advice in `s` leads to, -1: none; the present goal, or the most probable per step."""
     _, _, posterior, cursor, dropped, _ = agent
+    goal_of_model, goal_share = guide.goal_of_model, guide.goal_share
     present = cursor[TARGET]
     if present >= 0 and cursor[SPENDING] == 1 and not dropped[present] and _is_shown(guide, present, s):
         return present
     left = 0.0
     for g in range(dropped.size):
         if not dropped[g]:
-            left += guide.goal_share[g]
+            left += goal_share[g]
     chosen, best = -1, -1.0
     for g in range(dropped.size):
         if dropped[g] or guide.goal_of_state[s] == g or not _is_shown(guide, g, s):
             continue
         weight = 0.0
         for m in range(posterior.size):
-            if guide.goal_of_model[m] == g:
+            if goal_of_model[m] == g:
                 weight += posterior[m]
-            elif guide.goal_of_model[m] < 0:
+            elif goal_of_model[m] < 0:
                 # An agent without a goal of a model's own has each of those left by how likely it is beforehand.
-                weight += posterior[m] * guide.goal_share[g] / left
+                weight += posterior[m] * goal_share[g] / left
         weight /= 1.0 + guide.steps[g, s]
         if weight > best:
             best, chosen = weight, g
@@ -199,14 +203,15 @@ def _target_goal(guide, agent, s):
 def _gain(guide, agent, g, s):
     """KL[θ_s, P(A | s, H)] in nats (Eq. 3.13, 3.14)."""
     _, _, posterior, cursor, _, _ = agent
-    h = cursor[PREVIOUS] + 1 if guide.log_models.shape[2] > 1 else 0
+    log_models, advice = guide.log_models, guide.theta
+    h = cursor[PREVIOUS] + 1 if log_models.shape[2] > 1 else 0
     gain = 0.0
-    for a in range(guide.theta.shape[2]):
-        theta = guide.theta[g, s, a]
+    for a in range(advice.shape[2]):
+        theta = advice[g, s, a]
         if theta > 0.0:
             mixture = 0.0
             for m in range(posterior.size):
-                mixture += posterior[m] * np.exp(guide.log_models[m, s, h, a])
+                mixture += posterior[m] * np.exp(log_models[m, s, h, a])
             gain += theta * np.log(theta / mixture)
     # Rounding may make the gain negative, which must not prevent advice at κ = 0.
     return max(gain, 0.0)

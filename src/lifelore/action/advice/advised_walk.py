@@ -115,7 +115,7 @@ def _cumulative_policy(policy: ArrayLike, tables: Tables, advisor: Advisor) -> N
     return cumulative(flat).reshape(shape[0], -1, shape[1])
 
 
-@kernel(allocates=False)
+@kernel
 def _walk(world, policy_cum, guide, rule, agent, random, state, follows_advice, trace):
     next_state, reward_of, event_of = world
     states, actions, advised, p_normal, gain = trace

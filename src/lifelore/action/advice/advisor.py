@@ -274,7 +274,7 @@ class Advisor:
         return assessment
 
 
-@kernel(allocates=False)
+@kernel
 def _assess(guide, rule, agent, states, actions, assessment):
     advise, p_normal, gain, posterior = assessment
     for t in range(states.size):

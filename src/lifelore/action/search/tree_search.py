@@ -199,7 +199,7 @@ def _walk(tables, guide, tree, state, settings, max_steps, world, own):
     for moved in range(max_steps):
         _grow(tables, guide, tree, state, settings, own)
         action = _move(tree, settings.by_mean, own)
-        k = _outcome(tables, world)
+        k = _outcome(tables.outcome_cum, world)
         event = tables.event[state, action, k]
         gained += factor * tables.reward[state, action, k]
         factor *= settings.discount
@@ -226,54 +226,59 @@ def _grow(tables, guide, tree, state, settings, random):
         used = _simulate(tables, guide, tree, settings, random, bounds, nodes, actions, rewards, used)
 
 
-@kernel(allocates=False)
+@kernel
 def _simulate(tables, guide, tree, settings, random, bounds, nodes, actions, rewards, used):
     """One simulation: select moves, add a node, roll out, update the means; return the number of nodes in use."""
+    # Unpacked once, because reading an array of a tuple inside a loop would count references.
+    next_state, reward, event, outcome_cum, _ = tables
+    prior, _, row = guide
+    states, child, visits, total = tree
+    _, depth, exploration, discount, _ = settings
     node, n, beyond = 0, 0, 0.0
-    while n < settings.depth:
-        state = tree.state[node]
-        action = _promising(tree, node, guide.prior, guide.row[state], settings.exploration, bounds, random)
-        k = _outcome(tables, random)
-        nodes[n], actions[n], rewards[n] = node, action, tables.reward[state, action, k]
+    while n < depth:
+        state = states[node]
+        action = _promising(visits, total, node, prior, row[state], exploration, bounds, random)
+        k = _outcome(outcome_cum, random)
+        nodes[n], actions[n], rewards[n] = node, action, reward[state, action, k]
         n += 1
-        if tables.event[state, action, k] & TERMINAL:
+        if event[state, action, k] & TERMINAL:
             break
-        following = tree.child[node, action, k]
+        following = child[node, action, k]
         if following == 0:
-            tree.child[node, action, k] = used
-            tree.state[used] = tables.next_state[state, action, k]
-            beyond = _rollout(tables, guide, tree.state[used], settings.depth - n, settings.discount, random)
+            child[node, action, k] = used
+            states[used] = next_state[state, action, k]
+            beyond = _rollout(tables, guide, states[used], depth - n, discount, random)
             used += 1
             break
         node = following
     for i in range(n - 1, -1, -1):
-        beyond = rewards[i] + settings.discount * beyond
-        tree.visits[nodes[i], actions[i]] += 1
-        tree.total[nodes[i], actions[i]] += beyond
-        mean = tree.total[nodes[i], actions[i]] / tree.visits[nodes[i], actions[i]]
+        beyond = rewards[i] + discount * beyond
+        visits[nodes[i], actions[i]] += 1
+        total[nodes[i], actions[i]] += beyond
+        mean = total[nodes[i], actions[i]] / visits[nodes[i], actions[i]]
         bounds[0] = min(bounds[0], mean)
         bounds[1] = max(bounds[1], mean)
     return used
 
 
-@kernel(allocates=False)
-def _promising(tree, node, prior, row, exploration, bounds, random):
+@kernel
+def _promising(visits, total, node, prior, row, exploration, bounds, random):
     """The action with the highest PUCT value; ties are broken at random."""
-    _, _, visits, total = tree
+    low, high = bounds[0], bounds[1]
     n_actions = prior.shape[1]
     tried, summed = 0, 0.0
     for a in range(n_actions):
         tried += visits[node, a]
         summed += total[node, a]
     own = summed / tried if tried > 0 else 0.0
-    spread = bounds[1] - bounds[0]
+    spread = high - low
     wide = exploration * np.sqrt(max(1.0, float(tried)))
     best, equals, chosen = -np.inf, 0, 0
     for a in range(n_actions):
         n = visits[node, a]
         value = wide * prior[row, a] / (1.0 + n)
         if tried > 0 and spread > 0.0:
-            value += ((total[node, a] / n if n > 0 else own) - bounds[0]) / spread
+            value += ((total[node, a] / n if n > 0 else own) - low) / spread
         if value > best:
             best, equals, chosen = value, 1, a
         elif value == best:
@@ -284,7 +289,7 @@ def _promising(tree, node, prior, row, exploration, bounds, random):
     return chosen
 
 
-@kernel(allocates=False)
+@kernel
 def _rollout(tables, guide, state, depth, discount, random):
     """Discounted return of at most `depth` randomly drawn moves."""
     next_state, reward, event, outcome_cum, _ = tables
@@ -307,18 +312,18 @@ def _rollout(tables, guide, state, depth, discount, random):
     return gained
 
 
-@kernel(allocates=False)
-def _outcome(tables, random):
+@kernel
+def _outcome(outcome_cum, random):
     """Draw the outcome of a move; a deterministic world needs no random number."""
-    last, k = tables.outcome_cum.size - 1, 0
+    last, k = outcome_cum.size - 1, 0
     if last > 0:
         uniform = next_uniform(random)
-        while k < last and uniform >= tables.outcome_cum[k]:
+        while k < last and uniform >= outcome_cum[k]:
             k += 1
     return k
 
 
-@kernel(allocates=False)
+@kernel
 def _move(tree, by_mean, random):
     """The root's action tried most, or the tried action with the best mean; ties are broken at random."""
     visits, total = tree.visits[0], tree.total[0]

@@ -100,6 +100,6 @@ def explained(document: dict[str, Any]) -> list[str]:
 
 
 def _shares(belief: dict[str, float]) -> str:
-    # Memory stores keys in alphabetical order.
-    likely = sorted(belief.items(), key=lambda one: -one[1])
+    # Memory stores keys in alphabetical order, so types of equal shares go by name.
+    likely = sorted(belief.items(), key=lambda one: (-one[1], one[0]))
     return ", ".join(f"{name} {100 * value:.0f} %" for name, value in likely if value >= 0.005)

@@ -8,12 +8,13 @@ judged once a task: the same scene answers the same act alike in every episode, 
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.novelty.calibration import calibration_of
-from lifelore.interaction.novelty.known_tasks import known_tasks
-from lifelore.interaction.novelty.novelty_detector import NoveltyDetector
-from lifelore.interaction.novelty.novelty_statistics import NoveltyStatistics
-from lifelore.interaction.reuse.user_beliefs import UserBeliefs
+from lifelore.interaction.reuse.novelty.calibration import NoveltyCalibration
+from lifelore.interaction.reuse.novelty.known_tasks import known_tasks
+from lifelore.interaction.reuse.novelty.misfit import Misfit
+from lifelore.interaction.reuse.novelty.novelty_detector import MASS, NoveltyDetector
+from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
 
 N_TASKS = 400
 """Simulated tasks behind the threshold, at least; more cost time and state the rate more precisely."""
@@ -25,10 +26,10 @@ def calibrated_alarm(
     horizon: int,
     false_alarm: float,
     generator: np.random.Generator,
-    mass: float = 0.05,
+    mass: float = MASS,
     n_tasks: int = N_TASKS,
 ) -> NoveltyDetector:
-    """A detector for one task.
+    """A detector for one task, whose type stays.
 
     Parameters
     ----------
@@ -37,7 +38,7 @@ def calibrated_alarm(
     frequency : (n_causes,) float
         How often earlier tasks had each cause, above 0.
     horizon : int
-        Number of different causes that a task usually shows; at most n_causes count.
+        Number of different causes that the rate of false alarms is stated for; at most n_causes count.
     false_alarm : float
         Probability of an alarm in a task of a known type, in (0, 1).
     n_tasks : int
@@ -48,15 +49,12 @@ def calibrated_alarm(
     # The largest of log frequency + Gumbel noise come first: a draw without replacement, by frequency.
     noise = generator.gumbel(size=(n_tasks, n_causes))
     order = np.argsort(-(np.log(frequency) + noise), axis=1)[:, :horizon]
-    statistics, tasks = NoveltyStatistics(library), known_tasks(library, n_tasks, generator)
-    users = UserBeliefs(library, n_tasks, "f8", seed=generator, models="plug-in")
-    sums, every = statistics.sums(n_tasks), np.arange(n_tasks)
+    dynamics, every = TypeDynamics.static(), np.arange(n_tasks)
+    misfit = Misfit(UnknownEvidence(library, n_tasks, dynamics=dynamics))
+    tasks = known_tasks(library, n_tasks, generator)
     found = np.empty((n_tasks, horizon))
-    for place in range(horizon):
-        causes = order[:, place]
-        belief = users.algorithm.belief(users.log_belief)
-        effects = tasks.signals(causes)
-        statistics.add(sums, belief, causes, effects)
-        users.update(every, causes, effects.astype(np.int64))
-        found[:, place] = statistics.statistic(sums)
-    return NoveltyDetector(library, calibration_of(found, false_alarm), mass)
+    for place, causes in enumerate(order.T):
+        misfit.observe(every, causes, tasks(causes))
+        found[:, place] = misfit.statistic(every)
+    known = NoveltyCalibration.of(found, false_alarm)
+    return NoveltyDetector(library, mass, dynamics=dynamics, calibration=known)

@@ -11,9 +11,9 @@ from lifelore.agent.long_lived.known_types import KnownTypes
 from lifelore.agent.long_lived.novelty_alarm import N_TASKS, calibrated_alarm
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
-from lifelore.interaction.novelty.calibration import LEAST_ALARMS
-from lifelore.interaction.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.reuse.novelty.calibration import LEAST_ALARMS
+from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 
 Array = NDArray[np.float64]
 
@@ -90,17 +90,18 @@ class Recognition:
         if (judged := self.known.judged).size:
             library = self.known.library(prior)
             self._place = {int(cause): place for place, cause in enumerate(judged)}
-            self.agent = BayesianPolicyReuse(library, dynamics=TypeDynamics.static())
             frequency = knowledge.shared.causes.counts(judged)[:, 0]
             self.alarm = calibrated_alarm(
                 library,
                 np.maximum(frequency, 0.5),
-                max(1, round(frequency.sum() / max(knowledge.n_tasks, 1))),
+                # Twice the usual number of causes: tasks of unknown types try more.
+                max(1, round(2 * frequency.sum() / max(knowledge.n_tasks, 1))),
                 false_alarm,
                 stream(seed, "long-lived", "alarm", knowledge.n_tasks),
                 unknown,
                 max(N_TASKS, int(np.ceil(LEAST_ALARMS / false_alarm))),
             )
+            self.agent = BayesianPolicyReuse(library, dynamics=TypeDynamics.static(), novelty=self.alarm)
         self._forget_task()
 
     def _forget_task(self) -> None:
@@ -116,8 +117,9 @@ class Recognition:
         other._before = with_unknown(prior, unknown)
         if self.agent is not None and self.alarm is not None:
             library = self.agent.library
-            other.agent = BayesianPolicyReuse(library, prior=prior, dynamics=TypeDynamics.static())
-            other.alarm = NoveltyDetector(library, self.alarm.calibration, unknown)
+            static = TypeDynamics.static()
+            other.alarm = NoveltyDetector(library, unknown, prior, static, calibration=self.alarm.calibration)
+            other.agent = BayesianPolicyReuse(library, prior=prior, dynamics=static, novelty=other.alarm)
         other._forget_task()
         return other
 
@@ -143,9 +145,7 @@ class Recognition:
             if cause in self._judged:
                 continue
             self._judged.add(cause)
-            place, belief = self._place[cause], self.agent.belief
-            self.agent.update(place, effect)
-            self.alarm.observe(belief, place, effect)
+            self.agent.update(self._place[cause], effect)
             self.highest = max(self.highest, self.alarm.score)
 
     @property

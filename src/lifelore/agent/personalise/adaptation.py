@@ -21,9 +21,8 @@ from lifelore.agent.reuse.study import check_study_name
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
-from lifelore.interaction.adaptation.beat import Beat, epsilon_of
+from lifelore.interaction.adaptation.beat import Beat, rule_at
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 from lifelore.memory import Memory
 from lifelore.memory.byte_words import bytes_of, words_of
 
@@ -43,7 +42,7 @@ class Adaptation:
     library : PolicyLibrary
         Its policies are the action sets, its signal is a move.
     epsilon : float or str
-        See `beat.Exploration`.
+        As for `Beat`.
     id : str
         Changes with each other library of this name; a user's belief holds for one of them.
     """
@@ -63,7 +62,7 @@ def register_adaptation(memory: Memory, name: str, library: PolicyLibrary, epsil
         A name or ε breaks its rule.
     """
     check_study_name(name)
-    epsilon_of(epsilon)
+    rule_at(epsilon)
     content = library.to_bytes()
     digest = hashlib.sha256(content + repr(epsilon).encode()).hexdigest()[:32]
     earlier = memory.recall_state(LIBRARY, name, VERSION)
@@ -106,8 +105,7 @@ def select(memory: Memory, adaptation: Adaptation, user: str, seed: int = 0) -> 
         ``surprises`` (moves that no type explains), ``belief`` and ``expected`` value of each action set.
     """
     beat = _beat(memory, adaptation, user)
-    library, rule = adaptation.library, EpsilonGreedy(epsilon_of(adaptation.epsilon)(beat.step, beat.episode))
-    probs = rule.probabilities(library, beat.belief)
+    library, probs = adaptation.library, beat.algorithm.propensities(0, beat.rule)
     generator = stream(seed, "adapt", adaptation.name, adaptation.id, user, beat.step)
     chosen = int(generator.choice(len(probs), p=probs))
     expected = beat.belief @ library.performance.mean
@@ -191,7 +189,8 @@ def _beat(memory: Memory, adaptation: Adaptation, user: str) -> Beat:
     record = memory.recall(USER, key, VERSION)
     if record is not None and record.slots.size and record.about["id"] == adaptation.id:
         beat.step, beat.episode, beat.surprises = record.values[:_HEADER].tolist()
-        beat.log_belief = record.values[_HEADER : _HEADER + adaptation.library.n_types].view(np.float64).copy()
+        log_belief = record.values[_HEADER : _HEADER + adaptation.library.n_types].view(np.float64)
+        beat.algorithm.restore(0, log_belief, {})
     return beat
 
 

@@ -8,10 +8,9 @@ from lifelore.agent.reuse.history import read_decisions, user_key
 from lifelore.agent.reuse.log_columns import check_word
 from lifelore.agent.reuse.one_user import policy_odds
 from lifelore.agent.reuse.study import Study
-from lifelore.agent.reuse.user_belief import evidence_of, open_belief
+from lifelore.agent.reuse.user_belief import belief_anew, open_belief
 from lifelore.core.errors import NotFoundError
-from lifelore.interaction.beliefs.belief import expected_utility
-from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, relative_evidence
+from lifelore.interaction.reuse.explanation import relative_evidence
 from lifelore.memory import Memory
 
 LAST_DECISIONS = 16
@@ -38,13 +37,12 @@ def explain(memory: Memory, study: Study, user: str) -> dict[str, Any]:
     check_word("user", user)
     key = user_key(study.name, user)
     known = open_belief(memory, study, key, user)
-    belief, last = evidence_of(memory, study, known, MAX_EVIDENCE)
+    now = belief_anew(memory, study, known)
+    last = list(now.evidence)
     number = known.state.head.number
     if number == 0 and not last:
         raise NotFoundError(f"nothing is stored of user '{user}' in study '{study.name}'")
-    beta = belief.belief
-    own = study.choice_for(known.state.head.task)
-    odds = None if study.holds_out(user) else policy_odds(study, own, beta)
+    odds = None if study.holds_out(user) else policy_odds(study, now)
     recent = read_decisions(memory, study, key, max(0, number - LAST_DECISIONS))
     relative = relative_evidence(last, study.library.n_types)
     return {
@@ -55,8 +53,8 @@ def explain(memory: Memory, study: Study, user: str) -> dict[str, Any]:
         "control": study.holds_out(user),
         "context": known.context,
         "features": known.features,
-        "belief": _by_name(study.library.types, beta),
-        "expected": _by_name(tuple(study.active), expected_utility(beta, own.performance.mean)),
+        "belief": _by_name(study.library.types, now.belief),
+        "expected": _by_name(tuple(study.active), now.expected[study.active_numbers]),
         "probabilities": None if odds is None else _by_name(tuple(odds.policies), odds.probs),
         "surprise": known.state.head.surprise,
         "evidence": [

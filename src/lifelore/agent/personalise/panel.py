@@ -176,7 +176,7 @@ class Panel:
         """β of each of `users` by type; strangers have the prior."""
         with self._lock:
             rows = [self._rows.get(self._key(user), -1) for user in users]
-            start = np.exp(self._beliefs.log_prior)
+            start = np.exp(self._beliefs.algorithm.log_prior)
             found = [start if row < 0 else self._beliefs.belief([row])[0] for row in rows]
         return [dict(zip(self.study.library.types, row.tolist(), strict=True)) for row in found]
 
@@ -231,7 +231,7 @@ class Panel:
     ) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """Probability of each policy in use, (n, n_active), and who is of the control group, (n,)."""
         study, library = self.study, self.study.library
-        columns = [library.index_of_policy(policy) for policy in study.active]
+        columns = study.active_numbers
         whole = np.zeros((len(rows), library.n_policies), bool)
         whole[:, columns] = may
         mask = None if whole.all() else whole

@@ -16,8 +16,9 @@ from lifelore.agent.play_study.study_plan import TRAINING
 from lifelore.agent.play_study.study_settings import StudySettings
 from lifelore.domains.ball_game.ball_game import SIZES, SPEEDS, LossScale
 from lifelore.domains.ball_game.moves import N_OUTCOMES, N_SIGNALS
-from lifelore.interaction.adaptation.beat_users import BeatUsers
-from lifelore.interaction.adaptation.move_model import PSEUDO_COUNT, log_shares
+from lifelore.interaction.adaptation.beat import Beat
+from lifelore.interaction.adaptation.move_signal import MoveSignal
+from lifelore.interaction.library.policy_library import PolicyLibrary
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -103,9 +104,11 @@ def expected_values(own: TrainingTotals, others: TrainingTotals, settings: Study
     return -(own_sum / (own.rounds + 1))[pairs_of(settings)]
 
 
-def beat_for(own: TrainingTotals, others: TrainingTotals, settings: StudySettings, seed: int = 0) -> BeatUsers:
+def beat_for(own: TrainingTotals, others: TrainingTotals, settings: StudySettings, seed: int = 0) -> Beat:
     """BEAT for one player: its types are the sizes of the session, its action sets the speeds."""
     rows, columns = pairs_of(settings)
     counts = (own.moves + others.moves)[columns.ravel()][:, :, rows.ravel()].astype(np.float64)
-    table = log_shares(counts, N_OUTCOMES, 4 * PSEUDO_COUNT / N_OUTCOMES)
-    return BeatUsers(expected_values(own, others, settings), table, 1, seed=seed)
+    signal = MoveSignal.from_counts(counts, N_OUTCOMES)
+    # Only the values decide; the deviation of a loss is never read.
+    library = PolicyLibrary.from_means(expected_values(own, others, settings), 1.0, signal=signal)
+    return Beat(library, seed=seed)

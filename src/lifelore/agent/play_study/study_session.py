@@ -17,10 +17,9 @@ from lifelore.agent.play_study.study_settings import StudySettings
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import SIZES, SPEEDS, draw_sigma
-from lifelore.interaction.adaptation.beat_users import BeatUsers
+from lifelore.interaction.adaptation.beat import Beat
 
 FINISHED = "finished"
-_PLAYER = np.zeros(1, np.int64)
 
 
 class StudySession:
@@ -62,7 +61,7 @@ class StudySession:
         self.static_speed = best_static_speed(others.totals, settings)
         self._playing: BallRound | None = None
         self._round: Round | None = None
-        self._beat: BeatUsers | None = None
+        self._beat: Beat | None = None
         self._frame = 0
 
     @property
@@ -174,7 +173,7 @@ class StudySession:
         """
         if not self.is_free or self._beat is None:
             raise InputError("the belief is shown in free rounds only; rounds of the study are blinded")
-        belief = np.exp(self._beat.log_belief[0])
+        belief = self._beat.belief
         return {str(size): float(p) for size, p in zip(self.settings.sizes, belief, strict=True)}
 
     def result(self) -> RoundResult | None:
@@ -201,7 +200,7 @@ class StudySession:
         """Drop the round that is being played; it begins again at the next `begin`."""
         self._playing = self._round = self._beat = None
 
-    def _start(self, following: Round, beat: BeatUsers | None, number: int) -> None:
+    def _start(self, following: Round, beat: Beat | None, number: int) -> None:
         random = self._stream("round", number)
         sigma = float(draw_sigma(random))
         self._round, self._beat, self._frame = following, beat, 0
@@ -224,25 +223,24 @@ class StudySession:
             assert constant is not None
             played.move(SPEEDS.index(constant))
             return
-        chosen = int(self._beat.select(_PLAYER)[0])
+        chosen = self._beat.select()
         signal = played.move(SPEEDS.index(self.settings.speeds[chosen]))
-        self._beat.update(_PLAYER, np.array([chosen]), np.array([signal]))
-        played.name_size(SIZES.index(self.settings.sizes[int(self._beat.log_belief[0].argmax())]))
+        self._beat.update(chosen, signal)
+        played.name_size(SIZES.index(self.settings.sizes[int(self._beat.belief.argmax())]))
 
     def _constant_speed(self, planned: Round) -> int | None:
         return self.static_speed if planned.method == STATIC else planned.speed
 
-    def _new_beat(self) -> BeatUsers:
+    def _new_beat(self) -> Beat:
         return beat_for(TrainingTotals.of(self.done), self.others.totals, self.settings, self.seed)
 
-    def _beat_of_block(self, planned: Round) -> BeatUsers:
+    def _beat_of_block(self, planned: Round) -> Beat:
         """BEAT as the earlier rounds of the block leave it."""
         beat = self._new_beat()
         for result in self.done:
             if result.planned.block == planned.block:
                 for speed, signal in zip(result.column("speed"), result.column("signal"), strict=True):
-                    place = self.settings.speeds.index(SPEEDS[speed])
-                    beat.update(_PLAYER, np.array([place]), np.array([signal]))
+                    beat.update(self.settings.speeds.index(SPEEDS[speed]), signal)
         return beat
 
     def _stream(self, *names: str | int) -> np.random.Generator:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from lifelore.agent.reuse.history import History
 from lifelore.agent.reuse.past import Past, PastUser
 from lifelore.agent.reuse.study import Study
-from lifelore.agent.reuse.user_belief import prior_of
-from lifelore.agent.reuse.user_state import Checkpoint, WorkingBelief
+from lifelore.agent.reuse.user_belief import after_past
+from lifelore.agent.reuse.user_state import WorkingBelief
 from lifelore.interaction.reuse.calibration import outcome_calibration, outcome_levels, type_calibration
 
 Array = NDArray[np.float64]
@@ -37,13 +37,11 @@ def _of_outcomes(study: Study, known: Sequence[History], past: Past) -> dict[str
     for number, history in enumerate(known):
         own = past.users.get(history.key, PastUser())
         features = history.features or own.features
-        belief = _working(study, prior_of(study, history.context or own.context, own, features))
-        for policy, outcome in own.outcomes:
-            belief.learn(policy, outcome)
+        belief = after_past(study, history.context or own.context, own, features)
         for decision in history.decisions:
             if decision.outcome is not None and decision.policy in study.library.policies:
                 policy = study.library.index_of_policy(decision.policy)
-                levels.append(outcome_levels(belief.library, [belief.belief], [policy], [decision.outcome])[0])
+                levels.append(outcome_levels(belief.known, [belief.belief], [policy], [decision.outcome])[0])
                 users.append(number)
             belief.learn(decision.policy, decision.outcome)
     return outcome_calibration(levels, users).to_dict() if users else None
@@ -56,7 +54,7 @@ def _of_types(study: Study, known: Sequence[History], past: Past) -> dict[str, A
         if own.type not in study.library.types:
             continue
         features = history.features or own.features
-        belief = _working(study, study.prior_of(history.context or own.context, features))
+        belief = WorkingBelief.of_stranger(study, study.prior_of(history.context or own.context, features))
         for decision in history.decisions:
             belief.learn(decision.policy, decision.outcome)
             if decision.outcome is not None:
@@ -64,7 +62,3 @@ def _of_types(study: Study, known: Sequence[History], past: Past) -> dict[str, A
                 types.append(study.library.index_of_type(own.type))
                 users.append(number)
     return type_calibration(np.array(beliefs), np.array(types), users).to_dict() if users else None
-
-
-def _working(study: Study, prior: Array) -> WorkingBelief:
-    return WorkingBelief(study, Checkpoint(0, study.algorithm.start(prior), 0.0))

@@ -1,4 +1,4 @@
-"""Outcome models and rules of `reuse evaluate`, learnt from a log without the users whom they predict."""
+"""Reward models and rules of `reuse evaluate`, learnt from a log without the users whom they predict."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -10,12 +10,12 @@ from lifelore.agent.reuse.fit import FitSettings, study_of_log
 from lifelore.agent.reuse.log import ReuseLog
 from lifelore.agent.reuse.replayed_choices import ReplayedChoices, replayed_choices
 from lifelore.agent.reuse.study import Study
-from lifelore.interaction.evaluation.outcome_models import OutcomeModel, policy_means
+from lifelore.interaction.evaluation.reward_models import RewardModel, policy_means
 
 Numbers = NDArray[np.int64]
 
 
-def expected_by_means(log: ReuseLog, folds: Numbers) -> OutcomeModel:
+def expected_by_means(log: ReuseLog, folds: Numbers) -> RewardModel:
     """Each policy's mean outcome over the users of other parts."""
     return policy_means(log.outcomes, log.policy.codes, len(log.policy.names), folds)
 
@@ -36,15 +36,15 @@ def studies_of_others(log: ReuseLog, folds: Numbers, types: int | None, seed: in
 
 
 def expected_by_library(
-    log: ReuseLog, folds: Numbers, studies: Sequence[Study], means: OutcomeModel
-) -> OutcomeModel:
+    log: ReuseLog, folds: Numbers, studies: Sequence[Study], means: RewardModel
+) -> RewardModel:
     """Each policy's expected outcome under the user's belief, by the library of the user's part.
 
     Policies that the library does not know have their expectation in `means`.
     """
     expected = _replayed(log, folds, studies, choose=False).expected
     table = np.where(np.isnan(expected), means.table[means.row], expected)
-    return OutcomeModel(table, np.arange(len(log)))
+    return RewardModel(table, np.arange(len(log)))
 
 
 def choices_of_rule(

@@ -31,7 +31,7 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.evaluation.estimators import logged_value
 from lifelore.interaction.evaluation.importance_weights import decision_numbers
-from lifelore.interaction.evaluation.outcome_models import OutcomeModel, user_folds
+from lifelore.interaction.evaluation.reward_models import RewardModel, user_folds
 from lifelore.interaction.selection import rule_named
 from lifelore.memory import Memory
 
@@ -196,7 +196,7 @@ def _of_strangers(decisions: LoggedDecisions, memory: Memory, study: Study) -> t
 
 def _targets(
     decisions: LoggedDecisions, settings: EvaluateSettings, study: Study | None
-) -> tuple[list[TargetPolicy], OutcomeModel]:
+) -> tuple[list[TargetPolicy], RewardModel]:
     log = decisions.log
     folds = user_folds(log.user.codes, stream(settings.seed, "reuse evaluate", "folds"))
     model = expected_by_means(log, folds)

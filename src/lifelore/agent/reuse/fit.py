@@ -190,7 +190,7 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
     library = study.library
     mean = library.performance.mean
     members = Counter(typed.users(log)[1].tolist())
-    active = [library.index_of_policy(policy) for policy in study.active]
+    active = study.active_numbers
     return {
         "study": study.name,
         "rows": len(typed.rows),

@@ -26,13 +26,12 @@ from lifelore.agent.reuse.log_columns import check_word
 from lifelore.agent.reuse.past import forget_past
 from lifelore.agent.reuse.requests import request_record, requested
 from lifelore.agent.reuse.study import ACTIVE, PILOT, RETIRED, Study
-from lifelore.agent.reuse.user_belief import UserBelief, novelty_of, open_belief
+from lifelore.agent.reuse.user_belief import UserBelief, belief_anew, open_belief
+from lifelore.agent.reuse.user_state import WorkingBelief
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.streams import stream
-from lifelore.interaction.beliefs.belief import expected_utility
-from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.outcome_model import LARGEST
-from lifelore.interaction.selection.availability import available_policies, available_probabilities
+from lifelore.interaction.selection.choice import available_mask
 from lifelore.memory import KeyState, Memory
 
 ATTEMPTS = 1000
@@ -115,7 +114,8 @@ def choose(
             decision, answer = _decided(study, known, attempt, seed, available)
         else:
             decision, answer = _repeated(memory, study, known, *made)
-        answer["novelty"] = novelty_of(memory, study, known) if novelty else None
+        unknown = belief_anew(memory, study, known, novelty=True).novelty if novelty else None
+        answer["novelty"] = None if unknown is None else unknown.probability
         if request is not None:
             answer["repeated"] = made is not None
         if made is not None:
@@ -138,15 +138,13 @@ def _decided(
     study: Study, known: UserBelief, attempt: int, seed: int, available: Sequence[str] | None
 ) -> tuple[Decision, dict[str, Any]]:
     head, user = known.state.head, known.history.user
-    belief = study.algorithm.belief(head.log_belief)
-    control = study.holds_out(user)
-    own = study.choice_for(head.task)
-    odds = _control_odds(study, available) if control else policy_odds(study, own, belief, available)
+    control, now = study.holds_out(user), WorkingBelief(study, head)
+    odds = _control_odds(study, available) if control else policy_odds(study, now, available)
     drawn = stream(seed, "reuse choice", study.name, user, head.number).choice(len(odds.probs), p=odds.probs)
     policy, probability = odds.policies[drawn], float(odds.probs[drawn])
     among = None if available is None else tuple(available)
     decision = Decision(head.number, policy, probability, control, int(time.time()), attempt, available=among)
-    return decision, _answer(study, known, decision, own)
+    return decision, _answer(study, known, decision, now)
 
 
 def _repeated(
@@ -156,13 +154,10 @@ def _repeated(
     decision = next((one for one in stored if (one.number, one.attempt) == (number, attempt)), None)
     if decision is None:
         raise NotFoundError("the decision of this request was forgotten; give the request another identifier")
-    return decision, _answer(study, known, decision, study.choice_for(known.state.head.task))
+    return decision, _answer(study, known, decision, WorkingBelief(study, known.state.head))
 
 
-def _answer(study: Study, known: UserBelief, decision: Decision, own: PolicyLibrary) -> dict[str, Any]:
-    head = known.state.head
-    belief = study.algorithm.belief(head.log_belief)
-    expected = expected_utility(belief, own.performance.mean)
+def _answer(study: Study, known: UserBelief, decision: Decision, now: WorkingBelief) -> dict[str, Any]:
     by_features = study.feature_prior is not None and set(known.features or ()) == set(study.feature_prior.names)
     return {
         "user": known.history.user,
@@ -174,9 +169,9 @@ def _answer(study: Study, known: UserBelief, decision: Decision, own: PolicyLibr
         "control": decision.control,
         "context": known.context if known.context in study.contexts and not by_features else None,
         "features": known.features if by_features else None,
-        "belief": dict(zip(study.library.types, belief.tolist(), strict=True)),
-        "expected": dict(zip(study.active, expected.tolist(), strict=True)),
-        "surprise": head.surprise,
+        "belief": dict(zip(study.library.types, now.belief.tolist(), strict=True)),
+        "expected": dict(zip(study.active, now.expected[study.active_numbers].tolist(), strict=True)),
+        "surprise": known.state.head.surprise,
     }
 
 
@@ -187,16 +182,12 @@ def checked_features(study: Study, features: Mapping[str, float]) -> dict[str, f
     return study.feature_prior.checked(features)
 
 
-def policy_odds(
-    study: Study, library: PolicyLibrary, belief: NDArray[np.float64], available: Sequence[str] | None = None
-) -> Odds:
+def policy_odds(study: Study, now: WorkingBelief, available: Sequence[str] | None = None) -> Odds:
     """Policies in use, and the probability that the rule chooses each, with the share of exploration mixed in.
 
     Parameters
     ----------
-    library : PolicyLibrary
-        Of the policies in use, as the user's outcomes leave it (`Study.choice_for`).
-    belief : (n_types,) float64
+    now : WorkingBelief
     available : sequence of str, optional
         The policies that the user can get now; all by default.
 
@@ -205,19 +196,14 @@ def policy_odds(
     InputError
         No policy in use is available.
     """
-    if available is None:
-        policies, probs = study.active, study.selection.probabilities(library, belief)
-    else:
-        policies = [policy for policy in study.active if policy in available]
-        if not policies:
-            raise InputError(
-                f"available must name a policy in use, got {', '.join(available)}, which the control group alone "
-                f"gets; in use are {', '.join(study.active)}"
-            )
-        numbers = available_policies(policies, library.policies)
-        probs = available_probabilities(study.selection, library, belief, numbers)[numbers]
-    probs = (1 - study.explore) * probs + study.explore / len(probs)
-    return Odds(policies, probs / probs.sum())
+    policies = [policy for policy in study.active if available is None or policy in available]
+    if not policies:
+        raise InputError(
+            f"available must name a policy in use, got {', '.join(available or ())}, which the control group "
+            f"alone gets; in use are {', '.join(study.active)}"
+        )
+    mask = available_mask(policies, study.library.policies)
+    return Odds(policies, study.explored(now.propensities(mask)[mask]))
 
 
 def _control_odds(study: Study, available: Sequence[str] | None) -> Odds:
@@ -266,14 +252,13 @@ def update(memory: Memory, study: Study, decision: str, outcome: float) -> dict[
         if again is None or again.decision.outcome != outcome:
             there = f"ended with {again.decision.outcome:g} already" if again else "was forgotten"
             raise InputError(f"decision {decision} {there}, got {outcome:g}; nothing changed")
-    belief = study.algorithm.belief(after.head.log_belief)
     return {
         "decision": decision,
         "user": known.history.user,
         "policy": found.decision.policy,
         "outcome": outcome,
         "taken": taken,
-        "belief": dict(zip(study.library.types, belief.tolist(), strict=True)),
+        "belief": dict(zip(study.library.types, after.head.belief.tolist(), strict=True)),
     }
 
 

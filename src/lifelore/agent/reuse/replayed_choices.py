@@ -6,12 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.reuse.log import ReuseLog
-from lifelore.agent.reuse.one_user import policy_odds
 from lifelore.agent.reuse.study import Study
-from lifelore.agent.reuse.user_state import Checkpoint, WorkingBelief
-from lifelore.interaction.beliefs.belief import expected_utility
+from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
+from lifelore.interaction.selection.choice import available_mask
 
 Array = NDArray[np.float64]
+
+USERS_AT_ONCE = 256
+"""Number of users who are replayed side by side; more need more memory and are hardly faster."""
 
 
 class ReplayedChoices(NamedTuple):
@@ -45,26 +47,57 @@ def replayed_choices(
     choose : bool
         Whether to compute the probabilities of the choices; they stay 0 otherwise.
     """
-    place = {policy: number for number, policy in enumerate(log.policy.names)}
-    in_log = np.array([policy in place for policy in study.active])
-    from_study, elsewhere = np.flatnonzero(in_log), np.flatnonzero(~in_log)
-    to_log = np.array([place[study.active[number]] for number in from_study], np.int64)
-    shape = len(rows), len(log.policy.names)
-    expected, probabilities, unknown = np.full(shape, np.nan), np.zeros(shape), np.zeros(len(rows))
-    beliefs: dict[int, WorkingBelief] = {}
-    policies, outcomes = log.policy.codes[rows].tolist(), log.outcomes[rows].tolist()
-    for number, user in enumerate(log.user.codes[rows].tolist()):
-        if user not in beliefs:
-            prior = study.algorithm.start(study.prior_of(_context(log, user), _features(log, user)))
-            beliefs[user] = WorkingBelief(study, Checkpoint(0, prior, 0.0))
-        now = beliefs[user].checkpoint(number)
-        belief, library = study.algorithm.belief(now.log_belief), study.choice_for(now.task)
-        probs = policy_odds(study, library, belief).probs if choose else np.zeros(library.n_policies)
-        probabilities[number, to_log] = probs[from_study]
-        expected[number, to_log] = expected_utility(belief, library.performance.mean)[from_study]
-        unknown[number] = probs[elsewhere].sum()
-        beliefs[user].learn(log.policy.names[policies[number]], outcomes[number])
-    return ReplayedChoices(expected, probabilities, unknown)
+    numbers = {policy: number for number, policy in enumerate(study.library.policies)}
+    to_library = np.array([numbers.get(policy, -1) for policy in log.policy.names], np.int64)
+    usable = available_mask(study.active, study.library.policies)
+    users, user_of = np.unique(log.user.codes[rows], return_inverse=True)
+    policies, outcomes, turn = to_library[log.policy.codes[rows]], log.outcomes[rows], _turns(user_of)
+    # By policy of the library; users take their turns side by side.
+    expected, probs = np.zeros((2, len(rows), study.library.n_policies))
+    for first in range(0, len(users), USERS_AT_ONCE):
+        algorithm = _strangers(study, log, users[first : first + USERS_AT_ONCE].tolist())
+        inside = np.flatnonzero(user_of // USERS_AT_ONCE == first // USERS_AT_ONCE)
+        for number in range(turn[inside].max() + 1):
+            at = inside[turn[inside] == number]
+            own, known = user_of[at] - first, policies[at] >= 0
+            expected[at] = algorithm.known(own).performance.expected(algorithm.belief(own))
+            if choose:
+                chosen = algorithm.propensities(own, study.selection, usable)[:, usable]
+                probs[np.ix_(at, usable)] = study.explored(chosen)
+            if known.any():
+                algorithm.observe(own[known], policies[at[known]], outcomes[at[known]])
+            algorithm.end_episode(own)
+    return _by_policy_of_log(expected, probs, np.where(np.append(usable, False)[to_library], to_library, -1))
+
+
+def _by_policy_of_log(expected: Array, probs: Array, to_library: NDArray[np.int64]) -> ReplayedChoices:
+    """The choices by policy of the log; `to_library` is -1 where the study does not choose from it."""
+    shared = to_library >= 0
+    by_log = ReplayedChoices(
+        np.full((len(probs), len(to_library)), np.nan),
+        np.zeros((len(probs), len(to_library))),
+        np.delete(probs, to_library[shared], axis=1).sum(axis=1),
+    )
+    by_log.expected[:, shared] = expected[:, to_library[shared]]
+    by_log.probabilities[:, shared] = probs[:, to_library[shared]]
+    return by_log
+
+
+def _strangers(study: Study, log: ReuseLog, users: list[int]) -> ReuseAlgorithm:
+    """Rows of users of whom only context and features are known."""
+    algorithm = study.algorithm.new_rows(len(users))
+    for row, user in enumerate(users):
+        algorithm.log_belief[row] = algorithm.start(study.prior_of(_context(log, user), _features(log, user)))
+    return algorithm
+
+
+def _turns(user_of: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The number of rows of the same user before each row, (n,)."""
+    order = np.argsort(user_of, kind="stable")
+    count = np.bincount(user_of)
+    turns = np.empty_like(order)
+    turns[order] = np.arange(len(order)) - np.repeat(count.cumsum() - count, count)
+    return turns
 
 
 def _context(log: ReuseLog, user: int) -> str | None:

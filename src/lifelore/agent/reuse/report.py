@@ -1,8 +1,8 @@
 """The verb `reuse report`: the gain from choosing by belief over the control group, as numbers, picture and log.
 
 The unit is the user: outcomes of one user hang together, so each user counts once, by the mean of their outcomes.
-Intervals are 95 %: Welch's for the difference of the two groups, bias-corrected bootstrap for means (the normal
-one from more than `MANY` users on).
+Intervals are 95 %: Welch's for the difference of the two groups, bias-corrected bootstrap for means (Student's
+from more than `MANY` users on).
 """
 
 import csv
@@ -22,7 +22,8 @@ from lifelore.agent.reuse.result_folder import write_picture, write_result, writ
 from lifelore.agent.reuse.study import Study
 from lifelore.agent.reuse.user_belief import expected_outcomes
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.core.metrics import mean_estimate
+from lifelore.core.intervals import LEAST_VALUES, t_interval, welch_interval
+from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.memory import Memory
 
 COLUMNS = (
@@ -33,9 +34,7 @@ COLUMNS = (
 SPLITS = ("user", "time", "both")
 LONGEST_CURVE = 60
 MANY = 1000
-"""Users up to which means are resampled; of more the normal interval says the same, and memory stays small."""
-LEAST_USERS = 3
-"""Users behind a point of a curve, or it is left out."""
+"""Users up to which means are resampled; of more Student's interval says the same, and memory stays small."""
 
 
 def report(
@@ -166,22 +165,21 @@ def _estimate(values: Sequence[float]) -> dict[str, Any] | None:
         return None
     if len(values) <= MANY:
         return mean_estimate(values).to_dict()
-    mean, half = float(np.mean(values)), 1.96 * float(np.std(values, ddof=1)) / len(values) ** 0.5
-    ci95 = [mean - half, mean + half] if np.ptp(values) > 0 else None
-    return {"value": mean, "median": float(np.median(values)), "ci95": ci95, "n": len(values)}
+    mean, error = float(np.mean(values)), float(np.std(values, ddof=1)) / len(values) ** 0.5
+    low, high = map(float, t_interval(mean, error, len(values) - 1))
+    return Estimate(mean, float(np.median(values)), (low, high) if error > 0 else None, len(values)).to_dict()
 
 
 def _difference(first: Sequence[float], second: Sequence[float]) -> dict[str, Any] | None:
     """Difference of means with Welch's interval, if there are users and spread enough for one."""
     if not first or not second:
         return None
-    ci95 = None
-    if min(len(first), len(second)) >= LEAST_USERS and np.ptp(first) + np.ptp(second) > 0:
-        from scipy.stats import ttest_ind
-
-        interval = ttest_ind(first, second, equal_var=False).confidence_interval(0.95)  # type: ignore[attr-defined]
-        ci95 = [float(interval.low), float(interval.high)]
-    return {"value": float(np.mean(first) - np.mean(second)), "ci95": ci95, "n": [len(first), len(second)]}
+    ci95 = welch_interval(first, second)
+    return {
+        "value": float(np.mean(first) - np.mean(second)),
+        "ci95": list(ci95) if ci95 else None,
+        "n": [len(first), len(second)],
+    }
 
 
 def _beside(policy: str, personal: Sequence[float], control: list[History]) -> dict[str, Any]:
@@ -221,7 +219,7 @@ def _by_decision(groups: dict[str, list[History]]) -> list[dict[str, Any]]:
                 one.outcome for history in group for one in _ended(history, name == "control")
                 if one.number == number
             ]  # fmt: skip
-            point[name] = _estimate(ended) if len(ended) >= LEAST_USERS else None  # type: ignore[arg-type]
+            point[name] = _estimate(ended) if len(ended) >= LEAST_VALUES else None  # type: ignore[arg-type]
         if point["personal"] or point["control"]:
             points.append(point)
     return points

@@ -1,15 +1,14 @@
 """A study: the policy library learnt from a log, how to choose from it, and who is held out; as memory keeps it.
 
 The library travels as the bytes of its file, packed into a record's integers, so it comes back bit for bit. The
-signal table of the policies in use travels behind it, so that a choice does not make the table again. The newest
-fit counts. Nothing of any single user is in here.
+newest fit counts. Nothing of any single user is in here.
 """
 
 import hashlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import Any, NamedTuple, NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,9 +19,7 @@ from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.feature_prior import FeaturePrior
 from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD, TypeDynamics
-from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.library.task_library import TaskLibrary
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection import DEFAULT_RULE, SelectionRule, restored_rule, rule_named
 from lifelore.memory import Memory
@@ -34,15 +31,6 @@ ACTIVE, PILOT, RETIRED = "active", "pilot", "retired"
 LONGEST_NAME = 60
 MODELS = ("uncertain", "plug-in")
 """Whether models of few runs are known to be uncertain, or taken for the truth."""
-LARGEST_TABLE = 1 << 16
-"""Numbers of the largest signal table that is stored; reading a larger one costs more than making it."""
-
-
-class StoredTable(NamedTuple):
-    """A signal table in memory, and each policy's bins where models are uncertain: outcomes change them."""
-
-    table: SignalTable
-    cuts: list[Any] | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +62,6 @@ class Study:
         As for `BayesianPolicyReuse`.
     fitted : dict
         What it was learnt from, plain data.
-    tables : dict of int to StoredTable
-        Signal tables of the active policies, by number of bins, as far as memory has them.
     rule_settings : dict
         Settings of the rule by name; its defaults for those left out.
     """
@@ -91,7 +77,6 @@ class Study:
     change: float = DEFAULT_HAZARD
     models: str = "uncertain"
     fitted: dict[str, Any] = field(default_factory=dict)
-    tables: dict[int, StoredTable] = field(default_factory=dict)
     rule_settings: dict[str, Any] = field(default_factory=dict)
     feature_prior: FeaturePrior | None = None
 
@@ -124,15 +109,9 @@ class Study:
         return sorted(policy for policy, state in self.states.items() if state == PILOT)
 
     @cached_property
-    def choice_of(self) -> PolicyLibrary:
-        """The library of the active policies."""
-        chosen = self.library.take(policies=[self.library.index_of_policy(policy) for policy in self.active])
-        for n_bins, (table, cuts) in self.tables.items():
-            if cuts is None:
-                chosen.keep_table(n_bins, table)
-            else:
-                chosen.keep_task_table(n_bins, table, cuts)
-        return chosen
+    def active_numbers(self) -> list[int]:
+        """Numbers of the active policies in the library."""
+        return [self.library.index_of_policy(policy) for policy in self.active]
 
     @cached_property
     def selection(self) -> SelectionRule:
@@ -146,28 +125,8 @@ class Study:
 
     @cached_property
     def algorithm(self) -> ReuseAlgorithm:
-        """Algorithm 7 with this library and these dynamics, for single beliefs."""
-        return ReuseAlgorithm(self.library, self.dynamics)
-
-    def algorithm_for(self, task: TaskLibrary | None) -> ReuseAlgorithm:
-        """Algorithm 7 with the library as one user's outcomes leave it, which it teaches."""
-        return self.algorithm if task is None else ReuseAlgorithm(task, self.dynamics)
-
-    def task(self, state: Mapping[str, NDArray[Any]] | None = None) -> TaskLibrary | None:
-        """The library as one user's outcomes leave it; None where models are exact or taken for the truth."""
-        task = self.library.for_task() if self.models == "uncertain" else None
-        if task is not None and state:
-            task.restore(state)
-        return task
-
-    def choice_for(self, state: Mapping[str, NDArray[Any]] | None) -> PolicyLibrary:
-        """The library of the active policies as one user's outcomes leave it."""
-        task = self.choice_of.for_task() if self.models == "uncertain" else None
-        if task is None:
-            return self.choice_of
-        if state:
-            task.restore_some(state, [self.library.index_of_policy(policy) for policy in self.active])
-        return task
+        """Algorithm 7 with this library; `new_rows` gives users rows of their own."""
+        return ReuseAlgorithm(self.library, dynamics=self.dynamics, models=self.models)  # pyright: ignore
 
     @cached_property
     def fingerprint(self) -> str:
@@ -210,20 +169,22 @@ class Study:
         """
         return _control_draw(self.name, user) < self.control
 
+    def explored(self, probs: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The rule's probabilities of policies (..., n) with the share of exploration mixed in; rows sum to 1."""
+        mixed = (1 - self.explore) * probs + self.explore / probs.shape[-1]
+        return mixed / mixed.sum(axis=-1, keepdims=True)
+
     def with_state(self, policy: str, state: str) -> "Study":
         """The study with another state of one policy."""
-        return replace(self, states={**self.states, policy: state}, tables={})
+        return replace(self, states={**self.states, policy: state})
 
     def to_record(self) -> Record:
         """What memory keeps."""
         packed = self.library.to_bytes()
         values = words_of(packed)
-        table = self._stored_table()
         about = {
             "study": self.name,
             "bytes": len(packed),
-            "table": None if table is None else [self.selection.n_bins, *table.table.probs.shape],  # pyright: ignore
-            "cuts": None if table is None or table.cuts is None else _packed_cuts(table.cuts).shape,
             "states": self.states,
             "contexts": {context: prior.tolist() for context, prior in self.contexts.items()},
             "control": self.control,
@@ -236,19 +197,7 @@ class Study:
             "fitted": self.fitted,
             "feature_prior": None if self.feature_prior is None else self.feature_prior.to_dict(),
         }
-        if table is not None:
-            parts = [table.table.probs, *([] if table.cuts is None else [_packed_cuts(table.cuts)])]
-            values = np.concatenate([values, *(part.astype(np.float64).ravel().view(np.int64) for part in parts)])
         return Record(KIND, self.name, VERSION, "newest", np.arange(len(values)), values, about)
-
-    def _stored_table(self) -> StoredTable | None:
-        """The signal table that the rule reads; None where it reads none, or one too large to store."""
-        n_bins = getattr(self.selection, "n_bins", None)
-        if n_bins is None or len(self.active) * self.library.n_types * n_bins > LARGEST_TABLE:
-            return None
-        if self.models == "uncertain" and self.choice_of.for_task() is not None:
-            return StoredTable(*self.choice_of.task_table(n_bins))
-        return StoredTable(self.choice_of.table(n_bins), None)
 
     def keep(self, memory: Memory) -> None:
         """Make it the newest in memory."""
@@ -285,12 +234,10 @@ def open_study(memory: Memory, name: str = "default") -> Study:
     if record is None:
         _refuse_unknown(memory, name)
     about: Mapping[str, Any] = record.about
-    # Cells beyond those of the library and its table are an earlier, larger study's.
-    length = -(-about["bytes"] // 8)
+    # Cells beyond the library's are an earlier, larger study's, or a signal table of an earlier Lifelore.
     packed = bytes_of(record.values, about["bytes"])
     try:
         library = PolicyLibrary.from_bytes(packed, f"study '{name}'")
-        tables = _tables(record.values[length:], about.get("table"), about.get("cuts"))
         learnt = about.get("feature_prior")
         feature_prior = None if learnt is None else FeaturePrior.from_dict(learnt)
     except InputError as error:
@@ -307,33 +254,9 @@ def open_study(memory: Memory, name: str = "default") -> Study:
         contexts,
         **settings,
         models=models,
-        tables=tables,
         rule_settings=rule,
         feature_prior=feature_prior,
     )
-
-
-def _packed_cuts(cuts: list[Any]) -> NDArray[np.float64]:
-    """The bins of each policy as rows of one length, filled up with NaN."""
-    packed = np.full((len(cuts), max(len(row) for row in cuts)), np.nan)
-    for row, found in zip(packed, cuts, strict=True):
-        row[: len(found)] = found
-    return packed
-
-
-def _tables(cells: NDArray[np.int64], stored: list[int] | None, cuts: list[int] | None) -> dict[int, StoredTable]:
-    """The signal tables behind the library; none in a study of an earlier Lifelore."""
-    if stored is None:
-        return {}
-    n_bins, *shape = stored
-    size = int(np.prod(shape))
-    if len(cells) < size:
-        raise InputError(f"the study's signal table must have {size} numbers, got {len(cells)}")
-    table = SignalTable.restored(cells[:size].view(np.float64).reshape(shape))
-    if cuts is None:
-        return {n_bins: StoredTable(table, None)}
-    rows = cells[size : size + int(np.prod(cuts))].view(np.float64).reshape(cuts)
-    return {n_bins: StoredTable(table, [row[~np.isnan(row)] for row in rows])}
 
 
 def study_names(memory: Memory) -> list[str]:

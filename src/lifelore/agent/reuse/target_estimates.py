@@ -16,7 +16,7 @@ from lifelore.interaction.evaluation.importance_weights import (
     trajectory_weights,
     weight_summary,
 )
-from lifelore.interaction.evaluation.outcome_models import OutcomeModel
+from lifelore.interaction.evaluation.reward_models import RewardModel
 
 Array = NDArray[np.float64]
 
@@ -30,7 +30,7 @@ MEAN_WEIGHT_ERRORS = 3.3
 
 
 def target_estimates(
-    target: TargetPolicy, decisions: LoggedDecisions, model: OutcomeModel, logged: ClusteredEstimate, whole: bool
+    target: TargetPolicy, decisions: LoggedDecisions, model: RewardModel, logged: ClusteredEstimate, whole: bool
 ) -> dict[str, Any]:
     """The entry of a target in the document of `evaluate`.
 
@@ -38,7 +38,7 @@ def target_estimates(
     ----------
     target : TargetPolicy
     decisions : LoggedDecisions
-    model : OutcomeModel
+    model : RewardModel
         Of the doubly robust estimate.
     logged : ClusteredEstimate
         Mean outcome of the log, for the gain.

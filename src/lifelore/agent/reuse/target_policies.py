@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lifelore.agent.reuse.log import ReuseLog
 from lifelore.agent.reuse.replayed_choices import ReplayedChoices
 from lifelore.core.errors import InputError, NotFoundError, StoreError
-from lifelore.interaction.evaluation.outcome_models import OutcomeModel
+from lifelore.interaction.evaluation.reward_models import RewardModel
 
 Array = NDArray[np.float64]
 Kind = Literal["policy", "table", "rule", "study"]
@@ -46,12 +46,12 @@ class TargetPolicy:
     adaptive: bool = False
 
 
-def single_policy(log: ReuseLog, name: str, model: OutcomeModel) -> TargetPolicy:
+def single_policy(log: ReuseLog, name: str, model: RewardModel) -> TargetPolicy:
     """The target that always chooses one policy of the log.
 
     Parameters
     ----------
-    model : OutcomeModel
+    model : RewardModel
         Of the log's policies.
 
     Raises
@@ -68,7 +68,7 @@ def single_policy(log: ReuseLog, name: str, model: OutcomeModel) -> TargetPolicy
     return TargetPolicy(name, "policy", (log.policy.codes == place).astype(np.float64), model.of_policies(place))
 
 
-def table_policy(log: ReuseLog, path: str | Path, model: OutcomeModel) -> TargetPolicy:
+def table_policy(log: ReuseLog, path: str | Path, model: RewardModel) -> TargetPolicy:
     """The target that draws policies with the probabilities of a CSV file.
 
     The file has the columns ``policy`` and ``probability``, and perhaps ``context``: then each context of the log
@@ -143,7 +143,7 @@ def _probability(word: str | None, where: str) -> float:
 
 
 def replayed_policy(
-    log: ReuseLog, name: str, kind: Kind, choices: ReplayedChoices, model: OutcomeModel
+    log: ReuseLog, name: str, kind: Kind, choices: ReplayedChoices, model: RewardModel
 ) -> TargetPolicy:
     """The target that chooses by the belief that follows from the logged outcomes."""
     of_logged = choices.probabilities[np.arange(len(log)), log.policy.codes]

@@ -8,7 +8,7 @@ from lifelore.agent.reuse.log import ReuseLog
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.user_types import user_types
-from lifelore.interaction.outcomes.outcome_families import UserRows
+from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 
 CERTAIN = 0.9
@@ -67,7 +67,7 @@ def _found(log: ReuseLog, model: str, n_types: int | None, generator: np.random.
     if n_types is not None and n_types > len(users):
         raise InputError(f"types must be at most {len(users)}, the users of the log, got {n_types}")
     policies, of_policy = np.unique(log.policy.codes, return_inverse=True)
-    rows = UserRows(of_user, of_policy, log.outcomes, (len(users), len(policies)))
+    rows = OutcomeRows(of_user, of_policy, log.outcomes, (len(users), len(policies)))
     family = "categorical" if model_of(log, model) == "categorical" else "gaussian"
     found = user_types(rows, generator, family=family, n_types=n_types)
     names = tuple(f"type {number + 1}" for number in range(found.n_types))

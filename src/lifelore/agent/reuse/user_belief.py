@@ -8,11 +8,9 @@ for histories of an earlier Lifelore.
 
 import hashlib
 import json
-from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from itertools import chain
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,12 +19,7 @@ from lifelore.agent.reuse.history import KIND, VERSION, Decision, History, decis
 from lifelore.agent.reuse.past import PastUser, index_name, read_index, read_past_user
 from lifelore.agent.reuse.study import Study
 from lifelore.agent.reuse.user_state import Checkpoint, UserState, WorkingBelief, from_bytes
-from lifelore.interaction.beliefs.belief import expected_utility
-from lifelore.interaction.reuse.explanation import Evidence
 from lifelore.memory import Memory
-
-if TYPE_CHECKING:
-    from lifelore.interaction.reuse.unknown_type import UnknownType
 
 NAMED_TYPE = 0.99
 """Belief in the type that a log names for a user; at 1, no outcome could correct a wrong name."""
@@ -141,65 +134,42 @@ def replayed(
     features: dict[str, float] | None = None,
 ) -> UserState:
     """The state after the past and all decisions, from the prior on."""
-    start = _after_past(study, context, past, features).checkpoint(0)
+    start = after_past(study, context, past, features).checkpoint(0)
     state = UserState(basis_of(study, context, past, features), {}, context, 0, (start,), features)
     return state.after(study, decisions, start)
 
 
-def novelty_of(memory: Memory, study: Study, known: UserBelief) -> float:
-    """The probability that no type of the library fits a user, by a replay of the past and all decisions.
+def belief_anew(memory: Memory, study: Study, known: UserBelief, novelty: bool = False) -> WorkingBelief:
+    """The belief about a user, with its evidence, by a replay of the past and all decisions.
 
-    Raises
-    ------
-    InputError
-        The outcomes have a model for which no broad law is known.
+    Parameters
+    ----------
+    novelty : bool
+        As for `WorkingBelief.of_stranger`, errors too.
     """
-    from lifelore.interaction.reuse.unknown_type import UnknownType
-
     key = known.history.key
     past = read_past_user(memory, study.name, read_index(memory, study.name), key)
-    prior = prior_of(study, known.context, past, known.features)
-    novelty = UnknownType(study.library, prior=prior, dynamics=study.dynamics, models=study.models)
-    belief = _after_past(study, known.context, past, known.features, novelty)
+    belief = after_past(study, known.context, past, known.features, novelty)
     for decision in read_decisions(memory, study, key):
         belief.learn(decision.policy, decision.outcome)
-    return novelty.probability
-
-
-def _after_past(
-    study: Study,
-    context: str | None,
-    past: PastUser,
-    features: dict[str, float] | None,
-    novelty: "UnknownType | None" = None,
-) -> WorkingBelief:
-    """The belief after the past, from the prior on."""
-    prior = Checkpoint(0, study.algorithm.start(prior_of(study, context, past, features)), 0.0)
-    belief = WorkingBelief(study, prior, novelty)
-    for policy, outcome in past.outcomes:
-        belief.learn(policy, outcome)
     return belief
 
 
-def evidence_of(memory: Memory, study: Study, known: UserBelief, n: int) -> tuple[WorkingBelief, list[Evidence]]:
-    """The belief about a user and the evidence of the last `n` outcomes, by a replay of past and decisions."""
-    key = known.history.key
-    past = read_past_user(memory, study.name, read_index(memory, study.name), key)
-    prior = Checkpoint(0, study.algorithm.start(prior_of(study, known.context, past, known.features)), 0.0)
-    belief, last = WorkingBelief(study, prior), deque[Evidence](maxlen=n)
-    decided = ((one.policy, one.outcome) for one in read_decisions(memory, study, key))
-    for policy, outcome in chain(past.outcomes, decided):
-        if (evidence := belief.learn(policy, outcome)) is not None:
-            last.append(evidence)
-    return belief, list(last)
+def after_past(
+    study: Study, context: str | None, past: PastUser, features: dict[str, float] | None, novelty: bool = False
+) -> WorkingBelief:
+    """The belief after the past, from the prior on."""
+    belief = WorkingBelief.of_stranger(study, prior_of(study, context, past, features), novelty)
+    for policy, outcome in past.outcomes:
+        belief.learn(policy, outcome)
+    return belief
 
 
 def expected_outcomes(study: Study, history: History, past: PastUser) -> NDArray[np.float64]:
     """Expected outcome of each policy of the library after all decisions of a history, (n_policies,)."""
     features = history.features or past.features
     head = replayed(study, history.context or past.context, past, history.decisions, features).head
-    known = study.task(head.task) or study.library
-    return expected_utility(study.algorithm.belief(head.log_belief), known.performance.mean)
+    return WorkingBelief(study, head).expected
 
 
 def prior_of(

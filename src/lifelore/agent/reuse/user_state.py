@@ -13,6 +13,7 @@ bits.
 import json
 import struct
 import zlib
+from collections import deque
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -22,13 +23,13 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.interaction.reuse.explanation import Evidence, surprise_of
+from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, Evidence
+from lifelore.interaction.reuse.user_library import UserLibrary
 
 if TYPE_CHECKING:
     from lifelore.agent.reuse.history import Decision
     from lifelore.agent.reuse.study import Study
-    from lifelore.interaction.library.policy_library import PolicyLibrary
-    from lifelore.interaction.reuse.unknown_type import UnknownType
+    from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 
 FORMAT = 2
 KEPT = 4096
@@ -42,13 +43,18 @@ class Checkpoint(NamedTuple):
     number : of the decision
     log_belief : (n_types,) float64, never changed in place
     surprise : of the outcomes before it, in nats
-    task : what the outcomes say of the user's own parameters (`TaskLibrary.state`); empty where models are exact
+    task : what the user has shown (`ReuseAlgorithm.state`); empty where models are exact
     """
 
     number: int
     log_belief: NDArray[np.float64]
     surprise: float
     task: Mapping[str, NDArray[Any]] = MappingProxyType({})
+
+    @property
+    def belief(self) -> NDArray[np.float64]:
+        """β, (n_types,)."""
+        return np.exp(self.log_belief)
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,54 +182,87 @@ def from_bytes(content: bytes | None) -> UserState | None:
 
 
 class WorkingBelief:
-    """A belief that takes in decisions one after the other.
+    """A belief that takes in decisions one after the other: a row of Algorithm 7.
 
     Parameters
     ----------
     study : Study
     start : Checkpoint
         The belief before the first of them.
-    novelty : UnknownType, optional
+
+    Attributes
+    ----------
+    evidence : deque of Evidence
+        Of the last outcomes that were learnt.
+    novelty : NoveltyDetector or None
         Takes in the same outcomes.
     """
 
-    def __init__(self, study: "Study", start: Checkpoint, novelty: "UnknownType | None" = None) -> None:
-        self._study, self._log_belief, self._surprise = study, start.log_belief.copy(), start.surprise
-        self._task = study.task(start.task)
-        self._algorithm, self._novelty = study.algorithm_for(self._task), novelty
+    def __init__(self, study: "Study", start: Checkpoint) -> None:
+        self._study, self._surprise = study, start.surprise
+        self.evidence: deque[Evidence] = deque(maxlen=MAX_EVIDENCE)
+        self.novelty: NoveltyDetector | None = None
+        self._row = study.algorithm.new_rows()
+        self._row.log_belief[0] = start.log_belief
+        if start.task:
+            self._row.restore(0, start.log_belief, start.task)
 
-    def learn(self, policy: str | None, outcome: float | None) -> Evidence | None:
-        """Learn from an outcome of a policy, and return its evidence.
+    @classmethod
+    def of_stranger(cls, study: "Study", prior: NDArray[np.float64], novelty: bool = False) -> "WorkingBelief":
+        """The belief before the first outcome, from a prior (n_types,).
+
+        Parameters
+        ----------
+        novelty : bool
+            Whether to follow the probability that no type fits; InputError where no broad law is known.
+        """
+        belief = cls(study, Checkpoint(0, study.algorithm.start(prior), 0.0))
+        if novelty:
+            from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
+
+            models: Any = study.models
+            belief.novelty = NoveltyDetector(study.library, prior=prior, dynamics=study.dynamics, models=models)
+        return belief
+
+    def learn(self, policy: str | None, outcome: float | None) -> None:
+        """Learn from an outcome of a policy.
 
         Without an outcome, or with a policy that the library does not know, there is no evidence. The user's type
         may change all the same.
         """
-        if outcome is None or policy not in self._study.library.policies:
-            self._algorithm.step_row(self._log_belief)
-            if self._novelty is not None:
-                self._novelty.skip()
-            return None
-        index = self._study.library.index_of_policy(policy)
-        evidence = Evidence(index, *self._algorithm.update_row(self._log_belief, index, outcome))
-        self._surprise += surprise_of(evidence.log_evidence)
-        if self._novelty is not None:
-            self._novelty.add(index, outcome)
-        return evidence
+        if outcome is not None and policy in self._study.library.policies:
+            index = self._study.library.index_of_policy(policy)
+            found = self._row.observe(0, index, outcome)
+            self.evidence.append(Evidence(index, found.log_likelihood, float(found.log_evidence)))
+            self._surprise += self.evidence[-1].surprise
+            if self.novelty is not None:
+                self.novelty.observe(index, outcome)
+        self._row.end_episode(0)
+        if self.novelty is not None:
+            self.novelty.end_episode()
 
     @property
     def belief(self) -> NDArray[np.float64]:
         """The belief over types as it is now, (n_types,)."""
-        return self._algorithm.belief(self._log_belief)
+        return self._row.belief(0)
 
     @property
-    def library(self) -> "PolicyLibrary":
-        """The library as the user's outcomes leave it now."""
-        return self._task or self._study.library
+    def known(self) -> UserLibrary:
+        """The library as rules read it now, given the user's outcomes."""
+        return self._row.known(0)
+
+    @property
+    def expected(self) -> NDArray[np.float64]:
+        """Expected outcome of each policy of the library, (n_policies,)."""
+        return self.known.performance.expected(self.belief)
+
+    def propensities(self, available: NDArray[np.bool_]) -> NDArray[np.float64]:
+        """Probability that the study's rule selects each policy among the available ones, (n_policies,)."""
+        return self._row.propensities(0, self._study.selection, available)
 
     def checkpoint(self, number: int) -> Checkpoint:
         """The belief as it is now, before the decision of that number."""
-        task = {} if self._task is None else self._task.state()
-        return Checkpoint(number, self._log_belief.copy(), self._surprise, task)
+        return Checkpoint(number, self._row.log_belief[0].copy(), self._surprise, self._row.state(0))
 
 
 def _lasts(number: int, end: int) -> bool:

@@ -1,4 +1,4 @@
-"""Compiled kernels: Numba with a cache on disk, random numbers inside kernels, and CUDA.
+"""Compiled kernels: Numba with a cache on disk, and random numbers inside kernels.
 
-Read in this order: `jit`, `kernel_cache`, `numba_internals`, `random_state`, `cuda`.
+Read in this order: `jit`, `kernel_cache`, `random_state`.
 """

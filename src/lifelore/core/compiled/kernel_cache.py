@@ -1,10 +1,8 @@
-"""Cache folder of compiled kernels, named by a hash of their sources; removes stale folders.
+"""Cache folders of compiled kernels, named by a hash of the sources that the kernels are compiled from.
 
-Numba's own cache looks at the file of the decorated function alone: when a *called* function in another
-file changes, or a constant that it reads, the old machine code answers silently. Here the folder's name
-carries a hash of every source file that holds kernels and of all that those files import from this package,
-so any edit or upgrade that can matter starts a fresh folder. Neither the place nor the age of a source file
-matters, so a folder can be copied with an image.
+Numba's own cache compares only the file of the decorated function: after an edit of a *called* function in another
+file, or of a constant there, it loads the old machine code. So each file with kernels has its own folder, whose
+name carries a hash of that file and of all files of this package that it imports, directly or not.
 """
 
 import hashlib
@@ -12,115 +10,59 @@ import os
 import re
 import shutil
 import time
-from collections.abc import Callable, Iterator
-from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[2]
 STALE_DAYS = 30
-"""Days without use after which the folder of another version is removed; fewer free the disk sooner."""
-_DAY = 24 * 3600.0
-_IMPORTS = re.compile(
-    rb"^[ \t]*(?:from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n]+)|import[ \t]+([\w., \t]+))", re.MULTILINE
-)
-_MARKS = (b"@kernel", b"@inlined", b"@stored_kernel")
-_NAME = re.compile(rb"[\w.]+")
-_COMMENT = re.compile(rb"#[^\n]*")
+"""Days after which the folder of another version of a file is removed; fewer free the disk sooner."""
+_IMPORT = re.compile(rb"^[ \t]*from lifelore\.([\w.]+) import (\([^)]*\)|.+)", re.MULTILINE)
+
+
+def cache_folder() -> Path:
+    """Folder of all compiled kernels: in ``NUMBA_CACHE_DIR`` or the user's cache folder."""
+    from platformdirs import user_cache_dir
+
+    return Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_dir("lifelore")) / "kernels"
 
 
 @cache
-def kernel_cache_dir() -> Path:
-    """Folder of the compiled kernels: ``NUMBA_CACHE_DIR`` or the user's cache, then a hash of the sources.
-
-    Once a day a use is noted in the folder's time, and folders of other versions that nobody used for
-    `STALE_DAYS` are removed.
-    """
-    base = cache_base()
-    folder = base / f"kernels-{source_hash()}"
-    # A folder that cannot be written, in an image say, is still read.
-    with suppress(OSError):
-        if not folder.is_dir() or time.time() - folder.stat().st_mtime > _DAY:
+def kernel_folder(source: Path) -> Path | None:
+    """Folder for the kernels of one file; None where there is no such file, or nothing can be stored."""
+    digest = hashlib.sha256()
+    try:
+        for path in sorted(kernel_sources(source)):
+            digest.update(_source(path)[0])
+        name = ".".join(source.with_suffix("").parts[-3:])
+        folder = cache_folder() / f"{name}-{digest.hexdigest()[:16]}"
+        if not folder.is_dir():
             folder.mkdir(parents=True, exist_ok=True)
-            os.utime(folder)
-            remove_stale(base, keep=folder)
-    return folder
+            for other in folder.parent.glob(f"{name}-*"):
+                if time.time() - other.stat().st_mtime > STALE_DAYS * 24 * 3600:
+                    shutil.rmtree(other, ignore_errors=True)
+    except OSError:
+        return None
+    return folder if os.access(folder, os.W_OK) else None
 
 
-def cache_base() -> Path:
-    """Folder of all caches: ``NUMBA_CACHE_DIR`` or the user's cache folder."""
-    named = os.environ.get("NUMBA_CACHE_DIR")
-    if named:
-        return Path(named)
-    from platformdirs import user_cache_dir
-
-    return Path(user_cache_dir("lifelore"))
-
-
-def source_hash(package: Path = PACKAGE) -> str:
-    """16 hexadecimal digits that change with Numba's version and with every source that kernels read."""
-    import numba
-
-    digest = hashlib.sha256(numba.__version__.encode())
-    sources = kernel_sources(package)
-    for path in sorted(sources):
-        digest.update(path.relative_to(package).as_posix().encode())
-        digest.update(sources[path])
-    return digest.hexdigest()[:16]
-
-
-def kernel_sources(package: Path) -> dict[Path, bytes]:
-    """Content of the files that hold kernels and of all that they import from the package, directly or not."""
-    content = {Path(path): Path(path).read_bytes() for path in _python_files(str(package))}
-    kernels = [path for path, source in content.items() if any(mark in source for mark in _MARKS)]
-    return imported_sources(kernels, package, content.get)
-
-
-def imported_sources(files: list[Path], package: Path, read: Callable[[Path], bytes | None]) -> dict[Path, bytes]:
-    """Content of some files and of all that they import from the package, directly or not.
-
-    Parameters
-    ----------
-    files : list of Path
-    package : Path
-    read : callable
-        Content of a file, None where there is no such file.
-    """
-    found: dict[Path, bytes] = {}
-    waiting = list(files)
+def kernel_sources(source: Path) -> set[Path]:
+    """A file and all files of this package that it imports, directly or not."""
+    found: set[Path] = set()
+    waiting = [source]
     while waiting:
         path = waiting.pop()
-        if path not in found and (source := read(path)) is not None:
-            found[path] = source
-            waiting += _imported(source, package)
+        if path not in found:
+            found.add(path)
+            waiting += _source(path)[1]
     return found
 
 
-def _python_files(folder: str) -> Iterator[str]:
-    for entry in os.scandir(folder):
-        if entry.is_dir():
-            yield from _python_files(entry.path)
-        elif entry.name.endswith(".py"):
-            yield entry.path
-
-
-def _imported(source: bytes, package: Path) -> Iterator[Path]:
-    """Files that the import statements of `source` may name; parsing them properly would take ten times longer."""
-    root = package.name
-    source = _COMMENT.sub(b"", source).replace(b"\\\n", b"")
-    for module, names, modules in _IMPORTS.findall(source):
-        first = module.decode()
-        members = [f"{first}.{name.decode()}" for name in _NAME.findall(names)] if module else []
-        for name in (first, *members, *(name.decode() for name in _NAME.findall(modules))):
-            if name.startswith(f"{root}."):
-                yield package.joinpath(*name.split(".")[1:]).with_suffix(".py")
-
-
-def remove_stale(base: Path, keep: Path) -> None:
-    """Remove the kernel folders in `base` that were not used for `STALE_DAYS`, except `keep`."""
-    oldest = time.time() - STALE_DAYS * _DAY
-    for folder in base.glob("kernels-" + "[0-9a-f]" * 16):
-        # Another process may remove it at the same moment.
-        with suppress(OSError):
-            if folder != keep and folder.stat().st_mtime < oldest:
-                shutil.rmtree(folder, ignore_errors=True)
+@cache
+def _source(path: Path) -> tuple[bytes, list[Path]]:
+    """Content of a file, and the files of this package that its import statements name."""
+    content, files = path.read_bytes(), []
+    for module, names in _IMPORT.findall(content):
+        place = PACKAGE.joinpath(*module.decode().split("."))
+        members = [place / f"{name}.py" for name in re.findall(r"\w+", names.decode())]
+        files += [place.with_suffix(".py"), place / "__init__.py", *members]
+    return content, [file for file in files if file.is_file()]

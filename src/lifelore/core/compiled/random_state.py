@@ -40,7 +40,7 @@ def _sum_in_halves(a, b):
 _wrapped_sum = _sum_in_halves if numba.config.DISABLE_JIT else inlined(_sum)  # type: ignore[attr-defined]
 
 
-@kernel(allocates=False)
+@kernel
 def next_uniform(state):
     """The next float in [0, 1), 53 bits; advances `state` in place."""
     s0 = state[0]
@@ -52,7 +52,7 @@ def next_uniform(state):
     return np.float64(total >> _11) * (1.0 / 9007199254740992.0)
 
 
-@kernel(allocates=False)
+@kernel
 def uniform_integer(random, n):
     """A whole number uniform over 0 … n - 1; advances `random` in place."""
     return np.int64(next_uniform(random) * n)

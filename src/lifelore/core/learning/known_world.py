@@ -91,7 +91,7 @@ def add_moves(
     _list_and_spread(target, place, moves, _NONE, ways)
 
 
-@kernel(allocates=False)
+@kernel
 def _list_and_spread(target, place, moves, goals, ways):
     """List moves; then breadth first from all `goals` together or, without goals, from where each move leads.
 

@@ -127,7 +127,7 @@ def new_model_learner(n_states: int, n_actions: int, world, own) -> ModelLearner
     )
 
 
-@kernel(allocates=False)
+@kernel
 def explore(tables, model, state_info, strategy, learner, curve, max_steps, discount, budget):
     """Run at most `budget` steps; returns how many were run, fewer once the last episode is over.
 
@@ -135,11 +135,8 @@ def explore(tables, model, state_info, strategy, learner, curve, max_steps, disc
     """
     next_state, reward_of, event_of, _, starts = tables
     target, seen = model
-    percept, cost_row, try_cost = state_info
     planned, exhaustive, senses = strategy
-    place, tried, plan, queue, parent, parent_action, news, world, own, cursor, running, tour, later, tour_at = (
-        learner
-    )
+    place, tried, plan, _, _, _, news, world, own, cursor, running, tour, later, tour_at = learner
     returns, rewards, steps, collisions, reached = curve
     n_actions = target.shape[1]
     episode, step = cursor[EPISODE], cursor[STEP]
@@ -153,7 +150,7 @@ def explore(tables, model, state_info, strategy, learner, curve, max_steps, disc
             left, ret, reach = 0, 0.0, 1.0
         if place[state] == NOT_LOOKED:
             place[state] = LOOKED
-            if _arrive(state, target, seen, percept, tried):
+            if _arrive(state, target, seen, state_info.percept, tried):
                 n_news = ALL_NEW
             if senses:
                 for move in range(n_actions):
@@ -164,22 +161,7 @@ def explore(tables, model, state_info, strategy, learner, curve, max_steps, disc
                 left = OUT_OF_REACH
             while left == OUT_OF_REACH:
                 wanted = _next_on_tour(tour, tour_at, place) if goals == 0 else -1
-                left = plan_search(
-                    state,
-                    target,
-                    place,
-                    goals > 0,
-                    cost_row,
-                    try_cost,
-                    exhaustive,
-                    wanted,
-                    later,
-                    plan,
-                    queue,
-                    parent,
-                    parent_action,
-                    own,
-                )
+                left = plan_search(state, target, state_info, learner, goals > 0, exhaustive, wanted)
                 if left == OUT_OF_REACH:
                     later[wanted] = False
                     tour_at[0] += 1
@@ -269,7 +251,7 @@ def least_tried(tried, state, random):
     return np.int64(best)
 
 
-@kernel(allocates=False)
+@kernel
 def _doubt(target, tried):
     """Forget remembered refusals that this task has not met: they may be out of date."""
     for s in range(target.shape[0]):

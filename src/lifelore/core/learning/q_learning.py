@@ -151,28 +151,36 @@ def new_learners(n_q_rows: int, n_actions: int, worlds, owns) -> QLearner:
 @inlined
 def epsilon_greedy(q, row, explore_cum, tie_weight, context, epsilon, random):
     """ε-greedy action (Alg. 2 line 5): explore by the prior, else a best action, ties by weight."""
-    n_actions = q.shape[1]
     if epsilon > 0.0 and next_uniform(random) < epsilon:
-        u = next_uniform(random)
-        a = 0
-        while u >= explore_cum[context, a]:
-            a += 1
-        return a
-    best_value = q[row, 0]
-    best, tied = 0, 1
-    for a in range(1, n_actions):
+        return _drawn(explore_cum, context, next_uniform(random))
+    best, tied = _first_best(q, row)
+    return _drawn_tie(q, row, tie_weight, context, best, random) if tied > 1 else best
+
+
+@inlined
+def _drawn(cumulative_probs, context, u):
+    """The action at the place `u` in [0, 1) of a row of cumulative probabilities."""
+    a = 0
+    while u >= cumulative_probs[context, a]:
+        a += 1
+    return a
+
+
+@inlined
+def _first_best(q, row):
+    """The first best action of a row of Q, and the number of best ones."""
+    best, best_value, tied = 0, q[row, 0], 1
+    for a in range(1, q.shape[1]):
         value = q[row, a]
         if value > best_value:
             best, best_value, tied = a, value, 1
         elif value == best_value:
             tied += 1
-    if tied > 1:
-        best = _break_tie(q, row, tie_weight, context, best, random)
-    return best
+    return best, tied
 
 
 @inlined
-def _break_tie(q, row, tie_weight, context, first, random):
+def _drawn_tie(q, row, tie_weight, context, first, random):
     """Draw among the actions tied with `first`, the first of them, by their tie weights."""
     best_value = q[row, first]
     total = 0.0
@@ -182,15 +190,13 @@ def _break_tie(q, row, tie_weight, context, first, random):
     left = next_uniform(random) * total
     chosen = first
     for a in range(first, q.shape[1]):
-        if q[row, a] == best_value:
+        if q[row, a] == best_value and left >= 0.0:
             chosen = a
             left -= tie_weight[context, a]
-            if left < 0.0:
-                break
     return chosen
 
 
-@kernel(allocates=False)
+@kernel
 def learn(tables, rows, schedule, learner, curve, budget):
     """Run at most `budget` steps; returns how many were run, fewer once the last episode is over."""
     # Unpacked once, because reading an array of a tuple inside the loop would count references at every step.
@@ -210,7 +216,14 @@ def learn(tables, rows, schedule, learner, curve, budget):
             reward_class, ret, discount = np.uint64(0), 0.0, 1.0
         row = np.uint64(q_row[state])
         context = np.uint64(context_row[state, reward_class])
-        a = epsilon_greedy(q, row, explore_cum, tie_weight, context, epsilons[episode], own)
+        epsilon = epsilons[episode]
+        # The rule of `epsilon_greedy`: to pass the arrays on would count references at every step.
+        if epsilon > 0.0 and next_uniform(own) < epsilon:
+            a = _drawn(explore_cum, context, next_uniform(own))
+        else:
+            a, tied = _first_best(q, row)
+            if tied > 1:
+                a = _drawn_tie(q, row, tie_weight, context, a, own)
         k = 0
         if outcome_cum.size > 1:
             u = next_uniform(world)
@@ -254,7 +267,7 @@ def _best_value(q, row):
     return best
 
 
-@kernel(allocates=False)
+@kernel
 def learn_each(tables, rows, schedule, learners, curves, budget, first, last):
     """`learn` for the learners `first` … `last` - 1 of a stack, one after the other; returns the steps of all.
 

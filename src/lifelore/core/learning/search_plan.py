@@ -16,24 +16,9 @@ OUT_OF_REACH = -1
 """Length of a plan if no known path leads to the wanted place."""
 
 
-@kernel(allocates=False)
-def plan_search(
-    start,
-    target,
-    place,
-    goal_known,
-    cost_row,
-    try_cost,
-    exhaustive,
-    wanted,
-    later,
-    plan,
-    queue,
-    parent,
-    parent_action,
-    random,
-):
-    """Breadth-first search for the cheapest unknown or goal; fills `plan`, returns its length or 0.
+@kernel
+def plan_search(start, target, state_info, learner, goal_known, exhaustive, wanted):
+    """Breadth-first search for the cheapest unknown or goal; fills the learner's plan, returns its length or 0.
 
     Of the places that a tour visits, only the next one, `wanted`, is looked for; those in `later` may be crossed.
     `wanted` is -1 without a tour. Where no known path leads to it, the length is `OUT_OF_REACH`.
@@ -41,6 +26,8 @@ def plan_search(
     `parent` must be UNKNOWN everywhere, and is so again afterwards: only the states reached are reset, so a search
     near its start costs the same in a world of any size.
     """
+    _, cost_row, try_cost = state_info
+    place, _, plan, queue, parent, parent_action, _, _, random, _, _, _, later, _ = learner
     n_actions = target.shape[1]
     crumb = 1.0 / (n_actions + 1)
     if crumb > NO_CRUMBS:

@@ -10,14 +10,16 @@ SEARCH, DRIVE, SHORTEN = range(3)
 """Purposes of a plan: find the goal, reach the goal seen in this episode, or reach it on a shorter path."""
 
 
-@kernel(allocates=False)
-def plan_by_sight(start, target, remembered, place, gain, purpose, plan, queue, parent, parent_action, random):
-    """Breadth-first search for the place to walk to; fills `plan`, returns its length or 0.
+@kernel
+def plan_by_sight(start, model, learner, gain, purpose):
+    """Breadth-first search for the place to walk to; fills the learner's plan, returns its length or 0.
 
     That place is the goal if the purpose is DRIVE and a known path leads there; the goal or a place never seen,
     whichever is nearer, if it is SHORTEN; else the largest gain per step. A goal is also taken where no gain is
     left. `parent` must be UNKNOWN everywhere, and is so again afterwards.
     """
+    target, remembered = model
+    place, _, plan, queue, parent, parent_action, _, _, random, _, _, _, _, _ = learner
     best, best_score, ties = -1, 0.0, 0
     nearest, goal = -1, -1
     head, tail, level_end, depth = 0, 1, 1, 1.0

@@ -76,16 +76,15 @@ def places_on_sight(tables: Tables) -> NDArray[np.int8]:
     return kind
 
 
-@kernel(allocates=False)
+@kernel
 def explore_by_sight(tables, model, state_info, strategy, learner, search, curve, max_steps, discount, budget):
     """Run at most `budget` steps; returns how many were run, fewer once the last episode is over.
 
     The arguments are those of `explore` and a `SightSearch`.
     """
     next_state, reward_of, event_of, _, starts = tables
-    target, remembered = model
     planned, exhaustive, _ = strategy
-    place, tried, plan, queue, parent, parent_action, _, world, own, cursor, running, _, _, _ = learner
+    place, tried, plan, queue, _, _, _, world, own, cursor, running, _, _, _ = learner
     returns, rewards, steps, collisions, reached = curve
     stood, found = search.stood, search.found
     episode, step = cursor[EPISODE], cursor[STEP]
@@ -111,21 +110,9 @@ def explore_by_sight(tables, model, state_info, strategy, learner, search, curve
                 purpose = SEARCH
                 if goals > 0 and not exhaustive:
                     purpose = DRIVE if episode == found[FOUND_EPISODE] else SHORTEN
-                left = plan_by_sight(
-                    state,
-                    target,
-                    remembered,
-                    place,
-                    search.gain,
-                    purpose,
-                    plan,
-                    queue,
-                    parent,
-                    parent_action,
-                    own,
-                )
+                left = plan_by_sight(state, model, learner, search.gain, purpose)
             if left == 0:
-                plan[0] = uniform_integer(own, target.shape[1])
+                plan[0] = uniform_integer(own, tried.shape[1])
                 left = 1
             left -= 1
             a = np.int64(plan[left])
@@ -158,7 +145,7 @@ def explore_by_sight(tables, model, state_info, strategy, learner, search, curve
     return done_steps
 
 
-@kernel(allocates=False)
+@kernel
 def _look(state, next_state, model, percept, place, queue, search):
     """Learn the moves of all places in sight; returns how many are new in this task, and how many are goals."""
     target, remembered = model

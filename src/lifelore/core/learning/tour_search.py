@@ -70,11 +70,8 @@ class KnownTour:
         _, region = csgraph.connected_components(graph, directed=False)
         start = int(np.argmax(region == np.bincount(region).argmax()))
         near = near_distances(graph, cells)
-        walk = np.empty(n, np.int32)
-        count = nearest_walk(
-            start, begin, ends, np.zeros(n, np.bool_), np.empty(n, np.int32), np.full(n, -1, np.int32), walk
-        )
-        return cls(begin, ends, near, closed_tour(near, walk[:count]), np.empty(0, np.int64))
+        walk = nearest_walk(start, begin, ends, np.zeros(n, np.bool_), n)
+        return cls(begin, ends, near, closed_tour(near, walk), np.empty(0, np.int64))
 
     def with_destinations(self, destinations: NDArray[np.int64], choose: Choose) -> "KnownTour":
         """The same tour with places to try before it."""
@@ -105,13 +102,9 @@ class KnownTour:
 
     def _nearest(self, wanted: NDArray[np.bool_], start: int) -> int:
         """The wanted state nearest to `start`, -1 if none is reached."""
-        n = len(wanted)
         # A walk of one step to the nearest place not visited.
-        walk, visited = np.empty(2, np.int32), ~wanted
-        count = nearest_walk(
-            start, self.begin, self.ends, visited, np.empty(n, np.int32), np.full(n, -1, np.int32), walk
-        )
-        return int(walk[1]) if count > 1 else -1
+        walk = nearest_walk(start, self.begin, self.ends, ~wanted, 2)
+        return int(walk[1]) if len(walk) > 1 else -1
 
 
 def explore_on_tour(

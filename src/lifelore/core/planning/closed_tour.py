@@ -6,6 +6,8 @@ random exchanges of two short neighbouring sections, each repaired by the same m
 longer (iterated local search).
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,6 +25,27 @@ LONGEST_TURN = 25_000
 """Largest number of places that one move turns round; without it, time would grow faster than the places."""
 _LOG = 1000
 """Most moves that repair one exchange."""
+HEAD, COUNT, LOGGED = range(3)
+"""Places in `TourInWork.cursor`: start and number of the places in the queue, and number of logged turns."""
+
+
+class TourInWork(NamedTuple):
+    """A tour while moves shorten it; changed in place.
+
+    order : (n,) int32, the states in the order of the tour
+    position : (n_states,) int32, index of each state in the order, -1 for states not on the tour
+    waiting : (n,) int32, queue of the states at which moves are tried next, as a ring
+    queued : (n_states,) bool, whether a state waits
+    log : (_LOG, 3) int32, first and last place and length of each turn since the last exchange
+    cursor : (3,) int64, see `HEAD` and the constants beside it
+    """
+
+    order: NDArray[np.int32]
+    position: NDArray[np.int32]
+    waiting: NDArray[np.int32]
+    queued: NDArray[np.bool_]
+    log: NDArray[np.int32]
+    cursor: NDArray[np.int64]
 
 
 def closed_tour(near: NearDistances, walk: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -35,30 +58,25 @@ def closed_tour(near: NearDistances, walk: NDArray[np.int32]) -> NDArray[np.int3
         Different states in the order to start from.
     """
     n = len(walk)
-    tour = walk.copy()
     if n < 8:
-        return tour
-    position = np.full(len(near.cells), -1, np.int32)
-    position[tour] = np.arange(n)
+        return walk.copy()
+    position, queued = np.full(len(near.cells), -1, np.int32), np.zeros(len(near.cells), np.bool_)
+    position[walk], queued[walk] = np.arange(n), True
+    log, cursor = np.empty((_LOG, 3), np.int32), np.array([0, n, 0])
+    tour = TourInWork(walk.copy(), position, walk.copy(), queued, log, cursor)
     random = random_state(stream(0, "closed tour"))
-    exchanges = min(EXCHANGES_PER_PLACE * n, MOST_EXCHANGES)
-    waiting, queued = tour.copy(), np.zeros(len(near.cells), np.bool_)
-    _search(tour, position, near, exchanges, random, waiting, queued, np.empty((_LOG, 3), np.int32))
-    return tour
+    _shorten(tour, near, min(EXCHANGES_PER_PLACE * n, MOST_EXCHANGES), random)
+    return tour.order
 
 
-def closed_length(near: NearDistances, tour: NDArray[np.int32]) -> int:
-    """Steps of a closed tour."""
-    return int(sum(steps_between(a, b, near) for a, b in zip(tour, np.roll(tour, -1), strict=True)))
+@kernel
+def nearest_walk(start, begin, ends, visited, length):
+    """States reached from `start`, each next one the nearest not visited, (at most `length`,) int32.
 
-
-@kernel(allocates=False)
-def nearest_walk(start, begin, ends, visited, queue, mark, walk):
-    """Fill `walk` with states reached from `start`, each next one the nearest not visited; return their number.
-
-    Of equally near states, the one with fewest neighbours not visited comes first. `visited` is changed; `mark`
-    (n_states,) int32 must be -1 everywhere.
+    Of equally near states, the one with fewest neighbours not visited comes first. `visited` is changed.
     """
+    queue, mark = np.empty(visited.size, np.int32), np.full(visited.size, np.int32(-1))
+    walk = np.empty(length, np.int32)
     visited[start] = True
     walk[0] = start
     count, state = 1, start
@@ -88,28 +106,28 @@ def nearest_walk(start, begin, ends, visited, queue, mark, walk):
                     if best < 0 or left < fewest:
                         best, fewest = t, left
         if best < 0:
-            return count
+            break
         visited[best] = True
         walk[count] = best
         count += 1
         state = best
-    return count
+    return walk[:count]
 
 
-@kernel(allocates=False)
-def _search(tour, position, near, exchanges, random, waiting, queued, log):
-    n = tour.size
-    for c in tour:
-        queued[c] = True
-    head, count = 0, n
-    while count > 0:  # no log: there is nothing to go back to
-        head, count, _, _ = _improve(tour, position, near, waiting, queued, head, count, log, 0)
+@kernel
+def _shorten(tour, near, exchanges, random):
+    """Improve at every place that waits; then exchange neighbouring sections, so often, and keep what helps."""
+    order, cursor, log = tour.order, tour.cursor, tour.log
+    n = order.size
+    while cursor[COUNT] > 0:
+        _improve(tour, near)
+        cursor[LOGGED] = 0  # there is nothing to go back to
     for _ in range(exchanges):
         i = uniform_integer(random, n)
         most = min(LONGEST_SECTION, n // 4)
         a, b = 1 + uniform_integer(random, most), 1 + uniform_integer(random, most)
-        before, first, last = tour[i], tour[(i + 1) % n], tour[(i + a) % n]
-        second, end, after = tour[(i + a + 1) % n], tour[(i + a + b) % n], tour[(i + a + b + 1) % n]
+        before, first, last = order[i], order[(i + 1) % n], order[(i + a) % n]
+        second, end, after = order[(i + a + 1) % n], order[(i + a + b) % n], order[(i + a + b + 1) % n]
         change = (
             steps_between(before, second, near)
             + steps_between(end, first, near)
@@ -118,51 +136,64 @@ def _search(tour, position, near, exchanges, random, waiting, queued, log):
             - steps_between(last, second, near)
             - steps_between(end, after, near)
         )
-        n_log = _turn(tour, position, first, end, a + b, log, 0)
-        n_log = _turn(tour, position, end, second, b, log, n_log)
-        n_log = _turn(tour, position, last, first, a, log, n_log)
-        head, count = 0, 0
+        cursor[LOGGED] = 0
+        _turn(tour, first, end, a + b)
+        _turn(tour, end, second, b)
+        _turn(tour, last, first, a)
         for c in (before, first, last, second, end, after):
-            count = _wait(c, waiting, queued, head, count)
-        while count > 0:
-            head, count, gain, n_log = _improve(tour, position, near, waiting, queued, head, count, log, n_log)
-            change -= gain
-            if n_log + 8 > log.shape[0]:
-                while count > 0:
-                    queued[waiting[head]] = False
-                    head, count = (head + 1) % n, count - 1
+            _wait(tour, c)
+        while cursor[COUNT] > 0:
+            change -= _improve(tour, near)
+            if cursor[LOGGED] + 8 > log.shape[0]:
+                while cursor[COUNT] > 0:
+                    _next_waiting(tour)
         if change > 0:
-            for k in range(n_log - 1, -1, -1):
-                _turn(tour, position, log[k, 1], log[k, 0], log[k, 2], log, log.shape[0])
+            for k in range(cursor[LOGGED] - 1, -1, -1):
+                cursor[LOGGED] = log.shape[0]  # turns back are not logged
+                _turn(tour, log[k, 1], log[k, 0], log[k, 2])
 
 
-@kernel(allocates=False)
-def _wait(c, waiting, queued, head, count):
+@kernel
+def _wait(tour, c):
+    """Put a place into the queue, if it is not there."""
+    waiting, queued, cursor = tour.waiting, tour.queued, tour.cursor
     if not queued[c]:
         queued[c] = True
-        waiting[(head + count) % waiting.size] = c
-        count += 1
-    return count
+        waiting[(cursor[HEAD] + cursor[COUNT]) % waiting.size] = c
+        cursor[COUNT] += 1
 
 
-@kernel(allocates=False)
-def _turn(tour, position, first, last, length, log, n_log):
-    """Turn the section of `length` places with the ends `first` and `last` round; returns the longer log.
+@kernel
+def _next_waiting(tour):
+    """Take the first place from the queue."""
+    waiting, queued, cursor = tour.waiting, tour.queued, tour.cursor
+    c = waiting[cursor[HEAD]]
+    cursor[HEAD] = (cursor[HEAD] + 1) % waiting.size
+    cursor[COUNT] -= 1
+    queued[c] = False
+    return c
+
+
+@kernel
+def _turn(tour, first, last, length):
+    """Turn the section of `length` places with the ends `first` and `last` round, and log it.
 
     The length tells the section from the rest of the tour with the same ends: it must not be half of the tour
     and one.
     """
-    n = tour.size
+    order, position, log, cursor = tour.order, tour.position, tour.log, tour.cursor
+    n = order.size
     i, j = position[first], position[last]
     if (j - i) % n + 1 != length:
         i, j = j, i
-    if n_log < log.shape[0]:
-        log[n_log, 0], log[n_log, 1], log[n_log, 2] = first, last, length
+    if cursor[LOGGED] < log.shape[0]:
+        log[cursor[LOGGED], 0], log[cursor[LOGGED], 1], log[cursor[LOGGED], 2] = first, last, length
+        cursor[LOGGED] += 1
     if 2 * length > n:  # to turn the rest round gives the same closed tour
         i, j, length = (j + 1) % n, (i - 1) % n, n - length
     for _ in range(length // 2):
-        a, b = tour[i], tour[j]
-        tour[i], tour[j] = b, a
+        a, b = order[i], order[j]
+        order[i], order[j] = b, a
         position[b], position[a] = i, j
         i += 1
         if i == n:
@@ -170,22 +201,16 @@ def _turn(tour, position, first, last, length, log, n_log):
         j -= 1
         if j < 0:
             j = n - 1
-    return n_log + 1
 
 
-@kernel(allocates=False)
-def _improve(tour, position, near, waiting, queued, head, count, log, n_log):
-    """Take a place from the queue and make the first move there that shortens the tour.
-
-    Returns the queue's head and number of places, the steps saved, and the number of logged turns.
-    """
-    n = tour.size
-    nearest = near.nearest
-    c = waiting[head]
-    head, count = (head + 1) % n, count - 1
-    queued[c] = False
+@kernel
+def _improve(tour, near):
+    """Make the first move that shortens the tour at the next place of the queue; returns the steps saved."""
+    order, position, nearest = tour.order, tour.position, near.nearest
+    n = order.size
+    c = _next_waiting(tour)
     for forward in (1, -1):  # 2-opt: join c and x, and what follows them
-        s = tour[(position[c] + forward) % n]
+        s = order[(position[c] + forward) % n]
         old = steps_between(c, s, near)
         for k in range(nearest.shape[1]):
             x = nearest[c, k]
@@ -193,22 +218,22 @@ def _improve(tour, position, near, waiting, queued, head, count, log, n_log):
                 break
             if position[x] < 0 or x == s:
                 continue
-            y = tour[(position[x] + forward) % n]
+            y = order[(position[x] + forward) % n]
             if y == c:
                 continue
             gain = old + steps_between(x, y, near) - steps_between(c, x, near) - steps_between(s, y, near)
             length = ((position[x] - position[s]) * forward) % n + 1
             if gain <= 0 or min(length, n - length) > LONGEST_TURN or 2 * length - 2 == n:
                 continue
-            n_log = _turn(tour, position, s, x, length, log, n_log)
+            _turn(tour, s, x, length)
             for v in (c, s, x, y):
-                count = _wait(v, waiting, queued, head, count)
-            return head, count, gain, n_log
+                _wait(tour, v)
+            return gain
     for length in range(1, 4):  # Or-opt: shift the places c … e between x and y
         for forward in (1, -1):
             at = position[c]
-            e = tour[(at + forward * (length - 1)) % n]
-            p, q = tour[(at - forward) % n], tour[(at + forward * length) % n]
+            e = order[(at + forward * (length - 1)) % n]
+            p, q = order[(at - forward) % n], order[(at + forward * length) % n]
             old = steps_between(p, c, near) + steps_between(e, q, near) - steps_between(p, q, near)
             for k in range(nearest.shape[1]):
                 x = nearest[c, k]
@@ -220,7 +245,7 @@ def _improve(tour, position, near, waiting, queued, head, count, log, n_log):
                 if away < length:
                     continue
                 for side in (1, -1):
-                    y = tour[(position[x] + side * forward) % n]
+                    y = order[(position[x] + side * forward) % n]
                     behind = ((position[y] - at) * forward) % n
                     if behind < length:
                         continue
@@ -230,29 +255,29 @@ def _improve(tour, position, near, waiting, queued, head, count, log, n_log):
                     turned = length + min(gap, back)
                     if gain <= 0 or turned > LONGEST_TURN or 2 * turned - 2 == n or 2 * (turned - length) - 2 == n:
                         continue
-                    n_log = _shift(tour, position, c, e, p, q, x, y, length, side == 1, gap, back, log, n_log)
+                    ends = (x, y) if side == 1 else (y, x)
+                    _shift(tour, (c, e, p, q), ends, length, side == 1, gap, back)
                     for v in (c, e, p, q, x, y):
-                        count = _wait(v, waiting, queued, head, count)
-                    return head, count, gain, n_log
-    return head, count, 0, n_log
+                        _wait(tour, v)
+                    return gain
+    return 0
 
 
-@kernel(allocates=False)
-def _shift(tour, position, c, e, p, q, x, y, length, x_first, gap, back, log, n_log):
-    """Shift c … e between x and y with c beside x, by turning sections round.
+@kernel
+def _shift(tour, section, ends, length, turned, gap, back):
+    """Shift c … e between two places, by turning sections round.
 
-    In the direction from c to e the tour is p, c … e, q … then x, y or y, x, then … p. `gap` places lie from q to
-    the nearer of x and y, `back` places from the farther to p.
+    `section` is c, e, p, q: in the direction from c to e the tour is p, c … e, q … then the two `ends` … p. `gap`
+    places lie from q to the first end, `back` places from the second to p. c comes beside the first end if
+    `turned`, else beside the second.
     """
-    near_end, far_end = (x, y) if x_first else (y, x)
+    c, e, p, q = section
+    near_end, far_end = ends
     if gap <= back:  # c … e changes places with q … near_end
-        n_log = _turn(tour, position, c, near_end, length + gap, log, n_log)
-        n_log = _turn(tour, position, near_end, q, gap, log, n_log)
-        if x_first:
-            n_log = _turn(tour, position, e, c, length, log, n_log)
+        _turn(tour, c, near_end, length + gap)
+        _turn(tour, near_end, q, gap)
     else:  # c … e changes places with far_end … p
-        n_log = _turn(tour, position, far_end, e, length + back, log, n_log)
-        n_log = _turn(tour, position, p, far_end, back, log, n_log)
-        if x_first:
-            n_log = _turn(tour, position, e, c, length, log, n_log)
-    return n_log
+        _turn(tour, far_end, e, length + back)
+        _turn(tour, p, far_end, back)
+    if turned:
+        _turn(tour, e, c, length)

@@ -5,7 +5,6 @@ every place. Each rule returns the places to try before that tour, in order:
 
 * `by_rate`: the place with the largest probability a step, as long as that is more than the tour's
   own; a place where the goal was not found has probability 0 from then on (Bayes' rule).
-* `by_nearness`, the baseline: all of them, the nearest first.
 * `by_exact_search`: the least expected time, by dynamic programming over sets of places.
 """
 
@@ -47,20 +46,6 @@ def by_rate(steps: Array, chance: Array, elsewhere: float, tour: float) -> list[
     return order
 
 
-def by_nearness(steps: Array, chance: Array, elsewhere: float, tour: float) -> list[int]:
-    """All places that can be reached, the nearest to the last one first; parameters as in `by_rate`."""
-    order: list[int] = []
-    here, left = len(chance), np.ones(len(chance), bool)
-    while left.any():
-        distance = np.where(left, steps[here], np.inf)
-        here = int(distance.argmin())
-        if not np.isfinite(distance[here]):
-            break
-        order.append(here)
-        left[here] = False
-    return order
-
-
 def by_exact_search(steps: Array, chance: Array, elsewhere: float, tour: float) -> list[int]:
     """The places and order of least expected time; parameters as in `by_rate`.
 
@@ -83,17 +68,6 @@ def by_exact_search(steps: Array, chance: Array, elsewhere: float, tour: float) 
         order.append(place)
         tried, here = tried | 1 << place, place
     return order
-
-
-def expected_time(order: list[int], steps: Array, chance: Array, elsewhere: float, tour: float) -> float:
-    """Expected steps until the goal is found if the places are tried in this order before the tour."""
-    time, here, total, left = 0.0, len(chance), 0.0, elsewhere + float(np.sum(chance))
-    for place in order:
-        time += steps[here, place]
-        total += chance[place] * time
-        left -= chance[place]
-        here = place
-    return total + left * (time + tour / 2)
 
 
 @kernel

@@ -35,11 +35,6 @@ def return_moments(
     return float(first), float(np.sqrt(max(second - first**2, 0.0)))
 
 
-def best_episode_value(tables: Tables, max_steps: int, discount: float = 1.0) -> float:
-    """Mean return of the best policy that sees the state and the time: no policy over observations exceeds it."""
-    return float(_best(tables, max_steps, discount)[tables.starts].mean())
-
-
 @kernel
 def _moments(tables, row_of, probs, max_steps, discount):
     """First and second moment of the return; touches only the states that can be reached so far."""
@@ -125,26 +120,3 @@ def _followed(tables, row_of, probs):
                 n += 1
         begin[s + 1] = n
     return begin, following, chance, reward
-
-
-@kernel
-def _best(tables, max_steps, discount):
-    next_state, reward_of, event_of, outcome_cum, _ = tables
-    n_states, n_actions, n_outcomes = next_state.shape
-    value = np.zeros(n_states)
-    for _ in range(max_steps):
-        now = np.zeros(n_states)
-        for s in range(n_states):
-            best = -np.inf
-            for a in range(n_actions):
-                total, below = 0.0, 0.0
-                for k in range(n_outcomes):
-                    gain = reward_of[s, a, k]
-                    if not event_of[s, a, k] & TERMINAL:
-                        gain += discount * value[next_state[s, a, k]]
-                    total += (outcome_cum[k] - below) * gain
-                    below = outcome_cum[k]
-                best = max(best, total)
-            now[s] = best
-        value = now
-    return value

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from lifelore.core.compiled.jit import inlined, kernel
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import TERMINAL, Tables
-from lifelore.core.planning.planning import best_actions
+from lifelore.core.planning.planning import backup, best_actions
 
 LAST_MOVE = 1e-12
 """Sweeps end when no value moves by more than this share of the largest reward."""
@@ -176,9 +176,9 @@ def _solve_layer(rows, first, discount, tolerance, value):
         moved = 0.0
         for i in range(n_places):
             s = i if forwards else n_places - 1 - i
-            best = _backup(rows, s, 0, discount, value)
+            best = backup(rows, s, 0, discount, value)
             for a in range(1, n_actions):
-                best = max(best, _backup(rows, s, a, discount, value))
+                best = max(best, backup(rows, s, a, discount, value))
             moved = max(moved, abs(best - value[first + s]))
             value[first + s] = best
         forwards = not forwards
@@ -204,17 +204,4 @@ def _back_up(rows, discount, value, q):
     """Action values from the values of all that follows, into `q`."""
     for s in range(q.shape[0]):
         for a in range(q.shape[1]):
-            q[s, a] = _backup(rows, s, a, discount, value)
-
-
-@inlined
-def _backup(rows, s, a, discount, value):
-    """Expected reward and discounted value of what follows (the Bellman backup)."""
-    total, before = 0.0, 0.0
-    for k in range(rows.outcome_cum.size):
-        gain = rows.reward[s, a, k]
-        if not rows.event[s, a, k] & TERMINAL:
-            gain += discount * value[rows.next_state[s, a, k]]
-        total += (rows.outcome_cum[k] - before) * gain
-        before = rows.outcome_cum[k]
-    return total
+            q[s, a] = backup(rows, s, a, discount, value)

@@ -49,20 +49,18 @@ def near_distances(graph: sparse.csr_array, cells: NDArray[np.integer]) -> NearD
     n = len(cells)
     reach = min(MOST_REACH, int((TABLE_SIZE / n) ** 0.5 - 1) // 2)
     cells = np.ascontiguousarray(cells, np.int32)
-    steps = np.full((n, 2 * reach + 1, 2 * reach + 1), BEYOND, np.int16)
-    nearest = np.full((n, N_NEAREST), -1, np.int32)
-    _fill(
-        graph.indptr.astype(np.int32), graph.indices.astype(np.int32), cells, steps, nearest, np.empty(n, np.int32)
-    )
+    steps, nearest = _search(graph.indptr.astype(np.int32), graph.indices.astype(np.int32), cells, reach)
     return NearDistances(cells, steps, nearest)
 
 
-@kernel(allocates=False)
-def _fill(begin, ends, cells, steps, nearest, queue):
-    """Breadth first from each state inside its window."""
-    side = steps.shape[1]
-    reach = side // 2
-    for start in range(len(cells)):
+@kernel
+def _search(begin, ends, cells, reach):
+    """Steps and nearest states as in `NearDistances`: breadth first from each state inside its window."""
+    n, side = len(cells), 2 * reach + 1
+    steps = np.full((n, side, side), np.int16(BEYOND))
+    nearest = np.full((n, N_NEAREST), np.int32(-1))
+    queue = np.empty(n, np.int32)
+    for start in range(n):
         top, left = cells[start, 0] - reach, cells[start, 1] - reach
         steps[start, reach, reach] = 0
         queue[0] = start
@@ -80,9 +78,10 @@ def _fill(begin, ends, cells, steps, nearest, queue):
                         nearest[start, tail - 1] = t
                     queue[tail] = t
                     tail += 1
+    return steps, nearest
 
 
-@kernel(allocates=False)
+@kernel
 def steps_between(a, b, near):
     """Steps from state `a` to state `b`: exact inside the window, else one and a half times the straight way."""
     if a > b:  # windows differ, so the way back could be longer: the same answer both ways

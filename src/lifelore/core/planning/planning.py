@@ -19,33 +19,33 @@ def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDAr
     reward but a terminal one is zero or a loss, values settle exactly after as many sweeps as the longest
     shortest path.
     """
-    q, value = np.zeros((tables.n_states, tables.n_actions)), np.zeros(tables.n_states)
-    _sweep(tables, q, value, float(discount), tolerance * max(1.0, float(np.abs(tables.reward).max())))
-    return q
+    return _sweep(tables, float(discount), tolerance * max(1.0, float(np.abs(tables.reward).max())))
 
 
-@kernel(allocates=False)
-def _sweep(tables, q, value, discount, tolerance):
-    n_states, n_actions = q.shape
+@kernel
+def _sweep(tables, discount, tolerance):
+    n_states, n_actions = tables.next_state.shape[:2]
+    q, value = np.zeros((n_states, n_actions)), np.zeros(n_states)
     moved = tolerance + 1.0
     forwards = True
     while moved > tolerance:
         moved = 0.0
         for i in range(n_states):
             s = i if forwards else n_states - 1 - i
-            best = q[s, 0] = _backup(tables, s, 0, discount, value)
+            best = q[s, 0] = backup(tables, s, 0, discount, value)
             for a in range(1, n_actions):
-                q[s, a] = _backup(tables, s, a, discount, value)
+                q[s, a] = backup(tables, s, a, discount, value)
                 if q[s, a] > best:
                     best = q[s, a]
             if abs(best - value[s]) > moved:
                 moved = abs(best - value[s])
             value[s] = best
         forwards = not forwards
+    return q
 
 
 @inlined
-def _backup(tables, s, a, discount, value):
+def backup(tables, s, a, discount, value):
     """Expected reward and discounted value of what follows (the Bellman backup)."""
     next_state, reward, event, outcome_cum, _ = tables
     total, before = 0.0, 0.0
@@ -101,20 +101,17 @@ def policy_values(tables: Tables, policy: NDArray[np.int32], discount: float) ->
         γ in [0, 1).
     """
     policy = np.ascontiguousarray(policy, dtype=np.int32)
-    n_states = tables.n_states
-    value = np.zeros(n_states)
     if tables.outcome_cum.size == 1:
-        # 0 new, -1 done, else 1 + place on the path under way
-        mark, path = np.zeros(n_states, np.int64), np.empty(n_states, np.int64)
-        _follow(tables.next_state, tables.reward, tables.event, policy, float(discount), value, mark, path)
-    else:
-        _iterate(tables, policy, float(discount), 1e-12 * max(1.0, float(np.abs(tables.reward).max())), value)
-    return value
+        return _follow(tables, policy, float(discount))
+    return _iterate(tables, policy, float(discount), 1e-12 * max(1.0, float(np.abs(tables.reward).max())))
 
 
-@kernel(allocates=False)
-def _follow(next_state, reward, event, policy, discount, value, mark, path):
+@kernel
+def _follow(tables, policy, discount):
     """Deterministic world: walk each path once; a cycle's value has a closed form."""
+    next_state, reward, event, _, _ = tables
+    value, path = np.zeros(policy.size), np.empty(policy.size, np.int64)
+    mark = np.zeros(policy.size, np.int64)  # 0 new, -1 done, else 1 + place on the path under way
     for start in range(policy.size):
         length, s = 0, start
         ended = False
@@ -139,20 +136,23 @@ def _follow(next_state, reward, event, policy, discount, value, mark, path):
             after = reward[path[i], policy[path[i]], 0] + discount * after
             value[path[i]] = after
             mark[path[i]] = -1
+    return value
 
 
-@kernel(allocates=False)
-def _iterate(tables, policy, discount, tolerance, value):
+@kernel
+def _iterate(tables, policy, discount, tolerance):
+    value = np.zeros(policy.size)
     moved = tolerance + 1.0
     while moved > tolerance:
         moved = 0.0
         for s in range(policy.size):
             if policy[s] < 0:
                 continue
-            total = _backup(tables, s, policy[s], discount, value)
+            total = backup(tables, s, policy[s], discount, value)
             if abs(total - value[s]) > moved:
                 moved = abs(total - value[s])
             value[s] = total
+    return value
 
 
 def mean_start_value(tables: Tables, values: NDArray[np.float64]) -> float:

@@ -53,7 +53,7 @@ def _ways(near: NearDistances, rest: NDArray[np.int32], at: int) -> list[NDArray
     return [*ways, turned, turned[::-1]]
 
 
-@kernel(allocates=True)
+@kernel
 def _steps_along(way, near):
     steps = np.empty(way.size - 1, np.int64)
     for i in range(way.size - 1):
@@ -107,7 +107,7 @@ def _improve_order(way, time, near, position):
         updates += m - i
 
 
-@kernel(allocates=False)
+@kernel
 def _best_move(c, way, time, total, near, position):
     """The move that brings place `c` beside a near one and lowers the sum of times most.
 
@@ -145,7 +145,7 @@ def _best_move(c, way, time, total, near, position):
     return found
 
 
-@kernel(allocates=False)
+@kernel
 def _if_turned(way, time, total, near, i, k):
     """Change of the sum of times if the places i … k are turned round."""
     m = way.size
@@ -157,7 +157,7 @@ def _if_turned(way, time, total, near, i, k):
     return change
 
 
-@kernel(allocates=False)
+@kernel
 def _if_exchanged(way, time, near, i, j, k):
     """Change of the sum of times if the places i … j and j + 1 … k change places."""
     m = way.size

@@ -172,30 +172,29 @@ def _cell(place: int) -> int:
     return (place + CELL // 2) // CELL
 
 
-@kernel(allocates=False)
+@kernel
 def slide(clearance, radius, x, y, dx, dy, distance):
     """How far a ball can go along an axis without touching anything, at most `distance`."""
-    moved = 0
-    while moved < distance:
+    moved, free = 0, True
+    while free and moved < distance:
         # No place nearer than the clearance less the radius can touch. Unsigned, because Numba checks every signed
         # index for counting from the end.
         room = int(np.ceil(clearance[np.uint64(y + dy * moved), np.uint64(x + dx * moved)] - radius)) - 1
-        if room < 1:
-            if not clearance[y + dy * (moved + 1), x + dx * (moved + 1)] > radius:
-                break
-            room = 1
-        moved += min(room, distance - moved)
+        free = clearance[y + dy * (moved + 1), x + dx * (moved + 1)] > radius
+        if free:
+            moved += min(max(room, 1), distance - moved)
     return moved
 
 
-@kernel(allocates=False)
+@kernel
 def crosses(goal, x0, y0, x1, y1):
     """Whether a way along an axis touches the goal."""
-    return max(x0, x1) >= goal[0] and min(x0, x1) <= goal[2] and max(y0, y1) >= goal[1] and min(y0, y1) <= goal[3]
+    left, top, right, bottom = goal[0], goal[1], goal[2], goal[3]
+    return max(x0, x1) >= left and min(x0, x1) <= right and max(y0, y1) >= top and min(y0, y1) <= bottom
 
 
-@kernel(allocates=False)
-def travel(field, radius, x, y, dx, dy, distance):
+@kernel
+def travel(clearance, goal, stays, radius, x, y, dx, dy, distance):
     """Where a ball gets that is to go a distance along an axis, and whether something is in its way.
 
     A ball that stays where it is blocked still goes on where its centre comes into the goal first: the game is
@@ -206,14 +205,14 @@ def travel(field, radius, x, y, dx, dy, distance):
     x, y : int
     touched : bool
     """
-    moved = slide(field.clearance, radius, x, y, dx, dy, distance)
-    touched = moved < distance
-    if touched and field.stays and not crosses(field.goal, x, y, x + dx * moved, y + dy * moved):
+    moved = slide(clearance, radius, x, y, dx, dy, distance)
+    touched, over = moved < distance, crosses(goal, x, y, x + dx * moved, y + dy * moved)
+    if touched and stays and not over:
         moved = 0
     return x + dx * moved, y + dy * moved, touched
 
 
-@kernel(allocates=False)
+@kernel
 def step(field, kind, x, y, heading, distance, sigma, u, v, w):
     """One move.
 
@@ -241,17 +240,17 @@ def step(field, kind, x, y, heading, distance, sigma, u, v, w):
     reached : bool
         Whether it came to the goal.
     """
-    slip = field.slip[kind]
+    clearance, _, radii, slips, _, goal, _, stays = field
+    slip, radius = slips[kind], radii[kind]
     if u < slip:
         heading = (heading + 1 + min(int(3.0 * u / slip), 2)) % 4
     dx, dy = MOVES[heading, 0], MOVES[heading, 1]
-    radius = field.radius[kind]
-    x1, y1, blocked = travel(field, radius, x, y, dx, dy, distance)
+    x1, y1, blocked = travel(clearance, goal, stays, radius, x, y, dx, dy, distance)
     push = int(np.rint(sigma * np.sqrt(-2.0 * np.log(1.0 - v)) * np.cos(2.0 * np.pi * w)))
     sign = 1 if push > 0 else -1
-    x2, y2, pressed = travel(field, radius, x1, y1, dy * sign, dx * sign, abs(push))
-    reached = crosses(field.goal, x, y, x1, y1) or crosses(field.goal, x1, y1, x2, y2)
-    return x2, y2, blocked or pressed, reached
+    x2, y2, pressed = travel(clearance, goal, stays, radius, x1, y1, dy * sign, dx * sign, abs(push))
+    reached = crosses(goal, x, y, x1, y1) | crosses(goal, x1, y1, x2, y2)
+    return x2, y2, blocked | pressed, reached
 
 
 def draw_sigma(generator: np.random.Generator, size: int | tuple[int, ...] | None = None):

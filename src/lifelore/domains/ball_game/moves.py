@@ -21,7 +21,7 @@ N_OUTCOMES = len(FATES) * N_AFTER
 N_SIGNALS = N_CONTEXTS * N_OUTCOMES
 
 
-@kernel(allocates=False)
+@kernel
 def room_class(room, edges):
     """Number of the class of a room, 0 … len(edges)."""
     place = 0
@@ -30,7 +30,7 @@ def room_class(room, edges):
     return place
 
 
-@kernel(allocates=False)
+@kernel
 def room_along(clearance, x, y, dx, dy, distance):
     """The least clearance on a way along an axis; 0 where it leads into an obstacle."""
     least = clearance[y, x]
@@ -42,14 +42,14 @@ def room_along(clearance, x, y, dx, dy, distance):
     return least
 
 
-@kernel(allocates=False)
+@kernel
 def move_context(field, x, y, heading, distance):
     """Number of the context of a command, 0 … N_CONTEXTS - 1: room on the spot, room along the way."""
     along = room_along(field.clearance, x, y, MOVES[heading, 0], MOVES[heading, 1], distance)
     return room_class(field.clearance[y, x], BEFORE_EDGES) * N_BEFORE + room_class(along, BEFORE_EDGES)
 
 
-@kernel(allocates=False)
+@kernel
 def move_fate(x, y, heading, distance, x1, y1):
     """What became of a command, a number of `FATES`, by the displacement relative to it."""
     dx, dy = MOVES[heading, 0], MOVES[heading, 1]
@@ -60,14 +60,14 @@ def move_fate(x, y, heading, distance, x1, y1):
     return 2 if 2 * across > distance else 3
 
 
-@kernel(allocates=False)
+@kernel
 def move_outcome(field, x, y, heading, distance, x1, y1):
     """Number of the outcome of a command, 0 … N_OUTCOMES - 1: its fate, and the room where the ball is now."""
     fate = move_fate(x, y, heading, distance, x1, y1)
     return fate * N_AFTER + room_class(field.clearance[y1, x1], AFTER_EDGES)
 
 
-@kernel(allocates=False)
+@kernel
 def read_moves(field, before, heading, speed, x, y, signal):
     """Signals of many moves.
 

@@ -92,22 +92,23 @@ def random_states(generator: np.random.Generator, shape: int | tuple[int, ...]) 
     return states
 
 
-@kernel(allocates=False)
+@kernel
 def choose_heading(field, kind, x, y, distance):
     """The heading that the player commands at a place; of equals the first."""
+    clearance, cost_to_go, radii, _, _, goal, _, stays = field
     best, least = 0, np.inf
     for heading in range(4):
         dx, dy = MOVES[heading, 0], MOVES[heading, 1]
-        x1, y1, stopped = travel(field, field.radius[kind], x, y, dx, dy, distance)
-        if crosses(field.goal, x, y, x1, y1):
-            return heading
-        cost = field.cost[kind, (y1 + CELL // 2) // CELL, (x1 + CELL // 2) // CELL] + STOPPED * stopped
+        x1, y1, stopped = travel(clearance, goal, stays, radii[kind], x, y, dx, dy, distance)
+        cost = cost_to_go[kind, (y1 + CELL // 2) // CELL, (x1 + CELL // 2) // CELL] + STOPPED * stopped
+        if crosses(goal, x, y, x1, y1):
+            cost = -np.inf
         if cost < least:
             best, least = heading, cost
     return best
 
 
-@kernel(allocates=False)
+@kernel
 def advance(field, balls, speed, lag, max_steps, heading, before):
     """One step of everybody who is playing.
 

@@ -67,7 +67,7 @@ def visible_places(floor: Floor, world: GridWorld, reach: float) -> sparse.csr_a
     return sparse.csr_array((np.ones(len(row), bool), (row, column)), shape=(n, n))
 
 
-@kernel(allocates=False)
+@kernel
 def _in_sight(first, last, anchors, cells, state_of, solid, reach, window, pairs):
     """Write the pairs (s, t), s < t, of states in sight of each other for s in [first, last); returns how many."""
     count = 0

@@ -104,7 +104,7 @@ def _wall_up_some(free, order, count, width):
     return count
 
 
-@kernel(allocates=False)
+@kernel
 def _can_spare(free, cell, width, stack, seen, mark):
     """Whether the free neighbours of `cell` stay connected without it.
 

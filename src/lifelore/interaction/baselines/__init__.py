@@ -4,7 +4,6 @@ All have the methods ``select()`` and ``update(policy, reward)``; see `Baseline`
 """
 
 from lifelore.interaction.baselines.baseline import Baseline
-from lifelore.interaction.baselines.clustered_ucb import ClusteredUCB
 from lifelore.interaction.baselines.epsilon_greedy_means import EpsilonGreedyMeans
 from lifelore.interaction.baselines.exp3 import EXP3
 from lifelore.interaction.baselines.gp_ucb import GPUCB
@@ -16,7 +15,7 @@ from lifelore.interaction.baselines.ucb1 import UCB1
 BASELINES: dict[str, type[Baseline]] = {
     kind.name: kind
     for kind in (
-        TryAll, UCB1, IntervalEstimation, ClusteredUCB, EXP3, GPUCB, GaussianThompson, EpsilonGreedyMeans,
+        TryAll, UCB1, IntervalEstimation, EXP3, GPUCB, GaussianThompson, EpsilonGreedyMeans,
     )
 }  # fmt: skip
 """Every baseline by its name."""
@@ -27,7 +26,6 @@ __all__ = [
     "GPUCB",
     "UCB1",
     "Baseline",
-    "ClusteredUCB",
     "EpsilonGreedyMeans",
     "GaussianThompson",
     "IntervalEstimation",

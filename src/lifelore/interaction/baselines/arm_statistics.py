@@ -1,4 +1,4 @@
-"""Statistics of each policy: number of plays, mean payoff and variance."""
+"""Statistics of each policy: number of plays, mean payoff and variance; the base of baselines that learn them."""
 
 from dataclasses import dataclass
 
@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.baselines.baseline import row_of
+from lifelore.interaction.baselines.baseline import Baseline, row_of
 
 
 @dataclass
@@ -62,7 +62,16 @@ class ArmStatistics:
         self.mean[every, policies] += away / self.pulls[every, policies]
         self.squares[every, policies] += away * (rewards - self.mean[every, policies])
 
-    def deviation(self) -> NDArray[np.float64]:
-        """Sample deviation, (rows, n_policies); infinite below two pulls."""
-        enough = self.pulls > 1
-        return np.where(enough, np.sqrt(self.squares / np.where(enough, self.pulls - 1, 1.0)), np.inf)
+
+class ArmBaseline(Baseline):
+    """Base class of baselines that learn nothing but the statistics of each policy.
+
+    Attributes
+    ----------
+    arms : ArmStatistics
+    """
+
+    arms: ArmStatistics
+
+    def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
+        self.arms.add(policies, rewards)

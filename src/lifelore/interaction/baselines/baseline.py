@@ -7,18 +7,16 @@ from a library.
 """
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.outcome_model import LARGEST
 from lifelore.interaction.selection.choice import choose
-
-if TYPE_CHECKING:
-    from lifelore.interaction.library.policy_library import PolicyLibrary
 
 
 class Baseline(ABC):
@@ -52,12 +50,17 @@ class Baseline(ABC):
         self._generator = seed if isinstance(seed, np.random.Generator) else stream(seed, "baseline", self.name)
 
     @classmethod
-    def from_library(cls, library: "PolicyLibrary", **settings: Any) -> Self:
+    def from_library(cls, library: PolicyLibrary, **settings: Any) -> Self:
         """A baseline over the policies of `library` with the knowledge that the method can use.
 
         `settings` are the constructor's and override the library.
         """
-        return cls(library.n_policies, **settings)
+        return cls(library.n_policies, **(cls.settings_from(library) | settings))
+
+    @classmethod
+    def settings_from(cls, library: PolicyLibrary) -> dict[str, Any]:
+        """The arguments of the constructor that follow from a library; none by default."""
+        return {}
 
     @property
     def rows(self) -> int:
@@ -152,7 +155,7 @@ class Moments(NamedTuple):
     noise: NDArray[np.float64]
 
 
-def library_moments(library: "PolicyLibrary") -> Moments:
+def library_moments(library: PolicyLibrary) -> Moments:
     """Moments under the library's prior G₀ over types."""
     prior, means = np.asarray(library.prior), np.asarray(library.performance.mean)
     mean = prior @ means

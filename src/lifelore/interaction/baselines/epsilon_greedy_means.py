@@ -1,19 +1,17 @@
 """ε-greedy on mean payoffs: the best policy so far, or any policy with probability ε."""
 
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.baselines.arm_statistics import ArmStatistics
-from lifelore.interaction.baselines.baseline import Baseline, library_moments
-
-if TYPE_CHECKING:
-    from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.baselines.arm_statistics import ArmBaseline, ArmStatistics
+from lifelore.interaction.baselines.baseline import library_moments
+from lifelore.interaction.library.policy_library import PolicyLibrary
 
 
-class EpsilonGreedyMeans(Baseline):
+class EpsilonGreedyMeans(ArmBaseline):
     """The policy of the largest mean with probability 1 - ε, else a random policy.
 
     Parameters
@@ -53,10 +51,9 @@ class EpsilonGreedyMeans(Baseline):
         self.arms = ArmStatistics.from_prior(self.rows, n_policies, prior_means, prior_pulls)
 
     @classmethod
-    def from_library(cls, library: "PolicyLibrary", **settings: Any) -> Self:
-        """Prior means under the library's prior; `settings` override."""
-        known: dict[str, Any] = {"prior_means": library_moments(library).mean}
-        return cls(library.n_policies, **(known | settings))
+    def settings_from(cls, library: PolicyLibrary) -> dict[str, Any]:
+        """Prior means under the library's prior."""
+        return {"prior_means": library_moments(library).mean}
 
     def _choose(self) -> NDArray[np.int64]:
         explored = self._generator.random(self.rows) < self.epsilon
@@ -65,6 +62,3 @@ class EpsilonGreedyMeans(Baseline):
 
     def _scores(self) -> NDArray[np.float64]:
         return np.where(self.arms.pulls > 0, self.arms.mean, np.inf)
-
-    def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
-        self.arms.add(policies, rewards)

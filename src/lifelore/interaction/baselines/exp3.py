@@ -1,6 +1,6 @@
 """EXP3: exponential weights against payoffs that may change in any way (Auer et al., 2002)."""
 
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,9 +8,7 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.baselines.baseline import Baseline
 from lifelore.interaction.baselines.ucb1 import checked_scale, to_unit
-
-if TYPE_CHECKING:
-    from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.library.policy_library import PolicyLibrary
 
 
 class EXP3(Baseline):
@@ -59,10 +57,9 @@ class EXP3(Baseline):
         self._log_weights = np.zeros((self.rows, n_policies))
 
     @classmethod
-    def from_library(cls, library: "PolicyLibrary", **settings: Any) -> Self:
-        """Scale from the library's bounds; `settings` override."""
-        known: dict[str, Any] = {"scale": library.performance.bounds()}
-        return cls(library.n_policies, **(known | settings))
+    def settings_from(cls, library: PolicyLibrary) -> dict[str, Any]:
+        """Scale from the library's bounds."""
+        return {"scale": library.performance.bounds()}
 
     @property
     def probabilities(self) -> NDArray[np.float64]:

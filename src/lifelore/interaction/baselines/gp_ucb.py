@@ -5,7 +5,7 @@ the covariance of all payoffs so far and V = L⁻¹ K(seen, all), the posterior 
 and the variance is diag K - Σ V². Each payoff appends a row to L, V and z; this row of L is a column of V.
 """
 
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,9 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.baselines.baseline import Baseline, library_moments, row_of
 from lifelore.interaction.baselines.policy_kernels import performance_kernel, prior_covariance
-
-if TYPE_CHECKING:
-    from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.library.policy_library import PolicyLibrary
 
 KERNELS = ("performance", "covariance")
 MOST_ROWS = 4
@@ -75,11 +73,15 @@ class GPUCB(Baseline):
         self._rows = np.empty((self.rows, 8, n_policies))
 
     @classmethod
-    def from_library(cls, library: "PolicyLibrary", *, kernel: Any = "performance", **settings: Any) -> Self:
+    def from_library(cls, library: PolicyLibrary, *, kernel: Any = "performance", **settings: Any) -> Self:
         """Kernel, means and noise from the library; `settings` override."""
+        return super().from_library(library, kernel=_kernel_of(library, kernel), **settings)
+
+    @classmethod
+    def settings_from(cls, library: PolicyLibrary) -> dict[str, Any]:
+        """Means and noise under the library's prior."""
         mean, _, noise = library_moments(library)
-        known: dict[str, Any] = {"prior_means": mean, "noise": float(np.sqrt((noise**2).mean()))}
-        return cls(library.n_policies, kernel=_kernel_of(library, kernel), **(known | settings))
+        return {"prior_means": mean, "noise": float(np.sqrt((noise**2).mean()))}
 
     def posterior(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Mean and deviation of each policy's mean payoff, (rows, n_policies) each."""
@@ -126,7 +128,7 @@ class GPUCB(Baseline):
         self._rows, self._seen = np.empty((self.rows, 8, self.n_policies)), 0
 
 
-def _kernel_of(library: "PolicyLibrary", kernel: Any) -> NDArray[np.float64]:
+def _kernel_of(library: PolicyLibrary, kernel: Any) -> NDArray[np.float64]:
     if not isinstance(kernel, str):
         return np.asarray(kernel, np.float64)
     if kernel == "performance":

@@ -1,21 +1,19 @@
 """Interval estimation: play the policy whose mean has the highest upper confidence limit (Kaelbling, 1990)."""
 
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.baselines.arm_statistics import ArmStatistics
-from lifelore.interaction.baselines.baseline import Baseline, library_moments
-
-if TYPE_CHECKING:
-    from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.baselines.arm_statistics import ArmBaseline, ArmStatistics
+from lifelore.interaction.baselines.baseline import library_moments
+from lifelore.interaction.library.policy_library import PolicyLibrary
 
 LEAST_PULLS = 2
 
 
-class IntervalEstimation(Baseline):
+class IntervalEstimation(ArmBaseline):
     """Mean + q·s/√n, the upper limit for the mean of normally distributed payoffs.
 
     Parameters
@@ -62,23 +60,16 @@ class IntervalEstimation(Baseline):
         self.arms = ArmStatistics.from_prior(self.rows, n_policies, prior_means, prior_pulls, prior_deviations)
 
     @classmethod
-    def from_library(cls, library: "PolicyLibrary", **settings: Any) -> Self:
-        """Means and deviations under the library's prior; `settings` override."""
+    def settings_from(cls, library: PolicyLibrary) -> dict[str, Any]:
+        """Means and deviations under the library's prior."""
         mean, spread, noise = library_moments(library)
-        known: dict[str, Any] = {"prior_means": mean, "prior_deviations": np.hypot(spread, noise)}
-        return cls(library.n_policies, **(known | settings))
+        return {"prior_means": mean, "prior_deviations": np.hypot(spread, noise)}
 
     def _scores(self) -> NDArray[np.float64]:
         from scipy.special import ndtri, stdtrit
 
         pulls = np.maximum(self.arms.pulls, LEAST_PULLS)
-        if self.quantile == "normal":
-            wide = ndtri(1 - self.alpha)
-        else:
-            wide = stdtrit(pulls - 1, 1 - self.alpha)
-        spread = self.arms.deviation()
-        enough = self.arms.pulls >= LEAST_PULLS
-        return np.where(enough, self.arms.mean + wide * np.where(enough, spread, 0.0) / np.sqrt(pulls), np.inf)
-
-    def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
-        self.arms.add(policies, rewards)
+        wide = ndtri(1 - self.alpha) if self.quantile == "normal" else stdtrit(pulls - 1, 1 - self.alpha)
+        deviation = np.sqrt(self.arms.squares / (pulls - 1))
+        limit = self.arms.mean + wide * deviation / np.sqrt(pulls)
+        return np.where(self.arms.pulls >= LEAST_PULLS, limit, np.inf)

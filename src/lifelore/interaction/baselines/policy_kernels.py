@@ -5,18 +5,12 @@ payoffs over a library's types. Thesis: §4.6.4 (the metric is not known and "is
 the training tasks").
 """
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.library.policy_library import PolicyLibrary
 
-if TYPE_CHECKING:
-    from lifelore.interaction.library.policy_library import PolicyLibrary
-
-FORMS = ("gaussian", "exponential")
 JITTER = 1e-10
 """Share of the mean variance added to the diagonal, so that a factorisation exists."""
 
@@ -35,10 +29,11 @@ def performance_distances(mean: ArrayLike) -> NDArray[np.float64]:
     return np.sqrt(squares)
 
 
-def metric_kernel(
-    distances: ArrayLike, *, length: float, deviation: float = 1.0, form: str = "gaussian"
-) -> NDArray[np.float64]:
-    """deviation²·exp(-d²/2ℓ²), or deviation²·exp(-d/ℓ), made positive semidefinite; (n_policies, n_policies).
+def metric_kernel(distances: ArrayLike, *, length: float, deviation: float = 1.0) -> NDArray[np.float64]:
+    """deviation²·exp(-d²/2ℓ²), made positive semidefinite; (n_policies, n_policies).
+
+    The Gaussian form of a metric that is not Euclidean (grid steps, largest coordinate) need not be a covariance:
+    negative eigenvalues are then set to 0 and the diagonal is restored.
 
     Parameters
     ----------
@@ -48,39 +43,40 @@ def metric_kernel(
         ℓ > 0, in units of the distances.
     deviation : float
         Prior deviation of a policy's mean payoff, > 0.
-    form : {"gaussian", "exponential"}
-        The Gaussian form of a metric that is not Euclidean (grid steps, largest coordinate) need not be a
-        covariance: negative eigenvalues are then set to 0 and the diagonal is restored.
     """
     gaps = np.asarray(distances, np.float64)
-    _check_distances(gaps)
+    square = gaps.ndim == 2 and gaps.shape[0] == gaps.shape[1] and gaps.size > 0
+    if not square or not np.isfinite(gaps).all() or (gaps < 0).any():
+        raise InputError("distances must be (n_policies, n_policies), finite and at least 0")
+    if not np.allclose(gaps, gaps.T, rtol=1e-9, atol=1e-12) or np.diag(gaps).any():
+        raise InputError("distances must be symmetric and 0 on the diagonal")
     if not (length > 0 and deviation > 0):
         raise InputError(f"length and deviation must be positive, got {length} and {deviation}")
-    if form not in FORMS:
-        raise InputError(f"form must be one of {', '.join(FORMS)}, got {form!r}")
-    like = np.exp(-0.5 * (gaps / length) ** 2) if form == "gaussian" else np.exp(-gaps / length)
-    return deviation**2 * _semidefinite(like)
+    return deviation**2 * _semidefinite(np.exp(-0.5 * (gaps / length) ** 2))
 
 
-def performance_kernel(
-    mean: ArrayLike, *, length: float | None = None, deviation: float | None = None
-) -> NDArray[np.float64]:
+def performance_kernel(mean: ArrayLike) -> NDArray[np.float64]:
     """`metric_kernel` on the policies' training performance, as in the thesis's GP-UCB.
 
-    `length` by default is the most likely length given the types' payoffs, see `likeliest_length`;
-    `deviation` is the root mean square deviation of payoffs about each policy's mean over types.
+    Its length is the most likely length given the types' payoffs, see `likeliest_length`; its deviation the root
+    mean square deviation of payoffs about each policy's mean over types.
+
+    Raises
+    ------
+    InputError
+        `mean` is no finite (n_types, n_policies) array, or no policy's payoff differs between types.
     """
     table = np.asarray(mean, np.float64)
     gaps = performance_distances(table)
     centred = table - table.mean(axis=0)
-    spread = float(np.sqrt((centred**2).mean())) if deviation is None else deviation
-    if not spread > 0:
-        raise InputError("deviation must be given where no policy's payoff differs between types")
-    reach = likeliest_length(gaps, centred, deviation=spread) if length is None else length
-    return metric_kernel(gaps, length=reach, deviation=spread)
+    deviation = float(np.sqrt((centred**2).mean()))
+    if not deviation > 0:
+        raise InputError("mean must differ between types for at least one policy; give a kernel of another metric")
+    length = likeliest_length(gaps, centred, deviation)
+    return metric_kernel(gaps, length=length, deviation=deviation)
 
 
-def prior_covariance(library: "PolicyLibrary") -> NDArray[np.float64]:
+def prior_covariance(library: PolicyLibrary) -> NDArray[np.float64]:
     """Covariance of the policies' mean payoffs when the type is drawn from G₀, (n_policies, n_policies).
 
     It is the best second-moment summary of the library for a Gaussian process.
@@ -90,15 +86,11 @@ def prior_covariance(library: "PolicyLibrary") -> NDArray[np.float64]:
     return (centred * prior[:, None]).T @ centred
 
 
-def likeliest_length(
-    distances: ArrayLike,
-    centred: ArrayLike,
-    *,
-    deviation: float,
-    lengths: Sequence[float] | None = None,
-    noise: float | None = None,
-) -> float:
-    """The most likely of `lengths` if the rows of `centred` are draws of the process.
+def likeliest_length(distances: ArrayLike, centred: ArrayLike, deviation: float) -> float:
+    """The most likely length of a kernel if the rows of `centred` are draws of the process.
+
+    Of 24 lengths, evenly in logarithm, from a tenth of the least positive distance to the largest; 1 where all
+    distances are 0. Draws have noise about the process, a hundredth of `deviation`.
 
     Parameters
     ----------
@@ -107,20 +99,15 @@ def likeliest_length(
         Payoffs less each policy's mean.
     deviation : float
         Deviation of the kernel, > 0.
-    lengths : sequence of float, optional
-        By default 24 values, evenly in logarithm, from a tenth of the least positive distance to the largest.
-    noise : float, optional
-        Deviation of the draws about the process; default a hundredth of `deviation`.
     """
     gaps, rows = np.asarray(distances, np.float64), np.asarray(centred, np.float64)
     apart = gaps[gaps > 0]
-    if lengths is None:
-        if not apart.size:
-            return 1.0
-        lengths = [float(each) for each in np.geomspace(apart.min() / 10, apart.max(), 24)]
-    loud = (deviation / 100 if noise is None else noise) ** 2 * np.eye(len(gaps))
-    fits = [_log_density(metric_kernel(gaps, length=each, deviation=deviation) + loud, rows) for each in lengths]
-    return float(lengths[int(np.argmax(fits))])
+    if not apart.size:
+        return 1.0
+    lengths = np.geomspace(apart.min() / 10, apart.max(), 24)
+    noise = (deviation / 100) ** 2 * np.eye(len(gaps))
+    fits = [_log_density(metric_kernel(gaps, length=each, deviation=deviation) + noise, rows) for each in lengths]
+    return float(lengths[np.argmax(fits)])
 
 
 def _log_density(covariance: NDArray[np.float64], rows: NDArray[np.float64]) -> float:
@@ -130,14 +117,6 @@ def _log_density(covariance: NDArray[np.float64], rows: NDArray[np.float64]) -> 
     factor = cho_factor(covariance, lower=True)
     size = 2 * np.log(np.diag(factor[0])).sum()
     return float(-0.5 * (rows * cho_solve(factor, rows.T).T).sum() - 0.5 * len(rows) * size)
-
-
-def _check_distances(gaps: NDArray[np.float64]) -> None:
-    square = gaps.ndim == 2 and gaps.shape[0] == gaps.shape[1] and gaps.size > 0
-    if not square or not np.isfinite(gaps).all() or (gaps < 0).any():
-        raise InputError("distances must be (n_policies, n_policies), finite and at least 0")
-    if not np.allclose(gaps, gaps.T, rtol=1e-9, atol=1e-12) or np.diag(gaps).any():
-        raise InputError("distances must be symmetric and 0 on the diagonal")
 
 
 def _semidefinite(like: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,21 +1,19 @@
 """Thompson sampling: draw each policy's mean payoff from its posterior, play the largest."""
 
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.interaction.baselines.arm_statistics import ArmStatistics
-from lifelore.interaction.baselines.baseline import Baseline, library_moments, row_of
-
-if TYPE_CHECKING:
-    from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.baselines.arm_statistics import ArmBaseline, ArmStatistics
+from lifelore.interaction.baselines.baseline import library_moments, row_of
+from lifelore.interaction.library.policy_library import PolicyLibrary
 
 LEAST = 1e-9
 """Deviation in place of 0 where a library is certain."""
 
 
-class GaussianThompson(Baseline):
+class GaussianThompson(ArmBaseline):
     """Normal payoffs of known noise, normal beliefs about each policy's mean, independent of one another.
 
     After n payoffs of mean m the belief is normal with precision 1/s₀² + n/σ² and mean
@@ -51,15 +49,14 @@ class GaussianThompson(Baseline):
         self.arms = ArmStatistics.empty(self.rows, n_policies)
 
     @classmethod
-    def from_library(cls, library: "PolicyLibrary", **settings: Any) -> Self:
-        """Beliefs and noise under the library's prior; `settings` override."""
+    def settings_from(cls, library: PolicyLibrary) -> dict[str, Any]:
+        """Beliefs and noise under the library's prior."""
         mean, spread, noise = library_moments(library)
-        known: dict[str, Any] = {
+        return {
             "prior_means": mean,
             "prior_deviations": np.maximum(spread, LEAST),
             "noise": np.maximum(noise, LEAST),
         }
-        return cls(library.n_policies, **(known | settings))
 
     def beliefs(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Posterior mean and deviation of each policy's mean payoff, (rows, n_policies) each."""
@@ -70,6 +67,3 @@ class GaussianThompson(Baseline):
 
     def _scores(self) -> NDArray[np.float64]:
         return self._generator.normal(*self.beliefs())
-
-    def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
-        self.arms.add(policies, rewards)

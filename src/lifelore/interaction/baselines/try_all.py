@@ -6,11 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.baselines.arm_statistics import ArmStatistics
-from lifelore.interaction.baselines.baseline import Baseline
+from lifelore.interaction.baselines.arm_statistics import ArmBaseline, ArmStatistics
 
 
-class TryAll(Baseline):
+class TryAll(ArmBaseline):
     """Each policy `rounds` times in a random order for each task, then the policy of the best mean for ever.
 
     Parameters
@@ -48,6 +47,3 @@ class TryAll(Baseline):
         first = self.rounds - self.arms.pulls + self._turn
         # A task that has tried all policies plays by means; other tasks continue in their order.
         return np.where(waiting.any(axis=1, keepdims=True), np.where(waiting, first, -np.inf), self.arms.mean)
-
-    def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
-        self.arms.add(policies, rewards)

@@ -1,19 +1,17 @@
 """UCB1: play the policy whose mean payoff could be the largest (Auer, Cesa-Bianchi and Fischer, 2002)."""
 
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.baselines.arm_statistics import ArmStatistics
-from lifelore.interaction.baselines.baseline import Baseline, library_moments
-
-if TYPE_CHECKING:
-    from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.baselines.arm_statistics import ArmBaseline, ArmStatistics
+from lifelore.interaction.baselines.baseline import library_moments
+from lifelore.interaction.library.policy_library import PolicyLibrary
 
 
-class UCB1(Baseline):
+class UCB1(ArmBaseline):
     """Upper confidence bounds: mean + c·√(2 ln t / n), c = `exploration`, payoffs mapped to [0, 1] by `scale`.
 
     Parameters
@@ -52,42 +50,26 @@ class UCB1(Baseline):
         **common: Any,
     ) -> None:
         super().__init__(n_policies, **common)
-        self.exploration, self.scale = checked_exploration(exploration), checked_scale(scale)
-        means = None if prior_means is None else self._unit(np.asarray(prior_means, np.float64))
+        if not (exploration >= 0 and np.isfinite(exploration)):
+            raise InputError(f"exploration must be finite and at least 0, got {exploration}")
+        self.exploration, self.scale = exploration, checked_scale(scale)
+        means = None if prior_means is None else to_unit(np.asarray(prior_means, np.float64), self.scale)
         self.arms = ArmStatistics.from_prior(self.rows, n_policies, means, prior_pulls)
 
     @classmethod
-    def from_library(cls, library: "PolicyLibrary", **settings: Any) -> Self:
-        """Prior means under the library's prior, scale from its bounds; `settings` override."""
-        known: dict[str, Any] = {
-            "prior_means": library_moments(library).mean,
-            "scale": library.performance.bounds(),
-        }
-        return cls(library.n_policies, **(known | settings))
-
-    def _unit(self, rewards: NDArray[np.float64]) -> NDArray[np.float64]:
-        return to_unit(rewards, self.scale)
+    def settings_from(cls, library: PolicyLibrary) -> dict[str, Any]:
+        """Prior means under the library's prior, scale from its bounds."""
+        return {"prior_means": library_moments(library).mean, "scale": library.performance.bounds()}
 
     def _scores(self) -> NDArray[np.float64]:
-        return upper_bounds(self.arms.pulls, self.arms.mean, self.exploration)
+        pulls = self.arms.pulls
+        # Fewer than one pull in all would have a negative logarithm.
+        seen = np.log(np.maximum(pulls.sum(axis=1, keepdims=True), 1.0))
+        wide = np.sqrt(2 * seen / np.where(pulls > 0, pulls, 1.0))
+        return np.where(pulls > 0, self.arms.mean + self.exploration * wide, np.inf)
 
     def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
-        self.arms.add(policies, self._unit(rewards))
-
-
-def upper_bounds(pulls: NDArray[np.float64], mean: NDArray[np.float64], exploration: float) -> NDArray[np.float64]:
-    """mean + c·√(2 ln t / n) with t the row's sum of pulls; infinite where n = 0. Shapes (..., n_arms)."""
-    # Fewer than one pull in all would have a negative logarithm.
-    seen = np.log(np.maximum(pulls.sum(axis=-1, keepdims=True), 1.0))
-    own = np.where(pulls > 0, pulls, 1.0)
-    return np.where(pulls > 0, mean + exploration * np.sqrt(2 * seen / own), np.inf)
-
-
-def checked_exploration(exploration: float) -> float:
-    """A finite constant of at least 0."""
-    if not (exploration >= 0 and np.isfinite(exploration)):
-        raise InputError(f"exploration must be finite and at least 0, got {exploration}")
-    return float(exploration)
+        super()._learn(policies, to_unit(rewards, self.scale))
 
 
 def checked_scale(scale: tuple[float, float] | None) -> tuple[float, float]:

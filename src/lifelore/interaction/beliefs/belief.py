@@ -1,4 +1,4 @@
-"""Beliefs over types in log space: the prior, Bayes' rule for any number of users, entropy, expected utility.
+"""Beliefs over types in log space: the prior, Bayes' rule for any number of users, entropy.
 
     β'(τ) = F(σ | τ, π) β(τ) / Σ F(σ | τ', π) β(τ')                                            Eq. 4.1, 4.2
 
@@ -6,19 +6,17 @@ A belief of 10⁻⁴⁰⁰ is still a number in log space and may rise again. A 
 explains leaves the belief as it is; its log evidence is minus infinity. Thesis: §4.4.3.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.compiled.compiler_start import kernel_pays
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.bayes_rule import bayes_rule
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 
-ROW_COST = 10
-"""Time of `bayes_rule` for each type, in the numbers that `kernel_pays` counts."""
+FAR = 100.0
+"""Largest log likelihood in size that a log belief is added to: beside larger numbers it would be rounded."""
 SUM_TOLERANCE = 1e-9
 """Largest distance from 1 of the sum of a caller's belief."""
 
@@ -26,15 +24,15 @@ SUM_TOLERANCE = 1e-9
 class Updated(NamedTuple):
     """A belief after a signal.
 
-    log_belief : (..., n_types) float64, normalised
-    log_evidence : (...) float64, log Σ F β; minus infinity where no type explains the signal
+    log_belief : (..., n_types) float, normalised
+    log_evidence : (...) float, log Σ F β; minus infinity where no type explains the signal
     """
 
     log_belief: Array
     log_evidence: Array
 
 
-def log_prior(prior: ArrayLike) -> Array:
+def log_prior(prior: ArrayLike) -> NDArray[np.float64]:
     """Logarithms of an initial belief, normalised.
 
     Parameters
@@ -85,25 +83,40 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
     >>> np.exp(after.log_belief).round(3).tolist(), float(np.exp(after.log_evidence).round(3))
     ([0.25, 0.75], 0.2)
     """
-    beliefs, likelihoods = np.broadcast_arrays(
-        np.asarray(log_belief, np.float64), np.asarray(log_likelihood, np.float64)
-    )
-    shape = beliefs.shape
-    result = np.array(beliefs.reshape(-1, shape[-1]), order="C")
-    rows = np.ascontiguousarray(likelihoods.reshape(result.shape))
-    evidence = np.empty(len(result))
-    if kernel_pays(ROW_COST * result.size):
-        from lifelore.interaction.beliefs.belief_kernels import bayes_rows
+    log_belief, log_likelihood, best = np.asarray(log_belief), np.asarray(log_likelihood), None
+    if log_likelihood.dtype != log_belief.dtype:
+        # Of likelihoods in float64, rows in float32 take what is left beside the best.
+        best = np.maximum.reduce(log_likelihood, axis=-1, keepdims=True)
+        best = np.where(np.isfinite(best), best, 0.0)
+        log_likelihood = (log_likelihood - best).astype(log_belief.dtype)
+    joint = log_belief + log_likelihood
+    top = np.maximum.reduce(joint, axis=-1, keepdims=True)
+    if not np.maximum.reduce(np.abs(top), axis=None) <= FAR:
+        joint, top, more = _relative_to_possible(log_belief, log_likelihood)
+        best = more if best is None else best + more
+    log_evidence = np.log(np.add.reduce(np.exp(joint - top), axis=-1, keepdims=True))
+    log_evidence += top
+    joint -= log_evidence
+    return Updated(joint, (log_evidence if best is None else log_evidence + best)[..., 0])
 
-        bayes_rows(result, rows, evidence)
-    else:
-        for number, row in enumerate(rows):
-            result[number], evidence[number] = bayes_rule(result[number], row)
-    if np.isnan(evidence).any():
+
+def _relative_to_possible(log_belief: Array, log_likelihood: Array) -> tuple[Array, Array, Array]:
+    """Sums of log beliefs and log likelihoods less the largest, that largest sum (0), and what was taken off.
+
+    Beside a large likelihood a belief would be rounded away. What is taken off is minus infinity where no type
+    explains the signal: the belief then stays.
+    """
+    if not (log_likelihood < np.inf).all():
         raise InputError(
             "log_likelihood must be numbers below infinity (minus infinity is allowed), got NaN or infinity"
         )
-    return Updated(result.reshape(shape), evidence.reshape(shape[:-1]))
+    possible = log_belief > -np.inf
+    best = np.where(possible, log_likelihood, -np.inf).max(axis=-1, keepdims=True)
+    with np.errstate(invalid="ignore", over="ignore"):
+        relative = np.where(possible & (best > -np.inf), log_likelihood - best, 0.0)
+    joint = log_belief + relative.astype(log_belief.dtype, copy=False)
+    top = joint.max(axis=-1, keepdims=True)
+    return joint - top, np.zeros_like(top), best + top
 
 
 def entropy(belief: ArrayLike) -> Array:
@@ -112,6 +125,9 @@ def entropy(belief: ArrayLike) -> Array:
     return -(belief * np.log(np.where(belief > 0, belief, 1.0))).sum(axis=-1)
 
 
-def expected_utility(belief: ArrayLike, mean: ArrayLike) -> Array:
-    """Ũ(π) = Σ β(τ) E[U | τ, π] (Eq. 4.5) of beliefs (..., n_types) and means (n_types, n_policies)."""
-    return np.asarray(belief, np.float64) @ np.asarray(mean, np.float64)
+def log_sum(terms: Array) -> Array:
+    """log Σ exp over the last axis but one, (..., k, n_types) to (..., n_types); minus infinity where all are."""
+    top = terms.max(axis=-2, keepdims=True)
+    top = np.where(top > -np.inf, top, 0.0)
+    with np.errstate(divide="ignore"):
+        return (np.log(np.exp(terms - top).sum(axis=-2, keepdims=True)) + top)[..., 0, :]

@@ -138,17 +138,15 @@ class FeaturePrior:
             There is no such feature.
         """
         if isinstance(features, Mapping):
-            features = self.checked(features)
-            values = np.array([features[name] for name in self.names])
-        else:
-            values = np.asarray(features, np.float64)
+            features = list(self.checked(features).values())
+        values = np.asarray(features, np.float64)
         if values.ndim < 1 or values.shape[-1] != len(self.names) or not np.isfinite(values).all():
             raise InputError(
                 f"features must be finite numbers (..., {len(self.names)}), one for each of "
                 f"{', '.join(self.names)}, got {np.shape(values)}"
             )
         z = np.clip((values - self.centre) / self.scale, self.low, self.high)
-        return _mixed(_softmax(z @ self.weights.T + self.intercept), self.library_prior)
+        return _prior(z, self.weights, self.intercept, self.library_prior)
 
     def checked(self, features: Mapping[str, Any]) -> dict[str, float]:
         """The features as numbers in the order of `names`; errors as for `prior`."""
@@ -213,7 +211,7 @@ def _best_strength(rows: Array, beliefs: Array, prior: Array, seed: int) -> tupl
         out = part == fold
         for place, strength in enumerate(STRENGTHS):
             weights, intercept = _fitted(rows[~out], beliefs[~out], prior, strength)
-            probs = _mixed(_softmax(rows[out] @ weights.T + intercept), prior)
+            probs = _prior(rows[out], weights, intercept, prior)
             logs = np.log(np.where(beliefs[out] > 0, probs, 1.0))
             likelihoods[place, out] = (beliefs[out] * logs).sum(axis=1)
     means = likelihoods.mean(axis=1)
@@ -250,13 +248,11 @@ def _fitted(rows: Array, beliefs: Array, prior: Array, strength: float) -> tuple
     return weights, intercept
 
 
-def _softmax(logits: Array) -> Array:
+def _prior(rows: Array, weights: Array, intercept: Array, prior: Array) -> Array:
+    """P(type | x) of standardised rows (..., n_features), (..., n_types)."""
+    logits = rows @ weights.T + intercept
     powers = np.exp(logits - logits.max(axis=-1, keepdims=True))
-    return powers / powers.sum(axis=-1, keepdims=True)
-
-
-def _mixed(probs: Array, prior: Array) -> Array:
-    mixed = (1 - SHARE) * probs + SHARE * prior
+    mixed = (1 - SHARE) * (powers / powers.sum(axis=-1, keepdims=True)) + SHARE * prior
     return mixed / mixed.sum(axis=-1, keepdims=True)
 
 

@@ -5,17 +5,16 @@ With a hazard h, a new type is drawn from the prior with probability h before ea
 seven. The default is a hazard of `DEFAULT_HAZARD`. The thesis assumes static types, h = 0.
 """
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, field
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import SUM_TOLERANCE, log_prior
-from lifelore.interaction.beliefs.hazard import HazardTerms
+from lifelore.interaction.beliefs.belief import SUM_TOLERANCE, log_prior, log_sum
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 DEFAULT_HAZARD = 0.002
 """Default probability per episode of a new type; a larger one forgets sooner what a known user showed."""
 ROWS_AT_ONCE = 1 << 20
@@ -44,6 +43,7 @@ class TypeDynamics:
     kind: Literal["static", "hazard", "transitions"] = "static"
     rate: float = 0.0
     law: Array | None = None
+    _known: dict[Any, "_HazardTerms"] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         shape = () if self.law is None else np.shape(self.law)
@@ -100,38 +100,53 @@ class TypeDynamics:
         """Number of types that the dynamics are for; None where it does not matter."""
         return None if self.law is None else self.law.shape[-1]
 
-    def hazard_terms(self, dtype: str = "f8") -> HazardTerms | None:
-        """The terms of `hazard_rule` and its kernels; None where the dynamics are no hazard above 0."""
-        if self.kind != "hazard" or not self.rate:
-            return None
-        assert self.law is not None
-        return HazardTerms.of(self.rate, self.law, dtype)
+    @property
+    def moves(self) -> bool:
+        """Whether a step changes beliefs."""
+        return self.kind == "transitions" or self.rate > 0
 
-    def step(self, log_belief: Array) -> Array:
-        """The belief before the next episode, (..., n_types) to the same, normalised."""
-        if self.kind == "static":
+    def step(self, log_belief: Array, users: Any = None, outcome: Any = None) -> Array:
+        """The belief before the next episode, (..., n_types) to the same, normalised.
+
+        Parameters
+        ----------
+        users : int or (k,) int64, optional
+            Whose beliefs these are, and
+        outcome : optional
+            how the episode ended; for dynamics that learn. These do not.
+        """
+        if not self.moves:
             return log_belief
-        stepped = self._hazarded(log_belief) if self.kind == "hazard" else self._moved(log_belief)
-        # Rounding may leave the belief of a certain type a last bit above 1.
-        return np.minimum(stepped, 0.0)
+        return self._hazarded(log_belief) if self.kind == "hazard" else np.minimum(self._moved(log_belief), 0.0)
 
     def changed_share(self, log_belief: Array) -> Array | None:
-        """P(the type has just changed | it is now this type) after a `step`, (n_types,); None where it never does.
+        """P(the type has just changed | it is now this type) after a `step`, (..., n_types).
 
-        For transitions, whose changes the belief follows by itself, None too.
+        None where types never change, and for transitions, whose changes the belief follows by itself.
         """
         if self.kind != "hazard" or not self.rate:
             return None
-        assert self.law is not None
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = np.exp(np.log(self.rate) + np.log(self.law) - log_belief)
-        return np.clip(np.nan_to_num(share), 0.0, 1.0)
+        with np.errstate(invalid="ignore"):
+            return np.exp(np.fmin(self._terms(log_belief.dtype).log_anew - log_belief, 0.0))
 
     def _hazarded(self, log_belief: Array) -> Array:
-        assert self.law is not None
-        with np.errstate(divide="ignore"):
-            stays, anew = np.log1p(-self.rate), np.log(self.rate) + np.log(self.law)
-        return np.logaddexp(log_belief + stays, anew)
+        terms = self._terms(log_belief.dtype)
+        if not terms.small:
+            return np.log(np.exp(log_belief) * terms.stay + terms.anew)
+        return np.logaddexp(log_belief + terms.log_stay, terms.log_anew)
+
+    def _terms(self, dtype: Any) -> "_HazardTerms":
+        """The numbers of a hazard's step in the precision of the beliefs, computed once."""
+        if dtype not in self._known:
+            assert self.law is not None
+            anew = self.rate * self.law
+            with np.errstate(divide="ignore"):
+                log_stay, log_anew = np.log1p(-self.rate), np.log(anew)
+            small = bool((anew < np.finfo(dtype).tiny).any())
+            terms = (1 - self.rate, log_stay, anew, log_anew)
+            stored = [np.asarray(term, dtype) for term in terms]
+            self._known[dtype] = _HazardTerms(small, *stored)
+        return self._known[dtype]
 
     def _moved(self, log_belief: Array) -> Array:
         assert self.law is not None
@@ -140,13 +155,15 @@ class TypeDynamics:
         n_types = len(log_law)
         rows = log_belief.reshape(-1, n_types)
         block = max(1, ROWS_AT_ONCE // n_types**2)
-        moved = [_log_sums(rows[at : at + block, :, None] + log_law) for at in range(0, len(rows), block)]
+        moved = [log_sum(rows[at : at + block, :, None] + log_law) for at in range(0, len(rows), block)]
         return np.concatenate(moved).reshape(log_belief.shape)
 
 
-def _log_sums(terms: Array) -> Array:
-    """log Σ exp over the middle axis of (n, from, to); minus infinity where all are."""
-    top = terms.max(axis=1, keepdims=True)
-    top = np.where(top == -np.inf, 0.0, top)
-    with np.errstate(divide="ignore"):
-        return np.log(np.exp(terms - top).sum(axis=1)) + top[:, 0]
+class _HazardTerms(NamedTuple):
+    """Whether some h G₀ is too small for a number; 1 − h and h G₀ (n_types,), with their logarithms."""
+
+    small: bool
+    stay: Array
+    log_stay: Array
+    anew: Array
+    log_anew: Array

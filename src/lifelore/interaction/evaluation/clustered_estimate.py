@@ -17,11 +17,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.core.intervals import LEAST_VALUES, t_interval
 
 Array = NDArray[np.float64]
-
-LEAST_USERS = 3
-"""Users below which there is no interval."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +30,7 @@ class ClusteredEstimate:
     ----------
     value, standard_error : float
     ci95 : (low, high) or None
-        None below `LEAST_USERS` users, or where the contributions have no spread.
+        None below `LEAST_VALUES` users, or where the contributions have no spread.
     n_decisions, n_users : int
     influence : (n_users,) float64
         φ of each user, in the order of the sorted users; sums to 0.
@@ -98,11 +96,9 @@ def _estimate(value: float, influence: Array, n_decisions: int) -> ClusteredEsti
     n = len(influence)
     error = float(np.sqrt(n / max(n - 1, 1) * (influence**2).sum()))
     ci95 = None
-    if n >= LEAST_USERS and error > 0:
-        from scipy.special import stdtrit
-
-        half = float(stdtrit(_degrees_of_freedom(influence), 0.975)) * error
-        ci95 = (float(value - half), float(value + half))
+    if n >= LEAST_VALUES and error > 0:
+        low, high = t_interval(value, error, _degrees_of_freedom(influence))
+        ci95 = (float(low), float(high))
     return ClusteredEstimate(float(value), error, ci95, n_decisions, n, influence)
 
 

@@ -4,7 +4,7 @@
     self-normalised IPS        Σ w y / Σ w                          biased by order 1/n, less noisy
     doubly robust              1/n Σ [q̂(h, π) + w (y − q̂(h, a))]    right where the weights or the model are
 
-y is the outcome, w the importance weight, q̂ a model of outcomes learnt without the row's user (`outcome_models`),
+y is the outcome, w the importance weight, q̂ a reward model learnt without the row's user (`reward_models`),
 q̂(h, π) its expectation under the target. Weights are those of single decisions, or products along each user's
 decisions (`importance_weights.trajectory_weights`); the latter are for targets that depend on earlier outcomes.
 

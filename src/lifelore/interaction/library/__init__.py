@@ -1,5 +1,4 @@
 """Policy library: types × policies with their models, how it is filled, stored and reduced (thesis §4.3, §4.4).
 
-Read in this order: `policy_library`, `offline_runs` (fill it), `library_file`, `task_types` and `user_types` (find
-types), `storage_cost`; `signal_laws` (which signals the types predict), `broad_law` (the law where none fits).
+Read in this order: `policy_library`, `library_file`, `task_types` and `user_types` (find types).
 """

@@ -10,7 +10,7 @@ name, and the reader takes the model from the caller.
 """
 
 from collections.abc import Callable
-from typing import Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from lifelore.core.errors import InputError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
@@ -23,6 +23,9 @@ from lifelore.interaction.signals.return_signal import ReturnSignal
 from lifelore.interaction.signals.reward_signal import RewardSignal
 from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
 from lifelore.interaction.signals.transition_signal import TransitionSignal
+
+if TYPE_CHECKING:
+    from lifelore.interaction.library.policy_library import PolicyLibrary
 
 FORMAT = PackedFormat("lifelore policy library", 1, "policy library", "save")
 SIGNALS: dict[str, Any] = {
@@ -42,20 +45,10 @@ DEEPEST = 8
 """Largest depth of signals within signals in a file."""
 
 
-class Library(Protocol):
-    """The attributes of a `PolicyLibrary` that a file holds."""
-
-    performance: Any
-    signal: SignalModel
-    types: tuple[str, ...]
-    policies: tuple[str, ...]
-    prior: Any
+L = TypeVar("L")
 
 
-L = TypeVar("L", bound=Library)
-
-
-def packed_library(library: Library) -> bytes:
+def packed_library(library: "PolicyLibrary") -> bytes:
     """The library as the bytes of an npz file; InputError where the performance model is the caller's own."""
     kind = getattr(library.performance, "kind", None)
     if kind not in OUTCOMES:
@@ -100,19 +93,18 @@ def unpacked_library(content: bytes, where: str, signal: SignalModel | None, mak
         raise FORMAT.damaged(where, error) from None
 
 
-def _packed(part: Any, name: str, library: Library, arrays: Arrays) -> dict[str, Any]:
+def _packed(part: Any, name: str, library: "PolicyLibrary", arrays: Arrays) -> dict[str, Any]:
     """The description of a model as JSON; its arrays go into `arrays` under `name`."""
     if part is library.performance:
         return {"kind": "performance"}
     kind = getattr(part, "kind", None)
-    if kind in OUTCOMES:
-        arrays.update({f"{name}.{key}": value for key, value in part.to_arrays().items()})
-        return {"kind": kind}
-    if kind not in SIGNALS:
+    if kind not in OUTCOMES and kind not in SIGNALS:
         return {"kind": "own", "class": type(part).__name__}
-    arrays.update({f"{name}.{key}": value for key, value in part.to_arrays().items()})
-    parts = [_packed(inner, f"{name}.{i}", library, arrays) for i, inner in enumerate(part.parts())]
-    return {"kind": kind, "parts": parts}
+    inner = part.parts() if hasattr(part, "parts") else ()
+    if not inner:
+        arrays.update({f"{name}.{key}": value for key, value in part.to_arrays().items()})
+    parts = [_packed(model, f"{name}.{i}", library, arrays) for i, model in enumerate(inner)]
+    return {"kind": kind} if kind in OUTCOMES else {"kind": kind, "parts": parts}
 
 
 def _unpacked(
@@ -127,13 +119,14 @@ def _unpacked(
         )
     if depth > DEEPEST:
         raise ValueError("signals within signals go too deep")
-    if kind in OUTCOMES:
-        return OUTCOMES[kind].from_arrays(_under(name, arrays))
+    model = OUTCOMES[kind] if kind in OUTCOMES else SIGNALS[kind]
+    if not hasattr(model, "parts"):
+        return model.from_arrays(_under(name, arrays))
     parts = [
         _unpacked(inner, f"{name}.{i}", performance, arrays, where, depth + 1)
         for i, inner in enumerate(node["parts"])
     ]
-    return SIGNALS[kind].from_arrays(_under(name, arrays), tuple(parts))
+    return model.from_parts(parts)
 
 
 def _under(name: str, arrays: Arrays) -> Arrays:

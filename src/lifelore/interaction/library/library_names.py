@@ -1,6 +1,7 @@
 """Checks of a library's prior and of the names of its types and policies."""
 
 from collections.abc import Sequence
+from itertools import count
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -32,12 +33,8 @@ def distinct_names(names: Sequence[str], n: int, what: str) -> tuple[str, ...]:
 
 def new_name(name: str | None, taken: Sequence[str], what: str) -> str:
     """The given name of a new type or policy, or a name that is not taken."""
-    if name is not None:
-        return name
-    number = len(taken)
-    while f"{what} {number}" in taken:
-        number += 1
-    return f"{what} {number}"
+    numbered = (f"{what} {number}" for number in count(len(taken)))
+    return name if name is not None else next(free for free in numbered if free not in taken)
 
 
 def index_of(wanted: str | int, names: Sequence[str], what: str) -> int:

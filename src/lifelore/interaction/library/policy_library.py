@@ -6,7 +6,7 @@ Thesis: §4.2 (Alg. 7's requirements), §4.3.4, §4.4.1.
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,12 +19,10 @@ from lifelore.interaction.library.library_names import checked_prior, distinct_n
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.outcome_columns import rows_of_columns
-from lifelore.interaction.outcomes.outcome_kinds import outcome_kind
-from lifelore.interaction.outcomes.outcome_model import OutcomeModel, OutcomeRows, rows_of_samples
+from lifelore.interaction.outcomes.outcome_kinds import OutcomeModel, outcome_kind
+from lifelore.interaction.outcomes.outcome_model import OutcomeRows, rows_of_samples
+from lifelore.interaction.outcomes.outcome_moments import chosen_of
 from lifelore.interaction.signals.return_signal import ReturnSignal
-
-if TYPE_CHECKING:
-    from lifelore.interaction.library.task_library import TaskLibrary
 
 Array = NDArray[np.float64]
 
@@ -62,7 +60,6 @@ class PolicyLibrary:
     policies: tuple[str, ...] = ()
     prior: Array = None  # pyright: ignore[reportAssignmentType]
     _tables: dict[int, SignalTable] = field(default_factory=dict, init=False, repr=False)
-    _task_tables: dict[int, tuple[SignalTable, list[Any]]] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         if self.signal is None:
@@ -214,25 +211,6 @@ class PolicyLibrary:
             self._tables[n_bins] = make(n_bins)
         return self._tables[n_bins]
 
-    def keep_task_table(self, n_bins: int, table: SignalTable, cuts: list[Any]) -> None:
-        """Store what `task_table(n_bins)` of this library computed earlier, so that it is not computed again."""
-        self._task_tables[n_bins] = table, cuts
-
-    def keep_table(self, n_bins: int, table: SignalTable) -> None:
-        """Store a table that `table(n_bins)` of this library computed earlier, so that it is not computed again.
-
-        Raises
-        ------
-        InputError
-            The table has another number of types or policies.
-        """
-        if (table.n_policies, table.n_types) != (self.n_policies, self.n_types):
-            raise InputError(
-                f"table must be of {self.n_policies} policies and {self.n_types} types, got one of "
-                f"{table.n_policies} and {table.n_types}"
-            )
-        self._tables[n_bins] = table
-
     def observe(self, type_: str | int, policy: str | int, value: float) -> None:
         """Learn from another outcome of a known type, in place; tables are computed again when needed."""
         self.performance.observe(self.index_of_type(type_), self.index_of_policy(policy), value)
@@ -241,31 +219,6 @@ class PolicyLibrary:
     def forget_tables(self) -> None:
         """Drop all tables; call it after the signal model has changed in place."""
         self._tables.clear()
-        self._task_tables.clear()
-
-    def for_task(self, closest: bool = False) -> "TaskLibrary | None":
-        """The library as one task sees it, whose models the task's own signals change.
-
-        None where nothing is to be learnt about the models: all are exact, or the caller's own. With `closest` the
-        task is as close to its type as the spread of the tasks of a type allows.
-        """
-        from lifelore.interaction.library.task_library import TaskLibrary
-
-        outcomes = getattr(self.performance, "for_task", _nothing)(closest)
-        own_signal = not isinstance(self.signal, ReturnSignal)
-        signal = getattr(self.signal, "for_task", _nothing)(closest) if own_signal else None
-        return None if outcomes is None and signal is None else TaskLibrary(self, outcomes, signal)
-
-    def task_table(self, n_bins: int) -> tuple[SignalTable, list[Any]]:
-        """The table of a task that has shown nothing yet, and each policy's bins; computed once."""
-        if n_bins not in self._task_tables:
-            task = self.for_task()
-            assert task is not None
-            cuts = task.evidence.cuts(n_bins)
-            width = max(len(found) for found in cuts) + 1
-            rows = [task.evidence.table_rows(policy, found, width) for policy, found in enumerate(cuts)]
-            self._task_tables[n_bins] = SignalTable(np.stack(rows)), cuts
-        return self._task_tables[n_bins]
 
     def with_type(
         self,
@@ -338,15 +291,14 @@ class PolicyLibrary:
             )
         else:
             signal = cut(types, policies)
-        chosen = range(self.n_types) if types is None else types
-        left = self.prior[list(chosen)]
-        if prior is None and not left.sum() > 0:
-            raise InputError("the types taken have no prior mass; give prior=")
-        names = tuple(self.types[i] for i in chosen)
-        policy_names = tuple(self.policies[i] for i in (range(self.n_policies) if policies is None else policies))
-        return type(self)(
-            performance, signal, names, policy_names, left / left.sum() if prior is None else np.asarray(prior)
-        )
+        chosen, left_policies = chosen_of(types, self.n_types), chosen_of(policies, self.n_policies)
+        if prior is None:
+            left = self.prior[chosen]
+            if not left.sum() > 0:
+                raise InputError("the types taken have no prior mass; give prior=")
+            prior = left / left.sum()
+        names = tuple(self.types[i] for i in chosen), tuple(self.policies[i] for i in left_policies)
+        return type(self)(performance, signal, *names, np.asarray(prior))
 
     def save(self, path: str | Path) -> None:
         """Write the library as one npz file; see `library_file`.
@@ -412,7 +364,3 @@ class PolicyLibrary:
         if isinstance(self.signal, ReturnSignal) and self.signal.outcomes is self.performance:
             return ReturnSignal(performance)
         raise InputError("signals are not returns here; give the new library's signal model as signal=")
-
-
-def _nothing(closest: bool) -> None:
-    """What a model without a `for_task` of its own has to learn in a task."""

@@ -126,19 +126,6 @@ def landmark_regret(utilities: ArrayLike, types: TaskTypes) -> Array:
     return utilities.max(axis=1) - np.where(best, utilities, np.inf).min(axis=1)
 
 
-def member_regret(utilities: ArrayLike, types: TaskTypes) -> Array:
-    """The largest `landmark_regret` of each task over all choices of the landmark in its type, (n_tasks,)."""
-    utilities = _checked(utilities, types)
-    regret = np.zeros(len(utilities))
-    for type_ in range(types.n_types):
-        members = np.flatnonzero(types.labels == type_)
-        own = utilities[members]
-        for stands_for_all in own:
-            left = own[:, stands_for_all == stands_for_all.max()].min(axis=1)
-            regret[members] = np.maximum(regret[members], own.max(axis=1) - left)
-    return regret
-
-
 def landmark_library(library: PolicyLibrary, types: TaskTypes) -> PolicyLibrary:
     """The library of the landmarks of `library`'s types, each with the prior of all types that it represents.
 

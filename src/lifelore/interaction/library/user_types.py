@@ -20,7 +20,8 @@ from numpy.typing import NDArray
 from scipy.special import logsumexp
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.outcome_families import FAMILIES, OutcomeFamily, UserRows
+from lifelore.interaction.outcomes.outcome_families import FAMILIES, OutcomeFamily
+from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 
 Array = NDArray[np.float64]
 
@@ -65,7 +66,7 @@ class UserTypes:
 
 
 def user_types(
-    rows: UserRows,
+    rows: OutcomeRows,
     generator: np.random.Generator,
     *,
     family: str = "gaussian",
@@ -76,8 +77,8 @@ def user_types(
 
     Parameters
     ----------
-    rows : UserRows
-        Every user and every policy has a row.
+    rows : OutcomeRows
+        With numbers of users in place of types; every user and every policy has a row.
     generator : numpy generator
         For the starts.
     family : {"gaussian", "categorical"}
@@ -107,20 +108,20 @@ def user_types(
     return _named(best, tuple(fit.criterion for fit in tried))
 
 
-def _extended(made: OutcomeFamily, rows: UserRows, generator: np.random.Generator, **settings: Any) -> UserTypes:
+def _extended(
+    made: OutcomeFamily, rows: OutcomeRows, generator: np.random.Generator, **settings: Any
+) -> UserTypes:
     """The types of a sample of users, then fitted to all users from there."""
     sample = np.sort(generator.choice(rows.shape[0], SAMPLED_USERS, replace=False))
-    chosen = np.isin(rows.users, sample)
+    chosen = np.isin(rows.types, sample)
     # A policy that the sample never met has no place in it.
     policies, of_policy = np.unique(rows.policies[chosen], return_inverse=True)
     shape = len(sample), len(policies)
-    part = UserRows(np.searchsorted(sample, rows.users[chosen]), of_policy, rows.values[chosen], shape)
+    part = OutcomeRows(np.searchsorted(sample, rows.types[chosen]), of_policy, rows.values[chosen], shape)
     found = user_types(part, generator, **settings)
     shares = np.zeros((rows.shape[0], found.n_types))
     shares[sample] = found.probs
-    likelihood = made.stats @ made.fit(shares).T + np.log(found.weights)
-    each = np.asarray(logsumexp(likelihood, axis=1, keepdims=True))
-    probs, weights, _ = _maximised(made, np.exp(likelihood - each))
+    probs, weights, _ = _maximised(made, _expected(made, shares, found.weights)[0])
     return _named(_Fit(probs, weights, min(found.criteria)), found.criteria)
 
 
@@ -130,14 +131,14 @@ class _Fit(NamedTuple):
     criterion: float
 
 
-def _best_start(family: OutcomeFamily, rows: UserRows, size: int, generator: np.random.Generator) -> _Fit:
+def _best_start(family: OutcomeFamily, rows: OutcomeRows, size: int, generator: np.random.Generator) -> _Fit:
     n_parameters = family.n_parameters(size)
     fits = (_maximised(family, shares) for shares in _starts(rows, size, generator))
     probs, weights, likelihood = max(fits, key=lambda fit: fit[2])
     return _Fit(probs, weights, -2 * likelihood + n_parameters * np.log(len(rows.values)))
 
 
-def _starts(rows: UserRows, size: int, generator: np.random.Generator) -> Iterator[Array]:
+def _starts(rows: OutcomeRows, size: int, generator: np.random.Generator) -> Iterator[Array]:
     """Shares (n_users, size) to start from."""
     n_users = rows.shape[0]
     if size == 1 or size == n_users:
@@ -151,7 +152,7 @@ def _starts(rows: UserRows, size: int, generator: np.random.Generator) -> Iterat
         yield 0.9 * np.eye(size)[near] + 0.1 / size
 
 
-def _profiles(rows: UserRows) -> Array:
+def _profiles(rows: OutcomeRows) -> Array:
     """Mean outcome of each user with each policy in deviations of that policy, 0 without outcomes."""
     number, total = rows.sums(), rows.sums(rows.values)
     mean = np.where(number > 0, total / np.maximum(number, 1), np.nan)
@@ -173,15 +174,19 @@ def _maximised(family: OutcomeFamily, shares: Array) -> tuple[Array, Array, floa
     """Shares, weights and log likelihood at the end of expectation–maximisation from `shares`."""
     likelihood, before = -np.inf, -np.inf
     for _ in range(STEPS):
-        weights = shares.mean(axis=0)
-        with np.errstate(divide="ignore"):
-            joint = family.stats @ family.fit(shares).T + np.log(weights)
-        each = np.asarray(logsumexp(joint, axis=1, keepdims=True))
-        shares, likelihood = np.exp(joint - each), float(each.sum())
+        shares, likelihood = _expected(family, shares, shares.mean(axis=0))
         if likelihood - before < ENOUGH * abs(likelihood):
             break
         before = likelihood
     return shares, shares.mean(axis=0), likelihood
+
+
+def _expected(family: OutcomeFamily, shares: Array, weights: Array) -> tuple[Array, float]:
+    """Each user's shares in the types fitted to `shares`, and the log likelihood of all outcomes."""
+    with np.errstate(divide="ignore"):
+        joint = family.stats @ family.fit(shares).T + np.log(weights)
+    each = np.asarray(logsumexp(joint, axis=1, keepdims=True))
+    return np.exp(joint - each), float(each.sum())
 
 
 def _named(fit: _Fit, criteria: tuple[float, ...]) -> UserTypes:
@@ -192,7 +197,7 @@ def _named(fit: _Fit, criteria: tuple[float, ...]) -> UserTypes:
     return UserTypes(probs[:, order], probs.mean(axis=0)[order], criteria)
 
 
-def _checked(rows: UserRows) -> UserRows:
+def _checked(rows: OutcomeRows) -> OutcomeRows:
     if not len(rows.values) or not np.isfinite(rows.values).all():
         raise InputError("values must be finite, at least one")
     met = rows.sums() > 0

@@ -1,10 +1,10 @@
-"""Checks of probability arrays, their logarithms, and probabilities from counts."""
+"""Checks of probability arrays and of the counts behind them, and logarithms of probabilities."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
+from lifelore.interaction.outcomes.outcome_model import numbers, of_shape
 
 Array = NDArray[np.float64]
 
@@ -17,10 +17,7 @@ def checked_distributions(probs: ArrayLike, name: str, axes: tuple[str, ...]) ->
     InputError
         The number of axes differs, one is empty, or a row is no distribution.
     """
-    try:
-        probs = np.array(probs, np.float64)
-    except (TypeError, ValueError):
-        raise InputError(f"{name} must be numbers ({', '.join(axes)}), rows of one length") from None
+    probs = numbers(probs, f"{name} must be numbers ({', '.join(axes)}), rows of one length").copy()
     if probs.ndim != len(axes) or not probs.size:
         raise InputError(f"{name} must be ({', '.join(axes)}) numbers, none of them 0, got {probs.shape}")
     if not ((probs >= 0).all() and (np.abs(probs.sum(axis=-1) - 1) <= 1e-6).all()):
@@ -33,26 +30,15 @@ def log_of(probs: Array) -> Array:
     return np.log(probs, out=np.full_like(probs, -np.inf), where=probs > 0)
 
 
-def checked_weight(count: float | None) -> float:
-    """The factor that turns a row of probabilities into counts: `count`, or 1 where it is exact."""
-    if count is None:
-        return 1.0
-    if not (count > 0 and np.isfinite(count)):
-        raise InputError(f"count must be positive and finite, got {count}; omit it where the numbers are exact")
-    return float(count)
-
-
-def with_pseudo_counts(counts: ArrayLike, pseudo_count: PseudoCount) -> Array:
-    """Distributions along the last axis from counts, `pseudo_count` added to each; uniform where all are 0.
+def checked_counts(count: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """The number of samples behind each row of probabilities, a number or of `shape`, as a float64 of `shape`.
 
     Raises
     ------
     InputError
-        A count is negative or not finite, or the pseudo-count negative.
+        It has another shape, or is not positive and finite.
     """
-    counts = np.asarray(counts, np.float64)
-    if not counts.size or not ((counts >= 0).all() and np.isfinite(counts).all()):
-        raise InputError("counts must be at least 0 and finite, at least one of them")
-    weights = counts + checked_pseudo_count(pseudo_count, counts)
-    totals = weights.sum(axis=-1, keepdims=True)
-    return np.divide(weights, totals, out=np.full_like(weights, 1 / counts.shape[-1]), where=totals > 0)
+    found = of_shape(count, shape, "count")
+    if not ((found > 0) & np.isfinite(found)).all():
+        raise InputError(f"count must be positive and finite, got {count!r:.80}; omit it for exact probabilities")
+    return found

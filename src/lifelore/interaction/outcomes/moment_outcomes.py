@@ -1,47 +1,45 @@
 """Base of outcome models by mean and variance."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.finite_signals.signal_bins import informative_table
+from lifelore.interaction.finite_signals.signal_bins import normal_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
+from lifelore.interaction.outcomes.law import FixedLaw, Models
+from lifelore.interaction.outcomes.normal_law import NormalLaw, spread_of_moments
 from lifelore.interaction.outcomes.outcome_model import (
     OutcomeRows,
+    check_known,
     check_outcome,
-    check_type,
-    excess_of_means,
+    finite_outcomes,
     rows_of_samples,
 )
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments, moments
+from lifelore.interaction.outcomes.prediction import NormalPrediction
 from lifelore.interaction.outcomes.spread import Spread
-from lifelore.interaction.outcomes.task_normals import TaskNormals, spread_of
 
 Array = NDArray[np.float64]
 
 
-class MomentOutcomes:
+class MomentOutcomes(NormalPrediction):
     """Base of `GaussianOutcomes` and `StudentTOutcomes`.
 
     Attributes
     ----------
     moments : OutcomeMoments
-        Mean and variance of each pair; only `observe` changes them.
+        Mean and variance of each pair; only `observe` and `absorb` change them.
     mean, deviation : (n_types, n_policies) float
         Of the outcome as the model sees it.
     """
 
     moments: OutcomeMoments
-    mean: Array
-    deviation: Array
 
     def __init__(self, found: OutcomeMoments) -> None:
         self.moments = found
-        self.mean = found.mean
         self._prepare()
 
     @classmethod
@@ -65,7 +63,7 @@ class MomentOutcomes:
     @classmethod
     def from_rows(cls, rows: OutcomeRows, shrinkage: float = 5.0, gaps: bool = False) -> Self:
         """The model fitted to rows of outcomes; see `from_samples`."""
-        return cls.of(moments(rows, shrinkage, gaps=gaps))
+        return cls.of(moments(rows, shrinkage, gaps))
 
     @classmethod
     def of(cls, found: OutcomeMoments) -> Self:
@@ -75,53 +73,55 @@ class MomentOutcomes:
         return model
 
     @property
-    def n_types(self) -> int:
-        return self.mean.shape[0]
-
-    @property
-    def n_policies(self) -> int:
-        return self.mean.shape[1]
-
-    @property
     def spread(self) -> Spread:
         """How much the tasks of a type differ; estimated at the first call where it is not given."""
         if self.moments.spread is None:
-            self.moments.spread = spread_of(self.moments)
+            self.moments.spread = spread_of_moments(self.moments)
         return self.moments.spread
 
     @spread.setter
     def spread(self, spread: Spread) -> None:
         self.moments.spread = spread
 
-    def for_task(self, closest: bool = False) -> TaskNormals | None:
-        """A model of one task, which its own outcomes change; None where all is known exactly.
+    def law(self, models: Models = "uncertain", *, spread: Spread | None = None, dtype: str = "f8") -> Any:
+        """The law of outcomes given what users have shown; a fixed law where all is exact, or taken for the truth.
 
-        With `closest` the task is as close to its type as the spread allows.
+        Parameters
+        ----------
+        spread : Spread, optional
+            By default the model's own.
+        dtype : {"f8", "f4"}
         """
-        spread = self.spread.least if closest else self.spread
-        if np.isinf(self.moments.count).all() and not spread.values.any():
-            return None
-        return TaskNormals(self.moments, spread)
+        spread = (spread or self.spread) if models == "uncertain" else Spread.known(0.0)
+        exact = np.isinf(self.moments.count).all() and not spread.values.any()
+        if models == "plug-in" or exact:
+            return FixedLaw(self, self.n_types, self.log_densities, finite_outcomes)
+        return NormalLaw(self.moments, spread, dtype)
 
-    def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
-        """Log densities of many outcomes at once, (n,) and (n,) to (n, n_types)."""
+    def log_density(self, policy: int, value: float) -> Array:
+        """Log density of `value` per type, (n_types,).
+
+        Raises
+        ------
+        InputError
+            `value` is no finite number.
+        NotFoundError
+            There is no such policy.
+        """
+        check_outcome(policy, value, self.n_policies)
+        return self.log_densities(policy, value)
+
+    def log_densities(self, policies: Any, values: Any) -> Array:
+        """`log_density` of many outcomes, (...) and (...) to (..., n_types); without checks."""
         raise NotImplementedError
-
-    def expected_mean_excess(self, threshold: ArrayLike) -> Array:
-        """max(mean - threshold, 0) for every pair, (..., n_types, n_policies): the means are taken as exact."""
-        return excess_of_means(self.mean, threshold)
-
-    def batch_likelihood(self) -> BatchLikelihood:
-        """Log densities of finite outcomes."""
-        return CalledLikelihood(self.log_densities, finite_signals)
 
     def bounds(self) -> tuple[float, float]:
         """(U^min, U^max): four deviations around the means."""
         return float((self.mean - 4 * self.deviation).min()), float((self.mean + 4 * self.deviation).max())
 
     def table(self, n_bins: int = 8) -> SignalTable:
-        """The outcome in bins that tell the types apart, see `signal_bins`."""
-        return informative_table(self, n_bins)
+        """The outcome, taken as normal, in bins that tell the types apart, see `signal_bins`."""
+        return normal_table(self.mean, self.deviation, n_bins)[1]
 
     def observe(self, type_: int, policy: int, value: float) -> None:
         """Learn from another outcome of a known type, in place.
@@ -133,18 +133,21 @@ class MomentOutcomes:
         NotFoundError
             There is no such type or policy.
         """
-        check_type(type_, self.n_types)
+        check_known("type", type_, self.n_types)
         check_outcome(policy, value, self.n_policies)
-        self.moments.observe(type_, policy, value)
-        self._renew(type_, policy)
+        self.moments.absorb(type_, policy, 1, value, 0.0)
+        self._prepare()
 
-    def absorb(self, type_: int, task: TaskNormals) -> None:
-        """Learn from all outcomes of a task whose type has become known, in place."""
-        check_type(type_, self.n_types)
-        for policy, (count, mean, squares) in task.shown.items():
+    def absorb(self, type_: int, state: Mapping[str, Any]) -> None:
+        """Learn from all outcomes of a task whose type has become known, in place.
+
+        `state` is what its law gives of them, see `Law.state`.
+        """
+        check_known("type", type_, self.n_types)
+        for policy, (count, mean, squares) in zip(state["policies"], state["shown"], strict=True):
             if count > 0:
                 self.moments.absorb(type_, policy, count, mean, squares)
-                self._renew(type_, policy)
+        self._prepare()
 
     def with_type(self, samples: ArrayLike, gaps: bool = False) -> Self:
         """A new model with an additional type, from `samples` (n_policies, n); see `from_samples`."""
@@ -170,14 +173,6 @@ class MomentOutcomes:
         except KeyError as error:
             raise InputError(f"an outcome model needs the array {error}") from None
 
-    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
-        raise NotImplementedError
-
     def _prepare(self) -> None:
-        """Compute all arrays that are derived from the moments."""
-        raise NotImplementedError
-
-    def _renew(self, type_: int, policy: int) -> None:
-        """Compute the derived arrays again for a pair."""
+        """Compute all arrays that follow from the moments."""
         raise NotImplementedError

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.frame_columns import FrameColumns
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows
+from lifelore.interaction.outcomes.outcome_model import OutcomeRows, numbers
 
 
 def rows_of_columns(
@@ -42,10 +42,7 @@ def rows_of_columns(
 
 
 def _numbers(column: list[Any], name: str) -> NDArray[np.float64]:
-    try:
-        values = np.asarray(column, np.float64)
-    except (TypeError, ValueError):
-        raise InputError(f"column {name!r} must hold numbers") from None
+    values = numbers(column, f"column {name!r} must hold numbers")
     if not np.isfinite(values).all():
         row = int(np.flatnonzero(~np.isfinite(values))[0])
         raise InputError(f"column {name!r} must be finite, row {row} is {values[row]}; leave such rows out")

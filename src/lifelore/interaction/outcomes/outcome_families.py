@@ -1,13 +1,21 @@
 """Families of outcomes for finding types of users: log likelihoods of users' outcomes as a matrix product.
 
 The policy's mean or probabilities over all users count as `PSEUDO` outcomes of each type. A type whose users never
-met a policy then has the outcomes of all users.
-"""
+met a policy then has the outcomes of all users. Rows of outcomes have users in place of types.
 
-from typing import NamedTuple, Protocol
+A family has
+
+    stats            sufficient statistics of each user's outcomes, (n_users, n_stats)
+    fit(shares)      the most likely types, (n_types, n_stats), given the users' shares in types (n_users, n_types)
+    n_parameters(n)  number of free parameters of n types and their weights
+
+so that ``stats @ fit(shares).T`` are log likelihoods (n_users, n_types).
+"""
 
 import numpy as np
 from numpy.typing import NDArray
+
+from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 
 Array = NDArray[np.float64]
 
@@ -17,48 +25,10 @@ FLOOR = 1e-3
 """Least deviation of a policy's outcomes within a type, as a share of the deviation of all outcomes."""
 
 
-class UserRows(NamedTuple):
-    """Rows of outcomes.
-
-    users, policies : (n,) int64
-    values : (n,) float64, finite
-    shape : (n_users, n_policies)
-    """
-
-    users: NDArray[np.int64]
-    policies: NDArray[np.int64]
-    values: Array
-    shape: tuple[int, int]
-
-    def sums(self, values: Array | None = None) -> Array:
-        """Sum of `values` (n,), or the number of rows, of each user with each policy, (n_users, n_policies)."""
-        place = self.users * self.shape[1] + self.policies
-        summed = np.bincount(place, values, minlength=self.shape[0] * self.shape[1])
-        return summed.reshape(self.shape).astype(np.float64)
-
-
-class OutcomeFamily(Protocol):
-    """Log likelihoods (n_users, n_types) as a product: ``stats @ fit(shares).T``.
-
-    stats : (n_users, n_stats) float64
-        Sufficient statistics of each user's outcomes.
-    """
-
-    stats: Array
-
-    def fit(self, shares: Array) -> Array:
-        """The most likely types, (n_types, n_stats), given the users' membership `shares` (n_users, n_types)."""
-        ...
-
-    def n_parameters(self, n_types: int) -> int:
-        """Number of free parameters of `n_types` types and their weights."""
-        ...
-
-
 class GaussianFamily:
     """Stats: number, sum and sum of squares of each user's outcomes with each policy, (n_users, 3 n_policies)."""
 
-    def __init__(self, rows: UserRows) -> None:
+    def __init__(self, rows: OutcomeRows) -> None:
         # Centred, because sums of squares of large outcomes lose digits.
         values = rows.values - rows.values.mean()
         parts = rows.sums(), rows.sums(values), rows.sums(values**2)
@@ -82,7 +52,7 @@ class GaussianFamily:
 class CategoricalFamily:
     """Stats: how often each user got each value with each policy, (n_users, n_values n_policies)."""
 
-    def __init__(self, rows: UserRows) -> None:
+    def __init__(self, rows: OutcomeRows) -> None:
         values, place = np.unique(rows.values, return_inverse=True)
         self._n_values = len(values)
         self.stats = np.hstack([rows.sums((place == value).astype(float)) for value in range(len(values))])
@@ -104,8 +74,6 @@ class CategoricalFamily:
         return counts.reshape(len(counts), self._n_values, -1)
 
 
-FAMILIES: dict[str, type[GaussianFamily] | type[CategoricalFamily]] = {
-    "gaussian": GaussianFamily,
-    "categorical": CategoricalFamily,
-}
+OutcomeFamily = GaussianFamily | CategoricalFamily
+FAMILIES: dict[str, type[OutcomeFamily]] = {"gaussian": GaussianFamily, "categorical": CategoricalFamily}
 """Every family by its name."""

@@ -1,4 +1,8 @@
-"""Registry of the outcome models by name."""
+"""The outcome models, P(U | type, policy) for every pair of a type and a policy, by name.
+
+`GaussianOutcomes` (with shrunk deviations) is the default. `StudentTOutcomes` accounts for the uncertainty of a
+few samples. `HistogramOutcomes` and `CategoricalOutcomes` are for other distributions. Thesis: §4.3.4, Def. 4.3.4.
+"""
 
 from typing import Any
 
@@ -8,6 +12,8 @@ from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.student_t_outcomes import StudentTOutcomes
 
+OutcomeModel = GaussianOutcomes | StudentTOutcomes | HistogramOutcomes | CategoricalOutcomes
+"""An outcome model; a caller's own class serves that has their arrays and methods."""
 KINDS: dict[str, Any] = {
     kind.kind: kind for kind in (GaussianOutcomes, StudentTOutcomes, HistogramOutcomes, CategoricalOutcomes)
 }

@@ -1,123 +1,20 @@
-"""The interface of outcome models, P(U | type, policy), and the rows of data that they are fitted to.
+"""Rows of outcomes that outcome models are fitted to, and checks of outcomes, types and policies.
 
-An outcome (utility, return, performance) is a number; larger is better. A model covers every pair of a type and a
-policy. `GaussianOutcomes` (with shrunk deviations) is the default. `StudentTOutcomes` accounts for the uncertainty
-of a few samples. `HistogramOutcomes` and `CategoricalOutcomes` are for other distributions. Thesis: §4.3.4, Def.
-4.3.4.
+An outcome (utility, return, performance) is a number; larger is better. Thesis: §4.3.4.
 """
 
-from collections.abc import Sequence
-from typing import Any, NamedTuple, NoReturn, Protocol, Self
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.finite_signals.signal_table import SignalTable
 
 Array = NDArray[np.float64]
 
 LARGEST = 1e100
 """Largest size of outcomes and means, and with `LEAST_DEVIATION` the limit that keeps squares finite."""
 LEAST_DEVIATION = 1e-50
-
-
-class OutcomeModel(Protocol):
-    """P(U | type, policy) for every pair; (T, P) is (n_types, n_policies)."""
-
-    @property
-    def n_types(self) -> int: ...
-
-    @property
-    def n_policies(self) -> int: ...
-
-    @property
-    def mean(self) -> Array:
-        """E[U | type, policy], (T, P)."""
-        ...
-
-    @property
-    def deviation(self) -> Array:
-        """Standard deviation of U, (T, P)."""
-        ...
-
-    def log_density(self, policy: int, value: float) -> Array:
-        """Log density (log probability, where outcomes are discrete) of `value` per type, (T,); -inf allowed.
-
-        Raises
-        ------
-        InputError
-            `value` is no finite number.
-        NotFoundError
-            There is no such policy.
-        """
-        ...
-
-    def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
-        """`log_density` of many outcomes, (n,) and (n,) to (n, T); without checks."""
-        ...
-
-    def batch_likelihood(self) -> Any:
-        """The outcome's likelihood as policy reuse takes it for many users, see `batch_likelihood`."""
-        ...
-
-    def density(self, value: ArrayLike) -> Array:
-        """Density of `value`, a number or a batch (...,), for every pair: (..., T, P)."""
-        ...
-
-    def exceedance(self, threshold: ArrayLike) -> Array:
-        """P(U > threshold) for every pair; a batch (...,) of thresholds gives (..., T, P)."""
-        ...
-
-    def expected_excess(self, threshold: ArrayLike) -> Array:
-        """E[max(U - threshold, 0)] for every pair; a batch (...,) of thresholds gives (..., T, P)."""
-        ...
-
-    def expected_mean_excess(self, threshold: ArrayLike) -> Array:
-        """E[max(m - threshold, 0)] of the mean pay m of every pair under what is unknown about it, (..., T, P).
-
-        A model that takes its means as exact returns max(mean - threshold, 0).
-        """
-        ...
-
-    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (T, n)."""
-        ...
-
-    def bounds(self) -> tuple[float, float]:
-        """(U^min, U^max) over all pairs: the support, or four deviations around the means if unbounded."""
-        ...
-
-    def table(self, n_bins: int = 8) -> SignalTable:
-        """The outcome in at most `n_bins` bins, chosen for each policy to tell the types apart."""
-        ...
-
-    def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
-        """Random outcomes of a pair: a number, or an array of shape `size`."""
-        ...
-
-    def observe(self, type_: int, policy: int, value: float) -> None:
-        """Learn from another outcome of a known type, in place."""
-        ...
-
-    def with_type(self, samples: ArrayLike) -> Self:
-        """A new model with an additional type, from `samples` (P, n), NaN where missing."""
-        ...
-
-    def with_policy(self, samples: ArrayLike) -> Self:
-        """A new model with an additional policy, from `samples` (T, n), NaN where missing."""
-        ...
-
-    def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
-        """A new model of some types and policies, in the order given; None means all."""
-        ...
-
-    def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """The whole state of the model as arrays; `from_arrays` restores every bit."""
-        ...
-
-    @classmethod
-    def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self: ...
 
 
 class OutcomeRows(NamedTuple):
@@ -171,7 +68,11 @@ class OutcomeRows(NamedTuple):
         >>> rows.with_weights([2.0, 1.0, 1.0]).sums().round(3).tolist()  # 4² / 6
         [[2.667]]
         """
-        weights = checked_weights(weights, self.values.shape)
+        weights = numbers(weights, f"weights must be numbers of shape {self.values.shape}")
+        if weights.shape != self.values.shape:
+            raise InputError(f"weights must be {self.values.shape}, one for each outcome, got {weights.shape}")
+        if not ((weights >= 0) & np.isfinite(weights)).all():
+            raise InputError("weights must be at least 0 and finite, a weight of 0 leaves the outcome out")
         used = weights > 0
         rows = checked_rows(OutcomeRows(self.types[used], self.policies[used], self.values[used], self.shape))
         pair, weights = rows.pair, weights[used]
@@ -183,17 +84,20 @@ class OutcomeRows(NamedTuple):
         return rows._replace(weights=weights * scale)
 
 
-def checked_weights(weights: ArrayLike, shape: tuple[int, ...]) -> Array:
-    """The weights as float64; InputError where one is negative or not finite, or the shape differs."""
+def numbers(values: ArrayLike, rule: str) -> Array:
+    """The values as float64; InputError with the `rule` that they break where they are no such array."""
     try:
-        weights = np.asarray(weights, np.float64)
+        return np.asarray(values, np.float64)
     except (TypeError, ValueError):
-        raise InputError(f"weights must be numbers of shape {shape}, got {weights!r:.80}") from None
-    if weights.shape != shape:
-        raise InputError(f"weights must be {shape}, one for each outcome, got {weights.shape}")
-    if not ((weights >= 0) & np.isfinite(weights)).all():
-        raise InputError("weights must be at least 0 and finite, a weight of 0 leaves the outcome out")
-    return weights
+        raise InputError(f"{rule}, got {values!r:.80}") from None
+
+
+def of_shape(values: ArrayLike, shape: tuple[int, ...], name: str) -> Array:
+    """A number, or an array of `shape`, as a new float64 array of `shape`; InputError for another shape."""
+    found = numbers(values, f"{name} must be one number or of shape {shape}")
+    if found.ndim and found.shape != shape:
+        raise InputError(f"{name} must be one number or of shape {shape}, got {found.shape}")
+    return np.broadcast_to(found, shape).copy()
 
 
 def rows_of_samples(samples: ArrayLike, weights: ArrayLike | None = None, gaps: bool = False) -> OutcomeRows:
@@ -210,12 +114,7 @@ def rows_of_samples(samples: ArrayLike, weights: ArrayLike | None = None, gaps: 
         The shape differs, a value is infinite, a weight negative, or a pair of type and policy has no sample and
         `gaps` is false.
     """
-    try:
-        samples = np.asarray(samples, np.float64)
-    except (TypeError, ValueError):
-        raise InputError(
-            "samples must be numbers of one shape (n_types, n_policies, n); fill up with NaN"
-        ) from None
+    samples = numbers(samples, "samples must be numbers of one shape (n_types, n_policies, n), NaN where missing")
     if samples.ndim != 3 or not samples.size:
         raise InputError(f"samples must be (n_types, n_policies, n) numbers, none of them 0, got {samples.shape}")
     types, policies, place = np.nonzero(~np.isnan(samples))
@@ -243,48 +142,29 @@ def checked_rows(rows: OutcomeRows, gaps: bool = False) -> OutcomeRows:
     return rows
 
 
-def refuse_outcome(policy: Any, value: Any, n_policies: int) -> NoReturn:
-    """Raise the error for a wrong outcome: the policy is unknown, or the value is no finite number."""
-    check_policy(policy, n_policies)
-    raise InputError(
-        f"value must be a finite number of at most {LARGEST:g}, got {value!r:.80}; leave out what has no outcome"
-    )
+def finite_outcomes(values: Any) -> Any:
+    """Outcomes, a number or (k,), as float64; InputError where one is not finite."""
+    if isinstance(values, float) and -LARGEST <= values <= LARGEST:
+        return values
+    try:
+        found = np.asarray(np.nan if isinstance(values, str) else values, np.float64)
+    except (TypeError, ValueError):
+        found = np.asarray(np.nan)
+    if not (np.abs(found) <= LARGEST).all():
+        raise InputError(
+            f"value must be a finite number of at most {LARGEST:g}, got {values!r:.80}; leave out what has no "
+            "outcome"
+        )
+    return found
 
 
-def check_policy(policy: Any, n_policies: int) -> None:
-    """Raise NotFoundError for a policy outside 0 … n_policies - 1."""
-    if not isinstance(policy, int | np.integer) or not 0 <= policy < n_policies:
-        raise NotFoundError(f"unknown policy {policy!r}; this model knows 0 to {n_policies - 1}")
-
-
-def check_type(type_: Any, n_types: int) -> None:
-    """Raise NotFoundError for a type outside 0 … n_types - 1."""
-    if not isinstance(type_, int | np.integer) or not 0 <= type_ < n_types:
-        raise NotFoundError(f"unknown type {type_!r}; this model knows 0 to {n_types - 1}")
+def check_known(what: str, number: Any, n: int) -> None:
+    """Raise NotFoundError for a number outside 0 … n - 1; `what` is "policy" or "type"."""
+    if not isinstance(number, int | np.integer) or not 0 <= number < n:
+        raise NotFoundError(f"unknown {what} {number!r}; this model knows 0 to {n - 1}")
 
 
 def check_outcome(policy: Any, value: Any, n_policies: int) -> None:
     """Raise an error for an unknown policy, or a value that is no finite number."""
-    if not is_outcome(policy, value, n_policies):
-        refuse_outcome(policy, value, n_policies)
-
-
-def is_outcome(policy: Any, value: Any, n_policies: int) -> bool:
-    """Whether `policy` is one of the model's and `value` a finite number of at most `LARGEST`."""
-    try:
-        # NaN fails the comparison.
-        known = 0 <= policy < n_policies and -LARGEST <= value <= LARGEST
-        return known and isinstance(policy, int | np.integer)
-    except (TypeError, ValueError):
-        return False
-
-
-def excess_of_means(mean: Array, threshold: ArrayLike) -> Array:
-    """max(mean - threshold, 0) of exact means (T, P), (..., T, P) for a batch (...,) of thresholds."""
-    excess = mean - over_pairs(threshold)
-    return np.maximum(excess, 0.0, out=excess)
-
-
-def over_pairs(values: ArrayLike) -> Any:
-    """A number as it is, a batch (...,) as (..., 1, 1), which broadcasts against a (T, P) array."""
-    return values if isinstance(values, float | int) else np.asarray(values, np.float64)[..., None, None]
+    check_known("policy", policy, n_policies)
+    finite_outcomes(np.nan if np.ndim(value) else value)

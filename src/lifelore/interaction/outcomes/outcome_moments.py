@@ -7,7 +7,7 @@ except for the pooled variance, which stays. Thesis: §4.4.1, step 4.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,8 @@ from lifelore.interaction.outcomes.outcome_model import (
     LEAST_DEVIATION,
     OutcomeRows,
     checked_rows,
+    numbers,
+    of_shape,
     rows_of_samples,
 )
 from lifelore.interaction.outcomes.spread import Spread
@@ -27,6 +29,8 @@ Array = NDArray[np.float64]
 
 FLOOR = 1e-3
 """Least deviation learnt from samples, as a share of their range: equal samples do not prove a deviation of 0."""
+OF_PAIRS = ("mean", "variance", "count", "freedom")
+"""Fields of `OutcomeMoments` with a number for each pair."""
 
 
 @dataclass
@@ -49,26 +53,14 @@ class OutcomeMoments:
     shrinkage: float
     spread: Spread | None = None
 
-    def observe(self, type_: int, policy: int, value: float) -> None:
-        """Learn from another outcome, in place."""
+    def absorb(self, type_: int, policy: int, count: float, mean: float, squares: float) -> None:
+        """Learn from `count` outcomes at once, by their mean and sum of squares around it, in place."""
         pair = type_, policy
         if np.isinf(self.count[pair]):
             raise InputError(
                 f"type {type_} with policy {policy} is known exactly and learns nothing; build the model with "
                 "count= (the number of samples behind its numbers) to let it learn"
             )
-        self.count[pair] += 1
-        self.freedom[pair] += 1
-        before = value - self.mean[pair]
-        self.mean[pair] += before / self.count[pair]
-        square = before * (value - self.mean[pair])
-        self.variance[pair] += (square - self.variance[pair]) / self.freedom[pair]
-
-    def absorb(self, type_: int, policy: int, count: float, mean: float, squares: float) -> None:
-        """Learn from `count` outcomes at once, by their mean and sum of squares around it, in place."""
-        pair = type_, policy
-        if np.isinf(self.count[pair]):
-            raise InputError(f"type {type_} with policy {policy} is known exactly and learns nothing")
         known, apart = self.count[pair], mean - self.mean[pair]
         total = known + count
         gained = squares + known * count / total * apart**2
@@ -76,18 +68,15 @@ class OutcomeMoments:
         self.mean[pair] += count / total * apart
         self.count[pair], self.freedom[pair] = total, self.freedom[pair] + count
 
-    def joined(self, other: "OutcomeMoments", axis: int) -> "OutcomeMoments":
-        """With the types (axis 0) or policies (axis 1) of `other` after these."""
-        pairs = zip(self._fields(), other._fields(), strict=True)
-        return self._with([np.concatenate(pair, axis=axis) for pair in pairs])
-
     def more(self, samples: ArrayLike, axis: int, gaps: bool = False) -> "OutcomeMoments":
         """With an additional type (axis 0) or policy (axis 1), from `samples` (size of the other axis, n).
 
         With `gaps`, pairs without a sample are guessed (`guess_gaps`).
         """
         rows = rows_of_more(samples, self.mean.shape[1 - axis], axis, gaps)
-        found = self.joined(_moments(rows, self.shrinkage, self.pooled), axis)
+        new = _moments(rows, self.shrinkage, self.pooled)
+        both = {name: (getattr(self, name), getattr(new, name)) for name in OF_PAIRS}
+        found = replace(self, **{name: np.concatenate(pair, axis=axis) for name, pair in both.items()})
         found.guess_gaps()
         return found
 
@@ -112,7 +101,7 @@ class OutcomeMoments:
     def take(self, types: Sequence[int] | None, policies: Sequence[int] | None) -> "OutcomeMoments":
         """The moments of some types and policies."""
         chosen = np.ix_(chosen_of(types, self.mean.shape[0]), chosen_of(policies, self.mean.shape[1]))
-        return self._with([field[chosen] for field in self._fields()])
+        return replace(self, **{name: getattr(self, name)[chosen] for name in OF_PAIRS})
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """All fields by name; the spread only where it is known."""
@@ -122,7 +111,7 @@ class OutcomeMoments:
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> "OutcomeMoments":
         """The moments of `to_arrays`; InputError where the arrays are no moments."""
-        fields = [np.array(arrays[name], np.float64) for name in ("mean", "variance", "count", "freedom")]
+        fields = [np.array(arrays[name], np.float64) for name in OF_PAIRS]
         mean, variance, count, freedom = fields
         spread = Spread.of_array(arrays["spread"]) if "spread" in arrays else None
         found = cls(mean, variance, count, freedom, float(arrays["pooled"]), float(arrays["shrinkage"]), spread)
@@ -132,13 +121,6 @@ class OutcomeMoments:
         if not (good & (count > 0) & (freedom > 0)).all() or not found.pooled > 0:
             raise InputError("means must be finite, variances, counts and degrees of freedom positive")
         return found
-
-    def _with(self, fields: list[Array]) -> "OutcomeMoments":
-        mean, variance, count, freedom = fields
-        return OutcomeMoments(mean, variance, count, freedom, self.pooled, self.shrinkage, self.spread)
-
-    def _fields(self) -> tuple[Array, Array, Array, Array]:
-        return self.mean, self.variance, self.count, self.freedom
 
 
 def known_moments(mean: ArrayLike, deviation: ArrayLike, count: ArrayLike | None = None) -> OutcomeMoments:
@@ -152,7 +134,8 @@ def known_moments(mean: ArrayLike, deviation: ArrayLike, count: ArrayLike | None
     mean = np.array(mean, np.float64)
     if mean.ndim != 2 or not mean.size:
         raise InputError(f"mean must be (n_types, n_policies) numbers, none of them 0, got {mean.shape}")
-    deviation, count = _spread_out(deviation, mean, "deviation"), _spread_out(count, mean, "count")
+    deviation = of_shape(deviation, mean.shape, "deviation")
+    count = of_shape(np.inf if count is None else count, mean.shape, "count")
     if not (np.abs(mean) <= LARGEST).all():
         raise InputError(
             f"mean must be finite and of at most {LARGEST:g} in every pair; leave out types or policies never run"
@@ -168,10 +151,8 @@ def known_moments(mean: ArrayLike, deviation: ArrayLike, count: ArrayLike | None
     return OutcomeMoments(mean, variance, count, count.copy(), float(variance.mean()), 5.0)
 
 
-def moments(
-    rows: OutcomeRows, shrinkage: float = 5.0, pooled: float | None = None, gaps: bool = False
-) -> OutcomeMoments:
-    """Moments of the outcomes, variances shrunk towards `pooled`, by default the variance within all pairs.
+def moments(rows: OutcomeRows, shrinkage: float = 5.0, gaps: bool = False) -> OutcomeMoments:
+    """Moments of the outcomes, variances shrunk towards the variance within all pairs.
 
     Raises
     ------
@@ -180,15 +161,13 @@ def moments(
     """
     if not (shrinkage > 0 and np.isfinite(shrinkage)):
         raise InputError(f"shrinkage must be positive and finite, got {shrinkage}")
-    if pooled is not None and not (pooled > 0 and np.isfinite(pooled)):
-        raise InputError(f"pooled must be a positive variance, got {pooled}")
-    found = _moments(checked_rows(rows, gaps), shrinkage, pooled)
+    found = _moments(checked_rows(rows, gaps), shrinkage)
     found.guess_gaps()
     return found
 
 
 def _moments(rows: OutcomeRows, shrinkage: float, pooled: float | None = None) -> OutcomeMoments:
-    """As `moments`; a pair without a sample has the count 0."""
+    """As `moments`, variances shrunk towards `pooled` where given; a pair without a sample has the count 0."""
     count = rows.sums()
     mean = rows.sums(rows.values) / np.where(count > 0, count, 1.0)
     squares = rows.sums((rows.values - mean[rows.types, rows.policies]) ** 2)
@@ -200,7 +179,7 @@ def _moments(rows: OutcomeRows, shrinkage: float, pooled: float | None = None) -
 
 def rows_of_more(samples: ArrayLike, n_others: int, axis: int, gaps: bool = False) -> OutcomeRows:
     """`samples` (n_others, n) of an additional type (axis 0) or policy (axis 1); see `rows_of_samples`."""
-    samples = np.asarray(samples, np.float64)
+    samples = numbers(samples, "samples must be numbers in rows of one length, NaN where missing")
     if samples.ndim != 2 or len(samples) != n_others:
         others = "policies" if axis == 0 else "types"
         raise InputError(f"samples must be ({n_others}, n), one row for each of the {others}, got {samples.shape}")
@@ -215,13 +194,6 @@ def chosen_of(chosen: Sequence[int] | None, n: int) -> NDArray[np.int64]:
     if index.ndim != 1 or not index.size or index.min() < 0 or index.max() >= n:
         raise InputError(f"the chosen numbers must be one or more of 0 to {n - 1}, got {chosen}")
     return index
-
-
-def _spread_out(values: ArrayLike | None, mean: Array, name: str) -> Array:
-    values = np.asarray(np.inf if values is None else values, np.float64)
-    if values.ndim > 0 and values.shape != mean.shape:
-        raise InputError(f"{name} must be one number or of mean's shape {mean.shape}, got {values.shape}")
-    return np.broadcast_to(values, mean.shape).copy()
 
 
 def _pooled(squares: Array, count: Array, mean: Array) -> float:

@@ -82,13 +82,10 @@ def held_out_pseudo_count(counts: ArrayLike, possible: ArrayLike | None = None) 
     total = rows.sum(axis=1)
     if not (total > 1).any():
         return USUAL
-    of_cells, times = np.unique(rows[total > 1], return_counts=True)
-    held_out = np.zeros(CANDIDATES.shape)
-    for count, number in zip(of_cells.tolist(), times.tolist(), strict=True):
-        if count > 0:
-            held_out += number * count * np.log(max(count - 1, 0.0) + CANDIDATES)
-    sizes, times = np.unique(np.stack([total, n_cells])[:, total > 1], axis=1, return_counts=True)
-    for (n, cells), number in zip(sizes.T.tolist(), times.tolist(), strict=True):
-        held_out -= number * n * np.log(n - 1 + cells * CANDIDATES)
+    # Equal counts, and rows of equal totals and sizes, are computed once.
+    count, times = np.unique(rows[total > 1], return_counts=True)
+    held_out = (times * count) @ np.log(np.maximum(count - 1, 0.0)[:, None] + CANDIDATES)
+    (n, cells), times = np.unique(np.stack([total, n_cells])[:, total > 1], axis=1, return_counts=True)
+    held_out -= (times * n) @ np.log(n[:, None] - 1 + cells[:, None] * CANDIDATES)
     prior = -0.5 * (np.log(CANDIDATES / USUAL) / SPREAD) ** 2
     return float(CANDIDATES[np.argmax(held_out + prior)])

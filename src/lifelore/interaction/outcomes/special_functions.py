@@ -1,29 +1,21 @@
-"""Distribution functions of the normal and of Student's t, from SciPy.
+"""The distribution function of Student's t and the gamma function, from SciPy.
 
-SciPy is imported at the first call: a choice by stored tables needs none of these functions.
+SciPy is imported at the first call: a choice for a single user needs none of these functions. The distribution
+function of the normal is in `finite_signals.normal_distribution`.
 """
 
-from functools import cache
 from typing import Any
-
-
-def ndtr(z: Any) -> Any:
-    """Distribution function of the standard normal."""
-    return _special().ndtr(z)
 
 
 def stdtr(freedom: Any, t: Any) -> Any:
     """Distribution function of Student's t."""
-    return _special().stdtr(freedom, t)
+    from scipy import special
+
+    return special.stdtr(freedom, t)
 
 
 def gammaln(x: Any) -> Any:
     """Logarithm of the gamma function's absolute value."""
-    return _special().gammaln(x)
-
-
-@cache
-def _special() -> Any:
     from scipy import special
 
-    return special
+    return special.gammaln(x)

@@ -53,6 +53,11 @@ class Spread(NamedTuple):
         return cls(SHARES * largest, WEIGHTS.copy()) if largest > 0 else cls.known(0.0)
 
     @property
+    def mean(self) -> float:
+        """Expectation of the spread before a task."""
+        return float(self.weights @ self.values)
+
+    @property
     def least(self) -> "Spread":
         """The smallest spread alone: that of a task which is just like its type."""
         return Spread.known(self.values.min())

@@ -12,9 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
-from lifelore.interaction.outcomes.outcome_model import is_outcome, over_pairs, refuse_outcome
+from lifelore.interaction.outcomes.normal_law import log_t_height
 from lifelore.interaction.outcomes.outcome_moments import known_moments
-from lifelore.interaction.outcomes.special_functions import gammaln, stdtr
+from lifelore.interaction.outcomes.prediction import over_pairs, over_types
+from lifelore.interaction.outcomes.special_functions import stdtr
 
 Array = NDArray[np.float64]
 
@@ -47,28 +48,9 @@ class StudentTOutcomes(MomentOutcomes):
         """Degrees of freedom, (n_types, n_policies)."""
         return self.moments.freedom
 
-    def log_density(self, policy: int, value: float) -> Array:
-        """Log density of `value` per type, (n_types,).
-
-        Raises
-        ------
-        InputError
-            `value` is no finite number.
-        NotFoundError
-            There is no such policy.
-        """
-        if not is_outcome(policy, value, self._centre.shape[0]):
-            refuse_outcome(policy, value, self.n_policies)
-        z = (value - self._centre[policy]) * self._narrow[policy]
-        z *= z
-        np.log1p(z, out=z)
-        z *= self._power[policy]
-        z += self._log_height[policy]
-        return z
-
-    def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
-        """`log_density` of many outcomes, (n,) and (n,) to (n, n_types); without checks."""
-        z = (np.asarray(values, np.float64)[:, None] - self._centre[policies]) * self._narrow[policies]
+    def log_densities(self, policies: Any, values: Any) -> Array:
+        """Log densities of many outcomes, (...) and (...) to (..., n_types); without checks."""
+        z = (over_types(values) - self._centre[policies]) * self._narrow[policies]
         return self._log_height[policies] + self._power[policies] * np.log1p(z * z)
 
     def density(self, value: ArrayLike) -> Array:
@@ -90,10 +72,11 @@ class StudentTOutcomes(MomentOutcomes):
         # Far below the threshold the two terms cancel, and rounding may leave a negative number.
         return np.maximum(self.scale * (peak + z * stdtr(self.freedom, z)), 0.0)
 
-    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
-        z = (values - self.mean[types, policy][:, None]) / self.scale[types, policy][:, None]
-        return stdtr(self.freedom[types, policy][:, None], z)
+    def cumulative(self, policy: int, values: Array) -> Array:
+        """P(U ≤ value | type, policy) of `values` (n,), (n_types, n)."""
+        return stdtr(
+            self.freedom[:, policy, None], (values - self.mean[:, policy, None]) / self.scale[:, policy, None]
+        )
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
         """Random outcomes of a pair: a number, or an array of shape `size`."""
@@ -109,21 +92,12 @@ class StudentTOutcomes(MomentOutcomes):
                 "every pair needs more than 2 and finitely many degrees of freedom (shrinkage + samples - 1, or "
                 "count); raise shrinkage, or use GaussianOutcomes for exact numbers"
             )
+        self.mean = self.moments.mean
         self.scale: Array = np.sqrt(self.moments.variance * (1 + 1 / self.moments.count))
         self.deviation = self.scale * np.sqrt(self.freedom / (self.freedom - 2))
-        half = 0.5 * self.freedom
-        self._unit_height = gammaln(half + 0.5) - gammaln(half) - 0.5 * np.log(np.pi * self.freedom)
+        self._unit_height = log_t_height(self.freedom)
         # Policy first: an update reads the row of a policy.
         self._centre = np.ascontiguousarray(self.mean.T)
         self._narrow = np.ascontiguousarray(1 / (self.scale * np.sqrt(self.freedom)).T)
-        self._power = np.ascontiguousarray(-half.T - 0.5)
+        self._power = np.ascontiguousarray(-0.5 * (self.freedom.T + 1))
         self._log_height = np.ascontiguousarray((self._unit_height - np.log(self.scale)).T)
-
-    def _renew(self, type_: int, policy: int) -> None:
-        # `_prepare` of a single pair, through the same formulas so that the bits agree.
-        single = self.take([type_], [policy])
-        pair, turned = (type_, policy), (policy, type_)
-        self.scale[pair], self.deviation[pair] = single.scale[0, 0], single.deviation[0, 0]
-        self._unit_height[pair] = single._unit_height[0, 0]
-        self._centre[turned], self._narrow[turned] = single._centre[0, 0], single._narrow[0, 0]
-        self._power[turned], self._log_height[turned] = single._power[0, 0], single._log_height[0, 0]

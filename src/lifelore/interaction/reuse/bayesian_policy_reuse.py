@@ -4,42 +4,28 @@
     2  for each episode:  π ← argmax of the rule's scores under β;  run π, obtain σ;  β ← F(σ | ·, π) β, normalised
 
 `select` and `update` are the two halves of an episode and need not alternate: `update` names the policy that a
-signal is from. Signals may come late, in any order, or not at all. Thesis: §4.2, Alg. 7; §4.5.2, Alg. 8.
+signal is from. Signals may come late, in any order, or not at all. Where an episode shows several signals,
+`observe` takes each, and `end_episode` ends it. Thesis: §4.2, Alg. 7; §4.5.2, Alg. 8.
 """
 
 from collections import deque
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
-from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.library.task_library import TaskLibrary
-from lifelore.interaction.reuse.explanation import (
-    MAX_EVIDENCE,
-    Evidence,
-    Explanation,
-    relative_evidence,
-    surprise_of,
-    two_best,
-)
+from lifelore.interaction.outcomes.law import Models
+from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, Evidence, Explanation, relative_evidence, two_best
+from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
-from lifelore.interaction.reuse.unknown_type import UnknownType
-from lifelore.interaction.selection import SelectionRule, default_rule
-from lifelore.interaction.selection.availability import (
-    Available,
-    available_policies,
-    available_probabilities,
-    available_scores,
-    best_policies,
-)
+from lifelore.interaction.selection import SelectionRule, rule_of
+from lifelore.interaction.selection.choice import Available, available_mask, best_policies
 
 Array = NDArray[np.float64]
-Models = Literal["uncertain", "plug-in"]
 
 
 class RankedPolicy(NamedTuple):
@@ -63,13 +49,14 @@ class BayesianPolicyReuse:
     library : PolicyLibrary
         Not copied. With plug-in models the agent uses what the library's models learn in place; with uncertain
         models it reads them once, at its start.
-    rule : SelectionRule, optional
-        `InformationDirected` by default, `ExpectedImprovement` where the signals have no table.
+    rule : SelectionRule or str, optional
+        A rule or its name; by default `InformationDirected`, or `ExpectedImprovement` where the signals have no
+        table.
     prior : (n_types,) float, optional
         At least 0, sums to 1 to 1e-9; the library's prior by default.
     dynamics : TypeDynamics, optional
         By default a hazard of 0.002 that draws from the library's prior; `TypeDynamics.static()` as in the thesis.
-        Each `update` is also the step between two episodes, and their order matters unless types are static.
+        Each end of an episode is a step, and the order of signals matters unless types are static.
     horizon : int, optional
         Number of episodes K, at least 1; the knowledge gradient weighs information by the episodes left.
     seed : int or numpy generator
@@ -78,14 +65,16 @@ class BayesianPolicyReuse:
         Whether a model learnt from a finite number of runs is known to be uncertain: the belief is then over types
         and the parameters of their models, and each signal teaches both. "plug-in" takes estimates for the truth,
         as the thesis does. Exact models are the same under both.
-    novelty : float, optional
-        Prior probability that no known type fits, in (0, 1), such as 0.05. With it the agent computes after each
-        signal how probable that is. Signals must be outcomes or categories.
+    novelty : float or NoveltyDetector, optional
+        Prior probability that no known type fits, in (0, 1), such as 0.05: the agent then computes after each
+        signal how probable that is. Or a detector of this library without signals, such as a calibrated detector's
+        `restart()`. Signals must be outcomes or categories.
 
     Attributes
     ----------
-    novelty : UnknownType or None
-        Its attribute ``probability`` is the probability that no known type fits; None without the argument.
+    novelty : NoveltyDetector or None
+        Its attribute ``probability`` is the probability that no known type fits, ``alarm`` whether a calibrated
+        detector raised an alarm; None without the argument.
 
     Raises
     ------
@@ -105,27 +94,25 @@ class BayesianPolicyReuse:
     def __init__(
         self,
         library: PolicyLibrary,
-        rule: SelectionRule | None = None,
+        rule: SelectionRule | str | None = None,
         prior: ArrayLike | None = None,
         dynamics: TypeDynamics | None = None,
         horizon: int | None = None,
         seed: int | np.random.Generator = 0,
         models: Models = "uncertain",
-        novelty: float | None = None,
+        novelty: float | NoveltyDetector | None = None,
     ) -> None:
-        if models not in ("uncertain", "plug-in"):
-            raise InputError(f"models must be 'uncertain' or 'plug-in', got {models!r}")
-        self.library, self.models = library, models
-        self.task: TaskLibrary | None = library.for_task() if models == "uncertain" else None
-        self.rule: SelectionRule = rule or default_rule(library)
-        self.algorithm = ReuseAlgorithm(self.task or library, dynamics)
+        self.library = library
+        self.models: Models = models
+        self.rule: SelectionRule = rule_of(rule, library)
+        self.algorithm = ReuseAlgorithm(library, prior=prior, dynamics=dynamics, models=models)
         self.horizon = horizon
-        self.novelty = None if novelty is None else UnknownType(library, novelty, prior, dynamics, models)
+        if isinstance(novelty, float | int):
+            novelty = NoveltyDetector(library, novelty, prior, dynamics, models)
+        self.novelty = novelty
         self.episode, self.surprise, self.unexplained = 0, 0.0, 0
         self._taught = False
         self.generator = stream(seed, "policy reuse") if isinstance(seed, int | np.integer) else seed
-        self._log_belief: Array = self.algorithm.start(prior)
-        self._belief: Array | None = None
         self._selected: tuple[int, Array] | None = None
         self._evidence: deque[Evidence] = deque(maxlen=MAX_EVIDENCE)
         if horizon is not None and not horizon >= 1:
@@ -149,9 +136,8 @@ class BayesianPolicyReuse:
         NotFoundError
             There is no such policy.
         """
-        if available is not None:
-            return self.select_top(1, available)[0].policy
-        self._selected = self.algorithm.select(self._current(), self.rule, self.generator, self.episodes_left)
+        mask = self._mask(available)
+        self._selected = self.algorithm.select(0, self.rule, self.generator, mask, self.episodes_left)
         return self._selected[0]
 
     def select_top(self, k: int, available: Available | None = None) -> list[RankedPolicy]:
@@ -166,18 +152,19 @@ class BayesianPolicyReuse:
         NotFoundError
             There is no such policy.
         """
-        names = self.library.policies
-        policies = np.arange(len(names)) if available is None else available_policies(available, names)
-        scores = available_scores(
-            self.rule, self.algorithm.library, self._current(), policies,
-            episodes_left=self.episodes_left, generator=self.generator,
-        )  # fmt: skip
-        best = best_policies(scores, k, self.generator)
+        names, mask = self.library.policies, self._mask(available)
+        scores = self.algorithm.scores(0, self.rule, self.generator, mask, self.episodes_left)
+        best = best_policies(scores, k, self.generator).tolist()
         self._selected = best[0], scores
         return [RankedPolicy(policy, names[policy], float(scores[policy])) for policy in best]
 
     def update(self, policy: int | str, signal: Any, outcome: float | None = None) -> None:
-        """Learn from the signal of a policy.
+        """Learn from the signal of a policy, and end the episode: `observe` and `end_episode`."""
+        self.observe(policy, signal, outcome)
+        self.end_episode()
+
+    def observe(self, policy: int | str, signal: Any, outcome: float | None = None) -> None:
+        """Learn from a signal of a policy within an episode, which may show more of them.
 
         A signal that no type explains leaves the belief as it is and raises the surprise.
 
@@ -197,21 +184,24 @@ class BayesianPolicyReuse:
             The signal model cannot have made the signal, or gave NaN or infinity. The belief stays as it was.
         """
         index = self.library.index_of_policy(policy)
-        log_likelihood, log_evidence = self.algorithm.update_row(self._log_belief, index, signal, outcome)
-        self._evidence.append(Evidence(index, log_likelihood, log_evidence))
-        self.surprise += surprise_of(log_evidence)
-        self.unexplained += log_evidence == -np.inf
+        log_likelihood, log_evidence = self.algorithm.observe(0, index, signal, outcome)
+        self._evidence.append(Evidence(index, log_likelihood, float(log_evidence)))
+        self.surprise += self._evidence[-1].surprise
+        self.unexplained += bool(log_evidence == -np.inf)
         if self.novelty is not None:
-            self.novelty.add(index, signal)
-        self._belief = None
-        self.episode += 1
+            self.novelty.observe(index, signal)
 
-    def skip(self) -> None:
-        """End an episode whose signal is missing: the belief changes by the dynamics alone."""
-        self.algorithm.step_row(self._log_belief)
+    def end_episode(self, outcome: Any = None) -> None:
+        """End an episode, with or without signals: the type may have changed before the next.
+
+        Parameters
+        ----------
+        outcome : optional
+            How the episode ended, for dynamics that learn from it.
+        """
+        self.algorithm.end_episode(0, outcome)
         if self.novelty is not None:
-            self.novelty.skip()
-        self._belief = None
+            self.novelty.end_episode()
         self.episode += 1
 
     def teach(self, least: float = 0.95) -> str | None:
@@ -238,10 +228,11 @@ class BayesianPolicyReuse:
             raise InputError(f"least must lie in (0.5, 1], got {least}")
         if self._taught:
             raise InputError("this task has taught the library before; its outcomes count once")
-        type_ = int(self._current().argmax())
-        if self._current()[type_] < least or self.task is None or self.task.outcomes_of_task is None:
+        belief, outcomes = self.belief, self.algorithm.outcomes
+        type_ = int(belief.argmax())
+        if belief[type_] < least or not outcomes.law.learns:
             return None
-        self.library.performance.absorb(type_, self.task.outcomes_of_task)  # pyright: ignore
+        self.library.performance.absorb(type_, outcomes.state(0))  # pyright: ignore
         self.library.forget_tables()
         self._taught = True
         return self.library.types[type_]
@@ -249,19 +240,14 @@ class BayesianPolicyReuse:
     # ---- the belief and its explanation ----------------------------------------------------------------
 
     @property
-    def dynamics(self) -> TypeDynamics:
-        """How types change between episodes."""
-        return self.algorithm.dynamics
-
-    @property
     def belief(self) -> Array:
         """β, (n_types,), sums to 1; a copy."""
-        return self._current().copy()
+        return self.algorithm.belief(0)
 
     @property
     def log_belief(self) -> Array:
         """log β, (n_types,); finite however small β is, minus infinity where it is 0; a copy."""
-        return self._log_belief.copy()
+        return self.algorithm.log_belief[0].copy()
 
     @property
     def episodes_left(self) -> int | None:
@@ -270,20 +256,16 @@ class BayesianPolicyReuse:
 
     def expected_utility(self) -> Array:
         """Ũ(π) under the belief, (n_policies,)."""
-        return expected_utility(self._current(), self._known.performance.mean)
+        return self.algorithm.known(0).performance.expected(self.belief)
 
     def probabilities(self, available: Available | None = None) -> Array:
         """Probability that `select(available)` takes each policy, (n_policies,), sums to 1; errors as there."""
-        belief, left, library = self._current(), self.episodes_left, self.algorithm.library
-        if available is None:
-            return self.rule.probabilities(library, belief, episodes_left=left)
-        policies = available_policies(available, library.policies)
-        return available_probabilities(self.rule, library, belief, policies, episodes_left=left)
+        return self.algorithm.propensities(0, self.rule, self._mask(available), self.episodes_left)
 
     def explain(self) -> Explanation:
         """The evidence of the last signals for each type, and the selected policy beside the runner-up."""
         names, types, last = self.library.policies, self.library.types, list(self._evidence)
-        belief = self._current()
+        belief = self.belief
         order = np.argsort(-belief, kind="stable").tolist()
         evidence = relative_evidence(last, self.library.n_types)
         selected = score = runner_up = runner_up_score = None
@@ -304,11 +286,5 @@ class BayesianPolicyReuse:
             novelty=None if self.novelty is None else self.novelty.probability,
         )
 
-    @property
-    def _known(self) -> PolicyLibrary:
-        return self.task or self.library
-
-    def _current(self) -> Array:
-        if self._belief is None:
-            self._belief = self.algorithm.belief(self._log_belief)
-        return self._belief
+    def _mask(self, available: Available | None) -> Any:
+        return None if available is None else available_mask(available, self.library.policies)

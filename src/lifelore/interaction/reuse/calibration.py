@@ -16,9 +16,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.user_library import UserLibrary
 
 Array = NDArray[np.float64]
 
+N_BINS = 10
+"""Number of bins of predicted probabilities; more are finer and have fewer predictions each."""
 LEVELS = tuple(level / 10 for level in range(1, 10))
 """Levels of the predicted quantiles that are compared."""
 LEAST_GROUPS = 3
@@ -68,10 +71,10 @@ class Calibration:
         }
 
 
-def type_calibration(
-    beliefs: ArrayLike, types: ArrayLike, groups: ArrayLike | None = None, n_bins: int = 10
-) -> Calibration:
+def type_calibration(beliefs: ArrayLike, types: ArrayLike, groups: ArrayLike | None = None) -> Calibration:
     """Calibration of beliefs over types: every pair of a row and a type is a prediction.
+
+    Predictions are in `N_BINS` bins of equal width over [0, 1]; bins without a prediction are left out.
 
     Parameters
     ----------
@@ -81,8 +84,6 @@ def type_calibration(
         The true types.
     groups : (n,), optional
         Such as the user of each row; by default each row is a group of its own.
-    n_bins : int
-        Bins of equal width over [0, 1]; bins without a prediction are left out.
 
     Raises
     ------
@@ -91,7 +92,7 @@ def type_calibration(
 
     Examples
     --------
-    >>> found = type_calibration([[0.8, 0.2], [0.8, 0.2], [0.8, 0.2], [0.8, 0.2]], [0, 0, 0, 1], n_bins=5)
+    >>> found = type_calibration([[0.8, 0.2], [0.8, 0.2], [0.8, 0.2], [0.8, 0.2]], [0, 0, 0, 1])
     >>> found.predicted.round(2).tolist(), found.observed.tolist(), round(found.error, 3)
     ([0.2, 0.8], [0.25, 0.75], 0.05)
     """
@@ -102,24 +103,25 @@ def type_calibration(
         raise InputError("beliefs must be at least 0 and sum to 1 in each row")
     if not 0 <= types.min() <= types.max() < probs.shape[1]:
         raise InputError(f"types must be 0 to {probs.shape[1] - 1}, got {types.min()} to {types.max()}")
-    if n_bins < 1:
-        raise InputError(f"n_bins must be at least 1, got {n_bins}")
     group = np.repeat(_numbered(groups, len(probs)), probs.shape[1])
     right = (np.arange(probs.shape[1]) == types[:, None]).astype(np.float64).ravel()
     probs = probs.ravel()
     # Beliefs that differ from an edge by rounding belong to it.
-    bins = np.minimum((probs * n_bins + 1e-9).astype(np.int64), n_bins - 1)
+    bins = np.minimum((probs * N_BINS + 1e-9).astype(np.int64), N_BINS - 1)
     used = np.unique(bins)
     shares = np.array([_share(right[bins == number], group[bins == number]) for number in used])
     predicted = np.array([probs[bins == number].mean() for number in used])
     return _calibration(predicted, shares, np.bincount(bins)[used], len(np.unique(group)))
 
 
-def outcome_levels(library: PolicyLibrary, beliefs: ArrayLike, policies: ArrayLike, outcomes: ArrayLike) -> Array:
+def outcome_levels(
+    library: PolicyLibrary | UserLibrary, beliefs: ArrayLike, policies: ArrayLike, outcomes: ArrayLike
+) -> Array:
     """P(U < u) and P(U ≤ u) of outcomes under the belief before each, (n, 2); equal for densities.
 
     Parameters
     ----------
+    library : PolicyLibrary, or what is known of a single user
     beliefs : (n, n_types) float
     policies : (n,) int
     outcomes : (n,) float

@@ -27,6 +27,11 @@ class Evidence(NamedTuple):
     log_likelihood: Array
     log_evidence: float
 
+    @property
+    def surprise(self) -> float:
+        """−log Σ F β in nats, at most `MAX_SURPRISE`; negative for densities above 1."""
+        return min(-self.log_evidence, MAX_SURPRISE)
+
 
 @dataclass(frozen=True)
 class Explanation:
@@ -48,7 +53,7 @@ class Explanation:
         log Σ F β of each of the last signals: how expected it was.
     surprise : float
         Sum of −log Σ F β over all signals, in nats. It depends on the noise, and is no sign of a new type; use
-        `interaction.novelty`.
+        `interaction.reuse.novelty`.
     unexplained : int
         Number of signals so far that no type explains.
     novelty : float or None
@@ -72,16 +77,9 @@ class Explanation:
         return asdict(self)
 
 
-def surprise_of(log_evidence: float) -> float:
-    """The surprise of a signal in nats, −log Σ F β, at most `MAX_SURPRISE`; negative for densities above 1."""
-    return min(-log_evidence, MAX_SURPRISE)
-
-
 def relative_evidence(evidence: Sequence[Evidence], n_types: int) -> Array:
     """Log likelihoods less each signal's best, (n_signals, n_types), at most 0."""
-    if not evidence:
-        return np.zeros((0, n_types))
-    rows = np.array([signal.log_likelihood for signal in evidence])
+    rows = np.array([signal.log_likelihood for signal in evidence]).reshape(-1, n_types)
     best = rows.max(axis=1, keepdims=True)
     return np.where(best > -np.inf, rows - np.where(best > -np.inf, best, 0.0), 0.0)
 
@@ -89,9 +87,9 @@ def relative_evidence(evidence: Sequence[Evidence], n_types: int) -> Array:
 def two_best(scores: Array, selected: int) -> tuple[float, int | None, float | None]:
     """Score of the selected policy, and the best other policy with its score; None where there is no other.
 
-    Policies of score NaN were not available.
+    Policies of score minus infinity were not available.
     """
-    others = np.flatnonzero(~np.isnan(scores))
+    others = np.flatnonzero(scores > -np.inf)
     others = others[others != selected]
     if not others.size:
         return float(scores[selected]), None, None

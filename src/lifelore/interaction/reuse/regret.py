@@ -15,6 +15,8 @@ Array = NDArray[np.float64]
 def library_regret(utilities: ArrayLike, chosen: ArrayLike) -> Array:
     """Regret of each choice against the best policy in hindsight (Def. 4.3.1), at least 0.
 
+    Its mean over K trials is the average library regret (Def. 4.3.2).
+
     Parameters
     ----------
     utilities : (..., n_policies) float
@@ -51,19 +53,3 @@ def library_regret(utilities: ArrayLike, chosen: ArrayLike) -> Array:
         raise InputError(f"chosen must be of the tasks {utilities.shape[:-1]}, got {chosen.shape}")
     regret = utilities.max(axis=-1, keepdims=True) - np.take_along_axis(utilities, index, axis=-1)
     return regret[..., 0] if single else regret
-
-
-def average_library_regret(utilities: ArrayLike, chosen: ArrayLike) -> Array:
-    """Mean regret over the K trials of each task (Def. 4.3.2): `chosen` (..., K) to (...)."""
-    return _of_trials(utilities, chosen).mean(axis=-1)
-
-
-def cumulative_regret(utilities: ArrayLike, chosen: ArrayLike) -> Array:
-    """Regret summed up to each trial: `chosen` (..., K) to (..., K)."""
-    return np.cumsum(_of_trials(utilities, chosen), axis=-1)
-
-
-def _of_trials(utilities: ArrayLike, chosen: ArrayLike) -> Array:
-    if np.ndim(chosen) != np.ndim(utilities) or not np.size(chosen):
-        raise InputError(f"chosen must be (..., K) with at least one trial, got {np.shape(chosen)}")
-    return library_regret(utilities, chosen)

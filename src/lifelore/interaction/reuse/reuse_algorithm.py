@@ -1,97 +1,134 @@
-"""Algorithm 7 on rows of log beliefs, for a single user or very many: score, choose, likelihood, belief, dynamics.
+"""Algorithm 7 on rows of log beliefs, a row for each user.
 
-    β⁰ ← G₀                                                      `start`
-    in each episode:  π ← argmax of the rule's scores under β    `belief`, `select`
-                      run π, obtain σ
-                      β ← F(σ | ·, π) β, normalised              `update`, `update_row`
-                      β ← the dynamics' step from β              `update`, `update_row`, `step_row`
+    β⁰ ← G₀
+    in each episode:  π ← argmax of the rule's scores under β    `select`
+                      run π, obtain signals σ
+                      β ← F(σ | ·, π) β, normalised              `observe`, for each signal
+                      β ← the dynamics' step from β              `end_episode`
 
-`BayesianPolicyReuse` is a single row with its history and explanation, `UserBeliefs` holds many rows, and the
-experiments of chapter 4 run hundreds of tasks as rows. Thesis: §4.2, Alg. 7; §4.5.2, Alg. 8.
+`update` is a signal and the end of its episode. The belief is over types and, where models are uncertain, over the
+parameters of each user's own outcomes (`UserModel`). `BayesianPolicyReuse` is a single row with its history and
+explanation, `UserBeliefs` many rows with names. Thesis: §4.2, Alg. 7; §4.5.2, Alg. 8.
 """
 
-from collections.abc import Callable, Iterator
-from functools import cache
-from types import ModuleType
-from typing import Any, Literal
+from collections.abc import Mapping
+from copy import copy
+from typing import Any, Literal, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.compiled.compiler_start import kernel_pays
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.bayes_rule import bayes_rule
-from lifelore.interaction.beliefs.belief import ROW_COST, log_prior
-from lifelore.interaction.beliefs.hazard import hazard_rule
+from lifelore.interaction.beliefs.belief import log_prior, update
 from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD, TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.library.task_library import TaskLibrary
-from lifelore.interaction.outcomes.batch_likelihood import batch_likelihood
-from lifelore.interaction.outcomes.outcome_model import LARGEST
-from lifelore.interaction.reuse.task_step import learn
-from lifelore.interaction.reuse.user_outcomes import UserOutcomes
-from lifelore.interaction.selection import BeliefSampling, Greedy, SelectionRule
-from lifelore.interaction.selection.choice import choose, tied_shares
+from lifelore.interaction.outcomes.law import Models, Numbers, law_of
+from lifelore.interaction.outcomes.spread import Spread
+from lifelore.interaction.reuse.user_library import UserLibrary
+from lifelore.interaction.reuse.user_model import UserModel
+from lifelore.interaction.selection import SelectionRule
+from lifelore.interaction.selection.choice import Mask, choose, propensities, scored
+from lifelore.interaction.signals.return_signal import ReturnSignal
 
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
+Array = NDArray[Any]
 Precision = Literal["f4", "f8"]
 
-BLOCK = 512
-"""Users handled at a time: their likelihoods and beliefs stay in the processor's cache."""
-TOLERANCES: dict[str, float] = {"f4": 1e-6, "f8": 1e-9}
-"""Scores this close to the best, relative to it, are equal where beliefs are of that precision."""
-LEAST_SCORED = 1e-250
-"""The usual `least` for many users: subnormal numbers slow arithmetic down and have no finite inverse."""
+
+class Observed(NamedTuple):
+    """The evidence of signals.
+
+    log_likelihood : (..., n_types) float, log F(σ | τ, π)
+    log_evidence : (...) float, log Σ F β; minus infinity where no type explains the signal and the belief stays
+    """
+
+    log_likelihood: Array
+    log_evidence: Array
 
 
 class ReuseAlgorithm:
-    """The steps of Algorithm 7. The arrays of log beliefs are the caller's and are updated in place.
+    """Rows of Algorithm 7.
+
+    `users` are a number, or distinct numbers (k,); what comes for each user (policies, signals) then has the same
+    shape, and answers have it as their leading axis.
 
     Parameters
     ----------
     library : PolicyLibrary
-        Not copied. Call `refresh` after its models have learnt in place.
+        Not copied. Uncertain models are read once, at the start.
+    n_users : int
+    prior : (n_types,) float, optional
+        The library's by default.
     dynamics : TypeDynamics, optional
         By default a hazard of `DEFAULT_HAZARD` that draws from the library's prior; the thesis's types are static.
+        Any object with `moves`, `n_types`, `step` and `changed_share` serves, and may learn from what
+        `end_episode` gives it.
+    models : {"uncertain", "plug-in"}
+        Whether a model learnt from a finite number of runs is known to be uncertain.
+    spread : Spread, optional
+        Of the users of a type; by default as the library's runs leave it.
     dtype : {"f8", "f4"}
-        Precision of the log beliefs. float32 is faster and needs half the memory; see `UserBeliefs` for its error.
-    least : float
-        Beliefs below `least` are scored as 0; float64 only. 0 scores every belief as it is. Published results of
-        single agents were computed with 0, those of many tasks at once with `LEAST_SCORED`; the two may differ
-        where all scores are tiny.
+        Precision of the rows. float32 is faster and needs half the memory.
+
+    Attributes
+    ----------
+    log_belief : (n_users, n_types) float of `dtype`
+        Normalised; minus infinity where a belief is 0.
 
     Raises
     ------
     InputError
-        The dynamics are for another number of types.
+        The prior or the dynamics are for another number of types, or an argument breaks its rule.
     """
 
     def __init__(
         self,
         library: PolicyLibrary,
-        dynamics: TypeDynamics | None = None,
+        n_users: int = 1,
         *,
+        prior: ArrayLike | None = None,
+        dynamics: TypeDynamics | None = None,
+        models: Models = "uncertain",
+        spread: Spread | None = None,
         dtype: Precision = "f8",
-        least: float = 0.0,
     ) -> None:
-        self.library, self.least = library, least
-        self.dtype: Precision = dtype
+        if models not in ("uncertain", "plug-in"):
+            raise InputError(f"models must be 'uncertain' or 'plug-in', got {models!r}")
+        if dtype not in ("f4", "f8"):
+            raise InputError(f"dtype must be 'f4' or 'f8', got {dtype!r}")
+        self.library = library
+        self.models: Models = models
         self.dynamics = dynamics or TypeDynamics.hazard(DEFAULT_HAZARD, library.prior)
         if self.dynamics.n_types not in (None, library.n_types):
             raise InputError(f"dynamics are for {self.dynamics.n_types} types, the library has {library.n_types}")
-        self._hazard = self.dynamics.hazard_terms(dtype)
-        self._moving = self.dynamics.kind == "transitions"
-        self._rows_updated, self._compiled = 0, False
-        self.refresh()
+        self._dtype = dtype
+        self.log_prior: Array = self.start(prior)
+        settings: dict[str, Any] = {"dtype": dtype} if spread is None else {"dtype": dtype, "spread": spread}
+        laws = {"signal": law_of(library.signal, library.n_types, models, **settings)}
+        if not (isinstance(library.signal, ReturnSignal) and library.signal.outcomes is library.performance):
+            laws["outcomes"] = law_of(library.performance, library.n_types, models, **settings)
+        self._begin(n_users, laws)
 
-    def refresh(self) -> None:
-        """Read the library's models again."""
-        self._likelihood = batch_likelihood(self.library.signal)
-        self._normals = self._likelihood.normals
-        self._responses: BestResponses | None = None
+    def _begin(self, n_users: int, laws: Mapping[str, Any]) -> None:
+        """Set up rows with the prior; without a law of outcomes these are the signals."""
+        self.log_belief: Array = np.tile(self.log_prior, (n_users, 1))
+        # Whether an episode has begun since the last signal: only then may the type have changed.
+        self._begun = np.ones(n_users, bool)
+        self._models = {name: UserModel(law, n_users) for name, law in laws.items()}
+        self.signals = self._models["signal"]
+        self.outcomes = self._models.get("outcomes", self.signals)
 
-    def start(self, prior: ArrayLike | None = None) -> NDArray[Any]:
+    def new_rows(self, n_users: int = 1) -> Self:
+        """Another algorithm with the same laws and dynamics, whose `n_users` users have the prior."""
+        other = copy(self)
+        other._begin(n_users, {name: model.law for name, model in self._models.items()})
+        return other
+
+    @property
+    def n_users(self) -> int:
+        """Number of rows."""
+        return len(self.log_belief)
+
+    def start(self, prior: ArrayLike | None = None) -> Array:
         """The log belief before the first episode, (n_types,): that of `prior`, by default the library's.
 
         Raises
@@ -99,383 +136,189 @@ class ReuseAlgorithm:
         InputError
             The prior has another number of types or is no distribution.
         """
-        log_belief = log_prior(self.library.prior if prior is None else prior).astype(self.dtype)
+        log_belief = log_prior(self.library.prior if prior is None else prior).astype(self._dtype)
         if log_belief.shape != (self.library.n_types,):
             raise InputError(f"prior must be ({self.library.n_types},), got {log_belief.shape}")
         return log_belief
 
     # ---- score and choose --------------------------------------------------------------------------------
 
-    def belief(self, log_belief: NDArray[Any], users: Numbers | None = None) -> NDArray[Any]:
-        """The beliefs that rules score, of all rows or those of `users` (k,); rows sum to 1 up to rounding."""
-        if self.dtype == "f4":
-            users = np.arange(len(log_belief)) if users is None else users
-            linear = np.empty((len(users), self.library.n_types), np.float32)
-            _user_kernels().read_f4(log_belief, users, linear)
-            return linear
-        belief = np.exp(log_belief if users is None else log_belief[users])
-        if self.least:
-            belief[belief < self.least] = 0.0
-        return belief
+    def belief(self, users: Numbers) -> Array:
+        """β of `users` (...), (..., n_types), rows sum to 1 up to rounding."""
+        return np.exp(self.log_belief[users])
+
+    def known(self, users: Numbers) -> Any:
+        """The library as rules read it for `users`, given what they have shown."""
+        if not (self.signals.law.learns or self.outcomes.law.learns):
+            return self.library
+        return UserLibrary(self.library, self.signals, self.outcomes, users)
 
     def select(
         self,
-        belief: Array,
+        users: Numbers,
         rule: SelectionRule,
         generator: np.random.Generator,
+        available: Mask | None = None,
         episodes_left: float | None = None,
     ) -> tuple[Any, Array]:
-        """The policy to run next and the scores of all policies.
+        """The policy to run next for `users` (...), (...) int64, and all policies' scores, (..., n_policies).
 
         Parameters
         ----------
-        belief : (n_types,) or (n_users, n_types) float64
-        rule : SelectionRule
         generator : numpy generator
-            Serves the rule first, then the choice among equals: one number for each of many users, for a single
-            user one number where policies tie.
+            Serves the rule first, then the choice among equals.
+        available : (n_policies,) or (k, n_policies) bool, optional
+            The policies that can be run now; scores of the others are minus infinity.
         episodes_left : float, optional
             Number of episodes after this selection.
-
-        Returns
-        -------
-        policy : int or (n_users,) int64
-        scores : (n_policies,) or (n_users, n_policies) float64
         """
-        scores = rule.scores(self.library, belief, episodes_left=episodes_left, generator=generator)
+        scores = self.scores(users, rule, generator, available, episodes_left)
         return choose(scores, generator), scores
 
-    def select_fast(
+    def scores(
         self,
-        belief: NDArray[Any],
+        users: Numbers,
         rule: SelectionRule,
-        generator: np.random.Generator,
+        generator: np.random.Generator | None = None,
+        available: Mask | None = None,
         episodes_left: float | None = None,
-    ) -> Numbers:
-        """The policy to run next for many users, (n_users,); belief sampling and greedy selection run compiled.
+    ) -> Array:
+        """The rule's scores for `users` (...), (..., n_policies); arguments as for `select`."""
+        return scored(
+            rule, self.known(users), self.belief(users), available,
+            episodes_left=episodes_left, generator=generator,
+        )  # fmt: skip
 
-        The compiled rules choose with the same probabilities as `select`, but draw other random numbers (sampling:
-        one for each user in place of two) and compare scores in the precision of the beliefs.
-        """
-        if type(rule) is BeliefSampling:
-            return self._best_responses().sampled(belief, generator)
-        if type(rule) is Greedy:
-            return self._best_responses().greedy(belief, generator)
-        if self.dtype == "f4":
-            belief = belief.astype(np.float64)
-            belief /= belief.sum(axis=1, keepdims=True)
-        return self.select(belief, rule, generator, episodes_left)[0]
-
-    def greedy_shares(self, belief: NDArray[Any]) -> Array:
-        """How likely `select_fast` takes each policy under the greedy rule, (n_users, n_policies)."""
-        return tied_shares(belief @ self._best_responses().mean, TOLERANCES[self.dtype])
+    def propensities(
+        self,
+        users: Numbers,
+        rule: SelectionRule,
+        available: Mask | None = None,
+        episodes_left: float | None = None,
+    ) -> Array:
+        """Probability that `select` takes each policy for `users` (...), (..., n_policies); rows sum to 1."""
+        belief = self.belief(users).astype(np.float64, copy=False)
+        belief = belief / belief.sum(axis=-1, keepdims=True)
+        return propensities(rule, self.known(users), belief, available, episodes_left=episodes_left)
 
     # ---- likelihood, belief, dynamics --------------------------------------------------------------------
 
-    def update(
-        self,
-        log_beliefs: NDArray[Any],
-        users: Numbers,
-        policies: Numbers,
-        signals: Any,
-        select: Callable[[NDArray[Any], slice], Numbers] | None = None,
-        outcomes: UserOutcomes | None = None,
-    ) -> tuple[Array, Numbers]:
-        """Learn from a signal for each of `users`, in blocks and in order, and select in the same pass.
+    def observe(self, users: Numbers, policies: Numbers, signals: Any, outcomes: Any = None) -> Observed:
+        """Learn from a signal of each of `users` (...), within an episode.
 
         Parameters
         ----------
-        log_beliefs : (n_users, n_types) float of `dtype`
-            Updated in place.
-        users, policies : (k,) int64
-            A user may come twice, except where the dynamics are a matrix of transitions.
-        signals : sequence of length k
-            Numbers for returns, category numbers for categories.
-        select : callable, optional
-            Beliefs of a block of users after the update, (m, n_types), and the users' places in `users` to the
-            policies to run next, (m,).
-        outcomes : UserOutcomes, optional
-            What the users have shown: likelihoods are then given that, and the signals are added to it.
-
-        Returns
-        -------
-        log_evidence : (k,) float64
-            log Σ F β; minus infinity where no type explains the signal and the belief stays.
-        policies : (k,) int64
-            Of `select`; empty without it.
+        signals
+            For a single user as the library's signal model takes it, else a sequence of these.
+        outcomes : float or (k,) float, optional
+            The returns, where signals are something else: they teach how well policies do for a user.
 
         Raises
         ------
         InputError
-            The model cannot have made a signal, or gave NaN. Blocks before that signal are updated.
+            The model cannot have made a signal, or gave NaN or infinity. All stays as it was.
         """
-        signals = (self._likelihood if outcomes is None else outcomes.law).checked(signals)
-        if not len(users) == len(policies) == len(signals):
+        before, signals = self.log_belief[users], self.signals.law.checked(signals)
+        outcomes = None if outcomes is None else self.outcomes.law.checked(outcomes)
+        if self.signals.law.single and not isinstance(signals, float) and np.shape(signals) != np.shape(users):
+            raise InputError(f"there must be a signal for each user {np.shape(users)}, got {np.shape(signals)}")
+        found = self.signals.evidence(users, policies, signals, before, self._changed(users, before))
+        try:
+            after, log_evidence = update(before, found.log_likelihood)
+        except InputError:
             raise InputError(
-                f"users, policies and signals must be equally many, got {len(users)}, {len(policies)} and "
-                f"{len(signals)}"
-            )
-        if outcomes is not None and self.dynamics.kind == "hazard" and self.dynamics.rate:
-            return self._update_changing(log_beliefs, users, policies, signals, select, outcomes)
-        if self._moving and len(np.unique(users)) < len(users):
-            raise InputError("users must be distinct where types change by a matrix; update them in turn")
-        log_evidence, chosen = np.empty(len(users)), np.empty(len(users) if select else 0, np.int64)
-        work = np.empty((min(BLOCK, len(users)), self.library.n_types))
-        linear = np.empty_like(work, np.float32) if self.dtype == "f4" else None
-        for at, own in blocks(users):
-            here = len(own)
-            if outcomes is None:
-                self._likelihood.write(policies[at], signals[at], work[:here])
-            else:
-                outcomes.write(own, policies[at], signals[at], work[:here])
-            found = None if linear is None else linear[:here]
-            self._update_block(log_beliefs, own, work[:here], found, log_evidence[at])
-            if self._moving:
-                log_beliefs[own] = self.dynamics.step(log_beliefs[own].astype(np.float64))
-            if select is not None:
-                known = linear is not None and not self._moving
-                chosen[at] = select(linear[:here] if known else self.belief(log_beliefs, own), at)  # pyright: ignore
-        return log_evidence, chosen
+                f"signal model {type(self.library.signal).__name__} gave NaN or infinity as a log likelihood; "
+                "minus infinity is allowed, they are not"
+            ) from None
+        explained = log_evidence > -np.inf
+        if found.changed is not None:
+            changes = np.where(explained, (np.exp(after) * found.changed).sum(axis=-1), 0.0)
+            for model in self._models.values():
+                model.fade(users, 1 - np.minimum(changes, 1.0))
+        if self.signals.law.learns and explained.any():
+            self.signals.learn(*_explained(explained, users, policies, signals, found.gain))
+        if outcomes is not None and self.outcomes is not self.signals and self.outcomes.law.learns:
+            self._learn_outcomes(users, policies, outcomes, before)
+        self.log_belief[users] = after
+        if self.dynamics.moves:
+            self._begun[users] = False
+        return Observed(found.log_likelihood, log_evidence)
 
-    def _update_changing(
-        self,
-        log_beliefs: NDArray[Any],
-        users: Numbers,
-        policies: Numbers,
-        signals: Array,
-        select: Callable[[NDArray[Any], slice], Numbers] | None,
-        outcomes: UserOutcomes,
-    ) -> tuple[Array, Numbers]:
-        """`update` of users whose types change by a hazard and whose models are uncertain."""
-        log_evidence, chosen = np.empty(len(users)), np.empty(len(users) if select else 0, np.int64)
-        shown, keeps = np.empty((min(BLOCK, len(users)), self.library.n_types)), np.empty(BLOCK)
-        new, rate = np.empty_like(shown), self.dynamics.rate
-        with np.errstate(divide="ignore"):
-            log_stay, log_anew = float(np.log1p(-rate)), np.log(rate) + np.log(self.dynamics.law)  # pyright: ignore
-        for at, own in distinct_blocks(users):
-            n = len(own)
-            outcomes.predict(own, policies[at], signals[at], shown[:n], new[:n])
-            _user_step_kernels().changing_users(
-                log_beliefs, own, shown[:n], new[:n], log_stay, log_anew, log_evidence[at], keeps[:n]
-            )
-            outcomes.add(own, policies[at], signals[at], keeps[:n])
-            if select is not None:
-                chosen[at] = select(self.belief(log_beliefs, own), at)
-        return log_evidence, chosen
+    def end_episode(self, users: Numbers, outcome: Any = None) -> None:
+        """Take the dynamics' step for `users`; dynamics that learn read by `outcome` how the episodes ended."""
+        if self.dynamics.moves:
+            self.log_belief[users] = self.dynamics.step(self.log_belief[users], users, outcome)
+            self._begun[users] = True
 
-    def _update_block(
-        self,
-        log_beliefs: NDArray[Any],
-        users: Numbers,
-        log_likelihood: Array,
-        linear: NDArray[Any] | None,
-        log_evidence: Array,
-    ) -> None:
-        """Bayes' rule for a block of users and the step of a hazard, if there is one; arrays as in the kernels."""
-        rows = (log_beliefs, users, log_likelihood)
-        if linear is not None:
-            if self._hazard is None:
-                _user_kernels().bayes_users_f4(*rows, linear, log_evidence)
-            else:
-                _hazard_user_kernels().hazard_users_f4(*rows, linear, log_evidence, self._hazard)
-        elif self._hazard is None:
-            (_loaded or _load()).bayes_users(*rows, log_evidence)
-        else:
-            _hazard_kernels().hazard_users(*rows, log_evidence, self._hazard)
+    def update(self, users: Numbers, policies: Numbers, signals: Any, outcomes: Any = None) -> Observed:
+        """`observe`, and `end_episode`."""
+        observed = self.observe(users, policies, signals, outcomes)
+        self.end_episode(users)
+        return observed
 
-    def update_row(
-        self, log_belief: Array, policy: int, signal: Any, outcome: float | None = None
-    ) -> tuple[Array, float]:
-        """Learn from a single signal, in place; the same bits as `update` without the start of a compiler.
+    # ---- rows ----------------------------------------------------------------------------------------------
 
-        Parameters
-        ----------
-        log_belief : (n_types,) float64
-            Updated in place.
-        policy : int
-            Number of the policy.
-        signal
-            As the library's signal model takes it.
-        outcome : float, optional
-            The return, where the signal is another one; teaches the outcomes of a `TaskLibrary`.
+    def reset(self, users: Numbers) -> None:
+        """Set `users` back to the prior, and forget what they have shown."""
+        self.log_belief[users], self._begun[users] = self.log_prior, True
+        for model in self._models.values():
+            model.reset(users)
 
-        Returns
-        -------
-        log_likelihood : (n_types,) float64
-            log F(signal | type, policy).
-        log_evidence : float
-            As in `update`.
+    def grow(self, n_users: int) -> None:
+        """Make room for `n_users` users; new users have the prior."""
+        more = n_users - self.n_users
+        self.log_belief = np.concatenate([self.log_belief, np.tile(self.log_prior, (more, 1))])
+        self._begun = np.concatenate([self._begun, np.ones(more, bool)])
+        for model in self._models.values():
+            model.grow(n_users)
 
-        Raises
-        ------
-        InputError
-            The model cannot have made the signal, or gave NaN or infinity. The belief stays as it was.
-        """
-        normals = self._normals
-        compiled = self._compiled or self._starts_compiler()
-        if isinstance(self.library, TaskLibrary):
-            log_likelihood, log_evidence = learn(
-                self.library, log_belief, policy, signal, outcome, self._hazard, compiled
-            )
-        elif compiled and normals is not None and isinstance(signal, float) and -LARGEST <= signal <= LARGEST:
-            log_likelihood = np.empty(len(log_belief))
-            row = (log_belief, policy, signal, *normals, log_likelihood)
-            if self._hazard is None:
-                log_evidence = (_loaded or _load()).normal_row(*row)
-            else:
-                log_evidence = _hazard_kernels().hazard_normal_row(*row, self._hazard)
-        else:
-            log_likelihood = self._log_likelihood(policy, signal)
-            log_evidence = self._learn_row(log_belief, log_likelihood, compiled)
-        if log_evidence != log_evidence:
-            raise InputError(
-                f"signal model {type(self.library.signal).__name__} gave NaN or infinity as a log likelihood for "
-                f"policy {self.library.policies[policy]!r}; minus infinity is allowed, they are not"
-            )
-        if self._moving:
-            self.step_row(log_belief)
-        return log_likelihood, log_evidence
+    def state(self, user: int) -> dict[str, Array]:
+        """What a user has shown, as small arrays; empty between episodes where only the belief learns."""
+        states = {name: model.state(user) for name, model in self._models.items()}
+        found = {f"{name}.{key}": array for name, state in states.items() for key, array in state.items()}
+        return found if self._begun[user] else found | {"begun": np.array(False)}
 
-    def _learn_row(self, log_belief: Array, log_likelihood: Array, compiled: bool) -> float:
-        """Bayes' rule for a log belief in place, and the step of a hazard, if there is one; the log evidence."""
-        if compiled:
-            if self._hazard is None:
-                return (_loaded or _load()).bayes_row(log_belief, log_likelihood)
-            return _hazard_kernels().hazard_row(log_belief, log_likelihood, self._hazard)
-        if self._hazard is None:
-            log_belief[:], log_evidence = bayes_rule(log_belief, log_likelihood)
-        else:
-            log_belief[:], log_evidence = hazard_rule(log_belief, log_likelihood, self._hazard)
-        return log_evidence
+    def restore(self, user: int, log_belief: ArrayLike, state: Mapping[str, Any]) -> None:
+        """Take over a log belief (n_types,) and a `state`; InputError where they are of another library."""
+        row = np.asarray(log_belief)
+        if row.shape != (self.library.n_types,) or not abs(np.exp(row.astype(np.float64)).sum() - 1) < 1e-5:
+            raise InputError(f"log_belief must be the logs of a belief over {self.library.n_types} types")
+        for name, model in self._models.items():
+            model.restore(user, named_part(state, f"{name}."))
+        self.log_belief[user], self._begun[user] = row, bool(state.get("begun", True))
 
-    def step_row(self, log_belief: Array) -> None:
-        """The dynamics' step of a log belief (n_types,) alone, in place: an episode without a signal."""
-        log_belief[:] = self.dynamics.step(log_belief)
+    @property
+    def nbytes(self) -> int:
+        """Memory of all rows in bytes."""
+        statistics = sum(model.shown.nbytes + model.log_weights.nbytes for model in self._models.values())
+        return self.log_belief.nbytes + self._begun.nbytes + statistics
 
-    def _log_likelihood(self, policy: int, signal: Any) -> Array:
-        # A copy: callers keep it, and a model may write its next answer into the same array.
-        found = np.array(self.library.signal.log_likelihood(policy, signal), np.float64)
-        if found.shape != (self.library.n_types,):
-            raise InputError(
-                f"signal model {type(self.library.signal).__name__} must give ({self.library.n_types},) "
-                f"log likelihoods, gave {found.shape}"
-            )
-        return found
+    def _changed(self, users: Numbers, log_belief: Array) -> Array | None:
+        """P(the type has just changed to this), (..., n_types); None where it cannot have, or no law learns."""
+        if not self.signals.law.learns:
+            return None
+        begun = self._begun[users]
+        share = self.dynamics.changed_share(log_belief) if begun.any() else None
+        return None if share is None else share * begun[..., None]
 
-    def _starts_compiler(self) -> bool:
-        """Whether rows are updated by kernels from now on: Numba is loaded, or many updates have been made."""
-        self._rows_updated += 1
-        self._compiled = kernel_pays(ROW_COST * self._rows_updated * self.library.n_types)
-        return self._compiled
-
-    def _best_responses(self) -> "BestResponses":
-        if self._responses is None:
-            self._responses = BestResponses(self.library.performance.mean, self.dtype)
-        return self._responses
+    def _learn_outcomes(self, users: Numbers, policies: Numbers, outcomes: Any, log_belief: Array) -> None:
+        found = self.outcomes.evidence(users, policies, outcomes, log_belief, None)
+        explained = (found.log_likelihood > -np.inf).any(axis=-1)
+        if explained.any():
+            self.outcomes.learn(*_explained(explained, users, policies, outcomes, found.gain))
 
 
-class BestResponses:
-    """Compiled belief sampling and greedy selection for rows of beliefs.
-
-    Parameters
-    ----------
-    mean : (n_types, n_policies) float
-        E[U | type, policy]; copied.
-    dtype : {"f8", "f4"}
-        Precision of the beliefs.
-    """
-
-    def __init__(self, mean: Array, dtype: Precision) -> None:
-        self.mean, self.tolerance = np.array(mean, dtype, order="C"), TOLERANCES[dtype]
-        self._best = tied_shares(mean) > 0
-        # The number of each type's best response, where no type has two.
-        self._single = self._best.argmax(axis=1) if (self._best.sum(axis=1) == 1).all() else None
-
-    def sampled(self, belief: NDArray[Any], generator: np.random.Generator) -> Numbers:
-        """The best response to a type drawn from each row of `belief`, equals at random, (n,)."""
-        drawn = np.empty(len(belief), np.int64)
-        _user_kernels().draw_types(belief, generator.random(len(belief)), drawn)
-        if self._single is not None:
-            return self._single[drawn]
-        return self._largest(self._best[drawn].astype(self.mean.dtype), generator)
-
-    def greedy(self, belief: NDArray[Any], generator: np.random.Generator) -> Numbers:
-        """The policy of the largest expected utility, equals at random, (n,)."""
-        return self._largest(belief @ self.mean, generator)
-
-    def _largest(self, scores: NDArray[Any], generator: np.random.Generator) -> Numbers:
-        chosen = np.empty(len(scores), np.int64)
-        _tie_kernels().choose_rows(scores, generator.random(len(scores)), self.tolerance, chosen)
-        return chosen
+def _explained(explained: Any, *of_users: Any) -> tuple[Any, ...]:
+    """The parts of what comes for each user that `explained` (...) marks."""
+    if explained.all():
+        return of_users
+    rows = np.flatnonzero(explained)
+    return tuple(
+        [each[row] for row in rows] if isinstance(each, list) else each if each is None else each[rows]
+        for each in of_users
+    )
 
 
-def blocks(users: Numbers) -> Iterator[tuple[slice, Numbers]]:
-    """Blocks of at most `BLOCK` users: their places in `users`, and the users."""
-    for start in range(0, len(users), BLOCK):
-        at = slice(start, min(start + BLOCK, len(users)))
-        yield at, users[at]
-
-
-def distinct_blocks(users: Numbers) -> Iterator[tuple[slice, Numbers]]:
-    """`blocks` in none of which a user comes twice; a user's second signal needs what the first has changed."""
-    for at, own in blocks(users):
-        if len(np.unique(own)) == len(own):
-            yield at, own
-            continue
-        start, inside = at.start, set[int]()
-        for place, user in enumerate(own.tolist(), at.start):
-            if user in inside:
-                yield slice(start, place), users[start:place]
-                start, inside = place, set()
-            inside.add(user)
-        yield slice(start, at.stop), users[start : at.stop]
-
-
-# Modules of kernels are imported at their first use: the import starts Numba.
-
-
-_loaded: Any = None
-
-
-def _load() -> Any:
-    """The module of belief kernels, stored for later updates: a single update takes a microsecond."""
-    global _loaded
-    from lifelore.interaction.beliefs import belief_kernels
-
-    _loaded = belief_kernels
-    return belief_kernels
-
-
-@cache
-def _hazard_kernels() -> ModuleType:
-    from lifelore.interaction.beliefs import hazard_kernels
-
-    return hazard_kernels
-
-
-@cache
-def _hazard_user_kernels() -> ModuleType:
-    from lifelore.interaction.reuse import hazard_user_kernels
-
-    return hazard_user_kernels
-
-
-@cache
-def _user_kernels() -> ModuleType:
-    from lifelore.interaction.reuse import user_kernels
-
-    return user_kernels
-
-
-@cache
-def _user_step_kernels() -> ModuleType:
-    from lifelore.interaction.reuse import user_step_kernels
-
-    return user_step_kernels
-
-
-@cache
-def _tie_kernels() -> ModuleType:
-    from lifelore.interaction.selection import tie_kernels
-
-    return tie_kernels
+def named_part(state: Mapping[str, Any], prefix: str) -> dict[str, Any]:
+    """The arrays whose names begin with `prefix`, by the rest of their names."""
+    return {name.removeprefix(prefix): array for name, array in state.items() if name.startswith(prefix)}

@@ -24,7 +24,8 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.explanation import Evidence
-from lifelore.interaction.reuse.unknown_type import UnknownType
+from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
+from lifelore.interaction.reuse.reuse_algorithm import named_part
 from lifelore.interaction.selection import RULES, restored_rule
 
 FORMAT = PackedFormat("lifelore policy reuse session", 3, "session", "save_session", oldest=1)
@@ -77,8 +78,8 @@ def session_bytes(agent: BayesianPolicyReuse) -> bytes:
     header = {
         "rule": agent.rule.name,
         "settings": asdict(agent.rule),  # pyright: ignore[reportArgumentType]
-        "dynamics": agent.dynamics.kind,
-        "rate": agent.dynamics.rate,
+        "dynamics": agent.algorithm.dynamics.kind,
+        "rate": agent.algorithm.dynamics.rate,
         "models": agent.models,
         "horizon": agent.horizon,
         "episode": agent.episode,
@@ -121,10 +122,9 @@ def _arrays(agent: BayesianPolicyReuse) -> Arrays:
         "log_evidence": np.array([signal.log_evidence for signal in last], np.float64),
         "log_likelihood": np.array([signal.log_likelihood for signal in last]).reshape(-1, agent.library.n_types),
     }
-    if agent.dynamics.law is not None:
-        arrays["law"] = agent.dynamics.law
-    if agent.task is not None:
-        arrays |= {f"task.{name}": array for name, array in agent.task.state().items()}
+    if agent.algorithm.dynamics.law is not None:
+        arrays["law"] = agent.algorithm.dynamics.law
+    arrays |= {f"task.{name}": array for name, array in agent.algorithm.state(0).items()}
     if agent.novelty is not None:
         arrays |= {f"novelty.{name}": array for name, array in agent.novelty.state().items()}
     if agent._selected is not None:
@@ -133,27 +133,18 @@ def _arrays(agent: BayesianPolicyReuse) -> Arrays:
 
 
 def _restore(agent: BayesianPolicyReuse, header: dict[str, Any], arrays: Arrays) -> None:
-    log_belief = arrays["log_belief"]
-    if log_belief.shape != (agent.library.n_types,) or log_belief.dtype != np.float64:
-        raise ValueError(f"log_belief has shape {log_belief.shape}")
-    if not ((log_belief <= 0).all() and abs(np.exp(log_belief).sum() - 1) < 1e-9):
-        raise ValueError("log_belief is no belief")
-    agent._log_belief[:] = log_belief
-    if agent.task is not None:
-        agent.task.restore(_part(arrays, "task."))
+    agent.algorithm.restore(0, arrays["log_belief"], named_part(arrays, "task."))
     # Files of versions 1 and 2 have none.
-    if novelty := _part(arrays, "novelty."):
-        agent.novelty = UnknownType.restored(novelty, agent.library, agent.dynamics, agent.models)
+    if novelty := named_part(arrays, "novelty."):
+        agent.novelty = NoveltyDetector.restored(novelty, agent.library, agent.algorithm.dynamics, agent.models)
     agent.episode, agent.unexplained = int(header["episode"]), int(header["unexplained"])
     agent.surprise, agent._taught = float(header["surprise"]), bool(header.get("taught", False))
     last = zip(arrays["evidence_policy"], arrays["log_likelihood"], arrays["log_evidence"], strict=True)
     agent._evidence.extend(Evidence(int(policy), row, float(evidence)) for policy, row, evidence in last)
     if header["selected"] is not None:
-        agent._selected = int(header["selected"]), arrays["scores"]
-
-
-def _part(arrays: Arrays, prefix: str) -> Arrays:
-    return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
+        # Until version 3, scores of policies that were not available were NaN.
+        scores = arrays["scores"]
+        agent._selected = int(header["selected"]), np.where(np.isnan(scores), -np.inf, scores)
 
 
 def generator_state(generator: np.random.Generator) -> dict[str, Any]:

@@ -1,14 +1,12 @@
-"""Beliefs about very many users: a row of log beliefs for each, updated and read in blocks that fit the cache.
+"""Beliefs about very many users, numbered or named: rows of Algorithm 7, updated and read in blocks.
 
-With float32 rows a user takes 4 bytes a type: 272 bytes for 68 types. With models learnt from a finite number of
-runs, the belief is over types and the parameters of their models; then a user takes 8 bytes more, and 144 for
-every five tried policies. float64 rows have the bits of a `BayesianPolicyReuse` for each user (uncertain models:
-its numbers to 1e-12). float32 rows agree with these to 1e-5, and above 1e-6 to a ten-thousandth of themselves, for
-types whose belief never fell below e^-100. Beliefs below e^-87 (float64: 1e-250) count as 0 in a choice, but their
-logarithms stay and may rise again. Thesis: §4.2, Alg. 7, with many tasks side by side.
+With float32 rows a user takes 4 bytes a type, and with models learnt from a finite number of runs 12 bytes more a
+policy (4 a cell, where outcomes are counted). float32 rows agree with float64 rows to 1e-5. A
+`BayesianPolicyReuse` for each user has the same numbers to 1e-12, where both know the same spread. Thesis: §4.2,
+Alg. 7, with many tasks side by side.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -18,18 +16,22 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.bayesian_policy_reuse import Models
-from lifelore.interaction.reuse.outcome_laws import outcome_law
-from lifelore.interaction.reuse.reuse_algorithm import LEAST_SCORED, TOLERANCES, ReuseAlgorithm, blocks
-from lifelore.interaction.reuse.user_choice import UserChoice, checked_mask
+from lifelore.interaction.outcomes.law import Models, law_of
+from lifelore.interaction.outcomes.spread import Spread
+from lifelore.interaction.reuse.reuse_algorithm import Precision, ReuseAlgorithm
 from lifelore.interaction.reuse.user_names import UserNames, are_names
-from lifelore.interaction.reuse.user_outcomes import UserOutcomes
-from lifelore.interaction.selection import Greedy, SelectionRule, default_rule, rule_named
+from lifelore.interaction.selection import SelectionRule, rule_of
+from lifelore.interaction.selection.choice import available_mask, best_policies
 
-Array = NDArray[np.float64]
+Array = NDArray[Any]
 Numbers = NDArray[np.int64]
 Users = ArrayLike | Sequence[str]
 """Numbers of users, or their names where the users have names."""
+
+BLOCK = 1 << 15
+"""Numbers of a block's beliefs: they stay in the processor's cache."""
+LARGEST_BLOCK = 1 << 21
+"""Numbers of the largest temporary arrays, which have a row for each user, type, policy and signal."""
 
 
 class UserBeliefs:
@@ -38,7 +40,7 @@ class UserBeliefs:
     Parameters
     ----------
     library : PolicyLibrary
-        Call `refresh` after its models have learnt in place.
+        Not copied. Uncertain models are read once, at the start.
     users : int or iterable of str
         Number of users, at least 1; they are then numbered from 0. Or their names, none to begin with allowed.
     dtype : {"f4", "f8"}
@@ -48,7 +50,7 @@ class UserBeliefs:
         By default a hazard of 0.002 that draws from the library's prior; `TypeDynamics.static()` as in the thesis.
         Each `update` is also the step between two episodes.
     models : {"uncertain", "plug-in"}
-        As in `BayesianPolicyReuse`. Uncertain models need returns as signals; other signals are plug-in.
+        As in `BayesianPolicyReuse`.
     spread : float, optional
         ρ, by how much the mean outcome of a pair differs between users of a type, as a share of the variance of an
         outcome; ≥ 0. By default the mean of the spreads that the library holds possible. A `BayesianPolicyReuse`
@@ -59,10 +61,7 @@ class UserBeliefs:
 
     Attributes
     ----------
-    log_prior : (n_types,) float32 or float64
-        Log belief about a new user.
-    outcomes : UserOutcomes or None
-        What the users have shown; None where models are plug-in or exact.
+    n_users : int
 
     Raises
     ------
@@ -82,7 +81,7 @@ class UserBeliefs:
         self,
         library: PolicyLibrary,
         users: int | Iterable[str],
-        dtype: Literal["f4", "f8"] = "f4",
+        dtype: Precision = "f4",
         *,
         prior: ArrayLike | None = None,
         dynamics: TypeDynamics | None = None,
@@ -95,53 +94,28 @@ class UserBeliefs:
         n_users = int(users) if self.names is None else len(self.names)  # pyright: ignore[reportArgumentType]
         if self.names is None and n_users < 1:
             raise InputError(f"users must be at least 1, or names, got {n_users}")
-        if dtype not in TOLERANCES:
-            raise InputError(f"dtype must be 'f4' or 'f8', got {dtype!r}")
-        if models not in ("uncertain", "plug-in"):
-            raise InputError(f"models must be 'uncertain' or 'plug-in', got {models!r}")
         if unknown not in ("error", "add"):
             raise InputError(f"unknown must be 'error' or 'add', got {unknown!r}")
         if spread is not None and not 0 <= spread < np.inf:
             raise InputError(f"spread must be at least 0 and finite, got {spread}")
-        self.library, self.dtype, self.models, self.unknown = library, dtype, models, unknown
-        self.spread = spread
-        self.algorithm = ReuseAlgorithm(library, dynamics, dtype=dtype, least=LEAST_SCORED)
+        self.library, self.unknown = library, unknown
+        known = law_of(library.signal, library.n_types, models).spread.mean if spread is None else spread
+        self.algorithm = ReuseAlgorithm(
+            library,
+            n_users,
+            prior=prior,
+            dynamics=dynamics,
+            models=models,
+            spread=Spread.known(known),
+            dtype=dtype,
+        )
         self.generator = stream(seed, "user beliefs") if isinstance(seed, int | np.integer) else seed
-        self.log_prior = self.algorithm.start(prior)
-        self._n_users, self._rows = n_users, np.empty((n_users, library.n_types), dtype)
-        self._rows[:] = self.log_prior
-        law = outcome_law(library, spread) if models == "uncertain" else None
-        self.outcomes = None if law is None else UserOutcomes(law, n_users)
-        self._choice: UserChoice | None = None
-
-    def refresh(self) -> None:
-        """Read the library's models again; beliefs and what users have shown stay."""
-        self.algorithm.refresh()
-        self._choice = None
-        if self.outcomes is not None:
-            law = outcome_law(self.library, self.spread)
-            assert law is not None
-            self.outcomes.law = law
+        self.n_users = n_users
 
     @property
-    def dynamics(self) -> TypeDynamics:
-        """How types change between episodes."""
-        return self.algorithm.dynamics
-
-    @property
-    def n_users(self) -> int:
-        """Number of users."""
-        return self._n_users
-
-    @property
-    def log_belief(self) -> NDArray[Any]:
+    def log_belief(self) -> Array:
         """Normalised logs of the beliefs, (n_users, n_types) float32 or float64; not a copy."""
-        return self._rows[: self._n_users]
-
-    @property
-    def nbytes(self) -> int:
-        """Memory of all users in bytes, without their names."""
-        return self._rows.nbytes + (0 if self.outcomes is None else self.outcomes.nbytes)
+        return self.algorithm.log_belief[: self.n_users]
 
     def add_users(self, users: int | Iterable[str]) -> Numbers:
         """Add a number of users, or users of these names; their numbers, (k,).
@@ -159,19 +133,13 @@ class UserBeliefs:
         if self.names is None:
             if users < 0:  # pyright: ignore[reportOperatorIssue]
                 raise InputError(f"users must be at least 0, got {users}")
-            new = self._n_users + np.arange(int(users))  # pyright: ignore[reportArgumentType]
+            new = self.n_users + np.arange(int(users))  # pyright: ignore[reportArgumentType]
         else:
             new = self.names.add(users)  # pyright: ignore[reportArgumentType]
-        total = self._n_users + len(new)
-        if total > len(self._rows):
-            room = max(total, 2 * len(self._rows))
-            rows = np.empty((room, self.library.n_types), self.dtype)
-            rows[: self._n_users] = self.log_belief
-            self._rows = rows
-            if self.outcomes is not None:
-                self.outcomes.grow(room)
-        self._rows[self._n_users : total] = self.log_prior
-        self._n_users = total
+        total = self.n_users + len(new)
+        if total > self.algorithm.n_users:
+            self.algorithm.grow(max(total, 2 * self.algorithm.n_users))
+        self.n_users = total
         return new
 
     # ---- many users at once ----------------------------------------------------------------------------
@@ -189,18 +157,15 @@ class UserBeliefs:
         Parameters
         ----------
         rule : SelectionRule or str, optional
-            By default as for `BayesianPolicyReuse`. "sampling" and "greedy" run compiled. The other rules score
-            the users block by block; with uncertain models each user by itself, in about a millisecond.
+            By default as for `BayesianPolicyReuse`.
         available : (n_policies,) or (k, n_policies) bool, optional
             The policies that can be run now, the same for all or for each of `users`; rules choose as if the
             library had no others.
         """
-        rows, rule = self._checked_users(users), self._rule(rule)
-        mask = checked_mask(available, len(rows), self.library.n_policies)
-        chosen = np.empty(len(rows), np.int64)
-        for at, own in blocks(rows):
-            belief = self.algorithm.belief(self.log_belief, own)
-            chosen[at] = self._chosen(belief, own, rule, None if mask is None else mask[at], episodes_left)
+        rows, rule = self._checked_users(users), rule_of(rule, self.library)
+        mask, chosen = self._mask(available, len(rows)), np.empty(len(rows), np.int64)
+        for at in self._blocks(rows, rule):
+            chosen[at] = self.algorithm.select(rows[at], rule, self.generator, mask[at], episodes_left)[0]
         return chosen
 
     def select_top(
@@ -221,15 +186,15 @@ class UserBeliefs:
         InputError
             `k` is below 1 or above the number of policies available to a user.
         """
-        rows, rule = self._checked_users(users), self._rule(rule)
-        mask = checked_mask(available, len(rows), self.library.n_policies)
-        most = self.library.n_policies if mask is None or not len(rows) else int(mask.sum(axis=1).min())
+        rows, rule = self._checked_users(users), rule_of(rule, self.library)
+        mask = self._mask(available, len(rows))
+        most = int(mask.sum(axis=1).min(initial=self.library.n_policies))
         if not 1 <= k <= most:
             raise InputError(f"k must be 1 to {most}, the number of policies available to every user, got {k}")
         best = np.empty((len(rows), k), np.int64)
-        for at, own in blocks(rows):
-            belief, may = self.algorithm.belief(self.log_belief, own), None if mask is None else mask[at]
-            best[at] = self._chooser.top(belief, own, rule, k, may, self.generator, episodes_left)
+        for at in self._blocks(rows, rule):
+            scores = self.algorithm.scores(rows[at], rule, self.generator, mask[at], episodes_left)
+            best[at] = best_policies(scores, k, self.generator)
         return best
 
     def update(self, users: Users, policies: ArrayLike, signals: Any) -> Array:
@@ -240,7 +205,6 @@ class UserBeliefs:
         users : (k,) int or str
         policies : (k,) int
         signals : sequence of length k
-            Numbers for returns, category numbers for categories.
 
         Returns
         -------
@@ -254,8 +218,11 @@ class UserBeliefs:
         InputError
             The model cannot have made a signal, or gave NaN. Blocks before that signal are updated.
         """
-        rows, policies = self._checked_users(users), self._checked_policies(policies)
-        return self.algorithm.update(self.log_belief, rows, policies, signals, outcomes=self.outcomes)[0]
+        rows, policies, signals = self._checked_signals(users, policies, signals)
+        log_evidence = np.empty(len(rows))
+        for at in self._distinct_blocks(rows):
+            log_evidence[at] = self.algorithm.update(rows[at], policies[at], signals[at]).log_evidence
+        return log_evidence
 
     def update_and_select(
         self,
@@ -268,18 +235,17 @@ class UserBeliefs:
         episodes_left: float | None = None,
     ) -> Numbers:
         """`update`, and the policy to run next, (k,), in one pass."""
-        rows, policies, rule = self._checked_users(users), self._checked_policies(policies), self._rule(rule)
-        mask = checked_mask(available, len(rows), self.library.n_policies)
-
-        def select(belief: NDArray[Any], at: slice) -> Numbers:
-            return self._chosen(belief, rows[at], rule, None if mask is None else mask[at], episodes_left)
-
-        return self.algorithm.update(self.log_belief, rows, policies, signals, select, self.outcomes)[1]
+        rows, policies, signals = self._checked_signals(users, policies, signals)
+        rule = rule_of(rule, self.library)
+        mask, chosen = self._mask(available, len(rows)), np.empty(len(rows), np.int64)
+        for at in self._distinct_blocks(rows, rule):
+            self.algorithm.update(rows[at], policies[at], signals[at])
+            chosen[at] = self.algorithm.select(rows[at], rule, self.generator, mask[at], episodes_left)[0]
+        return chosen
 
     def belief(self, users: Users) -> Array:
         """β of each of `users`, (k, n_types) float64, rows sum to 1."""
-        rows = self._checked_users(users)
-        belief = np.exp(self.log_belief[rows].astype(np.float64))
+        belief = self.algorithm.belief(self._checked_users(users)).astype(np.float64)
         return belief / belief.sum(axis=1, keepdims=True)
 
     def probabilities(
@@ -291,40 +257,56 @@ class UserBeliefs:
         episodes_left: float | None = None,
     ) -> Array:
         """Probability that `select` takes each policy, (k, n_policies); log it beside the selected policy."""
-        rows, rule = self._checked_users(users), self._rule(rule)
-        mask = checked_mask(available, len(rows), self.library.n_policies)
-        if self.outcomes is None and mask is None:
-            if type(rule) is Greedy:
-                # As `select` compares them: policies that float32 cannot tell apart are equal.
-                return self.algorithm.greedy_shares(self.algorithm.belief(self.log_belief, rows))
-            return rule.probabilities(self.library, self.belief(rows), episodes_left=episodes_left)
-        belief = self.algorithm.belief(self.log_belief, rows)
-        return self._chooser.probabilities(belief, rows, rule, mask, episodes_left)
+        rows, rule = self._checked_users(users), rule_of(rule, self.library)
+        mask, found = self._mask(available, len(rows)), np.empty((len(rows), self.library.n_policies))
+        for at in self._blocks(rows, rule):
+            found[at] = self.algorithm.propensities(rows[at], rule, mask[at], episodes_left)
+        return found
 
     def reset(self, users: Users) -> None:
         """Set the beliefs about `users` back to the prior, and forget what they have shown."""
-        rows = np.unique(self._checked_users(users))
-        self.log_belief[rows] = self.log_prior
-        if self.outcomes is not None:
-            self.outcomes.reset(rows)
+        self.algorithm.reset(np.unique(self._checked_users(users)))
 
-    @property
-    def _chooser(self) -> UserChoice:
-        if self._choice is None:
-            self._choice = UserChoice(self.library, self.outcomes, self.dtype, TOLERANCES[self.dtype])
-        return self._choice
+    def _blocks(self, rows: Numbers, rule: SelectionRule | None = None) -> Iterator[slice]:
+        """Blocks of users whose beliefs fit the cache, and whose scores by `rule` fit the memory."""
+        n_types, n_policies = self.library.n_types, self.library.n_policies
+        size = BLOCK // n_types
+        if rule is not None and not getattr(rule, "by_means", False):
+            n_bins = getattr(rule, "n_bins", 1)
+            size = min(size, LARGEST_BLOCK // (n_types * n_policies * n_bins))
+        size = max(size, 1)
+        for start in range(0, len(rows), size):
+            yield slice(start, min(start + size, len(rows)))
 
-    def _chosen(
-        self, belief: NDArray[Any], rows: Numbers, rule: SelectionRule, mask: Any, episodes_left: float | None
-    ) -> Numbers:
-        if self.outcomes is None and mask is None:
-            return self.algorithm.select_fast(belief, rule, self.generator, episodes_left)
-        return self._chooser.select(belief, rows, rule, mask, self.generator, episodes_left)
+    def _distinct_blocks(self, rows: Numbers, rule: SelectionRule | None = None) -> Iterator[slice]:
+        """`_blocks` in none of which a user comes twice: a second signal needs what the first has changed."""
+        for at in self._blocks(rows, rule):
+            own, start = rows[at].tolist(), at.start
+            if len(set(own)) == len(own):
+                yield at
+                continue
+            inside = set[int]()
+            for place, user in enumerate(own, at.start):
+                if user in inside:
+                    yield slice(start, place)
+                    start, inside = place, set()
+                inside.add(user)
+            yield slice(start, at.stop)
 
-    def _rule(self, rule: SelectionRule | str | None) -> SelectionRule:
-        if rule is None:
-            return default_rule(self.library)
-        return rule_named(rule) if isinstance(rule, str) else rule
+    def _mask(self, available: ArrayLike | None, n_rows: int) -> NDArray[np.bool_]:
+        """`available` as (n_rows, n_policies); all policies where it is None."""
+        mask = np.True_ if available is None else available_mask(available, self.library.policies, n_rows)  # pyright: ignore
+        return np.broadcast_to(mask, (n_rows, self.library.n_policies))
+
+    def _checked_signals(self, users: Users, policies: ArrayLike, signals: Any) -> tuple[Numbers, Numbers, Any]:
+        """Rows of users, numbers of policies and signals, equally many."""
+        rows, policies = self._checked_users(users), _checked(policies, self.library.n_policies, "policy")
+        if not len(rows) == len(policies) == len(signals):
+            raise InputError(
+                f"users, policies and signals must be equally many, got {len(rows)}, {len(policies)} and "
+                f"{len(signals)}"
+            )
+        return rows, policies, signals if isinstance(signals, np.ndarray) else list(signals)
 
     def _checked_users(self, users: Users) -> Numbers:
         if self.names is None or not are_names(users):
@@ -335,9 +317,6 @@ class UserBeliefs:
         if self.unknown == "add" and (new := self.names.unknown(named)):  # pyright: ignore[reportArgumentType]
             self.add_users(new)
         return self.names.rows(named)  # pyright: ignore[reportArgumentType]
-
-    def _checked_policies(self, policies: ArrayLike) -> Numbers:
-        return _checked(policies, self.library.n_policies, "policy")
 
 
 def _checked(numbers: ArrayLike, n: int, what: str) -> Numbers:

@@ -1,19 +1,17 @@
 """Selection rules: which policy to run next under a belief over types (thesis §4.5).
 
-Read in this order: `rule` (the interface), `choice` and `ties` (the best score), a file for each rule, then what
-the rules that look ahead share: `support`, `type_classes`, `information`. How they decide quickly: `exact_best`,
-`derived_arrays`, `signal_rows`, `information_bounds`, `knowledge_bounds`. `belief_program` computes the exact
-optimum.
+Read in this order: `rule` (the interface), `choice` (the best score, available policies, propensities), a file for
+each rule, then what the rules that look ahead share: `support` and `information`. `belief_program` computes the
+exact optimum.
 """
 
 from collections.abc import Mapping
 from typing import Any
 
-from lifelore.core.errors import NotFoundError
-from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.selection.belief_entropy import BeliefEntropy
 from lifelore.interaction.selection.belief_sampling import BeliefSampling
-from lifelore.interaction.selection.choice import choose, tied_shares
+from lifelore.interaction.selection.choice import choose, propensities, tied_shares
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 from lifelore.interaction.selection.expected_improvement import ExpectedImprovement
 from lifelore.interaction.selection.greedy import Greedy
@@ -52,7 +50,8 @@ BEFORE: dict[str, dict[str, Any]] = {
 __all__ = [
     "DEFAULT_RULE", "RULES", "BeliefEntropy", "BeliefSampling", "EpsilonGreedy", "ExpectedImprovement", "Greedy",
     "InformationDirected", "KnowledgeGradient", "ProbabilityOfImprovement", "SelectionRule",
-    "ValueOfPerfectInformation", "choose", "default_rule", "restored_rule", "rule_named", "tied_shares",
+    "ValueOfPerfectInformation", "choose", "default_rule", "propensities", "restored_rule", "rule_named",
+    "rule_of", "tied_shares",
 ]  # fmt: skip
 
 
@@ -69,15 +68,35 @@ def rule_named(name: str, **settings) -> SelectionRule:
     return RULES[name](**settings)
 
 
-def default_rule(library: PolicyLibrary) -> SelectionRule:
+def default_rule(library: Any) -> SelectionRule:
     """The rule for a library where none is given: `DEFAULT_RULE`, or `WITHOUT_TABLE` where signals have no table.
 
     Examples
     --------
+    >>> from lifelore.interaction.library.policy_library import PolicyLibrary
     >>> default_rule(PolicyLibrary.from_means([[10.0, 6.0]], 1.0))
     InformationDirected(mass=0.999, n_bins=8)
     """
     return rule_named(DEFAULT_RULE if library.has_table else WITHOUT_TABLE)
+
+
+def rule_of(rule: SelectionRule | str | None, library: Any) -> SelectionRule:
+    """The rule itself, the rule of that name, or where it is None the `default_rule` of the library.
+
+    Raises
+    ------
+    NotFoundError
+        There is no rule of that name.
+    InputError
+        `rule` is neither a name nor a rule.
+    """
+    if rule is None:
+        return default_rule(library)
+    if isinstance(rule, str):
+        return rule_named(rule)
+    if isinstance(rule, type) or not (hasattr(rule, "scores") and hasattr(rule, "probabilities")):
+        raise InputError(f"rule must be a selection rule or its name, one of {', '.join(RULES)}, got {rule!r:.80}")
+    return rule
 
 
 def restored_rule(name: str, settings: Mapping[str, Any]) -> SelectionRule:

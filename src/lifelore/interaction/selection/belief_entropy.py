@@ -11,12 +11,15 @@ from typing import Any, ClassVar
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import expected_utility
+from lifelore.interaction.beliefs.belief import entropy
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.information_bounds import scores_by_information
-from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks
+from lifelore.interaction.outcomes.prediction import range_of_means
+from lifelore.interaction.selection.information import mutual_information, predicted_signals
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, Variant, check_variant
 from lifelore.interaction.selection.support import MASS, check_mass
+
+LEAST_PREDICTED = 1e-300
+"""Probability below which the printed form takes a signal as impossible: the inverse would not be a number."""
 
 
 @dataclass(frozen=True)
@@ -51,36 +54,18 @@ class BeliefEntropy(Deterministic):
         if self.kappa is not None and not (self.kappa >= 0 and np.isfinite(self.kappa)):
             raise InputError(f"kappa must be at least 0, got {self.kappa}")
 
-    def scores(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
-        """Expected utilities plus κ times the information, (..., n_policies); see `scores_by_information`."""
+    def scores(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
+        """Expected utilities plus κ times the information, (P,) or (k, P)."""
         mean, table = library.performance.mean, library.table(self.n_bins)
-        kappa = (
-            float(np.maximum.reduce(mean, axis=None) - np.minimum.reduce(mean, axis=None))
-            if self.kappa is None
-            else self.kappa
-        )
-        utility = expected_utility(belief, mean)
+        kappa = range_of_means(mean) if self.kappa is None else self.kappa
+        utility = library.performance.expected(belief)
         if self.variant == "thesis":
-            return utility - kappa * _printed_entropy(printed_posterior(belief, table))
-        return scores_by_information(
-            belief, table, self.mass, lambda information, some: utility[..., some] + kappa * information
-        )
+            return utility - kappa * entropy(printed_posterior(belief, table))
+        return utility + kappa * mutual_information(belief, table, self.mass)
 
 
 def printed_posterior(belief: Array, table: SignalTable) -> Array:
-    """The thesis's βᵖ(τ) = Σ F(σ | τ)² β(τ) / Σ F β, (..., n_policies, n_types); its sums exceed 1."""
-    squares = table.probs**2
-
-    def scored(belief: Array) -> Array:
-        predicted = np.matmul(belief if belief.ndim > 1 else belief[None], table.probs)
-        inverse = np.divide(1.0, predicted, out=np.zeros_like(predicted), where=predicted > 0)
-        posterior = np.matmul(inverse, squares.transpose(0, 2, 1)).transpose(1, 0, 2)
-        posterior = posterior * np.atleast_2d(belief)[:, None, :]
-        return posterior[0] if belief.ndim == 1 else posterior.reshape(len(belief), -1)
-
-    flat = in_blocks(belief, table.probs[:, :, 0].size + table.probs[:, 0].size, scored)
-    return flat.reshape(*np.shape(belief)[:-1], table.n_policies, table.n_types)
-
-
-def _printed_entropy(vector: Array) -> Array:
-    return -(vector * np.log(np.where(vector > 0, vector, 1.0))).sum(axis=-1)
+    """The thesis's βᵖ(τ) = Σ F(σ | τ)² β(τ) / Σ F β, (P, T) or (k, P, T); its sums exceed 1."""
+    predicted = predicted_signals(belief, table)
+    inverse = np.divide(1.0, predicted, out=np.zeros_like(predicted), where=predicted > LEAST_PREDICTED)
+    return np.einsum("...tps,...ps->...pt", table.probs**2, inverse) * belief[..., None, :]

@@ -8,7 +8,7 @@ lead to it, so no division is needed. The tree has (n_policies n_signals)^k beli
 problems (golf: 4 clubs, 7 categories, 3 shots), not a rule.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,13 +16,15 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.library_names import checked_prior
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.rule import SelectionRule
+from lifelore.interaction.selection.choice import propensities
+from lifelore.interaction.selection.rule import RuleLibrary, SelectionRule
 
 Array = NDArray[np.float64]
 
 LARGEST = 50_000_000
 """Numbers in the tree's last layer of beliefs, above which it is refused."""
+NUMBERS_AT_ONCE = 1 << 20
+"""Number of beliefs, types and policies, multiplied, that a rule scores at once; more costs memory."""
 
 
 class Plan(NamedTuple):
@@ -41,7 +43,7 @@ class Plan(NamedTuple):
     values: Array
 
 
-def best_plan(library: PolicyLibrary, horizon: int, belief: Array | None = None, n_bins: int = 8) -> Plan:
+def best_plan(library: Any, horizon: int, belief: Array | None = None, n_bins: int = 8) -> Plan:
     """The optimal selection over `horizon` episodes from `belief`, by default the library's prior; exact.
 
     Utilities are the performance model's; signals are `library.table(n_bins)`.
@@ -52,7 +54,7 @@ def best_plan(library: PolicyLibrary, horizon: int, belief: Array | None = None,
         The horizon is below 1, the tree would be too large, or the belief is no distribution over the types.
     """
     table, mean = library.table(n_bins), library.performance.mean
-    layers = _layers(table, _start(library, belief), horizon)
+    layers = _layers(table, library, belief, horizon)
     values = layers[-1] @ mean
     for weights in reversed(layers[:-1]):
         values = weights @ mean + _after_signals(values.max(axis=1), table)
@@ -60,7 +62,7 @@ def best_plan(library: PolicyLibrary, horizon: int, belief: Array | None = None,
 
 
 def value_of_rule(
-    library: PolicyLibrary, rule: SelectionRule, horizon: int, belief: Array | None = None, n_bins: int = 8
+    library: Any, rule: SelectionRule, horizon: int, belief: Array | None = None, n_bins: int = 8
 ) -> float:
     """Expected sum of utilities over `horizon` episodes when `rule` selects, exactly: ties and draws are averaged.
 
@@ -70,7 +72,7 @@ def value_of_rule(
         The horizon is below 1, the tree would be too large, or the belief is no distribution over the types.
     """
     table, mean = library.table(n_bins), library.performance.mean
-    layers = _layers(table, _start(library, belief), horizon)
+    layers = _layers(table, library, belief, horizon)
     value = np.zeros(0)
     for left, weights in enumerate(reversed(layers)):
         values = weights @ mean
@@ -80,11 +82,7 @@ def value_of_rule(
     return float(value[0])
 
 
-def _start(library: PolicyLibrary, belief: Array | None) -> Array:
-    return library.prior if belief is None else checked_prior(belief, library.n_types)
-
-
-def _layers(table: SignalTable, belief: Array, horizon: int) -> list[Array]:
+def _layers(table: SignalTable, library: Any, belief: Array | None, horizon: int) -> list[Array]:
     """Unnormalised beliefs before each episode: layer k is ((n_policies n_signals)^k, n_types)."""
     if horizon < 1:
         raise InputError(f"horizon must be at least 1, got {horizon}")
@@ -93,8 +91,8 @@ def _layers(table: SignalTable, belief: Array, horizon: int) -> list[Array]:
         raise InputError(
             f"a tree of {branches} branches and horizon {horizon} is too large; take fewer bins or episodes"
         )
-    law = table.probs.astype(np.float64).transpose(0, 2, 1).reshape(branches, table.n_types)
-    layers = [belief[None]]
+    law = table.probs.transpose(1, 2, 0).reshape(branches, table.n_types)
+    layers = [(library.prior if belief is None else checked_prior(belief, library.n_types))[None]]
     for _ in range(horizon - 1):
         layers.append((layers[-1][:, None, :] * law).reshape(-1, table.n_types))
     return layers
@@ -105,8 +103,13 @@ def _after_signals(value: Array, table: SignalTable) -> Array:
     return value.reshape(-1, table.n_policies, table.n_signals).sum(axis=2)
 
 
-def _shares(library: PolicyLibrary, rule: SelectionRule, weights: Array, left: int) -> Array:
+def _shares(library: RuleLibrary, rule: SelectionRule, weights: Array, left: int) -> Array:
     """Probability that the rule selects each policy at each belief; uniform beliefs where unreachable."""
     total = weights.sum(axis=1, keepdims=True)
     beliefs = np.divide(weights, total, out=np.full_like(weights, 1 / weights.shape[1]), where=total > 0)
-    return rule.probabilities(library, beliefs, episodes_left=left)
+    step = max(1, NUMBERS_AT_ONCE // (weights.shape[1] * library.n_policies))
+    parts = [
+        propensities(rule, library, beliefs[at : at + step], episodes_left=left)
+        for at in range(0, len(beliefs), step)
+    ]
+    return np.concatenate(parts)

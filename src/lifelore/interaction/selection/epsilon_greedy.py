@@ -6,10 +6,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import expected_utility
-from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.choice import tied_shares
-from lifelore.interaction.selection.rule import Array, check_generator
+from lifelore.interaction.selection.rule import Array, RuleLibrary, check_generator
 
 
 @dataclass(frozen=True)
@@ -29,28 +27,24 @@ class EpsilonGreedy:
 
     epsilon: float = 0.3
     name: ClassVar[str] = "epsilon-greedy"
+    by_means: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if not 0 <= self.epsilon <= 1:
             raise InputError(f"epsilon must lie in [0, 1], got {self.epsilon}")
 
     def scores(
-        self,
-        library: PolicyLibrary,
-        belief: Array,
-        *,
-        episodes_left: float | None = None,
-        generator: np.random.Generator | None = None,
+        self, library: RuleLibrary, belief: Array, *, generator: np.random.Generator | None = None, **_: Any
     ) -> Array:
-        """Expected utilities, or with probability ε random numbers, (..., n_policies)."""
+        """Expected utilities, or with probability ε random numbers, (P,) or (k, P)."""
         generator = check_generator(self.name, generator)
-        utility = expected_utility(belief, library.performance.mean)
-        explores = generator.random(utility.shape[:-1]) < self.epsilon
-        if not np.any(explores):
+        utility = library.performance.expected(belief)
+        explores = np.asarray(generator.random(utility.shape[:-1]) < self.epsilon)
+        if not explores.any():
             return utility
-        return np.where(np.asarray(explores)[..., None], generator.random(utility.shape), utility)
+        return np.where(explores[..., None], generator.random(utility.shape), utility)
 
-    def probabilities(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
-        """Probability of selecting each policy, (..., n_policies); rows sum to 1."""
-        best = tied_shares(expected_utility(belief, library.performance.mean))
+    def probabilities(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
+        """Probability of selecting each policy, (P,) or (k, P); rows sum to 1."""
+        best = tied_shares(library.performance.expected(belief))
         return self.epsilon / best.shape[-1] + (1 - self.epsilon) * best

@@ -15,10 +15,9 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import expected_utility
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks, weighted
-from lifelore.interaction.selection.ties import TOLERANCE
+from lifelore.interaction.outcomes.prediction import range_of_means, weighted
+from lifelore.interaction.selection.choice import TOLERANCE
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, Variant, check_variant
 
 Improving = Literal["pay", "outcome"]
 
@@ -44,6 +43,7 @@ class ExpectedImprovement(Deterministic):
 
     Examples
     --------
+    >>> from lifelore.interaction.library.policy_library import PolicyLibrary
     >>> library = PolicyLibrary.from_means([[10.0, 6.0]], [[1.0, 30.0]], policies=["A", "B"])
     >>> ExpectedImprovement().probabilities(library, library.prior).tolist()
     [1.0, 0.0]
@@ -60,22 +60,15 @@ class ExpectedImprovement(Deterministic):
         if self.of not in ("pay", "outcome"):
             raise InputError(f"of must be 'pay' (the expected pay) or 'outcome', got {self.of!r}")
 
-    def scores(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
-        """Expected improvements (as printed: their probabilities), (..., n_policies)."""
+    def scores(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
+        """Expected improvements (as printed: their probabilities), (P,) or (k, P)."""
         model = library.performance
-        of_pay = self.of == "pay" and self.variant == "standard"
-        least = TOLERANCE * float(np.ptp(model.mean)) if of_pay else 0.0
-
-        def scored(belief: Array) -> Array:
-            expected = expected_utility(belief, model.mean)
-            best = expected.max(axis=-1)
-            best = float(best) if belief.ndim == 1 else best
-            if self.variant == "thesis":
-                return weighted(belief, model.exceedance(best))
-            if not of_pay:
-                return weighted(belief, model.expected_excess(best))
-            improvement = weighted(belief, model.expected_mean_excess(best))
-            some = improvement.max(axis=-1, keepdims=True) > least
-            return np.where(some, improvement, expected)
-
-        return in_blocks(belief, model.n_types * model.n_policies, scored)
+        expected = model.expected(belief)
+        best = expected.max(axis=-1)
+        if self.variant == "thesis":
+            return weighted(belief, model.exceedance(best))
+        if self.of == "outcome":
+            return weighted(belief, model.expected_excess(best))
+        improvement = weighted(belief, model.expected_mean_excess(best))
+        some = improvement.max(axis=-1, keepdims=True) > TOLERANCE * range_of_means(model.mean)
+        return np.where(some, improvement, expected)

@@ -3,9 +3,7 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from lifelore.interaction.beliefs.belief import expected_utility
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.rule import Array, Deterministic
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary
 
 
 @dataclass(frozen=True)
@@ -13,7 +11,8 @@ class Greedy(Deterministic):
     """Selects the policy of the largest expected utility; never explores."""
 
     name: ClassVar[str] = "greedy"
+    by_means: ClassVar[bool] = True
 
-    def scores(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
-        """Expected utilities, (..., n_policies)."""
-        return expected_utility(belief, library.performance.mean)
+    def scores(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
+        """Expected utilities, (P,) or (k, P)."""
+        return library.performance.expected(belief)

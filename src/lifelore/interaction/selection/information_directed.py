@@ -9,10 +9,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from lifelore.interaction.beliefs.belief import expected_utility
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.information_bounds import scores_by_information
-from lifelore.interaction.selection.rule import Array, Deterministic
+from lifelore.interaction.selection.information import mutual_information
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary
 from lifelore.interaction.selection.support import MASS, check_mass
 
 LEAST_INFORMATION = 1e-9
@@ -43,14 +41,10 @@ class InformationDirected(Deterministic):
     def __post_init__(self) -> None:
         check_mass(self.mass)
 
-    def scores(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
-        """Minus the root of the information ratio, (..., n_policies); see `scores_by_information`."""
+    def scores(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
+        """Minus the root of the information ratio, (P,) or (k, P)."""
         mean = library.performance.mean
-        lost = (np.asarray(belief) @ mean.max(axis=1))[..., None] - expected_utility(belief, mean)
-        lost = np.maximum(lost, 0.0)
-
-        def scored(information: Array, some: Any) -> Array:
-            return -lost[..., some] / np.sqrt(np.maximum(information, LEAST_INFORMATION))
-
-        # Where there is little to learn, a small error of the information is a large error of the ratio.
-        return scores_by_information(belief, library.table(self.n_bins), self.mass, scored, always=True)
+        best = (belief * mean.max(axis=-1)).sum(axis=-1)[..., None]
+        lost = np.maximum(best - library.performance.expected(belief), 0.0)
+        information = mutual_information(belief, library.table(self.n_bins), self.mass)
+        return -lost / np.sqrt(np.maximum(information, LEAST_INFORMATION))

@@ -14,25 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.exact_best import exact_best
-from lifelore.interaction.selection.knowledge_bounds import exact_gain, joined_gain, rounded_gain
-from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks
-from lifelore.interaction.selection.signal_rows import MOST_NUMBERS, signal_rows
-from lifelore.interaction.selection.support import MASS, check_mass, supported_types
+from lifelore.interaction.outcomes.prediction import supported, weighted
+from lifelore.interaction.selection.information import predicted_signals, signals_by_type
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, Variant, check_variant
+from lifelore.interaction.selection.support import MASS, check_mass, truncated
 
 Candidates = Literal["auto", "responses", "all"]
 
 LARGEST_EXACT = 1 << 22
-"""Number of products n_types n_policies² n_signals up to which "auto" considers all policies; more costs time: at
-this number a decision takes 0.3 ms, beside 0.2 ms with the best responses alone."""
-
-LEAST_EXACT = 32
-"""Least number of policies whose gain is computed exactly in large tables; more costs time and misses less."""
-EXACT_WORK = 1 << 29
-"""Number of products that exact gains in large tables may take, where that allows more than `LEAST_EXACT`."""
+"""Number of products n_types n_policies² n_signals up to which "auto" considers all policies; more costs time."""
+_AT_ONCE = 1 << 20
+"""Size of the largest product at once."""
 
 
 @dataclass(frozen=True)
@@ -76,115 +69,66 @@ class KnowledgeGradient(Deterministic):
             raise InputError(f"candidates must be 'auto', 'responses' or 'all', got {self.candidates!r}")
 
     def scores(
-        self, library: PolicyLibrary, belief: Array, *, episodes_left: float | None = None, **_: Any
+        self, library: RuleLibrary, belief: Array, *, episodes_left: float | None = None, **_: Any
     ) -> Array:
-        """Expected utilities plus the weighted gain of learning, (..., n_policies); see `knowledge_scores`."""
+        """Expected utilities plus the weighted gain of learning, (P,) or (k, P)."""
         mean, table = library.performance.mean, library.table(self.n_bins)
         weight = self.lookahead if episodes_left is None else episodes_left
         if self.variant == "thesis":
-            return expected_utility(belief, mean) + weight * printed_gain(belief, mean, table)
-        return knowledge_scores(belief, mean, table, weight, self.mass, self.candidates)
+            gain = printed_gain(belief, mean, table)
+        else:
+            gain = knowledge_gain(belief, mean, table, self.mass, self.candidates)
+        return library.performance.expected(belief) + weight * gain
 
 
 def knowledge_gain(
     belief: Array, mean: Array, table: SignalTable, mass: float = 1.0, candidates: Candidates = "all"
 ) -> Array:
-    """v(π) of every policy, (..., n_policies), at least 0 up to rounding.
+    """v(π) of every policy, (P,) or (k, P), at least 0 up to rounding.
 
     Parameters
     ----------
-    belief : (..., n_types) float
-    mean : (n_types, n_policies) float
+    belief : (T,) or (k, T) float64
+    mean : (T, P) or (k, T, P) float64
     table : SignalTable
     mass : float
         Share of the belief that is used.
     candidates : {"auto", "responses", "all"}
         As for `KnowledgeGradient`.
     """
-    every = _considers_all(candidates, table)
-
-    def gain_of(belief: Array) -> Array:
-        support, weighted_means = _weighted_means(belief, mean, mass, every)
-        return exact_gain(np.arange(table.n_policies), support, weighted_means, table)
-
-    rows = np.asarray(belief, np.float64)
-    if rows.ndim == 1:
-        return gain_of(rows)
-    flat = np.array([gain_of(row) for row in rows.reshape(-1, rows.shape[-1])])
-    return flat.reshape(*rows.shape[:-1], table.n_policies)
-
-
-def knowledge_scores(
-    belief: Array,
-    mean: Array,
-    table: SignalTable,
-    weight: float,
-    mass: float = 1.0,
-    candidates: Candidates = "all",
-) -> Array:
-    """Ũ(π) + weight v(π) of every policy, (..., n_policies), quickly for a single belief.
-
-    A score that may be the largest is exact. In tables of up to 16 million numbers, any other score differs from
-    the exact score by no more than the rounding of float32.
-
-    In larger tables the gains of joined signals select the policies that are computed exactly: at least
-    `LEAST_EXACT`, and as many as take some 10 ms. The scores of the others are lower bounds, so the best policy
-    may be missed. Many beliefs are scored exactly.
-    """
-    belief = np.asarray(belief, np.float64)
-    utility, rows = expected_utility(belief, mean), signal_rows(table) if belief.ndim == 1 else None
-    if belief.ndim > 1 or (rows is None and table.probs.size <= MOST_NUMBERS):
-        return utility + weight * knowledge_gain(belief, mean, table, mass, candidates)
-    support, weighted_means = _weighted_means(belief, mean, mass, _considers_all(candidates, table))
-
-    def exact(policies: NDArray[np.int64]) -> Array:
-        return utility[policies] + weight * exact_gain(policies, support, weighted_means, table)
-
-    if rows is None:
-        scores = utility + weight * joined_gain(support, weighted_means, table)
-        n = max(LEAST_EXACT, EXACT_WORK // (weighted_means.size * table.n_signals))
-        best = np.sort(np.argsort(-scores, kind="stable")[:n])
-        scores[best] = exact(best)
-        return scores
-    gain, error = rounded_gain(support, weighted_means, rows)
-    upper = utility + weight * (gain + error)
-    scores = exact_best(upper, float(upper.max()) - 2 * weight * error, exact)
-    return np.where(scores == upper, scores - weight * error, scores)
+    belief, laws = truncated(belief, mass), signals_by_type(table)
+    among: dict[str, Any] = {}
+    products = table.n_types * table.n_policies * laws.shape[-1]
+    if candidates == "responses" or (candidates == "auto" and products > LARGEST_EXACT):
+        best = responses(belief, mean)
+        if belief.ndim == 1:
+            mean = mean[:, best]
+        else:
+            among = {"where": best[..., None], "initial": -np.inf}
+    if belief.ndim == 1:
+        belief, mean, laws = supported(belief, mean, laws)
+    by_candidate = (belief[..., None] * mean).swapaxes(-1, -2)
+    step = max(1, _AT_ONCE // (by_candidate[..., 0].size * table.n_signals)) * table.n_signals
+    largest = [
+        np.matmul(by_candidate, laws[..., at : at + step]).max(axis=-2, **among)
+        for at in range(0, laws.shape[-1], step)
+    ]
+    after = np.concatenate(largest, axis=-1).reshape(*belief.shape[:-1], table.n_policies, -1).sum(axis=-1)
+    return after - by_candidate.sum(axis=-1).max(axis=-1)[..., None]
 
 
-def _considers_all(candidates: Candidates, table: SignalTable) -> bool:
-    products = table.n_types * table.n_policies**2 * table.n_signals
-    return candidates == "all" or (candidates == "auto" and products <= LARGEST_EXACT)
-
-
-def _weighted_means(belief: Array, mean: Array, mass: float, every: bool) -> tuple[NDArray[np.int64], Array]:
-    """The support of a belief, and its shares times the means of the candidates, (k, n_candidates)."""
-    support, share = supported_types(belief, mass)
-    means = mean[support] if len(support) < len(belief) else mean
-    if not every:
-        best = responses(means, share)
-        means = means[:, best] if len(best) < means.shape[1] else means
-    return support, np.ascontiguousarray(means * share[:, None])
-
-
-def responses(means: Array, share: Array) -> NDArray[np.int64]:
-    """Best responses to each type, `means` (k, n_policies), and to their mixture by `share` (k,); rising."""
-    marked = np.zeros(means.shape[1], np.bool_)
-    marked[means.argmax(axis=1)] = True
-    marked[(share @ means).argmax()] = True
-    return np.flatnonzero(marked)
+def responses(belief: Array, mean: Array) -> NDArray[np.bool_]:
+    """Which policies are best on a type of positive probability, or best now, (P,) or (k, P)."""
+    best_now = weighted(belief, mean).argmax(axis=-1)[..., None]
+    best = np.where(belief > 0, mean.argmax(axis=-1), best_now)
+    found = np.zeros((*belief.shape[:-1], mean.shape[-1]), np.bool_)
+    np.put_along_axis(found, np.concatenate([best, best_now], axis=-1), True, axis=-1)
+    return found
 
 
 def printed_gain(belief: Array, mean: Array, table: SignalTable) -> Array:
     """v(π) as Eq. 4.6 has it, signals averaged before the maximum: 0 for every policy, up to rounding."""
-
-    def scored(belief: Array) -> Array:
-        rows = np.atleast_2d(belief)
-        predicted = np.matmul(rows, table.probs)
-        # Σ over signals of their probability times the posterior, which is the belief again.
-        share = np.divide(predicted, predicted, out=np.zeros_like(predicted), where=predicted > 0)
-        after = np.matmul(share, table.probs.transpose(0, 2, 1)) * rows
-        gain = (after @ mean).max(axis=-1).T - (rows @ mean).max(axis=-1)[:, None]
-        return gain[0] if belief.ndim == 1 else gain
-
-    return in_blocks(belief, table.n_policies * (table.n_types + table.n_signals), scored)
+    # Σ over signals of their probability times the posterior, which is the belief again.
+    share = np.sign(predicted_signals(belief, table))
+    after = np.einsum("...tps,...ps->...pt", table.probs, share) * belief[..., None, :]
+    return np.matmul(after, mean).max(axis=-1) - weighted(belief, mean).max(axis=-1)[..., None]

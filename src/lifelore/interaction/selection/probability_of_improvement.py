@@ -10,9 +10,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import expected_utility
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks, weighted
+from lifelore.interaction.outcomes.prediction import range_of_means, weighted
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, Variant, check_variant
 
 MARGIN_SHARE = 0.02
 """Default margin of the printed form, as a share of the utilities' range; the thesis gives no number."""
@@ -50,23 +49,15 @@ class ProbabilityOfImprovement(Deterministic):
         if self.margin is not None and not (self.margin > 0 and np.isfinite(self.margin)):
             raise InputError(f"margin must be positive, got {self.margin}")
 
-    def scores(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
-        """Probabilities (as printed: densities), (..., n_policies)."""
-        model = library.performance
+    def scores(self, library: RuleLibrary, belief: Array, **_: Any) -> Array:
+        """Probabilities (as printed: densities), (P,) or (k, P)."""
+        model, target = library.performance, self._target(library.performance.mean, belief)
+        return weighted(belief, (model.density if self.variant == "thesis" else model.exceedance)(target))
 
-        def scored(belief: Array) -> Array:
-            above = self._target(library, belief)
-            return weighted(belief, (model.density if self.variant == "thesis" else model.exceedance)(above))
-
-        return in_blocks(belief, model.n_types * model.n_policies, scored)
-
-    def _target(self, library: PolicyLibrary, belief: Array) -> Any:
+    def _target(self, mean: Array, belief: Array) -> Any:
         if self.target is not None:
-            return np.full(belief.shape[:-1], self.target) if belief.ndim > 1 else self.target
-        mean = library.performance.mean
+            return self.target
         if self.variant == "standard":
-            best = np.where(belief > 0, mean.max(axis=1), -np.inf).max(axis=-1)
-        else:
-            margin = MARGIN_SHARE * float(np.ptp(mean)) if self.margin is None else self.margin
-            best = expected_utility(belief, mean).max(axis=-1) + margin
-        return float(best) if belief.ndim == 1 else best
+            return np.where(belief > 0, mean.max(axis=-1), -np.inf).max(axis=-1)
+        margin = MARGIN_SHARE * range_of_means(mean)[..., 0] if self.margin is None else self.margin
+        return weighted(belief, mean).max(axis=-1) + margin

@@ -16,9 +16,8 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import expected_utility
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.rule import Array, Deterministic, in_blocks, weighted
+from lifelore.interaction.outcomes.prediction import Prediction, weighted
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary
 
 Counted = Literal["episodes", "once"]
 
@@ -46,6 +45,7 @@ class ValueOfPerfectInformation(Deterministic):
     Of two equally likely types, A pays 5 on both; B pays 0 on the first and 8 on the second, 4 on average. Knowing
     B's pay gains 3 in half of the cases, and knowing A's pay gains nothing.
 
+    >>> from lifelore.interaction.library.policy_library import PolicyLibrary
     >>> library = PolicyLibrary.from_means([[5.0, 0.0], [5.0, 8.0]], 1.0, policies=["A", "B"])
     >>> ValueOfPerfectInformation(counted="once").scores(library, library.prior).tolist()
     [5.0, 5.5]
@@ -62,41 +62,32 @@ class ValueOfPerfectInformation(Deterministic):
             raise InputError(f"lookahead must be at least 0 and finite, got {self.lookahead}")
 
     def scores(
-        self, library: PolicyLibrary, belief: Array, *, episodes_left: float | None = None, **_: Any
+        self, library: RuleLibrary, belief: Array, *, episodes_left: float | None = None, **_: Any
     ) -> Array:
-        """Expected utilities plus the gain of perfect information, (..., n_policies)."""
+        """Expected utilities plus the gain of perfect information, (P,) or (k, P)."""
         weight = self.lookahead if episodes_left is None else episodes_left
-        model, weight = library.performance, 1.0 if self.counted == "once" else weight
-
-        def scored(belief: Array) -> Array:
-            expected = expected_utility(belief, model.mean)
-            return expected + weight * perfect_gain(library, belief, expected)
-
-        return in_blocks(belief, 2 * model.n_types * model.n_policies, scored)
+        expected = library.performance.expected(belief)
+        gain = perfect_gain(library.performance, belief, expected)
+        return expected + (1.0 if self.counted == "once" else weight) * gain
 
 
-def perfect_gain(library: PolicyLibrary, belief: Array, expected: Array) -> Array:
-    """VPI(π) of each policy, (..., n_policies), ≥ 0; 0 where the library has a single policy.
+def perfect_gain(outcomes: Prediction, belief: Array, expected: Array) -> Array:
+    """VPI(π) of each policy, (P,) or (k, P), ≥ 0; 0 where there is a single policy.
 
     Parameters
     ----------
-    library : PolicyLibrary
-    belief : (..., n_types) float64
-    expected : (..., n_policies) float64
+    outcomes : Prediction
+    belief : (T,) or (k, T) float64
+    expected : (P,) or (k, P) float64
         Ũ under this belief.
     """
     if expected.shape[-1] < 2:
         return np.zeros_like(expected)
-    best, ranked = expected.argmax(axis=-1)[..., None], np.sort(expected, axis=-1)
-    second, first = ranked[..., -2:-1], ranked[..., -1:]
-    gain = weighted(belief, library.performance.expected_mean_excess(_threshold(first)))
+    ranked, best = np.sort(expected, axis=-1), expected.argmax(axis=-1)[..., None]
+    first, second = ranked[..., -1], ranked[..., -2]
+    gain = weighted(belief, outcomes.expected_mean_excess(first))
     # E[max(U₂ − m, 0)] = E[max(m − U₂, 0)] + U₂ − E[m], and E[m] of the best policy is Uᵗ.
-    above_second = weighted(belief, library.performance.expected_mean_excess(_threshold(second)))
-    of_best = np.take_along_axis(above_second, best, axis=-1) + second - first
+    above_second = weighted(belief, outcomes.expected_mean_excess(second))
+    of_best = np.take_along_axis(above_second, best, axis=-1) + (second - first)[..., None]
     np.put_along_axis(gain, best, of_best, axis=-1)
     return np.maximum(gain, 0.0)
-
-
-def _threshold(values: Array) -> Any:
-    """(..., 1) to (...); a single number as a float, for which outcome models have a faster path."""
-    return float(values[0]) if values.ndim == 1 else values[..., 0]

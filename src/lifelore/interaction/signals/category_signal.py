@@ -11,22 +11,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.finite_signals.signal_bins import check_bins, joined_bins
+from lifelore.interaction.finite_signals.signal_bins import joined_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, TableLikelihood
-from lifelore.interaction.outcomes.dirichlet import spread_of_counts
-from lifelore.interaction.outcomes.log_probability import checked_distributions, log_of
-from lifelore.interaction.outcomes.outcome_model import check_policy, rows_of_samples
+from lifelore.interaction.outcomes.counted_law import CountedLaw, spread_of_counts
+from lifelore.interaction.outcomes.law import FixedLaw, Models
+from lifelore.interaction.outcomes.log_probability import checked_counts, checked_distributions, log_of
+from lifelore.interaction.outcomes.outcome_model import check_known, rows_of_samples
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
 from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
 from lifelore.interaction.outcomes.spread import Spread
-from lifelore.interaction.signals.task_categories import TaskCategories
 
 Array = NDArray[np.float64]
 
 
-class CategorySignal:
-    """P(category | type, policy).
+class CategoryModel:
+    """Base of `CategorySignal` and `OrderedNormalSignal`: P(category | type, policy).
 
     Parameters
     ----------
@@ -34,6 +33,86 @@ class CategorySignal:
         Rows over categories sum to 1; zeros are allowed.
     categories : sequence of hashable, optional
         Names of the categories; signals are then names. By default signals are 0 … n_categories - 1.
+
+    Raises
+    ------
+    InputError
+        A row is no distribution, or there are too few names or equal names.
+    """
+
+    def __init__(self, probs: ArrayLike, categories: Sequence[Hashable] | None = None) -> None:
+        self.probs: Array = checked_distributions(probs, "probs", ("n_types", "n_policies", "n_categories"))
+        self.n_types, self.n_policies, self.n_categories = self.probs.shape
+        self.categories = None if categories is None else tuple(categories)
+        names = range(self.n_categories) if self.categories is None else self.categories
+        self._place = {name: place for place, name in enumerate(names)}
+        if not len(names) == len(self._place) == self.n_categories:
+            raise InputError(f"categories must be {self.n_categories} distinct names, got {len(names)}")
+        # Policy and category first: an update reads a row.
+        self._log = log_of(np.ascontiguousarray(self.probs.transpose(1, 2, 0)))
+        self._log.flags.writeable = False
+
+    def log_likelihood(self, policy: int, signal: Hashable) -> Array:
+        """Log probability of the category per type, (n_types,); read only.
+
+        Raises
+        ------
+        InputError
+            There is no such category.
+        NotFoundError
+            There is no such policy.
+        """
+        check_known("policy", policy, self.n_policies)
+        return self._log[policy, self._place_of(signal)]
+
+    def log_likelihoods(self, policies: Any, signals: Any) -> Array:
+        """Log probabilities of many category numbers, (...) and (...) to (..., n_types); without checks."""
+        return self._log[policies, signals]
+
+    def places_of(self, signals: Any) -> Any:
+        """The numbers of a category, or of categories (k,); InputError where there is no such category."""
+        if isinstance(signals, np.ndarray) and self.categories is None and signals.dtype.kind in "iu":
+            if signals.size and not 0 <= signals.min() <= signals.max() < self.n_categories:
+                raise InputError(f"signals must be category numbers 0 to {self.n_categories - 1}")
+            return signals.astype(np.int64, copy=False)
+        if isinstance(signals, list) or (isinstance(signals, np.ndarray) and signals.ndim):
+            return np.array([self._place_of(signal) for signal in signals], np.int64)
+        return self._place_of(signals)
+
+    def law(self, models: Models = "uncertain", *, spread: Spread | None = None, dtype: str = "f8") -> Any:
+        """The fixed law of the categories: what users show does not change them."""
+        return FixedLaw(self, self.n_types, self.log_likelihoods, self.places_of)
+
+    def table(self, n_bins: int = 8) -> SignalTable:
+        """All categories where they are at most `n_bins`; otherwise neighbours are joined, as for outcomes."""
+        return joined_table(self.probs, n_bins)[1]
+
+    def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
+        """Random category numbers of a pair."""
+        return generator.choice(self.n_categories, size, p=self.probs[type_, policy])
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """As JSON, the names of the categories."""
+        try:
+            names = json.dumps(self.categories)
+        except TypeError:
+            raise InputError("categories must be texts or numbers to be saved") from None
+        return {"categories": np.frombuffer(names.encode(), np.uint8)}
+
+    def _place_of(self, signal: Any) -> int:
+        try:
+            return self._place[signal]
+        except (KeyError, TypeError):
+            raise InputError(f"signal must be one of {list(self._place)[:20]}, got {signal!r}") from None
+
+
+class CategorySignal(CategoryModel):
+    """P(category | type, policy) from counts, or exact.
+
+    Parameters
+    ----------
+    probs, categories
+        As of `CategoryModel`.
     count : float or (n_types, n_policies) float, optional
         Number of signals behind each row, pseudo-counts included; without it rows are exact.
 
@@ -54,17 +133,8 @@ class CategorySignal:
     def __init__(
         self, probs: ArrayLike, categories: Sequence[Hashable] | None = None, count: ArrayLike | None = None
     ) -> None:
-        self.probs: Array = checked_distributions(probs, "probs", ("n_types", "n_policies", "n_categories"))
-        self.totals: Array | None = None if count is None else _weights(count, self.probs.shape[:2])
-        self.categories = None if categories is None else tuple(categories)
-        n = self.probs.shape[2]
-        names = range(n) if self.categories is None else self.categories
-        self._place = {name: place for place, name in enumerate(names)}
-        if len(names) != n or len(self._place) != n:
-            raise InputError(f"categories must be {n} distinct names, got {len(names)}")
-        # Policy and category first: an update reads a row.
-        self._log = log_of(np.ascontiguousarray(self.probs.transpose(1, 2, 0)))
-        self._log.flags.writeable = False
+        super().__init__(probs, categories)
+        self.totals = None if count is None else checked_counts(count, self.probs.shape[:2])
         self._spread: Spread | None = None
 
     @classmethod
@@ -90,113 +160,56 @@ class CategorySignal:
         InputError
             A pair has no sample, or a sample is no category.
         """
-        rows = rows_of_samples(samples)
-        n = n_categories or (len(categories) if categories is not None else int(rows.values.max()) + 1)
-        number = rows.values.astype(np.int64)
-        if (number != rows.values).any() or number.min() < 0 or number.max() >= n:
-            raise InputError(f"samples must be category numbers 0 to {n - 1}")
-        size = rows.shape[0] * rows.shape[1] * n
-        counted = np.bincount(rows.pair * n + number, minlength=size).reshape(*rows.shape, n)
+        counted = category_counts(samples, n_categories or (None if categories is None else len(categories)))
         counts = counted + checked_pseudo_count(pseudo_count, counted)
         totals = counts.sum(axis=2)
         return cls(counts / totals[:, :, None], categories, totals)
 
-    @property
-    def n_types(self) -> int:
-        return self.probs.shape[0]
-
-    @property
-    def n_policies(self) -> int:
-        return self.probs.shape[1]
-
-    @property
-    def n_categories(self) -> int:
-        return self.probs.shape[2]
-
-    def log_likelihood(self, policy: int, signal: Hashable) -> Array:
-        """Log probability of the category per type, (n_types,); read only.
-
-        Raises
-        ------
-        InputError
-            There is no such category.
-        NotFoundError
-            There is no such policy.
-        """
-        return self._log[policy, self.place_of(policy, signal)]
-
-    def place_of(self, policy: int, signal: Hashable) -> int:
-        """The number of a category; errors as for `log_likelihood`."""
-        try:
-            place = self._place[signal]
-        except (KeyError, TypeError):
-            raise InputError(f"signal must be one of {list(self._place)[:20]}, got {signal!r}") from None
-        if not 0 <= policy < self._log.shape[0]:
-            check_policy(policy, self.n_policies)
-        return place
-
-    def for_task(self, closest: bool = False) -> TaskCategories | None:
-        """A model of one task, which its own signals change; None where the probabilities are exact.
-
-        With `closest` the task is as close to its type as the spread allows.
-        """
-        if self.totals is None:
-            return None
+    def law(self, models: Models = "uncertain", *, spread: Spread | None = None, dtype: str = "f8") -> Any:
+        """The law of categories given what users have shown; fixed where all is exact, or taken for the truth."""
+        if models == "plug-in" or self.totals is None:
+            return super().law()
+        counts = self.probs * self.totals[:, :, None]
         if self._spread is None:
-            counts = np.ascontiguousarray((self.probs * self.totals[:, :, None]).transpose(1, 0, 2))
             self._spread = spread_of_counts(counts, 0.0)
-        return TaskCategories(self, self._spread.least if closest else self._spread)
-
-    def log_likelihoods(self, policies: NDArray[np.int64], signals: NDArray[Any]) -> Array:
-        """Log probabilities of many category numbers, (n,) and (n,) to (n, n_types); without checks."""
-        return self._log[policies, np.asarray(signals, np.int64)]
-
-    def batch_likelihood(self) -> BatchLikelihood:
-        """The table of log probabilities; signals of a batch are category numbers, not names."""
-        return TableLikelihood(self._log)
-
-    def table(self, n_bins: int = 8) -> SignalTable:
-        """All categories where they are at most `n_bins`; otherwise neighbours are joined, as for outcomes."""
-        check_bins(n_bins)
-        by_policy = self.probs.transpose(1, 0, 2)
-        if self.n_categories <= n_bins:
-            return SignalTable(by_policy)
-        return SignalTable(np.stack([joined_bins(rows, n_bins) for rows in by_policy]))
-
-    def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
-        """Random category numbers of a pair."""
-        return generator.choice(self.n_categories, size, p=self.probs[type_, policy])
+        return CountedLaw(counts, spread or self._spread, self.places_of, dtype=dtype)
 
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
         """The model of some types and policies."""
         chosen = np.ix_(chosen_of(types, self.n_types), chosen_of(policies, self.n_policies))
-        return type(self)(
-            self.probs[chosen], self.categories, None if self.totals is None else self.totals[chosen]
-        )
-
-    def parts(self) -> tuple[Any, ...]:
-        """It uses no other model."""
-        return ()
+        totals = None if self.totals is None else self.totals[chosen]
+        return type(self)(self.probs[chosen], self.categories, totals)
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """Probabilities and, as JSON, the names of the categories."""
-        try:
-            names = json.dumps(self.categories)
-        except TypeError:
-            raise InputError("categories must be texts or numbers to be saved") from None
+        """Probabilities, the names of the categories as JSON, and the counts behind rows."""
         totals = {} if self.totals is None else {"totals": self.totals}
-        return {"probs": self.probs, "categories": np.frombuffer(names.encode(), np.uint8), **totals}
+        return {"probs": self.probs, **super().to_arrays(), **totals}
 
     @classmethod
-    def from_arrays(cls, arrays: dict[str, NDArray[Any]], parts: tuple[Any, ...]) -> Self:
+    def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self:
         """The model of `to_arrays`, bit for bit."""
         return cls(arrays["probs"], json.loads(arrays["categories"].tobytes()), arrays.get("totals"))
 
 
-def _weights(count: ArrayLike, shape: tuple[int, ...]) -> Array:
-    found = np.asarray(count, np.float64)
-    if found.ndim and found.shape != shape:
-        raise InputError(f"count must be one number or of shape {shape}, got {found.shape}")
-    if not ((found > 0) & np.isfinite(found)).all():
-        raise InputError("count must be positive and finite; omit it where the probabilities are exact")
-    return np.broadcast_to(found, shape).copy()
+def category_counts(samples: ArrayLike, n: int | None) -> Array:
+    """How often each of `n` categories came in `samples` of their numbers, (n_types, n_policies, n).
+
+    Parameters
+    ----------
+    samples : (n_types, n_policies, n_samples) float
+        NaN where missing.
+    n : int, optional
+        By default the largest sample plus 1.
+
+    Raises
+    ------
+    InputError
+        A pair has no sample, or a sample is no category.
+    """
+    rows = rows_of_samples(samples)
+    n = n or int(rows.values.max()) + 1
+    number = rows.values.astype(np.int64)
+    if (number != rows.values).any() or number.min() < 0 or number.max() >= n:
+        raise InputError(f"samples must be category numbers 0 to {n - 1}")
+    counted = np.bincount(rows.pair * n + number, minlength=rows.shape[0] * rows.shape[1] * n)
+    return counted.reshape(*rows.shape, n).astype(np.float64)

@@ -74,12 +74,8 @@ class JointSignal:
         """The factors."""
         return self.factors
 
-    def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """Empty: the parts hold the state."""
-        return {}
-
     @classmethod
-    def from_arrays(cls, arrays: dict[str, NDArray[Any]], parts: tuple[Any, ...]) -> Self:
+    def from_parts(cls, parts: Sequence[Any]) -> Self:
         """The model of `parts`."""
         return cls(parts)
 

@@ -1,14 +1,14 @@
 """Likelihood signal: a signal model by the caller's own log likelihood function."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.outcome_model import check_policy
+from lifelore.interaction.outcomes.outcome_model import check_known
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
 
 Array = NDArray[np.float64]
@@ -50,7 +50,7 @@ class LikelihoodSignal:
             There is no such policy.
         """
         if self.n_policies is not None:
-            check_policy(policy, self.n_policies)
+            check_known("policy", policy, self.n_policies)
         name = getattr(self.function, "__name__", type(self.function).__name__)
         try:
             found = np.asarray(self.function(policy, signal), np.float64)
@@ -67,19 +67,16 @@ class LikelihoodSignal:
     ) -> "LikelihoodSignal":
         """The model of some types and policies."""
         chosen = chosen_of(types, self.n_types)
-        cut = _PartOfFunction(self.function, chosen, None if policies is None else tuple(map(int, policies)))
+        cut = partial(_part, self.function, chosen, None if policies is None else tuple(map(int, policies)))
         return LikelihoodSignal(cut, len(chosen), self.n_policies if policies is None else len(policies))
 
 
-@dataclass(frozen=True, eq=False)
-class _PartOfFunction:
-    """A caller's function for some types and policies; a class, because a closure could not be pickled."""
-
-    function: Callable[[int, Any], ArrayLike]
-    types: NDArray[np.int64]
-    policies: tuple[int, ...] | None
-
-    def __call__(self, policy: int, signal: Any) -> Array:
-        return np.asarray(self.function(policy if self.policies is None else self.policies[policy], signal))[
-            self.types
-        ]
+def _part(
+    function: Callable[[int, Any], ArrayLike],
+    types: NDArray[np.int64],
+    policies: tuple[int, ...] | None,
+    policy: int,
+    signal: Any,
+) -> Array:
+    """A caller's function for some types and policies; not a closure, which could not be pickled."""
+    return np.asarray(function(policy if policies is None else policies[policy], signal))[types]

@@ -13,17 +13,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood
-from lifelore.interaction.outcomes.outcome_model import rows_of_samples
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
-from lifelore.interaction.signals.category_signal import CategorySignal
+from lifelore.interaction.signals.category_signal import CategoryModel, category_counts
 from lifelore.interaction.signals.ordered_normal_fit import fit_ordered_normals, log_probabilities
 
 Array = NDArray[np.float64]
 
 
-class OrderedNormalSignal:
+class OrderedNormalSignal(CategoryModel):
     """P(category | type, policy), where categories are intervals of a normal number between common cut points.
 
     Parameters
@@ -71,7 +68,7 @@ class OrderedNormalSignal:
             raise InputError(f"lapse must lie in [0, 1], got {lapse}")
         probs = np.exp(log_probabilities(self.mean, self.deviation, self.cuts))
         probs /= probs.sum(axis=-1, keepdims=True)
-        self._bands = CategorySignal((1 - self.lapse) * probs + self.lapse / probs.shape[-1], categories)
+        super().__init__((1 - self.lapse) * probs + self.lapse / probs.shape[-1], categories)
 
     @classmethod
     def from_samples(
@@ -103,83 +100,30 @@ class OrderedNormalSignal:
         InputError
             A pair has no sample, a sample is no category, or there are fewer than two categories.
         """
-        rows = rows_of_samples(samples)
         known = None if cuts is None else checked_cuts(cuts)
         named = None if categories is None else len(categories)
-        n = n_categories or (known.size + 1 if known is not None else named or int(rows.values.max()) + 1)
-        number = rows.values.astype(np.int64)
-        if (number != rows.values).any() or number.min() < 0 or number.max() >= n:
-            raise InputError(f"samples must be category numbers 0 to {n - 1}")
+        counts = category_counts(samples, n_categories or (named if known is None else known.size + 1))
+        n = counts.shape[2]
         if n < 2 or (known is not None and known.size != n - 1):
             given = "" if known is None else f" and {known.size} cuts"
             raise InputError(f"there must be at least 2 categories, and cuts one fewer, got {n} categories{given}")
         if not (shrinkage > 0 and np.isfinite(shrinkage)):
             raise InputError(f"shrinkage must be above 0 and finite, got {shrinkage}")
-        counts = np.bincount(rows.pair * n + number, minlength=rows.shape[0] * rows.shape[1] * n)
-        fitted = fit_ordered_normals(counts.reshape(*rows.shape, n).astype(np.float64), known, shrinkage)
+        fitted = fit_ordered_normals(counts, known, shrinkage)
         return cls(fitted.mean, fitted.deviation, fitted.cuts, categories, lapse)
-
-    @property
-    def n_types(self) -> int:
-        return self.mean.shape[0]
-
-    @property
-    def n_policies(self) -> int:
-        return self.mean.shape[1]
-
-    @property
-    def n_categories(self) -> int:
-        return self.cuts.size + 1
-
-    @property
-    def categories(self) -> tuple[Hashable, ...] | None:
-        """Names of the categories, if they have any."""
-        return self._bands.categories
-
-    @property
-    def probs(self) -> Array:
-        """P(category | type, policy), (n_types, n_policies, n_categories); rows sum to 1."""
-        return self._bands.probs
-
-    def log_likelihood(self, policy: int, signal: Hashable) -> Array:
-        """Log probability of the category per type, (n_types,); errors as `CategorySignal.log_likelihood`."""
-        return self._bands.log_likelihood(policy, signal)
-
-    def log_likelihoods(self, policies: NDArray[np.int64], signals: NDArray[Any]) -> Array:
-        """Log probabilities of many category numbers, (n,) and (n,) to (n, n_types); without checks."""
-        return self._bands.log_likelihoods(policies, signals)
-
-    def batch_likelihood(self) -> BatchLikelihood:
-        """The table of log probabilities; signals of a batch are category numbers, not names."""
-        return self._bands.batch_likelihood()
-
-    def table(self, n_bins: int = 8) -> SignalTable:
-        """All categories where they are at most `n_bins`; otherwise neighbours are joined."""
-        return self._bands.table(n_bins)
-
-    def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
-        """Random category numbers of a pair."""
-        return self._bands.sample(generator, type_, policy, size)
 
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
         """The model of some types and policies."""
         chosen = np.ix_(chosen_of(types, self.n_types), chosen_of(policies, self.n_policies))
         return type(self)(self.mean[chosen], self.deviation[chosen], self.cuts, self.categories, self.lapse)
 
-    def parts(self) -> tuple[Any, ...]:
-        """It uses no other model."""
-        return ()
-
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """The normals, the cut points, the lapse and, as JSON, the names of the categories."""
-        names = self._bands.to_arrays()["categories"]
-        lapse = np.array(self.lapse)
-        return {
-            "mean": self.mean, "deviation": self.deviation, "cuts": self.cuts, "lapse": lapse, "categories": names
-        }  # fmt: skip
+        normals = {"mean": self.mean, "deviation": self.deviation, "cuts": self.cuts}
+        return {**normals, "lapse": np.array(self.lapse), **super().to_arrays()}
 
     @classmethod
-    def from_arrays(cls, arrays: dict[str, NDArray[Any]], parts: tuple[Any, ...]) -> Self:
+    def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self:
         """The model of `to_arrays`, bit for bit."""
         names = json.loads(arrays["categories"].tobytes())
         return cls(arrays["mean"], arrays["deviation"], arrays["cuts"], names, float(arrays["lapse"]))

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
-from lifelore.interaction.outcomes.outcome_model import OutcomeModel
+from lifelore.interaction.outcomes.law import FixedLaw, Models, law_of
+from lifelore.interaction.outcomes.outcome_kinds import OutcomeModel
 
 Array = NDArray[np.float64]
 
@@ -28,15 +28,7 @@ class ReturnSignal:
     kind: ClassVar[str] = "return"
 
     def __init__(self, outcomes: OutcomeModel) -> None:
-        self.outcomes = outcomes
-
-    @property
-    def n_types(self) -> int:
-        return self.outcomes.n_types
-
-    @property
-    def n_policies(self) -> int:
-        return self.outcomes.n_policies
+        self.outcomes, self.n_types, self.n_policies = outcomes, outcomes.n_types, outcomes.n_policies
 
     def log_likelihood(self, policy: int, signal: float) -> Array:
         """Log density of the return per type, (n_types,).
@@ -50,15 +42,11 @@ class ReturnSignal:
         """
         return self.outcomes.log_density(policy, signal)
 
-    def log_likelihoods(self, policies: NDArray[np.int64], signals: NDArray[Any]) -> Array:
-        """Log densities of many returns, (n,) and (n,) to (n, n_types); without checks."""
-        return self.outcomes.log_densities(policies, signals)
-
-    def batch_likelihood(self) -> BatchLikelihood:
-        """The outcomes' likelihood; for a subclass with its own `log_likelihood`, calls of the subclass."""
+    def law(self, models: Models = "uncertain", **settings: Any) -> Any:
+        """The outcomes' law; for a subclass with a `log_likelihood` of its own, the fixed law of that."""
         if type(self).log_likelihood is not ReturnSignal.log_likelihood:
-            return CalledLikelihood(self.log_likelihoods, finite_signals)
-        return self.outcomes.batch_likelihood()
+            return FixedLaw(self, self.n_types)
+        return law_of(self.outcomes, self.n_types, models, **settings)
 
     def table(self, n_bins: int = 8) -> SignalTable:
         """The return in bins."""
@@ -72,11 +60,7 @@ class ReturnSignal:
         """The models that it uses."""
         return (self.outcomes,)
 
-    def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """Empty: the parts hold the state."""
-        return {}
-
     @classmethod
-    def from_arrays(cls, arrays: dict[str, NDArray[Any]], parts: tuple[Any, ...]) -> Self:
-        """The model of `to_arrays` and `parts`."""
+    def from_parts(cls, parts: Sequence[Any]) -> Self:
+        """The model of `parts`."""
         return cls(*parts)

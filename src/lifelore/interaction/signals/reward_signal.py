@@ -10,14 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.outcome_kinds import outcome_kind
-from lifelore.interaction.outcomes.outcome_model import (
-    LARGEST,
-    OutcomeModel,
-    OutcomeRows,
-    check_policy,
-    checked_rows,
-)
+from lifelore.interaction.outcomes.outcome_kinds import OutcomeModel, outcome_kind
+from lifelore.interaction.outcomes.outcome_model import LARGEST, OutcomeRows, check_known, checked_rows, numbers
 
 Array = NDArray[np.float64]
 
@@ -41,7 +35,7 @@ class RewardSignal:
     kind: ClassVar[str] = "reward"
 
     def __init__(self, rewards: OutcomeModel) -> None:
-        self.rewards = rewards
+        self.rewards, self.n_types, self.n_policies = rewards, rewards.n_types, rewards.n_policies
 
     @classmethod
     def from_sequences(
@@ -77,14 +71,6 @@ class RewardSignal:
         rows = checked_rows(OutcomeRows(types, policies, values, (n_types, n_policies)))
         return cls(outcome_kind(model).from_rows(rows, **options))
 
-    @property
-    def n_types(self) -> int:
-        return self.rewards.n_types
-
-    @property
-    def n_policies(self) -> int:
-        return self.rewards.n_policies
-
     def log_likelihood(self, policy: int, signal: ArrayLike) -> Array:
         """Log likelihood of the rewards (n,) per type, (n_types,); 0 for no rewards.
 
@@ -95,7 +81,7 @@ class RewardSignal:
         NotFoundError
             There is no such policy.
         """
-        check_policy(policy, self.n_policies)
+        check_known("policy", policy, self.n_policies)
         rewards = _numbers(signal)
         return self.rewards.log_densities(np.full(len(rewards), policy), rewards).sum(axis=0)
 
@@ -107,24 +93,15 @@ class RewardSignal:
         """The models that it uses."""
         return (self.rewards,)
 
-    def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """Empty: the parts hold the state."""
-        return {}
-
     @classmethod
-    def from_arrays(cls, arrays: dict[str, NDArray[Any]], parts: tuple[Any, ...]) -> Self:
-        """The model of `to_arrays` and `parts`."""
+    def from_parts(cls, parts: Sequence[Any]) -> Self:
+        """The model of `parts`."""
         return cls(*parts)
 
 
 def _numbers(rewards: ArrayLike) -> Array:
-    try:
-        found = np.asarray(rewards, np.float64)
-    except (TypeError, ValueError):
-        raise InputError("a signal of rewards must be numbers (n,)") from None
+    rule = f"a signal of rewards must be finite numbers (n,) of at most {LARGEST:g}"
+    found = numbers(rewards, rule)
     if found.ndim != 1 or not (np.abs(found) <= LARGEST).all():
-        raise InputError(
-            f"a signal of rewards must be finite numbers (n,) of at most {LARGEST:g}, got shape {found.shape}: "
-            f"{rewards!r:.80}"
-        )
+        raise InputError(f"{rule}, got shape {found.shape}: {rewards!r:.80}")
     return found

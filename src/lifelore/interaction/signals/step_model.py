@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.log_probability import checked_distributions, log_of, with_pseudo_counts
-from lifelore.interaction.outcomes.outcome_model import check_policy
+from lifelore.interaction.outcomes.law import FixedLaw, Models
+from lifelore.interaction.outcomes.log_probability import checked_counts, checked_distributions, log_of
+from lifelore.interaction.outcomes.outcome_model import check_known
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
 from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
-from lifelore.interaction.signals.step_checks import check_steps
-from lifelore.interaction.signals.task_steps import TaskSteps
+from lifelore.interaction.signals.step_law import StepLaw
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ class StepModel:
         Rows over outcomes sum to 1; zeros are allowed. Without the policies' axis all policies share the table.
     n_policies : int, optional
         Number of policies that share the table; any number where None.
-    count : array of the shape of `probs` without its last axis, optional
+    count : float or array of the shape of `probs` without its last axis, optional
         Number of steps behind each row, pseudo-counts included; without it rows are exact.
 
     Raises
@@ -54,58 +54,59 @@ class StepModel:
         table = checked_distributions(probs[:, None] if self.shared else probs, "probs", _AXES)
         self.n_policies = n_policies if self.shared else table.shape[1]
         # Types last: a step reads a row.
-        self._log = log_of(np.ascontiguousarray(np.moveaxis(table, 0, -1)))
-        self.totals = None if count is None else self._weights(count)
+        self.log_table = log_of(np.ascontiguousarray(np.moveaxis(table, 0, -1)))
+        self.totals = None
+        if count is not None:
+            totals = checked_counts(count, probs.shape[:-1])
+            self.totals = np.ascontiguousarray(np.moveaxis(totals[:, None] if self.shared else totals, 0, -1))
 
     @property
     def n_types(self) -> int:
-        return self._log.shape[-1]
+        return self.log_table.shape[-1]
 
     @property
     def shape(self) -> tuple[int, int, int]:
         """(n_states, n_actions, n_outcomes)."""
-        return self._log.shape[1:4]
+        return self.log_table.shape[1:4]
 
     @property
     def probs(self) -> Array:
         """P(outcome | state, action; type[, policy]), axes as given; computed at each call."""
-        table = np.moveaxis(np.exp(self._log), -1, 0)
+        table = np.moveaxis(np.exp(self.log_table), -1, 0)
         return table[:, 0] if self.shared else table
 
     @property
     def n_entries(self) -> int:
         """Number of stored probabilities."""
-        return self._log.size
+        return self.log_table.size
 
-    def log_sum(self, policy: int, steps: NDArray[np.int64]) -> Array:
-        """Log likelihood per type, (n_types,), of steps (n, 3): state, action, outcome; 0 for no steps.
+    def log_likelihood(self, policy: int, signal: Any) -> Array:
+        """Log likelihood of an episode's steps per type, (n_types,); 0 for no steps.
 
         Raises
         ------
         InputError
-            A step is outside the table.
+            The signal is not made of steps, or a step is outside the table.
         NotFoundError
             There is no such policy.
         """
-        if self.n_policies is not None:
-            check_policy(policy, self.n_policies)
-        check_steps(steps, self.shape)
-        return self._log[0 if self.shared else policy, steps[:, 0], steps[:, 1], steps[:, 2]].sum(axis=0)
+        return self.log_table[self.places_of(policy, signal)].sum(axis=0)
 
-    def log_probs(self, place: tuple[int, int, int]) -> Array:
-        """Log probabilities of the outcomes of a table, state and action, (n_outcomes, n_types)."""
-        return self._log[place]
+    def places_of(self, policy: int, signal: Any) -> tuple[NDArray[np.int64], ...]:
+        """Table, state, action and outcome of each step, (n,) each; errors as for `log_likelihood`."""
+        if self.n_policies is not None:
+            check_known("policy", policy, self.n_policies)
+        steps = self.steps_of(signal)
+        check_steps(steps, self.shape)
+        return np.full(len(steps), 0 if self.shared else policy), *steps.T
 
     def steps_of(self, signal: Any) -> NDArray[np.int64]:
         """A signal as steps (n, 3): state, action, number of the outcome."""
         raise NotImplementedError
 
-    def for_task(self, closest: bool = False) -> TaskSteps | None:
-        """A model of one task, which its own steps change; None where the probabilities are exact.
-
-        Steps have no spread, so `closest` makes no difference.
-        """
-        return None if self.totals is None else TaskSteps(self)
+    def law(self, models: Models = "uncertain", **_: Any) -> Any:
+        """The law of episodes given what users have shown; fixed where all is exact, or taken for the truth."""
+        return StepLaw(self) if models == "uncertain" and self.totals is not None else FixedLaw(self, self.n_types)
 
     def taken(
         self, types: Sequence[int] | None, policies: Sequence[int] | None
@@ -120,50 +121,30 @@ class StepModel:
         chosen = chosen_of(policies, table.shape[1])
         return table[:, chosen], None, None if count is None else count[:, chosen]
 
-    def parts(self) -> tuple[Any, ...]:
-        """It uses no other model."""
-        return ()
-
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """The logarithms, and the number of policies that share them."""
         totals = {} if self.totals is None else {"totals": self.totals}
-        return {"log": self._log, "shared": np.array([self.shared, self.n_policies or 0]), **totals}
+        return {"log": self.log_table, "shared": np.array([self.shared, self.n_policies or 0]), **totals}
 
-    def _restore(self, arrays: dict[str, NDArray[Any]]) -> Self:
-        """Restore the arrays of `to_arrays`, bit for bit."""
+    @classmethod
+    def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self:
+        """The model of `to_arrays`, bit for bit."""
         log, (shared, n_policies) = np.array(arrays["log"], np.float64), arrays["shared"].tolist()
         if log.ndim != 5 or not log.size or not (log <= _ABOVE).all() or (shared and len(log) != 1):
             raise InputError("log must be logarithms of probabilities by policy, state, action, outcome, type")
-        self._log, self.shared, self.n_policies = log, bool(shared), int(n_policies) or None
-        self.totals = np.array(arrays["totals"], np.float64) if "totals" in arrays else None
-        if self.totals is not None and self.totals.shape != (*log.shape[:3], log.shape[4]):
+        model = cls.__new__(cls)
+        model.log_table, model.shared, model.n_policies = log, bool(shared), int(n_policies) or None
+        model.totals = np.array(arrays["totals"], np.float64) if "totals" in arrays else None
+        if model.totals is not None and model.totals.shape != (*log.shape[:3], log.shape[4]):
             raise InputError("totals must be the steps behind each row, by policy, state, action, type")
-        return self
-
-    def _weights(self, count: ArrayLike) -> Array:
-        found = np.asarray(count, np.float64)
-        found = np.moveaxis(found[:, None] if self.shared else found, 0, -1)
-        if found.shape != (*self._log.shape[:3], self.n_types):
-            raise InputError(f"count must have the shape of probs without its last axis, got {found.shape}")
-        if not ((found > 0) & np.isfinite(found)).all():
-            raise InputError("count must be positive and finite; omit it where the probabilities are exact")
-        return np.ascontiguousarray(found)
+        return model
 
 
-def whole_numbers(steps: ArrayLike, what: str) -> NDArray[np.int64]:
-    """A sequence of rows of whole numbers, (n, columns); InputError for anything else."""
-    try:
-        found = np.asarray(steps)
-    except ValueError:
-        raise InputError(f"a signal must be rows of {what}, got {steps!r:.80}") from None
-    if not found.size:
-        return np.empty((0, 3), np.int64)
-    if found.dtype.kind not in "iuf" or found.ndim != 2 or not (np.abs(found) < 2**53).all():
-        raise InputError(f"a signal must be rows of {what}, got {steps!r:.80}")
-    whole = found.astype(np.int64)
-    if (whole != found).any():
-        raise InputError(f"a signal must be rows of {what}, whole numbers, got {steps!r:.80}")
-    return whole
+def check_steps(steps: NDArray[np.int64], shape: tuple[int, int, int]) -> None:
+    """Raise InputError for steps (n, 3) outside (n_states, n_actions, n_outcomes)."""
+    if len(steps) and not ((steps >= 0).all() and (steps < shape).all()):
+        bad = steps[((steps < 0) | (steps >= shape)).any(axis=1)][0]
+        raise InputError(f"each step must be below {shape} (states, actions, outcomes), got {tuple(bad.tolist())}")
 
 
 def step_counts(
@@ -199,13 +180,17 @@ def step_probs(counts: ArrayLike, pseudo_count: PseudoCount, possible: ArrayLike
     ----------
     possible : bool, broadcastable to the counts, optional
         Possible outcomes; by default all. Counted outcomes are possible in any case.
+
+    Raises
+    ------
+    InputError
+        A count is negative or not finite, or the pseudo-count is negative.
     """
     counts = np.asarray(counts, np.float64)
-    if possible is not None:
-        pseudo_count = checked_pseudo_count(pseudo_count, counts, possible)
-        counts = counts + pseudo_count * np.broadcast_to(np.asarray(possible, bool), counts.shape)
-        pseudo_count = 0.0
-    pseudo_count = checked_pseudo_count(pseudo_count, counts)
-    probs = with_pseudo_counts(counts, pseudo_count)
-    totals = (counts + pseudo_count).sum(axis=-1)
-    return probs, np.where(totals > 0, totals, 1.0)
+    if not counts.size or not ((counts >= 0) & np.isfinite(counts)).all():
+        raise InputError("counts must be at least 0 and finite, at least one of them")
+    gets = np.broadcast_to(True if possible is None else np.asarray(possible, bool), counts.shape)
+    weights = counts + checked_pseudo_count(pseudo_count, counts, possible) * gets
+    totals = weights.sum(axis=-1, keepdims=True)
+    probs = np.divide(weights, totals, out=np.full_like(weights, 1 / counts.shape[-1]), where=totals > 0)
+    return probs, np.where(totals > 0, totals, 1.0)[..., 0]

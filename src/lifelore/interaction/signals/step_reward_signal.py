@@ -64,18 +64,6 @@ class StepRewardSignal(StepModel):
         probs, totals = step_probs(counts, pseudo_count, possible)
         return cls(listed, probs, count=totals)
 
-    def log_likelihood(self, policy: int, signal: Sequence[tuple[int, int, float]]) -> Array:
-        """Log likelihood of the steps (n, 3) per type, (n_types,).
-
-        Raises
-        ------
-        InputError
-            A reward is not listed, or a state or action is outside the table.
-        NotFoundError
-            There is no such policy.
-        """
-        return self.log_sum(policy, self.steps_of(signal))
-
     def steps_of(self, signal: Sequence[tuple[int, int, float]]) -> NDArray[np.int64]:
         """A signal as steps (n, 3): state, action, place of the reward in the list."""
         return _coded(signal, self._index)
@@ -89,9 +77,9 @@ class StepRewardSignal(StepModel):
         return {**super().to_arrays(), "rewards": self.rewards}
 
     @classmethod
-    def from_arrays(cls, arrays: dict[str, NDArray[Any]], parts: tuple[Any, ...]) -> Self:
+    def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self:
         """The model of `to_arrays`, bit for bit."""
-        model = cls.__new__(cls)._restore(arrays)
+        model = super().from_arrays(arrays)
         model.rewards = np.array(arrays["rewards"], np.float64)
         model._index = _index_of(model.rewards, model.shape[2])
         return model

@@ -4,14 +4,14 @@ The signal with most information, and the most expensive to store. Thesis: §4.4
 """
 
 from collections.abc import Iterable, Sequence
-from typing import Any, ClassVar, Self
+from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.pseudo_counts import PseudoCount
-from lifelore.interaction.signals.step_model import StepModel, step_counts, step_probs, whole_numbers
+from lifelore.interaction.signals.step_model import StepModel, step_counts, step_probs
 
 Array = NDArray[np.float64]
 
@@ -76,18 +76,6 @@ class TransitionSignal(StepModel):
         counts = step_counts(steps, n_types, n_policies, (n_states, n_actions, n_states))
         return cls.from_counts(counts, pseudo_count, possible)
 
-    def log_likelihood(self, policy: int, signal: ArrayLike) -> Array:
-        """Log likelihood of the transitions (n, 3) or (n, 2) per type, (n_types,).
-
-        Raises
-        ------
-        InputError
-            A number is not whole, or outside the table.
-        NotFoundError
-            There is no such policy.
-        """
-        return self.log_sum(policy, self.steps_of(signal))
-
     def steps_of(self, signal: ArrayLike) -> NDArray[np.int64]:
         """A signal as steps (n, 3): state, action, next state."""
         return _triples(signal)
@@ -96,16 +84,25 @@ class TransitionSignal(StepModel):
         """The model of some types and policies."""
         return type(self)(*self.taken(types, policies))
 
-    @classmethod
-    def from_arrays(cls, arrays: dict[str, NDArray[Any]], parts: tuple[Any, ...]) -> Self:
-        """The model of `to_arrays`, bit for bit."""
-        return cls.__new__(cls)._restore(arrays)
-
 
 def _triples(signal: ArrayLike) -> NDArray[np.int64]:
-    steps = whole_numbers(signal, "(state, action, next state) or (state, next state)")
-    if steps.shape[1] == 2:
-        return np.insert(steps, 1, 0, axis=1)
-    if steps.shape[1] != 3:
-        raise InputError(f"a signal of transitions must have 2 or 3 columns, got {steps.shape[1]}")
-    return steps
+    """Steps (n, 3): state, action, next state; InputError for anything else than rows of whole numbers."""
+    try:
+        found = np.asarray(signal)
+    except ValueError:
+        found = np.array(None)
+    if not found.size:
+        return np.empty((0, 3), np.int64)
+    if (
+        found.dtype.kind in "iuf"
+        and found.ndim == 2
+        and found.shape[1] in (2, 3)
+        and (np.abs(found) < 2**53).all()
+    ):
+        whole = found.astype(np.int64)
+        if (whole == found).all():
+            return whole if whole.shape[1] == 3 else np.insert(whole, 1, 0, axis=1)
+    raise InputError(
+        "a signal must be rows of (state, action, next state) or (state, next state), 2 or 3 columns of whole "
+        f"numbers, got {signal!r:.80}"
+    )

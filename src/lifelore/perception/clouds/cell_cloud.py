@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.compiled.stored_kernel import kernel_part, stored_kernel
+from lifelore.core.compiled.jit import kernel
 
 CELL = 0.02
 """Side of a cell, metres: some dozens of points at 3 mm spacing."""
@@ -45,16 +45,17 @@ def closest_distances(first: CellCloud, second: CellCloud, count: int, bound: fl
 
     Metres; distances above `bound` are left out, so fewer may come back.
     """
-    found = np.full(count, np.inf)
-    nearest = np.full(len(first.low), np.inf)
-    _box_distances(first.low, first.high, second.low, second.high, nearest)
-    _search(first.points, first.starts, np.argsort(nearest), nearest, *second, bound * bound, found)
+    nearest = _box_distances(first, second)
+    found = _search(first, second, np.argsort(nearest), nearest, count, bound * bound)
     return np.sqrt(found[np.isfinite(found)])
 
 
-@stored_kernel("void(f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[::1])")
-def _box_distances(low, high, low_second, high_second, nearest) -> None:
-    """Lower `nearest` (n_cells,) to the squared distance from each cell of one cloud to a cell of the other."""
+@kernel
+def _box_distances(first, second):
+    """Squared distance from each cell of one cloud to the nearest cell of the other, (n_cells,)."""
+    _, _, low, high = first
+    _, _, low_second, high_second = second
+    nearest = np.full(len(low), np.inf)
     for i in range(len(low)):
         for j in range(len(low_second)):
             square = 0.0
@@ -63,25 +64,28 @@ def _box_distances(low, high, low_second, high_second, nearest) -> None:
                 if gap > 0.0:
                     square += gap * gap
             nearest[i] = min(nearest[i], square)
+    return nearest
 
 
-@stored_kernel(
-    "void(f8[:, ::1], i8[::1], i8[::1], f8[::1], f8[:, ::1], i8[::1], f8[:, ::1], f8[:, ::1], f8, f8[::1])"
-)
-def _search(points, starts, order, nearest, points_second, starts_second, low, high, bound, found) -> None:
-    """Fill `found` with the smallest squared distances, ascending, each at most `bound`; cells in `order`."""
+@kernel
+def _search(first, second, order, nearest, count, bound):
+    """The `count` smallest squared distances, ascending, infinity for those above `bound`; cells in `order`."""
+    points, starts, _, _ = first
+    found = np.full(count, np.inf)
     for i in order:
         if nearest[i] > min(bound, found[-1]):
             break
         for p in range(starts[i], starts[i + 1]):
-            square = _nearest(points[p], points_second, starts_second, low, high, min(bound, found[-1]))
+            square = _nearest(points[p], second, min(bound, found[-1]))
             if square <= bound:
                 _insert(found, square)
+    return found
 
 
-@kernel_part
-def _nearest(point, points, starts, low, high, limit) -> float:
-    """Squared distance from `point` to the nearest of `points`, infinity where it exceeds `limit`."""
+@kernel
+def _nearest(point, cloud, limit) -> float:
+    """Squared distance from `point` to the nearest of a cell cloud, infinity where it exceeds `limit`."""
+    points, starts, low, high = cloud
     best = np.inf
     for j in range(len(low)):
         square = 0.0
@@ -98,7 +102,7 @@ def _nearest(point, points, starts, low, high, limit) -> float:
     return best if best <= limit else np.inf
 
 
-@kernel_part
+@kernel
 def _insert(found: NDArray[np.float64], square: float) -> None:
     """Put a number among the ascending ones and drop the greatest."""
     at = len(found) - 1

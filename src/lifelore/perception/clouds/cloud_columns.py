@@ -17,7 +17,17 @@ _PACKED_NAMES = ("rgba", "rgb")
 
 
 def readable_fields(names: list[str]) -> list[str]:
-    """The names among `names` that `cloud_from_columns` reads; the others are not decoded."""
+    """The names among `names`, in any case, that `cloud_from_columns` reads; the others need not be decoded.
+
+    Raises
+    ------
+    InputError
+        A coordinate is missing.
+    """
+    lower = {name.lower() for name in names}
+    missing = [name for name in "xyz" if name not in lower]
+    if missing:
+        raise InputError(f"has no field {' '.join(missing)}; its fields are {' '.join(names)[:200] or 'none'}")
     known = {"x", "y", "z", *LABEL_NAMES, *_PACKED_NAMES, *(name for three in _COLOUR_NAMES for name in three)}
     return [name for name in names if name.lower() in known]
 
@@ -54,10 +64,7 @@ def cloud_from_columns(
     InputError
         A coordinate is missing, or a column breaks its rule.
     """
-    columns = {name.lower(): column for name, column in columns.items()}
-    missing = [name for name in "xyz" if name not in columns]
-    if missing:
-        raise InputError(f"has no field {' '.join(missing)}; its fields are {' '.join(columns)[:200] or 'none'}")
+    columns = {name.lower(): columns[name] for name in readable_fields(list(columns))}
     named = next((columns[name] for name in LABEL_NAMES if name in columns), None)
     return PointCloud(
         _points(columns),

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
-from lifelore.core.compiled.stored_kernel import stored_kernel
+from lifelore.core.compiled.jit import kernel
 
 MOST_PAIRS = 1_000_000
-"""Pairs of points from which a k-d tree is quicker, its import included; fewer load SciPy needlessly."""
+"""Number of pairs of points above which a k-d tree searches; it is quicker there."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,29 +29,23 @@ def nearest_points(first: NDArray[np.float64], second: NDArray[np.float64]) -> N
     if not len(first) or not len(second):
         return None
     if len(first) * len(second) > MOST_PAIRS:
-        from scipy.spatial import KDTree
-
         distances, partners = KDTree(second).query(first)
         row = int(np.argmin(distances))
         return Nearest(float(distances[row]), first[row], second[int(np.asarray(partners)[row])])
-    rows = np.zeros(3, np.int64)
-    distance = _nearest_rows(first, second, rows)
-    row, partner, alone = rows
+    distance, row, partner, alone = _nearest_rows(first, second)
     if not alone:
-        # The k-d tree decides between equals. Real clouds have none, so SciPy is not loaded.
-        from scipy.spatial import KDTree
-
+        # The k-d tree decides between equals.
         partner = int(KDTree(second).query(first[row])[1])
     return Nearest(float(distance), first[row], second[partner])
 
 
-@stored_kernel("f8(f8[:, ::1], f8[:, ::1], i8[::1])")
-def _nearest_rows(first, second, rows):
-    """The smallest distance; `rows` receives its row in each cloud, and 1 if no other row of `second` is as near.
+@kernel
+def _nearest_rows(first, second):
+    """The smallest distance, its row in each cloud, and whether no other row of `second` is as near.
 
     Distances are compared, not their squares: two squares may have one root.
     """
-    best = np.inf
+    best, row, partner, alone = np.inf, 0, 0, True
     for i in range(len(first)):
         least, at, single = np.inf, 0, True
         for j in range(len(second)):
@@ -64,6 +59,5 @@ def _nearest_rows(first, second, rows):
                 single = False
         distance = np.sqrt(least)
         if distance < best:
-            best = distance
-            rows[0], rows[1], rows[2] = i, at, 1 if single else 0
-    return best
+            best, row, partner, alone = distance, i, at, single
+    return best, row, partner, alone

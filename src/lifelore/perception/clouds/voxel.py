@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.compiled.stored_kernel import stored_kernel
+from lifelore.core.compiled.jit import kernel
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.clouds.point_cloud import PointCloud
@@ -160,15 +160,12 @@ def _voxels(
         if np.prod(sides) * (labels.max() + 1) > _KEY_LIMIT:
             span = (highest - lowest).max()
             raise InputError(f"size {size} m is too small for a cloud of {span:.3g} m; take a larger one")
-    table = np.full(1 << int(2 * n - 1).bit_length(), -1, np.int32)
-    inverse, keys, first = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
-    m = _number_voxels(points, labels, low, 1.0 / size, sides.astype(np.int64), table, inverse, keys, first)
-    counts, means = np.zeros(m, np.int64), np.zeros((m, 3))
-    _average(points, inverse, counts, means)
-    return inverse, first[:m].copy(), counts, means
+    inverse, first = _number_voxels(points, labels, low, 1.0 / size, sides.astype(np.int64))
+    counts, means = _average(points, inverse, len(first))
+    return inverse, first, counts, means
 
 
-@stored_kernel("i8(f8[:, ::1], i8[::1], f8[::1], f8[::1])")
+@kernel
 def _widen(points, labels, lowest, highest):
     """Widen the box from `lowest` to `highest` until it holds all points, and return the largest label."""
     top = labels[0]
@@ -180,16 +177,21 @@ def _widen(points, labels, lowest, highest):
     return top
 
 
-@stored_kernel("i8(f8[:, ::1], i8[::1], f8[::1], f8, i8[::1], i4[::1], i8[::1], i8[::1], i8[::1])")
-def _number_voxels(points, labels, low, per_metre, sides, table, inverse, keys, first):
-    """Hash the cell of each point by open addressing, and return the number of voxels.
+@kernel
+def _number_voxels(points, labels, low, per_metre, sides):
+    """The voxel of each point, and the first point of each voxel; voxels are numbered as they first occur.
 
-    Voxels are numbered as they first occur: `inverse` is the voxel of each point, `first` the first point of each
-    voxel.
+    The cell of each point is hashed by open addressing.
     """
-    mask = len(table) - 1
+    n = len(points)
+    slots = 1
+    while slots < 2 * n:
+        slots *= 2
+    mask = slots - 1
+    table = np.full(slots, -1, np.int32)
+    inverse, keys, first = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
     m = 0
-    for i in range(len(points)):
+    for i in range(n):
         key = labels[i]
         for axis in range(3):
             cell = int(np.floor((points[i, axis] - low[axis]) * per_metre))
@@ -205,12 +207,13 @@ def _number_voxels(points, labels, low, per_metre, sides, table, inverse, keys, 
             first[m] = i
             m += 1
         inverse[i] = table[slot]
-    return m
+    return inverse, first[:m].copy()
 
 
-@stored_kernel("void(f8[:, ::1], i8[::1], i8[::1], f8[:, ::1])")
-def _average(points, inverse, counts, means) -> None:
-    """Add the number of points of each voxel to `counts` and write the mean of its points into `means`."""
+@kernel
+def _average(points, inverse, m):
+    """The number of points of each of `m` voxels, (m,), and their mean, (m, 3)."""
+    counts, means = np.zeros(m, np.int64), np.zeros((m, 3))
     for i in range(len(points)):
         counts[inverse[i]] += 1
         for axis in range(3):
@@ -218,3 +221,4 @@ def _average(points, inverse, counts, means) -> None:
     for voxel in range(len(counts)):
         for axis in range(3):
             means[voxel, axis] /= counts[voxel]
+    return counts, means

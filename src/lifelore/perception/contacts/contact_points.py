@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.compiled.stored_kernel import stored_kernel
+from lifelore.core.compiled.jit import kernel
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,19 +42,11 @@ class ContactPoint:
     other: int
 
 
+@kernel
 def linked(points: NDArray[np.float64], reach: float) -> NDArray[np.int64]:
     """Component of each point when points at most `reach` apart are linked, (k,) numbered by first member."""
-    component = np.full(len(points), -1, np.int64)
-    _link(points, reach, component, np.empty(len(points), np.int64))
-    return component
-
-
-@stored_kernel("void(f8[:, ::1], f8, i8[::1], i8[::1])")
-def _link(
-    points: NDArray[np.float64], reach: float, component: NDArray[np.int64], waiting: NDArray[np.int64]
-) -> None:
-    """Replace every -1 in `component`; `waiting` is working memory of the same length."""
     n = len(points)
+    component, waiting = np.full(n, -1), np.empty(n, np.int64)
     count = 0
     for seed in range(n):
         if component[seed] >= 0:
@@ -75,6 +67,7 @@ def _link(
                         waiting[top] = j
                         top += 1
         count += 1
+    return component
 
 
 def contact_clusters(
@@ -165,7 +158,7 @@ def contact_edges(first: list[NDArray[np.float64]], second: list[NDArray[np.floa
     return np.array(sorted(edges), np.int64)
 
 
-@stored_kernel("f8(f8[:, ::1], f8[:, ::1])")
+@kernel
 def closest(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
     """Smallest distance between two sets of points, metres."""
     best = np.inf

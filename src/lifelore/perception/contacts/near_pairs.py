@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.compiled.stored_kernel import stored_kernel
+from lifelore.core.compiled.jit import kernel
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.perception.clouds.cell_cloud import CellCloud, cell_cloud, closest_distances
 
@@ -24,9 +24,7 @@ class ObjectCloud:
     @cached_property
     def box(self) -> NDArray[np.float64]:
         """Least and greatest corner, ``(2, 3)``."""
-        box = np.array([[np.inf] * 3, [-np.inf] * 3])
-        _widen(box, self.points)
-        return box
+        return _box(self.points)
 
     @property
     def low(self) -> NDArray[np.float64]:
@@ -45,8 +43,7 @@ class ObjectCloud:
 
     def within(self, low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
         """The points inside a box, ``(m, 3)``."""
-        rows = np.empty(len(self.points), np.int64)
-        return self.points[rows[: _write_rows_within(self.points, low, high, rows)]]
+        return self.points[_rows_within(self.points, low, high)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,26 +55,27 @@ class NearPair:
     gap: float
 
 
-@stored_kernel("void(f8[:, ::1], f8[:, ::1])")
-def _widen(box: NDArray[np.float64], points: NDArray[np.float64]) -> None:
-    """Widen a box (2, 3), least and greatest corner, until it holds all points."""
+@kernel
+def _box(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Least and greatest corner of the points' box, (2, 3)."""
+    box = np.empty((2, 3))
+    box[0], box[1] = np.inf, -np.inf
     for i in range(len(points)):
         for axis in range(3):
             box[0, axis] = min(box[0, axis], points[i, axis])
             box[1, axis] = max(box[1, axis], points[i, axis])
+    return box
 
 
-@stored_kernel("i8(f8[:, ::1], f8[::1], f8[::1], i8[::1])")
-def _write_rows_within(
-    points: NDArray[np.float64],
-    low: NDArray[np.float64],
-    high: NDArray[np.float64],
-    rows: NDArray[np.int64],
-) -> int:
-    """Write the rows of the points inside a box, ascending, and return their number.
+@kernel
+def _rows_within(
+    points: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """The rows of the points inside a box, ascending.
 
     One pass, because the table is large and searched for every object.
     """
+    rows = np.empty(len(points), np.int64)
     count = 0
     for i in range(len(points)):
         inside = True
@@ -86,7 +84,7 @@ def _write_rows_within(
         if inside:
             rows[count] = i
             count += 1
-    return count
+    return rows[:count]
 
 
 def split_objects(cloud: LabelledCloud) -> dict[int, ObjectCloud]:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.compiled.stored_kernel import kernel_part, stored_kernel
+from lifelore.core.compiled.jit import kernel
 from lifelore.perception.separation.gaussian import Array, exp_of_negative
 
 WIDEST = 0.5
@@ -65,27 +65,19 @@ def far_field(points: Array, cells: Cells, sources: Array, weights: Array, order
     sums, error : (n,) float64
         |sums - exact| ≤ error, up to rounding.
     """
+    coefficients, left = _expand(cells, sources, weights, order)
+    return _evaluate(points, cells, coefficients, order, left)
+
+
+@kernel
+def _expand(cells, sources, weights, order):
+    """The coefficients (c, K) of each cell, and the error bound at the cell's radius (c,)."""
+    _, centre, radius = cells
     inverse = 1 / np.cumprod(np.maximum(np.arange(order + 2.0), 1))
-    coefficients = np.zeros((len(cells.radius), (order + 1) * (order + 2) * (order + 3) // 6))
-    left = np.full(len(cells.radius), _FAR_LEFT * np.abs(weights).sum())
-    working = [np.zeros(_BLOCK) for _ in range(7)]
-    _expand(cells.centre, cells.radius, sources, weights, order, inverse, coefficients, left, *working)
-    sums, error = np.empty(points.shape[1]), np.empty(points.shape[1])
-    _evaluate(points, *cells, coefficients, order, left, sums, error, *working)
-    return sums, error
-
-
-@stored_kernel(
-    "void(f8[:, ::1], f8[::1], f8[:, ::1], f8[::1], i8, f8[::1], f8[:, ::1], f8[::1],"
-    " f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], f8[::1])"
-)
-def _expand(
-    centre, radius, sources, weights, order, inverse, coefficients, left, x, y, z, reach, by_x, by_y, by_z
-):
-    """Write each cell's `coefficients` (c, K), and add to `left` (c,) the error bound at the cell's radius.
-
-    `x` to `by_z` are working memory of `_BLOCK` numbers.
-    """
+    coefficients = np.zeros((len(radius), (order + 1) * (order + 2) * (order + 3) // 6))
+    left = np.full(len(radius), _FAR_LEFT * np.abs(weights).sum())
+    x, y, z = np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK)
+    reach, by_x, by_y, by_z = np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK)
     for cell in range(radius.shape[0]):
         for at in range(0, weights.shape[0], _BLOCK):
             m = min(_BLOCK, weights.shape[0] - at)
@@ -122,9 +114,10 @@ def _expand(
                         by_y[i] *= y[i]
                 for i in range(m):
                     by_x[i] *= x[i]
+    return coefficients, left
 
 
-@kernel_part
+@kernel
 def _total(terms, m):
     """The sum of the first `m` terms, m a multiple of 4, in four independent sums."""
     s0 = s1 = s2 = s3 = 0.0
@@ -136,17 +129,13 @@ def _total(terms, m):
     return (s0 + s1) + (s2 + s3)
 
 
-@stored_kernel(
-    "void(f8[:, ::1], i8[::1], f8[:, ::1], f8[::1], f8[:, ::1], i8, f8[::1], f8[::1], f8[::1],"
-    " f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], f8[::1])"
-)
-def _evaluate(
-    points, starts, centre, radius, coefficients, order, left, sums, error, x, y, z, share, in_x, in_y, in_z
-):
-    """Write the sums and bounds of all points, by Horner's rule in three nested variables.
-
-    `x` to `in_z` are working memory of `_BLOCK` numbers.
-    """
+@kernel
+def _evaluate(points, cells, coefficients, order, left):
+    """The sums and bounds of all points (n,), by Horner's rule in three nested variables."""
+    starts, centre, radius = cells
+    sums, error = np.empty(points.shape[1]), np.empty(points.shape[1])
+    x, y, z, share = np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK)
+    in_x, in_y, in_z = np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK)
     for cell in range(radius.shape[0]):
         outwards = 1.0 / max(radius[cell], 1e-300)
         for at in range(starts[cell], starts[cell + 1], _BLOCK):
@@ -181,3 +170,4 @@ def _evaluate(
                     error[at + i] *= share[i]
             for i in range(m):
                 sums[at + i] *= in_x[i]
+    return sums, error

@@ -7,7 +7,7 @@ Python. Points are (3, n) arrays already divided by the kernel's length.
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.compiled.stored_kernel import inlined_part, stored_kernel
+from lifelore.core.compiled.jit import inlined, kernel
 
 Array = NDArray[np.float64]
 
@@ -19,7 +19,7 @@ _LEAST = -700.0
 """Below this the exponential leaves the normal float64; exp(-700) ≈ 1e-304 stands for all of it."""
 
 
-@inlined_part
+@inlined
 def exp_of_negative(x):
     """exp(x) for x ≤ 0, to 1e-14 relative: powers of two split off, the rest by Taylor to order 11."""
     x = x if x > _LEAST else _LEAST
@@ -40,7 +40,7 @@ def exp_of_negative(x):
     return p * np.int64(shifted.view(np.int64) << 52).view(np.float64)
 
 
-@stored_kernel("void(f8[:, ::1], i8, f8[::1])")
+@kernel
 def kernel_row(points: Array, i: int, row: Array) -> None:
     """Write k(x_i, x_j) for every column j of `points` (3, n) into `row` (n,)."""
     x, y, z = points[0], points[1], points[2]
@@ -50,21 +50,15 @@ def kernel_row(points: Array, i: int, row: Array) -> None:
         row[j] = exp_of_negative(-0.5 * (dx * dx + dy * dy + dz * dz))
 
 
+@kernel
 def kernel_sums(points: Array, sources: Array, weights: Array, which: NDArray[np.int64], sums: Array) -> None:
     """Write Σ_j weights_j k(points_i, sources_j) into sums[i] for every i in `which`.
 
     points : (3, n), sources : (3, k), weights : (k,), sums : (n,)
     """
-    _add_up(points, sources, weights, which, sums, np.zeros(weights.shape[0] + 4))
-
-
-@stored_kernel("void(f8[:, ::1], f8[:, ::1], f8[::1], i8[::1], f8[::1], f8[::1])")
-def _add_up(
-    points: Array, sources: Array, weights: Array, which: NDArray[np.int64], sums: Array, terms: Array
-) -> None:
-    """As `kernel_sums`; `terms` (k + 4,) is working memory that ends in four zeros."""
     x, y, z = sources[0], sources[1], sources[2]
     n_sources = weights.shape[0]
+    terms = np.zeros(n_sources + 4)  # the last four stay zero, so that four can be added at a time
     for i in which:
         xi, yi, zi = points[0, i], points[1, i], points[2, i]
         for j in range(n_sources):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.compiled.stored_kernel import stored_kernel
+from lifelore.core.compiled.jit import kernel
 from lifelore.perception.separation.gaussian import Array
 
 FINEST = 1 / 32
@@ -71,7 +71,7 @@ def voxel_pyramid(points: Array, side: Array, cost: float) -> VoxelPyramid:
     return VoxelPyramid(levels, order, np.append(_begins(key >> (3 * DOUBLINGS)), n))
 
 
-@stored_kernel("void(f8[:, ::1], f8[::1], f8[::1], f8, i8, i8[::1])")
+@kernel
 def _voxel_keys(points: Array, side: Array, low: Array, edge: float, bits: int, key: NDArray[np.int64]) -> None:
     """Write one whole number a point: side, cell (`bits` an axis), and the smaller and smaller voxels in it."""
     for i in range(key.shape[0]):

@@ -5,9 +5,8 @@ r = y - Kβ; optimal means max{r : β < upper} ≤ min{r : β > lower}. A step m
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-from lifelore.core.compiled.stored_kernel import stored_kernel
+from lifelore.core.compiled.jit import kernel
 from lifelore.perception.separation.gaussian import Array, kernel_row
 
 _LEAST_CURVATURE = 1e-12
@@ -16,6 +15,7 @@ MOST_KEPT = 2**26
 """Largest number of stored kernel values, half a gigabyte; beyond it rows are computed again."""
 
 
+@kernel
 def ascend(
     points: Array, lower: Array, upper: Array, beta: Array, slope: Array, tolerance: float, max_steps: int
 ) -> int:
@@ -25,24 +25,9 @@ def ascend(
     points : (3, m), all others (m,); rows of the kernel matrix are computed when first needed.
     """
     m = beta.shape[0]
-    rows, place = np.empty((max(2, min(m, MOST_KEPT // m)), m)), np.full(m, -1)
-    return _ascend(points, lower, upper, beta, slope, tolerance, max_steps, rows, place)
-
-
-@stored_kernel("i8(f8[:, ::1], f8[::1], f8[::1], f8[::1], f8[::1], f8, i8, f8[:, ::1], i8[::1])")
-def _ascend(
-    points: Array,
-    lower: Array,
-    upper: Array,
-    beta: Array,
-    slope: Array,
-    tolerance: float,
-    max_steps: int,
-    rows: Array,
-    place: NDArray[np.int64],
-) -> int:
-    """As `ascend`; row place[i] of `rows` (room, m) is row i of the kernel matrix, or -1 if not computed."""
-    m, room = beta.shape[0], rows.shape[0]
+    room = max(2, min(m, MOST_KEPT // m))
+    # Row place[i] of `rows` is row i of the kernel matrix; place[i] is -1 if it is not computed.
+    rows, place = np.empty((room, m)), np.full(m, -1)
     n_rows = 0
     for step in range(max_steps):
         i, most, least = 0, -np.inf, np.inf

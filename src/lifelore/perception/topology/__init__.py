@@ -1,5 +1,4 @@
 """Topology of contact point networks: substructure, functional similarity, holes and grasp seeds (thesis §2.3.6).
 
-Read in this order: `substructure`, `functional_similarity`, `holes`, `grasp_seeds`; `cycle_basis`,
-`biconnected_parts` and `sight` serve `holes`.
+Read in this order: `substructure`, `functional_similarity`, `holes`, `grasp_seeds`; `sight` serves `holes`.
 """

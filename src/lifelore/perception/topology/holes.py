@@ -26,12 +26,12 @@ object (a mug's handle) is no cycle of contacts and is not found.
 Thesis: §2.4.2, Fig. 2.6.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
+import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
 
@@ -42,12 +42,7 @@ from lifelore.perception.clouds.nearest_points import Nearest, nearest_points
 from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.scene import Scene
-from lifelore.perception.topology.biconnected_parts import Edge, biconnected_parts
-from lifelore.perception.topology.cycle_basis import minimum_cycle_basis
 from lifelore.perception.topology.sight import Sight
-
-if TYPE_CHECKING:
-    import networkx as nx
 
 CLEARANCE = 0.015
 """Metres: a finger's thickness. What a finger does not enter is no hole to a hand."""
@@ -116,31 +111,21 @@ def find_holes(scene: Scene, *, clearance: float = CLEARANCE) -> tuple[Hole, ...
     return tuple(sorted((hole for hole in holes if hole), key=lambda hole: (hole.size, hole.nodes)))
 
 
-def contact_graph(scene: Scene) -> "nx.Graph":
+def contact_graph(scene: Scene) -> nx.Graph:
     """All networks and the contact edges as one graph: nodes (object, number), edges with ``length`` and ``kind``.
 
     ``kind`` is ``network`` within an object and ``contact`` between two.
     """
-    import networkx as nx
-
     graph = nx.Graph()
     for label, network in scene.networks.items():
+        at = network.positions
         graph.add_nodes_from((label, number) for number in range(len(network.nodes)))
-    for (x, y), length in _network_edges(scene).items():
-        graph.add_edge(x, y, length=length, kind="network")
+        for i, j in np.sort(network.edges, axis=1).tolist():
+            length = float(np.linalg.norm(at[i] - at[j]))
+            graph.add_edge((label, i), (label, j), length=length, kind="network")
     for edge in scene.contact_edges:
         graph.add_edge((edge.a, edge.node_a), (edge.b, edge.node_b), length=edge.length, kind="contact")
     return graph
-
-
-def _network_edges(scene: Scene) -> dict[Edge, float]:
-    """The length of each edge within an object, metres."""
-    lengths: dict[Edge, float] = {}
-    for label, network in scene.networks.items():
-        at = network.positions
-        for i, j in np.sort(network.edges, axis=1).tolist():
-            lengths[(label, i), (label, j)] = float(np.linalg.norm(at[i] - at[j]))
-    return lengths
 
 
 def contact_loops(scene: Scene, *, clearance: float = CLEARANCE) -> tuple[tuple[Node, ...], ...]:
@@ -149,22 +134,15 @@ def contact_loops(scene: Scene, *, clearance: float = CLEARANCE) -> tuple[tuple[
     Whether the loops open is not asked.
     """
     ajar = {frozenset((part.a, part.b)) for part in scene.interfaces if not _closes(scene, part, clearance)}
-    lengths = _network_edges(scene)
-    for edge in scene.contact_edges:
-        if frozenset((edge.a, edge.b)) not in ajar:
-            x, y = sorted([(edge.a, edge.node_a), (edge.b, edge.node_b)])
-            lengths[x, y] = edge.length
+    closed = nx.Graph()
+    for x, y, length in contact_graph(scene).edges(data="length"):
+        if frozenset((x[0], y[0])) not in ajar:
+            # Contacts in one place count as a nanometre apart: each shortest loop visits a node once then.
+            closed.add_edge(x, y, length=max(length, 1e-9))
     # A cycle lies within one biconnected part, and the search for a basis grows fast with the size of the graph.
-    parts = biconnected_parts(lengths)
-    return tuple(sorted(_turned(loop) for part in parts for loop in _shortest_loops(part, lengths)))
-
-
-def _shortest_loops(part: list[Edge], lengths: Mapping[Edge, float]) -> list[list[Node]]:
-    names = sorted({node for edge in part for node in edge})
-    number = {name: k for k, name in enumerate(names)}
-    edges = sorted((number[x], number[y], lengths[x, y]) for x, y in part)
-    loops = minimum_cycle_basis([(x, y) for x, y, _ in edges], [length for *_, length in edges])
-    return [[names[k] for k in loop] for loop in loops]
+    parts = (closed.subgraph(part) for part in nx.biconnected_components(closed) if len(part) > 2)
+    loops = (loop for part in parts for loop in nx.minimum_cycle_basis(part, weight="length"))
+    return tuple(sorted(map(_turned, loops)))
 
 
 def _closes(scene: Scene, part: Interface, clearance: float) -> bool:

@@ -1,0 +1,213 @@
+"""The law of cells (categories, values, bins): probabilities known from a finite number of runs, Dirichlet.
+
+Given a type, the probabilities of a pair have a Dirichlet law around those of the library, p, with the weight of
+A = 1 / (1/N + ρ) signals: N counts behind p, ρ the spread of the users of a type. After counts c of a user the law
+is Dirichlet(A p + c); the next cell i has the probability (A pᵢ + cᵢ) / (A + Σ c). Thesis: §4.4.1.
+"""
+
+from collections.abc import Callable, Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.finite_signals.signal_bins import joined, joined_table
+from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.cells import Cells
+from lifelore.interaction.outcomes.law import Numbers, Shown
+from lifelore.interaction.outcomes.log_probability import log_of
+from lifelore.interaction.outcomes.prediction import CountedPrediction
+from lifelore.interaction.outcomes.special_functions import gammaln
+from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest
+
+Array = NDArray[Any]
+
+
+class CountedLaw:
+    """P(cell | type, policy) given what each user has shown.
+
+    Parameters
+    ----------
+    counts : (n_types, n_policies, n_cells) float
+        Of the library, pseudo-counts included; read once.
+    spread : Spread
+    place : callable
+        Signals (...) to numbers of cells (...), -1 where a signal has none; InputError for what is no signal.
+    log_sizes : (n_cells,) float, optional
+        Logs of the widths of bins, which turn probabilities into densities.
+    dtype : {"f8", "f4"}
+        Precision of the statistics and of the likelihoods.
+
+    Attributes
+    ----------
+    weight : (n_policies, n_spreads, n_types) float
+        A: the number of signals that the library's runs count as for a user.
+    """
+
+    learns, single = True, True
+
+    def __init__(
+        self,
+        counts: Array,
+        spread: Spread,
+        place: Callable[[Any], Any],
+        log_sizes: Array | None = None,
+        dtype: str = "f8",
+    ) -> None:
+        self.spread, self.dtype, self._place = spread, np.dtype(dtype), place
+        self.n_types, self.n_policies, self.n_cells = counts.shape
+        totals = counts.sum(axis=2)
+        self.probs = counts / totals[:, :, None]
+        self._log_sizes = np.zeros(self.n_cells) if log_sizes is None else log_sizes
+        # Policy and cell first: a signal reads the rows of its policy and cell.
+        weight = 1 / (1 / totals.T[:, None, :] + spread.values[:, None])
+        self.weight: Array = weight.astype(self.dtype)
+        self._share = np.ascontiguousarray(self.probs.transpose(1, 2, 0)).astype(self.dtype)
+        self._bins: dict[int, tuple[NDArray[np.int64], SignalTable]] = {}
+
+    # ---- the law of signals --------------------------------------------------------------------------------
+
+    def checked(self, signals: Any) -> NDArray[np.int64]:
+        """Numbers of cells (...), -1 where a signal has none."""
+        return self._place(signals)
+
+    def shown(self, n_users: int) -> Shown:
+        """Counts of no signals, (n_users, n_policies, n_cells)."""
+        return Shown(counts=np.zeros((n_users, self.n_policies, self.n_cells), self.dtype))
+
+    def log_likelihoods(
+        self, policies: Numbers, signals: Any, shown: Shown | None = None, users: Numbers = None
+    ) -> Array:
+        """Log probabilities of cells (...) given what `users` (...) have shown, (..., n_spreads, n_types)."""
+        cells, weight = np.maximum(signals, 0), self.weight[policies]
+        chosen = weight * self._share[policies, cells][..., None, :]
+        if shown is not None:
+            counts = shown["counts"][users, policies]
+            own = np.take_along_axis(counts, np.asarray(cells)[..., None], axis=-1)[..., None]
+            chosen, weight = chosen + own, weight + counts.sum(axis=-1)[..., None, None]
+        found = log_of(chosen / weight) - self._log_sizes[cells][..., None, None].astype(self.dtype)
+        return np.where(np.asarray(signals)[..., None, None] < 0, -np.inf, found)
+
+    def learn(self, shown: Shown, users: Numbers, policies: Numbers, signals: Any) -> None:
+        """Add cells of distinct users."""
+        shown["counts"][users, policies, signals] += np.asarray(signals) >= 0
+
+    def fade(self, shown: Shown, users: Numbers, keep: ArrayLike) -> None:
+        """Let what distinct `users` have shown count `keep` (...) of what it did."""
+        shown["counts"][users] *= np.asarray(keep, self.dtype)[..., None, None]
+
+    # ---- what rules read -----------------------------------------------------------------------------------
+
+    def predicted(
+        self, shown: Shown, users: Numbers, log_weights: Array
+    ) -> tuple[tuple[Array, Array], Array, Array, Array]:
+        """What tried pairs of a user and a policy predict.
+
+        Returns
+        -------
+        at : rows and policies, (m,) each
+        weights : (m, n_spreads) float, probabilities of the spreads
+        probs : (m, n_spreads, n_types, n_cells) float, P(next cell | type, spread)
+        total : (m, n_spreads, n_types) float, signals behind the probabilities
+        """
+        own = shown["counts"][np.atleast_1d(users)]
+        rows, policies = np.nonzero(own.any(axis=-1))
+        counts, weight = own[rows, policies], self.weight[policies]
+        total = weight + counts.sum(axis=-1)[:, None, None]
+        prior = weight[..., None] * self._share[policies].transpose(0, 2, 1)[:, None]
+        weights = np.exp(log_weights).reshape(len(own), -1)[rows]
+        return (rows, policies), weights, (prior + counts[:, None, None]) / total[..., None], total
+
+    def table(self, n_bins: int, shown: Shown, users: Numbers, log_weights: Array) -> SignalTable:
+        """The cells as signals; above `n_bins` cells, neighbours are joined so that they tell the types apart."""
+        if n_bins not in self._bins:
+            self._bins[n_bins] = joined_table(self.probs, n_bins)
+        ends, table = self._bins[n_bins]
+        at, weights, probs, _ = self.predicted(shown, users, log_weights)
+        expected = (weights[:, :, None, None] * probs).sum(axis=1)
+        binned = joined(expected.transpose(1, 0, 2), ends[at[1]]).transpose(1, 0, 2)
+        return table.replaced(np.shape(users), at, binned)
+
+    # ---- a single user's statistics as small arrays ----------------------------------------------------------
+
+    def state(self, shown: Shown, user: int) -> dict[str, Array]:
+        """``policies`` (m,) and ``shown`` (m, n_cells): counts of each policy's cells."""
+        policies = np.flatnonzero(shown["counts"][user].any(axis=-1))
+        return {"policies": policies, "shown": shown["counts"][user, policies].astype(np.float64)}
+
+    def restore(self, shown: Shown, user: int, state: Mapping[str, Array]) -> None:
+        """Take over a `state`; InputError where it is of another law."""
+        policies, counts = np.asarray(state["policies"], np.int64), np.asarray(state["shown"], np.float64)
+        good = counts.shape == (len(policies), self.n_cells) and (np.isfinite(counts) & (counts >= 0)).all()
+        if not good or not np.isin(policies, range(self.n_policies)).all():
+            raise InputError(f"a user's state must have policies and {self.n_cells} counts of each")
+        shown.reset(user)
+        shown["counts"][user, policies] = counts
+
+
+class CountedRows(CountedPrediction):
+    """The next outcomes of users, each given what the user has shown, where outcomes are cells.
+
+    Only pairs of a user and a policy that the user has shown an outcome of differ from the library's.
+    """
+
+    def __init__(self, law: CountedLaw, cells: Cells, shown: Shown, users: Numbers, log_weights: Array) -> None:
+        self.cells, self._law, self._shape = cells, law, np.shape(users)
+        self._spread_weights = np.exp(log_weights).reshape(-1, len(law.spread.values))
+        self._at, weights, self._by_spread, self._total = law.predicted(shown, users, log_weights)
+        self._tried = weights[:, :, None]
+
+    @cached_property
+    def probs(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """P(next cell | type, policy), (..., n_types, n_policies, n_cells)."""
+        expected = (self._tried[..., None] * self._by_spread).sum(axis=1)
+        return self._rows(
+            np.broadcast_to(self._law.probs, (len(self._spread_weights), *self._law.probs.shape)), expected
+        )
+
+    @cached_property
+    def mean_variance(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
+        """Variance of each pair's mean outcome, (..., n_types, n_policies)."""
+        law, means = self._law, self.cells.means
+        untried = self._within(law.probs) / (1 + law.weight.transpose(1, 2, 0))
+        by_spread = self._by_spread @ means
+        mean = (self._tried * by_spread).sum(axis=1, keepdims=True)
+        unknown = self._within(self._by_spread) / (self._total + 1) + (by_spread - mean) ** 2
+        rows = np.tensordot(self._spread_weights, untried, axes=1)
+        return self._rows(rows, (self._tried * unknown).sum(axis=1))
+
+    def _within(self, probs: Array) -> Array:
+        """Variance of the cells' means under probabilities (..., n_cells)."""
+        return np.maximum(probs @ self.cells.means**2 - (probs @ self.cells.means) ** 2, 0.0)
+
+    def _rows(self, untried: Array, tried: Array) -> Array:
+        found = np.array(untried)
+        rows, policies = self._at
+        found[rows, :, policies] = tried
+        return found.reshape(*self._shape, *found.shape[1:])
+
+
+def spread_of_counts(counts: Array, pseudo_count: float) -> Spread:
+    """The spreads that the types of counts (n_types, n_policies, n_cells) leave possible.
+
+    Each type's own counts are predicted by the laws of the other types (Dirichlet-multinomial).
+    """
+    n_types, n_policies, n_cells = counts.shape
+    if n_types < 2:
+        return Spread.known(0.0)
+    total = counts.sum(axis=2, keepdims=True)
+    probs, seen = counts / total, np.maximum(counts - pseudo_count, 0.0)
+    some = held_out(n_types, n_types * n_policies * n_cells)
+    found = np.empty((len(GRID), len(some), n_types))
+    for number, value in enumerate(GRID):
+        prior = 1 / (1 / total + value) * probs
+        weight, at_prior = prior.sum(axis=2), np.where(prior > 0, gammaln(np.where(prior > 0, prior, 1.0)), 0.0)
+        for place, i in enumerate(some):
+            own = seen[i]
+            after = np.where(prior + own > 0, gammaln(np.where(prior + own > 0, prior + own, 1.0)), 0.0)
+            gain = np.where((prior > 0) | (own == 0), after - at_prior, -np.inf).sum(axis=2)
+            found[number, place] = (gain + gammaln(weight) - gammaln(weight + own.sum(axis=1))).sum(axis=1)
+            found[number, place, i] = -np.inf
+    return Spread.up_to(likeliest(np.maximum(found, -1e300)))

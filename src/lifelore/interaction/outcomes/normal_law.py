@@ -1,0 +1,375 @@
+"""The law of numbers: normal outcomes whose mean and variance are known from a finite number of runs.
+
+    given a type, mean and variance of a pair have a normal-inverse-χ² law: location m₀, variance v₀ with ν₀
+    degrees of freedom, and the weight of κ₀ = 1 / (1/n + ρ) outcomes, ρ the spread of the users of a type
+
+After k outcomes of a user under a policy, with mean x̄ and sum of squares S, the law is of the same kind:
+
+    κ = κ₀ + k     m = (κ₀ m₀ + k x̄) / κ     ν = ν₀ + k     ν v = ν₀ v₀ + S + (κ₀ k / κ)(x̄ − m₀)²
+
+and the next outcome has a t distribution with ν degrees of freedom, location m and scale² = v (1 + 1/κ). So the
+parameters are never drawn: (k, x̄, S) of each user and policy is all that is needed. Pairs that are known exactly
+(n and ν₀ infinite, no spread) keep their normal distribution. Thesis: §4.3.4; models as in §4.4.1.
+"""
+
+from collections.abc import Mapping
+from functools import cached_property, lru_cache
+from math import lgamma, log, pi
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.finite_signals.signal_bins import normal_probs, normal_table
+from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.law import Numbers, Shown
+from lifelore.interaction.outcomes.outcome_model import finite_outcomes
+from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
+from lifelore.interaction.outcomes.prediction import NormalPrediction, over_pairs
+from lifelore.interaction.outcomes.special_functions import gammaln, stdtr
+from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest
+
+Array = NDArray[Any]
+
+EXACT = 1e30
+"""Degrees of freedom of a variance that is known exactly: t is then normal to the last digit."""
+LARGEST_FREEDOM = 1e6
+"""Degrees of freedom above which the height of a t distribution is that of a normal and a correction."""
+FARTHEST = 1e15
+"""Deviations as which outcomes that are farther count in float32: their squares stay numbers."""
+FEW = 256
+"""Numbers up to which heights are computed one by one: SciPy is not needed for a single user."""
+LEAST_FREEDOM = 0.5
+"""Least ν − 2 in the variance of a t distribution: below it would be infinite, and nothing compares."""
+
+
+class Posterior(NamedTuple):
+    """The law of pairs after what users have shown, (..., n_spreads or 1, n_types or 1) each.
+
+    location : m
+    doubt : 1/κ
+    variance : v
+    freedom : ν
+    """
+
+    location: Array
+    doubt: Array
+    variance: Array
+    freedom: Array
+
+
+class NormalLaw:
+    """P(number | type, policy) given what each user has shown, Student's t.
+
+    Parameters
+    ----------
+    moments : OutcomeMoments
+        What the runs of the library say; read once.
+    spread : Spread
+    dtype : {"f8", "f4"}
+        Precision of the statistics and of the likelihoods. float32 counts in deviations from the middle of the
+        types' means, at most `FARTHEST`.
+    """
+
+    learns, single = True, True
+
+    def __init__(self, moments: OutcomeMoments, spread: Spread, dtype: str = "f8") -> None:
+        self.spread, self.dtype = spread, np.dtype(dtype)
+        self.n_types, self.n_policies = moments.mean.shape
+        mean, variance = moments.mean.T, moments.variance.T
+        single = self.dtype == np.float32
+        self.middle = mean.mean(axis=1) if single else np.zeros(len(mean))
+        self.unit = np.sqrt(variance.mean(axis=1)) if single else np.ones(len(mean))
+        # Policy first: a signal reads the rows of its policy, (n_policies, n_spreads or 1, n_types or 1). Types
+        # that are alike share a column.
+        mean, variance = (mean - self.middle[:, None]) / self.unit[:, None], variance / self.unit[:, None] ** 2
+        rarity, freedom = _alike(1 / moments.count.T), _alike(np.minimum(moments.freedom.T, EXACT))
+        doubt, freedom = rarity[:, None] + spread.values[:, None], freedom[:, None]
+        square, power = variance[:, None] * (1 + doubt), 0.5 * (freedom + 1)
+        height = log_t_height(freedom) - np.log(self.unit)[:, None, None]
+        self._location, self._doubt, self._freedom, self._power = map(
+            self._stored, (mean[:, None], doubt, freedom, power)
+        )
+        self._weight, self._log_unit = self._stored(variance[:, None] * freedom), self._stored(np.log(self.unit))
+        # Student's t of users who have shown nothing: log density = top − power log1p(gap² narrow).
+        self._narrow = self._stored(1 / (square * freedom))
+        self._top = self._stored(height - 0.5 * np.log(square))
+        factor = variance_factor(moments.freedom)
+        self.mean, self.noise = moments.mean.copy(), moments.variance * factor
+        self.of_runs, self.of_spread = self.noise / moments.count, self.noise
+        self.natural_mean = np.ascontiguousarray(self._stored(self.mean.T))
+        self._bins: dict[int, tuple[Array, SignalTable]] = {}
+
+    # ---- the law of signals --------------------------------------------------------------------------------
+
+    def checked(self, signals: Any) -> Array:
+        """Finite numbers (k,)."""
+        return finite_outcomes(signals)
+
+    def shown(self, n_users: int) -> Shown:
+        """Number, mean and sum of squares around the mean of no outcomes, (n_users, n_policies, 3)."""
+        return Shown(moments=np.zeros((n_users, self.n_policies, 3), self.dtype))
+
+    def log_likelihoods(
+        self, policies: Numbers, signals: Any, shown: Shown | None = None, users: Numbers = None
+    ) -> Array:
+        """Log densities of outcomes (...) given what `users` (...) have shown, (..., n_spreads, n_types)."""
+        value = over_pairs(self._scaled(policies, signals))
+        if shown is None:
+            gap = value - self._location[policies]
+            return self._top[policies] - self._power[policies] * np.log1p(gap * gap * self._narrow[policies])
+        location, doubt, variance, freedom = self.posterior(policies, shown, users)
+        square, gap = variance * (1 + doubt), value - location
+        height = self._stored(log_t_height(freedom)) - over_pairs(self._log_unit[policies])
+        return height - 0.5 * np.log(square) - 0.5 * (freedom + 1) * np.log1p(gap * gap / (square * freedom))
+
+    def posterior(self, policies: Numbers, shown: Shown, users: Numbers) -> Posterior:
+        """The law of the pairs of `policies` (...) given what `users` (...) have shown."""
+        n, mean, squares = _parts(shown["moments"][users, policies][..., None, None, :])
+        location, doubt = self._location[policies], self._doubt[policies]
+        grown, apart, freedom = 1 + n * doubt, mean - location, self._freedom[policies] + n
+        doubt = doubt / grown
+        variance = (self._weight[policies] + squares + n / grown * (apart * apart)) / freedom
+        return Posterior(location + n * doubt * apart, doubt, variance, freedom)
+
+    def location(self, policies: Numbers, shown: Shown, users: Numbers) -> Array:
+        """The location of `posterior` alone."""
+        n, mean, _ = _parts(shown["moments"][users, policies][..., None, None, :])
+        pull, location = n * self._doubt[policies], self._location[policies]
+        return location + pull / (1 + pull) * (mean - location)
+
+    def natural(self, values: Array, policies: Any = None) -> Array:
+        """Means (..., n_policies), or (m, n_types) of `policies` (m,), in units of outcomes."""
+        if self.dtype != np.float32:
+            return values
+        middle, unit = self._stored(self.middle), self._stored(self.unit)
+        return (
+            middle + unit * values if policies is None else middle[policies, None] + unit[policies, None] * values
+        )
+
+    def learn(self, shown: Shown, users: Numbers, policies: Numbers, signals: Any) -> None:
+        """Add outcomes of distinct users (Welford's update)."""
+        n, mean, squares = _parts(shown["moments"][users, policies])
+        before = self._scaled(policies, signals) - mean
+        after = n + 1, mean + before / (n + 1), squares + before * before * (n / (n + 1))
+        shown["moments"][users, policies] = np.stack(after, axis=-1)
+
+    def fade(self, shown: Shown, users: Numbers, keep: ArrayLike) -> None:
+        """Let what distinct `users` have shown count `keep` (...) of what it did."""
+        share = self._stored(keep)
+        shown["moments"][users] *= np.stack([share, np.ones_like(share), share], axis=-1)[..., None, :]
+
+    # ---- what rules read -----------------------------------------------------------------------------------
+
+    def prediction(
+        self, shown: Shown | None = None, users: Numbers = None, log_weights: Array | None = None
+    ) -> NormalPrediction:
+        """The next outcome of all users, or of some.
+
+        Parameters
+        ----------
+        users : int or (k,) int64
+        log_weights : (..., n_spreads) float
+            Log probabilities of the spreads for each of `users`.
+        """
+        if shown is None or log_weights is None:
+            variance = self.of_runs + self.of_spread * self.spread.mean
+            return NormalPrediction(self.mean, np.sqrt(self.noise + variance), variance)
+        return NormalRows(self, shown, users, log_weights)
+
+    def table(self, n_bins: int, shown: Shown, users: Numbers, log_weights: Array) -> SignalTable:
+        """The next outcome in bins that tell the types apart; the bins are those of users who showed nothing."""
+        if n_bins not in self._bins:
+            known = self.prediction()
+            self._bins[n_bins] = normal_table(known.mean, known.deviation, n_bins)
+        cuts, table = self._bins[n_bins]
+        rows = NormalRows(self, shown, users, log_weights)
+        at, mean, deviation = rows.tried_pairs()
+        return table.replaced(np.shape(users), at, normal_probs(mean, deviation, cuts[at[1]][:, None]))
+
+    # ---- a single user's statistics as small arrays ----------------------------------------------------------
+
+    def state(self, shown: Shown, user: int) -> dict[str, Array]:
+        """``policies`` (m,) and ``shown`` (m, 3): number, mean and sum of squares of each policy's outcomes."""
+        policies = np.flatnonzero(shown["moments"][user, :, 0])
+        n, mean, squares = _parts(shown["moments"][user, policies].astype(np.float64))
+        unit, middle = self.unit[policies], self.middle[policies]
+        return {"policies": policies, "shown": np.stack([n, middle + unit * mean, unit**2 * squares], axis=-1)}
+
+    def restore(self, shown: Shown, user: int, state: Mapping[str, Array]) -> None:
+        """Take over a `state`; InputError where it is of another law."""
+        policies, numbers = np.asarray(state["policies"], np.int64), np.asarray(state["shown"], np.float64)
+        good = numbers.shape == (len(policies), 3) and np.isfinite(numbers).all()
+        if not good or (numbers[:, [0, 2]] < 0).any() or not np.isin(policies, range(self.n_policies)).all():
+            raise InputError("a user's state must have policies and (count, mean, squares) of each")
+        unit, middle = self.unit[policies], self.middle[policies]
+        n, mean, squares = _parts(numbers)
+        shown.reset(user)
+        shown["moments"][user, policies] = np.stack([n, (mean - middle) / unit, squares / unit**2], axis=-1)
+
+    def _scaled(self, policies: Numbers, signals: Any) -> Array:
+        if self.dtype != np.float32:
+            return signals
+        scaled = (signals - self.middle[policies]) / self.unit[policies]
+        return self._stored(np.clip(scaled, -FARTHEST, FARTHEST))
+
+    def _stored(self, values: Any) -> Array:
+        return np.asarray(values).astype(self.dtype, copy=False)
+
+
+class NormalRows(NormalPrediction):
+    """The next outcomes of users, each given what the user has shown; computed where they are read.
+
+    Only pairs of a user and a policy that the user has shown an outcome of differ from the library's.
+    """
+
+    def __init__(self, law: NormalLaw, shown: Shown, users: Numbers, log_weights: Array) -> None:
+        self._law, self._shown, self._shape = law, shown, np.shape(users)
+        self._users = np.atleast_1d(users)
+        self._weights = np.exp(log_weights).astype(law.dtype).reshape(len(self._users), -1)
+
+    @property
+    def n_types(self) -> int:
+        return self._law.n_types
+
+    @property
+    def n_policies(self) -> int:
+        return self._law.n_policies
+
+    @cached_property
+    def mean(self) -> Array:
+        """Expected mean outcome of each pair, (..., n_types, n_policies)."""
+        return self._rows(self._law.mean, self._tried_mean)
+
+    @cached_property
+    def mean_variance(self) -> Array:
+        """Variance of each pair's mean outcome, (..., n_types, n_policies)."""
+        spread = (self._weights @ self._law.spread.values)[:, None, None]
+        return self._rows(self._law.of_runs + self._law.of_spread * spread, self._tried_variances[0])
+
+    @cached_property
+    def noise(self) -> Array:
+        """Expected variance of each pair's outcomes around their mean, (..., n_types, n_policies)."""
+        return self._rows(self._law.noise, self._tried_variances[1])
+
+    @cached_property
+    def deviation(self) -> Array:
+        """Standard deviation of the next outcome, (..., n_types, n_policies)."""
+        return np.sqrt(self.mean_variance + self.noise)
+
+    def mean_on(self, types: NDArray[np.int64]) -> Array:
+        """Mean outcomes on a type for each user, (...) to (..., n_policies), without those on other types."""
+        law, types = self._law, np.atleast_1d(types)
+        location = law._location[:, 0].T[types]
+        n, mean, _ = _parts(self._shown["moments"][self._users])
+        # (n_types, n_spreads, n_policies), or (1, ...) where types are alike.
+        doubt = law._doubt.T if law._doubt.shape[2] == 1 else law._doubt.T[types]
+        pull = n[:, None] * doubt
+        pull /= 1 + pull
+        pull = pull[:, 0] if pull.shape[1] == 1 else (self._weights[:, :, None] * pull).sum(axis=1)
+        return law.natural(location + pull * (mean - location)).reshape(*self._shape, -1)
+
+    def expected(self, belief: Array) -> Array:
+        """Ũ(π) of beliefs (..., n_types), (..., n_policies)."""
+        rows, policies = self._at
+        flat = belief.reshape(len(self._users), -1)
+        found = flat @ self._law.mean
+        more = np.vecdot(flat[rows], self._tried_mean - self._law.natural_mean[policies])
+        found[rows, policies] += more
+        return found.reshape(*self._shape, -1)
+
+    def cumulative(self, policy: int, values: Array) -> Array:
+        """P(U ≤ value | type, policy) of `values` (n,) for a single user, (n_types, n): t, mixed by spread."""
+        location, doubt, variance, freedom = self._law.posterior(policy, self._shown, self._users[0])
+        gap = over_pairs(self._law._scaled(policy, values)) - location
+        below = stdtr(np.minimum(freedom, LARGEST_FREEDOM), gap / np.sqrt(variance * (1 + doubt)))
+        return (self._weights[0][:, None] * below).sum(axis=1).T
+
+    def tried_pairs(self) -> tuple[tuple[Array, Array], Array, Array]:
+        """Row and policy (m,) of each tried pair; mean and deviation of its outcome by type, (m, n_types)."""
+        return self._at, self._tried_mean, np.sqrt(sum(self._tried_variances))
+
+    @cached_property
+    def _at(self) -> tuple[Array, Array]:
+        """Row and policy, (m,) each, of the pairs of a user and a policy that the user has shown an outcome of."""
+        rows, policies = np.nonzero(self._shown["moments"][self._users, :, 0])
+        return rows, policies
+
+    @cached_property
+    def _tried_mean(self) -> Array:
+        rows, policies = self._at
+        location = self._law.location(policies, self._shown, self._users[rows])
+        return self._law.natural((self._weights[rows][:, :, None] * location).sum(axis=1), policies)
+
+    @cached_property
+    def _tried_variances(self) -> tuple[Array, Array]:
+        """Variance of the mean outcome of tried pairs, and of outcomes around it, (m, n_types) each."""
+        rows, policies = self._at
+        location, doubt, variance, freedom = self._law.posterior(policies, self._shown, self._users[rows])
+        weights, square = self._weights[rows][:, :, None], self._law.unit[policies][:, None] ** 2
+        gap = location - (weights * location).sum(axis=1, keepdims=True)
+        noise = variance_factor(freedom) * variance
+        unknown = (weights * (doubt * noise + gap * gap)).sum(axis=1)
+        return square * unknown, square * (weights * noise).sum(axis=1)
+
+    def _rows(self, untried: Array, tried: Array) -> Array:
+        rows, policies = self._at
+        found = np.array(np.broadcast_to(untried, (len(self._users), self.n_types, self.n_policies)))
+        found[rows, :, policies] = tried
+        return found.reshape(*self._shape, *found.shape[1:])
+
+
+def variance_factor(freedom: Array) -> Array:
+    """Variance of a t distribution of scale 1, ν / (ν − 2) with ν − 2 at least `LEAST_FREEDOM`."""
+    return 1 + 2 / np.maximum(freedom - 2, LEAST_FREEDOM)
+
+
+def log_t_height(freedom: Array) -> Array:
+    """Log density of Student's t at its location, scale 1, of degrees of freedom (...)."""
+    if freedom.size > FEW:
+        # Users have often shown equally many outcomes.
+        distinct, place = np.unique(freedom, return_inverse=True)
+        if len(distinct) <= FEW:
+            return log_t_height(distinct)[place].reshape(freedom.shape)
+    else:
+        return np.array([_height(value) for value in freedom.ravel().tolist()]).reshape(freedom.shape)
+    few = np.minimum(freedom, LARGEST_FREEDOM)
+    height = gammaln(0.5 * (few + 1)) - gammaln(0.5 * few) - 0.5 * np.log(np.pi * few)
+    return np.where(freedom > LARGEST_FREEDOM, -0.5 * log(2 * pi) - 0.25 / freedom, height)
+
+
+@lru_cache(maxsize=4096)
+def _height(freedom: float) -> float:
+    # Differences of log Γ at large arguments lose their digits; the next term of this series is below 1e-18.
+    if freedom > LARGEST_FREEDOM:
+        return -0.5 * log(2 * pi) - 0.25 / freedom
+    return lgamma(0.5 * (freedom + 1)) - lgamma(0.5 * freedom) - 0.5 * log(pi * freedom)
+
+
+def _alike(of_pairs: Array) -> Array:
+    """(n_policies, n_types) as (n_policies, 1) where no policy's numbers differ between types."""
+    return of_pairs[:, :1] if (of_pairs == of_pairs[:, :1]).all() else of_pairs
+
+
+def _parts(moments: Array) -> tuple[Array, Array, Array]:
+    """Number, mean and sum of squares of (..., 3)."""
+    return moments[..., 0], moments[..., 1], moments[..., 2]
+
+
+def spread_of_moments(moments: OutcomeMoments) -> Spread:
+    """The spreads that the moments' own types leave possible; none where there is a single type."""
+    n_types, n_policies = moments.mean.shape
+    if n_types < 2 or np.isinf(moments.count).any():
+        return Spread.known(0.0)
+    some = held_out(n_types, n_types * n_policies)
+    rare = moments.variance / moments.count
+    found = np.empty((len(GRID), len(some), n_types))
+    for place, i in enumerate(some):
+        apart = (moments.mean[i] - moments.mean) ** 2
+        noise, unit = rare[i] + rare, moments.variance
+        for number, value in enumerate(GRID):
+            variance = noise + value * unit
+            found[number, place] = -0.5 * (apart / variance + np.log(variance)).sum(axis=1)
+        found[:, place, i] = -np.inf
+    return Spread.up_to(likeliest(found))

@@ -1,0 +1,148 @@
+"""A law and what users have shown of it; Bayes' rule for the spreads of a law beside the belief over types.
+
+    F(σ | τ, π) = (1 − w_τ) F(σ | τ, π, all signals so far) + w_τ F(σ | τ, π)
+
+w_τ is the probability that a user who is now of type τ has just changed to it; 0 where types do not change. The
+signals so far count less afterwards by the probability that the type has just changed. Where a single change lies
+between many signals this is close to exact; it is not exact, since the signals of both types are summed up.
+"""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.beliefs.belief import log_sum
+from lifelore.interaction.outcomes.law import Law, Numbers
+
+Array = NDArray[Any]
+
+LEAST = 1e-37
+"""In place of 0 below a line."""
+SLACK = 1e-5
+"""Rounding error of probabilities that sum to 1."""
+
+
+class Evidence(NamedTuple):
+    """What signals say of the types, and of what users have shown.
+
+    log_likelihood : (..., n_types), log F
+    changed : (..., n_types) or None
+        Probability that the type has just changed, given that it is now this type and showed the signal; None
+        where types do not change.
+    gain : (..., n_spreads) or None
+        Log likelihoods of the spreads, up to a constant; None where there is a single spread.
+    """
+
+    log_likelihood: Array
+    changed: Array | None
+    gain: Array | None
+
+
+class UserModel:
+    """What users have shown of a law.
+
+    Parameters
+    ----------
+    law : Law
+    n_users : int
+
+    Attributes
+    ----------
+    shown : Shown
+    log_weights : (n_users, n_spreads) float64
+        Log probabilities of the spreads, given what the user has shown.
+    """
+
+    def __init__(self, law: Law, n_users: int) -> None:
+        self.law, self.shown = law, law.shown(n_users)
+        self._log_first: Array = np.log(law.spread.weights)
+        self.log_weights: Array = np.tile(self._log_first, (n_users, 1))
+
+    def evidence(
+        self, users: Numbers, policies: Numbers, signals: Any, log_belief: Array, changed: Array | None
+    ) -> Evidence:
+        """The evidence of checked signals (...) of `users` (...), before they are learnt.
+
+        Parameters
+        ----------
+        log_belief : (..., n_types)
+            Before the signals.
+        changed : (..., n_types), optional
+            w, as `TypeDynamics.changed_share` gives it.
+        """
+        law = self.law
+        if not law.learns:
+            return Evidence(law.log_likelihoods(policies, signals), None, None)
+        found = law.log_likelihoods(policies, signals, self.shown, users)
+        if found.shape[-2] == 1:
+            stayed, gain = found, None
+        else:
+            gain = _gain(found, np.exp(log_belief))
+            stayed = found + self.log_weights[users][..., None].astype(found.dtype, copy=False)
+        if changed is None:
+            return Evidence(stayed[..., 0, :] if gain is None else log_sum(stayed), None, gain)
+        anew = law.log_likelihoods(policies, signals) + self._log_first[:, None].astype(found.dtype, copy=False)
+        top = np.maximum(stayed.max(axis=-2), np.where(changed > 0, anew.max(axis=-2), -np.inf))
+        top = np.where(top > -np.inf, top, 0.0)
+        new = changed * np.exp(anew - top[..., None, :]).sum(axis=-2)
+        whole = (1 - changed) * np.exp(stayed - top[..., None, :]).sum(axis=-2) + new
+        with np.errstate(divide="ignore"):
+            return Evidence(np.log(whole) + top, new / np.maximum(whole, LEAST), gain)
+
+    def fade(self, users: Numbers, keep: Array) -> None:
+        """Let all that distinct `users` have shown count `keep` (...) of what it did: types may have changed."""
+        if not self.law.learns:
+            return
+        self.law.fade(self.shown, users, keep)
+        share = np.asarray(keep)[..., None]
+        with np.errstate(divide="ignore"):
+            weights = share * np.exp(self.log_weights[users]) + (1 - share) * np.exp(self._log_first)
+            self.log_weights[users] = np.log(weights)
+
+    def learn(self, users: Numbers, policies: Numbers, signals: Any, gain: Array | None) -> None:
+        """Take in signals of distinct users; `gain` as in their `Evidence`."""
+        if gain is not None:
+            found = self.log_weights[users] + gain
+            total = log_sum(found[..., None])
+            self.log_weights[users] = np.where(total > -np.inf, found - total, self.log_weights[users])
+        self.law.learn(self.shown, users, policies, signals)
+
+    def reset(self, users: Numbers) -> None:
+        """Forget what `users` have shown."""
+        self.shown.reset(users)
+        self.log_weights[users] = self._log_first
+
+    def grow(self, n_users: int) -> None:
+        """Make room for `n_users` users; new users have shown nothing."""
+        self.shown.grow(n_users)
+        more = np.tile(self._log_first, (n_users - len(self.log_weights), 1))
+        self.log_weights = np.concatenate([self.log_weights, more])
+
+    def state(self, user: int) -> dict[str, Array]:
+        """What a single user has shown, as small arrays; empty where nothing is learnt."""
+        if not self.law.learns:
+            return {}
+        return {**self.law.state(self.shown, user), "log_weights": self.log_weights[user].copy()}
+
+    def restore(self, user: int, state: Mapping[str, ArrayLike]) -> None:
+        """Take over a `state`; InputError where it is of another library."""
+        try:
+            log_weights = np.array(state.get("log_weights", self._log_first), np.float64)
+            if log_weights.shape != self._log_first.shape or not abs(np.exp(log_weights).sum() - 1) < SLACK:
+                raise InputError(f"a user's state must have {len(self._log_first)} probabilities of spreads")
+            if self.law.learns:
+                self.law.restore(self.shown, user, state)  # pyright: ignore[reportArgumentType]
+        except (KeyError, IndexError, ValueError, TypeError) as error:
+            raise InputError(f"the user's state is not of this library: {error}") from None
+        self.log_weights[user] = log_weights
+
+
+def _gain(by_spread: Array, belief: Array) -> Array:
+    """Log likelihoods of the spreads up to a constant, (..., n_spreads), given the belief before the signal."""
+    top = by_spread.max(axis=(-1, -2), keepdims=True)
+    top = np.where(top > -np.inf, top, 0.0)
+    with np.errstate(divide="ignore"):
+        return np.log((np.exp(by_spread - top) * belief[..., None, :]).sum(axis=-1))

@@ -1,0 +1,124 @@
+"""The statistic of an alarm: by hand, beside a naive twin, and for impossible signals."""
+
+import numpy as np
+import pytest
+from scipy.special import betaln
+from scipy.stats import multinomial
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.novelty.misfit import Misfit, pairs_of
+from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
+from lifelore.interaction.signals.category_signal import CategorySignal
+
+EXACT = PolicyLibrary.from_means([[10.0, 0.0], [0.0, 10.0]], 2.0)
+
+
+def misfit_of(library: PolicyLibrary, n: int = 1) -> Misfit:
+    return Misfit(UnknownEvidence(library, n, dynamics=TypeDynamics.static()))
+
+
+def test_outcomes_of_exact_types_by_hand():
+    misfit = misfit_of(EXACT)
+    assert misfit.statistic(0) == 0
+    misfit.observe(0, 0, 7.0)
+    # 1.5 and 3.5 deviations from the types; belief half and half: mean 5, variance 4 + 25.
+    assert misfit.by_type[0] == pytest.approx([1.5**2, 3.5**2])
+    assert misfit.shortfall[0] == pytest.approx((5 - 7) / 29**0.5)
+    misfit.observe(0, 0, 5.0)
+    # Mean 6 of two outcomes.
+    assert misfit.by_type[0] == pytest.approx([2 * 2.0**2, 2 * 3.0**2])
+    misfit.observe(0, 1, 1.0)
+    by_type = [2 * 2.0**2 + 0.5**2, 2 * 3.0**2 + 4.5**2]
+    assert misfit.by_type[0] == pytest.approx(by_type)
+    assert (misfit.freedom[0], misfit.n_signals[0]) == (2, 3)
+    assert misfit.statistic(0) == pytest.approx((by_type[0] - 2) / 4**0.5 + misfit.shortfall[0] / 3**0.5)
+
+
+def test_runs_and_spread_of_tasks_leave_means_in_doubt():
+    samples = np.random.default_rng(0).normal([[[4.0]], [[8.0]]], 1.0, (2, 1, 10))
+    library = PolicyLibrary.from_samples(samples)
+    moments = library.performance.moments  # pyright: ignore[reportAttributeAccessIssue]
+    misfit = misfit_of(library)
+    for outcome in (6.0, 7.0, 5.0):
+        misfit.observe(0, 0, outcome)
+    assert library.performance.spread.least.values[0] == 0  # pyright: ignore[reportAttributeAccessIssue]
+    expected = (6 - moments.mean[:, 0]) ** 2 / (moments.variance[:, 0] * (1 / 3 + 1 / 10))
+    assert misfit.by_type[0] == pytest.approx(expected)
+
+
+def test_categories_of_exact_types_are_a_likelihood_ratio():
+    probs = np.array([[[0.5, 0.3, 0.2]], [[0.1, 0.1, 0.8]]])
+    library = PolicyLibrary.from_means([[1.0], [2.0]], 1.0, signal=CategorySignal(probs))
+    misfit, counts = misfit_of(library), np.array([2, 1, 1])
+    for category in (0, 2, 0, 1):
+        misfit.observe(0, 0, category)
+    best = multinomial.logpmf(counts, 4, counts / 4)
+    assert misfit.by_type[0] == pytest.approx([2 * (best - multinomial.logpmf(counts, 4, p)) for p in probs[:, 0]])
+    assert (misfit.freedom[0], misfit.shortfall[0]) == (2, 0)
+    assert misfit.statistic(0) == pytest.approx((misfit.by_type[0].min() - 2) / 4**0.5)
+
+
+def test_learnt_categories_have_a_dirichlet_law():
+    signal = CategorySignal([[[0.6, 0.4]]], count=5)
+    library = PolicyLibrary.from_means([[1.0]], 1.0, signal=signal)
+    misfit = misfit_of(library)
+    for category in (0, 0, 1):
+        misfit.observe(0, 0, category)
+    # Beta-binomial: two of one and one of the other from Beta(3, 2), beside 2/3 and 1/3.
+    log_p = betaln(3 + 2, 2 + 1) - betaln(3, 2)
+    assert misfit.by_type[0, 0] == pytest.approx(2 * (2 * np.log(2 / 3) + np.log(1 / 3) - log_p))
+
+
+@pytest.mark.parametrize("kind", ["gaussian", "student-t", "histogram", "categorical"])
+def test_rows_are_single_tasks_and_sums_are_those_of_all_pairs(kind):
+    random = np.random.default_rng(0)
+    library = PolicyLibrary.from_samples(np.round(random.normal(0, 2, (3, 4, 12))), model=kind)
+    values = np.round(random.choice(library.performance.bounds()[1] * np.array([0.2, 0.5, 0.9]), (20, 9)))
+    policies = random.integers(0, 4, (20, 9))
+    many, alone = misfit_of(library, 20), [misfit_of(library) for _ in range(20)]
+    for signal in range(9):
+        many.observe(np.arange(20), policies[:, signal], values[:, signal])
+        for row, one in enumerate(alone):
+            one.observe(0, int(policies[row, signal]), float(values[row, signal]))
+    singles = [one.statistic(0) for one in alone]
+    np.testing.assert_allclose(many.statistic(np.arange(20)), singles, rtol=1e-9, atol=1e-9)
+    # The naive sum over all pairs of what has been shown.
+    pairs = pairs_of(library.signal)
+    shown = many.evidence.broad.signals.shown[pairs.statistics]
+    whole = sum(pairs.misfit(shown[:, policy], np.full(20, policy)) for policy in range(4))
+    np.testing.assert_allclose(many.by_type, whole, rtol=1e-9, atol=1e-9)
+
+
+def test_the_misfit_of_known_tasks_is_a_chi_square():
+    """Every policy tried k times by design, the type known: mean d and variance 2d."""
+    n, n_policies, library = 4000, 5, PolicyLibrary.from_means([[1.0, 4.0, 2.0, 0.0, 3.0]], 2.0)
+    misfit, random, every = misfit_of(library, n), np.random.default_rng(0), np.arange(n)
+    for policy in np.tile(np.arange(n_policies), 3):
+        mean = library.performance.mean[0, policy]
+        misfit.observe(every, np.full(n, policy), mean + 2 * random.standard_normal(n))
+    # Five standard errors of the mean; the variance of χ² of 5 has a relative error of √((12/5 + 2) / n).
+    assert misfit.by_type.mean() == pytest.approx(n_policies, abs=5 * (2 * n_policies / n) ** 0.5)
+    assert misfit.by_type.var() == pytest.approx(2 * n_policies, rel=5 * (4.4 / n) ** 0.5)
+    assert misfit.shortfall.var() == pytest.approx(15, rel=5 * (2 / n) ** 0.5)
+
+
+def test_impossible_signals_leave_finite_sums():
+    library = PolicyLibrary.from_means([[1.0]], 1.0, signal=CategorySignal([[[1.0, 0.0]]]))
+    misfit = misfit_of(library)
+    misfit.observe(0, 0, 1)
+    assert np.isfinite(misfit.statistic(0))
+    assert misfit.statistic(0) > 1e3
+    misfit = misfit_of(EXACT)
+    misfit.observe(0, 0, 1e99)
+    assert np.isfinite(misfit.statistic(0))
+
+
+def test_bad_signals_change_nothing():
+    misfit = misfit_of(EXACT)
+    misfit.observe(0, 0, 9.0)
+    before = misfit.statistic(0)
+    with pytest.raises(InputError, match="finite"):
+        misfit.observe(0, 0, np.nan)
+    assert (misfit.statistic(0), misfit.n_signals[0]) == (before, 1)

@@ -1,0 +1,181 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.interaction.beliefs.belief import entropy
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
+from lifelore.interaction.signals.category_signal import CategorySignal
+
+LIBRARY = PolicyLibrary.from_means([[10.0, 0.0], [0.0, 10.0]], 1.0, policies=["left", "right"])
+DETECTOR = NoveltyDetector.calibrate(LIBRARY, false_alarm=0.02, horizon=12, n_tasks=2000)
+
+
+def _played(pay, episodes=8, noise=1.0, seed=0):
+    agent = BayesianPolicyReuse(LIBRARY, seed=seed, novelty=DETECTOR.restart())
+    random = np.random.default_rng(seed)
+    for _ in range(episodes):
+        policy = agent.select()
+        agent.update(policy, pay[policy] + noise * random.standard_normal())
+    assert agent.novelty is not None
+    return agent, agent.novelty
+
+
+def test_a_known_user_raises_no_alarm_and_is_probably_known():
+    for seed in range(5):
+        _, detector = _played([10.0, 0.0], seed=seed)
+        assert not detector.alarm
+        assert detector.alarm_episode is None
+        assert detector.probability < 0.05
+
+
+def test_a_user_whom_no_type_fits_raises_an_alarm():
+    for seed in range(5):
+        _, detector = _played([5.0, 5.0], seed=seed)
+        assert detector.alarm
+        assert detector.alarm_episode is not None
+        assert detector.alarm_episode <= 3
+        assert detector.probability > 0.9
+
+
+def test_surprise_falls_for_known_users_at_small_noise_and_the_detector_is_silent():
+    """Why the raw surprise is no sign of a new type: a known user lowers it without end."""
+    library = PolicyLibrary.from_means([[10.0, 0.0], [0.0, 10.0]], 0.01)
+    detector = NoveltyDetector.calibrate(library, false_alarm=0.02, horizon=10, n_tasks=1000)
+    agent, random = BayesianPolicyReuse(library, novelty=detector), np.random.default_rng(0)
+    raw = []
+    for _ in range(10):
+        policy = agent.select()
+        agent.update(policy, [10.0, 0.0][policy] + 0.01 * random.standard_normal())
+        raw.append(agent.surprise)
+    assert raw[-1] < -20
+    assert not detector.alarm
+
+
+def test_the_belief_in_a_wrong_type_is_narrow_and_the_detector_sees_it():
+    """Errata: the thesis takes a spread belief as the sign of a new type."""
+    agent, detector = _played([6.0, 3.0])  # nearer to the first type, and far from both
+    assert entropy(agent.belief) < 0.05
+    assert detector.alarm
+
+
+def test_the_belief_of_the_agent_is_not_disturbed():
+    agent, _ = _played([5.0, 5.0])
+    alone, random = BayesianPolicyReuse(LIBRARY, seed=0), np.random.default_rng(0)
+    for _ in range(8):
+        alone.update(alone.select(), 5.0 + random.standard_normal())
+    assert np.array_equal(agent.log_belief, alone.log_belief)
+
+
+def test_the_probability_is_bayes_rule_with_the_prior_mass():
+    likely, unlikely = (NoveltyDetector(LIBRARY, mass) for mass in (0.5, 0.001))
+    assert (likely.probability, unlikely.probability) == (pytest.approx(0.5), pytest.approx(0.001))
+    for detector in (likely, unlikely):
+        detector.observe("left", 6.0)
+    odds = [detector.probability / (1 - detector.probability) for detector in (likely, unlikely)]
+    assert odds[0] / odds[1] == pytest.approx(999)
+
+
+def test_no_alarm_after_the_horizon():
+    detector = DETECTOR.restart()
+    assert detector.calibration is not None
+    for _ in range(detector.calibration.horizon):
+        detector.update("left", 10.0)
+    for _ in range(20):
+        detector.update("left", 4.0)
+    assert detector.score > detector.calibration.threshold
+    assert not detector.alarm
+
+
+def test_a_restarted_detector_has_seen_nothing():
+    _, used = _played([5.0, 5.0])
+    fresh = used.restart()
+    assert (fresh.n_signals, fresh.alarm, fresh.score, fresh.log_odds) == (0, False, 0.0, 0.0)
+    assert fresh.calibration is used.calibration
+    assert used.n_signals == 8
+
+
+@pytest.mark.parametrize("models", ["uncertain", "plug-in"])
+@pytest.mark.parametrize("kind", ["gaussian", "categorical"])
+def test_a_restored_state_has_the_same_bits(kind, models):
+    samples = np.round(np.random.default_rng(0).normal([[[2.0]], [[5.0]]], 1.0, (2, 3, 10)))
+    library, dynamics = PolicyLibrary.from_samples(samples, model=kind), TypeDynamics.static()
+    agent = {"models": models, "dynamics": dynamics}
+    detector = NoveltyDetector.calibrate(library, "sampling", false_alarm=0.1, horizon=5, n_tasks=200, **agent)
+    for policy, value in ((2, 3.0), (0, 5.0), (2, 2.0), (2, 4.0)):
+        detector.update(policy, value)
+    state = detector.state()
+    again = NoveltyDetector.restored(state, library, dynamics, models)
+    for one in (detector, again):
+        one.update(1, 4.0)
+    for name in ("probability", "score", "alarm_episode", "n_signals", "mass"):
+        assert getattr(again, name) == getattr(detector, name)
+    assert {name: array.tobytes() for name, array in again.state().items()} == {
+        name: array.tobytes() for name, array in detector.state().items()
+    }
+
+
+def test_without_a_calibration_there_is_a_probability_and_no_alarm():
+    detector = NoveltyDetector(LIBRARY)
+    for _ in range(9):
+        detector.update("left", 5.0)
+    assert detector.probability > 0.9
+    assert not detector.alarm
+    with pytest.raises(InputError, match="needs a calibrated detector"):
+        _ = detector.score
+    assert "misfit" not in detector.state()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"policies": np.array([7])}, "must have policies"),
+        ({"log_belief": np.zeros(9)}, "log_belief must be"),
+        ({"shown": np.zeros((1, 2))}, "must have policies"),
+        ({"shown": np.full((1, 3), np.nan)}, "must have policies"),
+        ({"numbers": np.array([2.0, 0.0])}, "between 0 and 1"),
+        ({"numbers": np.array([0.5])}, "no evidence of an unknown type"),
+        ({"numbers": np.array([0.5, np.nan])}, "must be finite"),
+        ({"misfit": np.zeros(2)}, "no evidence of an unknown type"),
+        ({"misfit_by_type": np.zeros(9)}, "no evidence of an unknown type"),
+        ({"calibration_by_signal": np.zeros((2, 12))}, "novelty calibration must have"),
+    ],
+)
+def test_states_that_are_none_are_refused(change, message):
+    detector = DETECTOR.restart()
+    detector.update("left", 7.0)
+    with pytest.raises(InputError, match=message):
+        NoveltyDetector.restored(detector.state() | change, LIBRARY)
+
+
+def test_bad_signals_change_nothing():
+    detector = DETECTOR.restart()
+    for policy, signal, error in (("left", np.nan, InputError), ("up", 1.0, NotFoundError)):
+        with pytest.raises(error):
+            detector.update(policy, signal)
+    assert (detector.n_signals, detector.log_odds) == (0, 0.0)
+
+
+def test_categories_by_name():
+    probs = [[[0.9, 0.05, 0.05]], [[0.05, 0.9, 0.05]]]
+    signal = CategorySignal(probs, categories=["near", "middle", "far"])
+    library = PolicyLibrary.from_means([[1.0], [2.0]], 1.0, signal=signal)
+    detector = NoveltyDetector.calibrate(library, false_alarm=0.05, horizon=10, n_tasks=1000)
+    for _ in range(10):
+        detector.update(0, "far")
+    assert detector.alarm
+    assert detector.probability > 0.9
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.lists(st.tuples(st.integers(0, 1), st.floats(-1e100, 1e100)), max_size=20))
+def test_answers_are_finite_whatever_the_outcomes(signals):
+    detector = DETECTOR.restart()
+    for policy, value in signals:
+        detector.update(policy, value)
+    assert np.isfinite([detector.score, detector.log_odds]).all()
+    assert 0 <= detector.probability <= 1

@@ -1,0 +1,212 @@
+"""PRQ against a plain loop on the same random numbers, its special cases, and compiled against plain Python."""
+
+import math
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from lifelore.core.compiled.random_state import next_uniform, random_state
+from lifelore.core.errors import InputError
+from lifelore.core.learning.curve import new_curve
+from lifelore.core.learning.q_learning import Schedule, learn, new_learner, uniform_rows
+from lifelore.core.mdp import COLLISION, TERMINAL, Tables
+from lifelore.core.planning.episode_value import return_moments
+from lifelore.core.streams import stream
+from reproduction.chapter4.c4_04_pacman.probabilistic_policy_reuse import ProbabilisticPolicyReuse, _draw_policy
+
+N_STATES, N_ACTIONS = 6, 3
+ROW_OF = np.array([0, 1, 2, 3, 0, 1], np.int32)
+
+
+def world(n_outcomes: int, seed: int = 0) -> Tables:
+    random = np.random.default_rng(seed)
+    shape = (N_STATES, N_ACTIONS, n_outcomes)
+    event = random.choice([0, 0, 0, TERMINAL, COLLISION], shape).astype(np.uint8)
+    outcome_cum = np.arange(1, n_outcomes + 1) / n_outcomes
+    next_state = random.integers(0, N_STATES, shape).astype(np.int32)
+    return Tables(
+        next_state, random.integers(-3, 4, shape).astype(float), event, outcome_cum, np.arange(3, dtype=np.int32)
+    )
+
+
+def rows_of(tables):
+    return uniform_rows(tables)._replace(q_row=ROW_OF)
+
+
+def library(n_policies: int) -> np.ndarray:
+    return np.random.default_rng(7).dirichlet(np.ones(N_ACTIONS), (n_policies, 4))
+
+
+def plan(n_episodes: int, discount: float = 0.9) -> Schedule:
+    return Schedule(np.linspace(0.5, 0.1, n_episodes), np.linspace(0.5, 0.2, n_episodes), 12, discount)
+
+
+def ran(settings, tables, policies, schedule, seed=3):
+    reuser = settings.begin(4, policies, stream(seed, "w"), stream(seed, "o"))
+    curve, chosen = settings.learn(tables, rows_of(tables), policies, schedule, reuser)
+    return curve, chosen, reuser
+
+
+def naive(settings, tables, policies, schedule, seed=3):
+    """PRQ as Fernandez and Veloso write it, on lists."""
+    world_state, own_state = random_state(stream(seed, "w")), random_state(stream(seed, "o"))
+
+    def drawn(cumulative, state):
+        return int(np.searchsorted(cumulative, next_uniform(state), side="right"))
+
+    def epsilon_greedy(values, epsilon):
+        if epsilon > 0 and next_uniform(own_state) < epsilon:
+            return min(int(next_uniform(own_state) * 3), 2)
+        tied = [a for a in range(N_ACTIONS) if values[a] == max(values)]
+        return tied[0] if len(tied) == 1 else tied[int(next_uniform(own_state) * len(tied))]
+
+    q = [[0.0] * N_ACTIONS for _ in range(4)]
+    new = len(policies)
+    gains, tau = [[] for _ in range(new + 1)], settings.temperature
+    returns, choices = [], []
+    for epsilon, alpha in zip(schedule.epsilon, schedule.alpha, strict=True):
+        weights = [math.exp(tau / settings.gain_unit * (np.mean(g) if g else 0.0)) for g in gains]
+        u = next_uniform(own_state) * sum(weights)
+        k = min(int(np.searchsorted(np.cumsum(weights), u, side="right")), new)
+        state = int(tables.starts[int(next_uniform(world_state) * len(tables.starts))])
+        psi, got, weight = settings.reuse, 0.0, 1.0
+        for _ in range(schedule.max_steps):
+            row = ROW_OF[state]
+            if k < new and next_uniform(own_state) < psi:
+                action = drawn(np.cumsum(policies[k][row]), own_state)
+            else:
+                action = epsilon_greedy(q[row], epsilon if k < new else 0.0)
+            outcome = drawn(tables.outcome_cum, world_state) if len(tables.outcome_cum) > 1 else 0
+            reward, event = tables.reward[state, action, outcome], tables.event[state, action, outcome]
+            following = tables.next_state[state, action, outcome]
+            after = 0.0 if event & TERMINAL else max(q[ROW_OF[following]])
+            q[row][action] += alpha * (reward + schedule.discount * after - q[row][action])
+            got += weight * reward
+            weight *= schedule.discount
+            psi *= settings.reuse_decay
+            state = int(following)
+            if event & TERMINAL:
+                break
+        gains[k].append(got)
+        tau += settings.temperature_step
+        returns.append(got)
+        choices.append(k)
+    return returns, choices, q, gains
+
+
+@pytest.mark.parametrize(("n_outcomes", "unit", "discount"), [(1, 1.0, 0.9), (3, 1.0, 1.0), (2, 20.0, 0.9)])
+def test_learning_equals_the_plain_loop(n_outcomes, unit, discount):
+    settings = ProbabilisticPolicyReuse(temperature=0.1, gain_unit=unit, reuse=0.9, reuse_decay=0.8)
+    tables, policies = world(n_outcomes), library(3)
+    curve, chosen, reuser = ran(settings, tables, policies, plan(120, discount))
+    returns, choices, q, gains = naive(settings, tables, policies, plan(120, discount))
+    assert chosen.tolist() == choices
+    assert len(set(choices)) > 2
+    assert curve.returns == pytest.approx(returns, abs=1e-12)
+    assert reuser.q == pytest.approx(np.array(q), abs=1e-12)
+    assert reuser.uses.tolist() == [len(g) for g in gains]
+    assert reuser.gain == pytest.approx([np.mean(g) if g else 0.0 for g in gains])
+    assert reuser.temperature[0] == pytest.approx(0.1 + 120 * 0.05)
+
+
+def test_with_nothing_to_reuse_it_is_greedy_q_learning():
+    tables, n = world(2), 80
+    schedule = plan(n)
+    settings, nothing = ProbabilisticPolicyReuse(), np.empty((0, 4, N_ACTIONS))
+    plain = new_learner(4, N_ACTIONS, stream(3, "w"), stream(3, "o"))
+    reuser = settings.begin(4, nothing, stream(3, "w"), stream(3, "o"))
+    # Without ties nothing is drawn from the learner's own stream but the choice among one policy.
+    reuser.q[:] = plain.q[:] = np.random.default_rng(0).normal(size=(4, N_ACTIONS))
+    curve, chosen = settings.learn(tables, rows_of(tables), nothing, schedule, reuser)
+    assert chosen.tolist() == [0] * n
+    greedy, other = schedule._replace(epsilon=np.zeros(n)), new_curve(n)
+    learn(tables, rows_of(tables), greedy, plain, other, n * 12)
+    assert np.array_equal(reuser.q, plain.q)
+    for mine, its in zip(curve, other, strict=True):
+        assert np.array_equal(mine, its)
+
+
+def test_a_library_policy_followed_always_is_that_policy():
+    # ψ = ν = 1 and no temperature: episodes of policy 0 never look at Q.
+    settings = ProbabilisticPolicyReuse(temperature_step=0.0, reuse_decay=1.0)
+    tables, policies = world(2), library(1)
+    curve, chosen, _ = ran(settings, tables, policies, plan(40_000, 1.0))
+    mean, deviation = return_moments(tables, ROW_OF, policies[0], 12)
+    followed = curve.rewards[chosen == 0]
+    assert abs(followed.mean() - mean) < 5 * deviation / np.sqrt(len(followed))
+    # Temperature 0: each of the two with probability 1/2; 5 standard errors.
+    assert abs((chosen == 0).mean() - 0.5) < 5 * 0.5 / np.sqrt(len(chosen))
+
+
+def test_softmax_by_hand():
+    random = random_state(stream(0, "softmax"))
+    gain = np.array([0.0, math.log(2), math.log(5)])
+    drawn = np.bincount([_draw_policy(gain, 1.0, random) for _ in range(40_000)], minlength=3) / 40_000
+    # Probabilities 1/8, 2/8, 5/8; 5 standard errors of at most 0.0025.
+    assert np.abs(drawn - [1 / 8, 2 / 8, 5 / 8]).max() < 0.0125
+    assert _draw_policy(np.array([0.0, 1e6, -1e6]), 500.0, random) == 1
+
+
+def test_learning_in_parts_is_learning_at_once():
+    settings, tables, policies = ProbabilisticPolicyReuse(), world(2), library(2)
+    whole, chosen, reuser = ran(settings, tables, policies, plan(60))
+    parts = settings.begin(4, policies, stream(3, "w"), stream(3, "o"))
+    found = []
+    for part in (slice(0, 25), slice(25, 60)):
+        piece = plan(60)._replace(epsilon=plan(60).epsilon[part], alpha=plan(60).alpha[part])
+        found.append(settings.learn(tables, rows_of(tables), policies, piece, parts))
+    assert np.array_equal(np.concatenate([k for _, k in found]), chosen)
+    assert np.array_equal(np.concatenate([c.returns for c, _ in found]), whole.returns)
+    assert all(np.array_equal(a, b) for a, b in zip(parts, reuser, strict=True))
+
+
+@pytest.mark.slow
+def test_compiled_and_plain_python_agree(tmp_path):
+    script = (
+        "import sys; sys.path.insert(0, sys.argv[1]); import numpy as np; "
+        "import test_probabilistic_policy_reuse as t; "
+        "c, k, r = t.ran(t.ProbabilisticPolicyReuse(), t.world(3), t.library(2), t.plan(40)); "
+        "np.savez(sys.argv[2], *c, k, *r)"
+    )
+    found = []
+    for disabled in ("0", "1"):
+        out = tmp_path / f"{disabled}.npz"
+        arguments = [sys.executable, "-c", script, os.path.dirname(__file__), str(out)]
+        subprocess.run(arguments, env=os.environ | {"NUMBA_DISABLE_JIT": disabled}, check=True)
+        found.append(np.load(out))
+    for name in found[0].files:
+        assert np.array_equal(found[0][name], found[1][name])
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("temperature", -1.0),
+        ("temperature_step", float("nan")),
+        ("reuse", 1.1),
+        ("reuse_decay", -0.1),
+        ("gain_unit", 0.0),
+    ],
+)
+def test_settings_that_cannot_be(name, value):
+    with pytest.raises(InputError, match=f"^{name} must"):
+        ProbabilisticPolicyReuse(**{name: value})
+
+
+def test_a_library_over_other_rows_is_refused():
+    with pytest.raises(InputError, match="library must have 5 rows"):
+        ProbabilisticPolicyReuse().begin(5, library(2), stream(0, "w"), stream(0, "o"))
+    with pytest.raises(InputError, match="library must hold probabilities"):
+        ProbabilisticPolicyReuse().begin(4, 2 * library(2), stream(0, "w"), stream(0, "o"))
+
+
+@pytest.mark.parametrize(("unit", "share"), [(1.0, math.exp(7) / (math.exp(7) + 4)), (140.0, 0.2081)])
+def test_the_unit_of_returns_decides_how_greedy_the_temperature_is(unit, share):
+    # One episode of 140 behind one of five policies, and τ = 0.05: 99.6 % against 20.8 %.
+    random, gain = random_state(stream(1, "unit")), np.array([0.0, 140.0, 0.0, 0.0, 0.0])
+    drawn = [_draw_policy(gain, 0.05 / unit, random) for _ in range(40_000)]
+    # Five standard errors, at most 0.0025 each.
+    assert abs(np.mean(np.array(drawn) == 1) - share) < 0.0125
