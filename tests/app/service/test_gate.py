@@ -133,15 +133,15 @@ def test_metrics_and_log_name_routes_and_not_users(serve, study, caplog):
     client = serve()
     client.put("/v1/studies/s", json=study)
     with caplog.at_level(logging.INFO, "lifelore.service"):
-        client.post("/v1/studies/s/decisions", json={"user": "ada"})
-        client.get("/v1/studies/s/users/ada")
-        client.get("/nowhere/ada")
+        client.post("/v1/studies/s/decisions", json={"user": "zoe"})
+        client.get("/v1/studies/s/users/zoe")
+        client.get("/nowhere/zoe")
     metrics = client.get("/metrics").text
     route = 'method="POST",route="/v1/studies/{study}/decisions",status="200"'
     assert f"lifelore_requests_total{{{route}}} 1.0" in metrics
     assert 'route="other",status="404"} 1.0' in metrics
     assert "lifelore_decisions_total 1.0" in metrics
-    assert "ada" not in metrics
+    assert "zoe" not in metrics
     fields = [record.fields for record in caplog.records if record.name == "lifelore.service"]
     assert [one["status"] for one in fields] == [200, 200, 404]
-    assert "ada" not in json.dumps(fields)
+    assert "zoe" not in json.dumps(fields)
