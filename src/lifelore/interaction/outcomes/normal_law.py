@@ -162,27 +162,15 @@ class NormalLaw:
 
     # ---- what rules read -----------------------------------------------------------------------------------
 
-    def prediction(
-        self, shown: Shown | None = None, users: Numbers = None, log_weights: Array | None = None
-    ) -> NormalPrediction:
-        """The next outcome of all users, or of some.
-
-        Parameters
-        ----------
-        users : int or (k,) int64
-        log_weights : (..., n_spreads) float
-            Log probabilities of the spreads for each of `users`.
-        """
-        if shown is None or log_weights is None:
-            variance = self.of_runs + self.of_spread * self.spread.mean
-            return NormalPrediction(self.mean, np.sqrt(self.noise + variance), variance)
+    def prediction(self, shown: Shown, users: Numbers, log_weights: Array) -> NormalPrediction:
+        """The next outcome of `users`; `log_weights` (..., n_spreads) are log probabilities of their spreads."""
         return NormalRows(self, shown, users, log_weights)
 
     def table(self, n_bins: int, shown: Shown, users: Numbers, log_weights: Array) -> SignalTable:
         """The next outcome in bins that tell the types apart; the bins are those of users who showed nothing."""
         if n_bins not in self._bins:
-            known = self.prediction()
-            self._bins[n_bins] = normal_table(known.mean, known.deviation, n_bins)
+            variance = self.noise + self.of_runs + self.of_spread * self.spread.mean
+            self._bins[n_bins] = normal_table(self.mean, np.sqrt(variance), n_bins)
         cuts, table = self._bins[n_bins]
         rows = NormalRows(self, shown, users, log_weights)
         at, mean, deviation = rows.tried_pairs()
