@@ -76,16 +76,7 @@ class Prediction:
 
 
 class NormalPrediction(Prediction):
-    """Next outcomes taken as normal.
-
-    Parameters
-    ----------
-    mean, deviation, mean_variance
-        As in `Prediction`.
-    """
-
-    def __init__(self, mean: Array, deviation: Array, mean_variance: Array | None = None) -> None:
-        self.mean, self.deviation, self.mean_variance = mean, deviation, mean_variance
+    """Next outcomes taken as normal."""
 
     def density(self, value: ArrayLike) -> Array:
         z = (over_pairs(value) - self.mean) / self.deviation
@@ -104,19 +95,15 @@ class NormalPrediction(Prediction):
 class CountedPrediction(Prediction):
     """Next outcomes in cells: a few values, or bins.
 
-    Parameters
+    Attributes
     ----------
     cells : Cells
     probs : (..., n_types, n_policies, n_cells) float
         P(cell | type, policy).
-    mean_variance
-        As in `Prediction`.
     """
 
+    cells: Cells
     probs: Array
-
-    def __init__(self, cells: Cells, probs: Array, mean_variance: Array | None = None) -> None:
-        self.cells, self.probs, self.mean_variance = cells, probs, mean_variance
 
     @cached_property
     def mean(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
