@@ -226,12 +226,12 @@ class NormalRows(NormalPrediction):
         return self._law.n_policies
 
     @cached_property
-    def mean(self) -> Array:
+    def mean(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
         """Expected mean outcome of each pair, (..., n_types, n_policies)."""
         return self._rows(self._law.mean, self._tried_mean)
 
     @cached_property
-    def mean_variance(self) -> Array:
+    def mean_variance(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
         """Variance of each pair's mean outcome, (..., n_types, n_policies)."""
         spread = (self._weights @ self._law.spread.values)[:, None, None]
         return self._rows(self._law.of_runs + self._law.of_spread * spread, self._tried_variances[0])
@@ -242,7 +242,7 @@ class NormalRows(NormalPrediction):
         return self._rows(self._law.noise, self._tried_variances[1])
 
     @cached_property
-    def deviation(self) -> Array:
+    def deviation(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
         """Standard deviation of the next outcome, (..., n_types, n_policies)."""
         return np.sqrt(self.mean_variance + self.noise)
 
