@@ -68,7 +68,7 @@ class BayesianPolicyReuse:
     novelty : float or NoveltyDetector, optional
         Prior probability that no known type fits, in (0, 1), such as 0.05: the agent then computes after each
         signal how probable that is. Or a detector of this library without signals, such as a calibrated detector's
-        `restart()`. Signals must be outcomes or categories.
+        ``restart()``. Signals must be outcomes or categories.
 
     Attributes
     ----------
