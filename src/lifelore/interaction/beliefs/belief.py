@@ -91,7 +91,8 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
         log_likelihood = (log_likelihood - best).astype(log_belief.dtype)
     joint = log_belief + log_likelihood
     top = np.maximum.reduce(joint, axis=-1, keepdims=True)
-    if not np.maximum.reduce(np.abs(top), axis=None) <= FAR:
+    largest = abs(top.item()) if top.size == 1 else np.maximum.reduce(np.abs(top), axis=None)
+    if not largest <= FAR:
         joint, top, more = _relative_to_possible(log_belief, log_likelihood)
         best = more if best is None else best + more
     log_evidence = np.log(np.add.reduce(np.exp(joint - top), axis=-1, keepdims=True))

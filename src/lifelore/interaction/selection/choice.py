@@ -7,6 +7,7 @@ sampling draws. The belief is about all types and stays as it is. Shapes: T type
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -107,9 +108,10 @@ def _best(scores: ArrayLike) -> Mask:
         scores = scores.astype(np.float64)
     tolerance = TOLERANCE_OF[scores.dtype.char]
     if scores.ndim == 1 and scores.size:
-        # A single row of finite scores, quickly.
-        largest, least = float(np.maximum.reduce(scores)), float(np.minimum.reduce(scores))
-        if largest < np.inf and least > -np.inf:
+        # A single row of finite scores, quickly; a NaN would make the sum NaN.
+        listed = scores.tolist()
+        largest, least = max(listed), min(listed)
+        if isfinite(sum(listed)):
             return scores >= _bar(largest, max(abs(largest), abs(least)), tolerance)
     largest = scores.max(axis=-1, keepdims=True, initial=-np.inf)
     least = scores.min(axis=-1, keepdims=True, initial=np.inf)
