@@ -10,6 +10,7 @@ import pytest
 import lifelore.interaction.baselines as room
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.baselines import BASELINES, Baseline
+from lifelore.interaction.library.policy_library import PolicyLibrary
 
 SETTINGS = {"exp3": {"horizon": 50}}
 NAMES = sorted(BASELINES)
@@ -93,6 +94,7 @@ def test_no_policies_or_tasks_is_refused(name, library):
     extra = {
         "gp-ucb": {"kernel": np.eye(1), "noise": 1.0},
         "lin-ucb": {"features": [[1.0]]},
+        "bpr-plus": {"library": PolicyLibrary.from_means([[1.0]], 1.0)},
     }.get(name, {})
     extra |= SETTINGS.get(name, {})
     with pytest.raises(InputError, match="n_policies must be at least 1, got 0"):

@@ -1,10 +1,13 @@
-"""Baselines of policy reuse: methods that learn from the payoffs of the policies they play.
+"""Baselines of policy reuse: bandits, and methods of other papers that know a library's types.
 
-All have the methods ``select()`` and ``update(policy, reward)``; see `Baseline`. `LinUCB` also knows what each type
-of a library pays; the others know no types.
+All have the methods ``select()`` and ``update(policy, reward)``; see `Baseline`. They learn from the payoffs of
+the policies they play. `BPRPlus` and `LinUCB` also know what each type pays; the others know no types. `BayesOKR`
+reads signals within an episode, so it has the methods of policy reuse and is no `Baseline`.
 """
 
 from lifelore.interaction.baselines.baseline import Baseline
+from lifelore.interaction.baselines.bayes_okr import BayesOKR
+from lifelore.interaction.baselines.bpr_plus import BPRPlus
 from lifelore.interaction.baselines.epsilon_greedy_means import EpsilonGreedyMeans
 from lifelore.interaction.baselines.exp3 import EXP3
 from lifelore.interaction.baselines.gp_ucb import GPUCB
@@ -19,7 +22,7 @@ BASELINES: dict[str, type[Baseline]] = {
     kind.name: kind
     for kind in (
         TryAll, UCB1, SlidingWindowUCB, IntervalEstimation, EXP3, GPUCB, LinUCB, GaussianThompson,
-        EpsilonGreedyMeans,
+        EpsilonGreedyMeans, BPRPlus,
     )
 }  # fmt: skip
 """Every baseline by its name."""
@@ -29,7 +32,9 @@ __all__ = [
     "EXP3",
     "GPUCB",
     "UCB1",
+    "BPRPlus",
     "Baseline",
+    "BayesOKR",
     "EpsilonGreedyMeans",
     "GaussianThompson",
     "IntervalEstimation",
