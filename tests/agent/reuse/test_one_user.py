@@ -475,6 +475,6 @@ def test_a_study_with_plug_in_models_takes_them_for_the_truth(memory):
     agent.update(made["policy"], 1.0)
     head = open_belief(memory, study, user_key("s", "ann")).state.head
     assert np.array_equal(head.log_belief, agent.log_belief)
-    assert set(head.task) == {"changes.shares", "changes.changed"}
+    assert set(head.task) == {"changes.shares"}
     with pytest.raises(InputError, match="models must be one of"):
         learnt_study(models="exact")

@@ -156,6 +156,19 @@ def test_states_go_on_to_the_bit():
             rows.restore(0, {"shares": np.zeros((2, 2))})
 
 
+def test_a_state_goes_to_rows_that_know_outcomes_in_another_order():
+    rows, other = (LearntDynamics("outcome").rows(1, PRIOR, "f8") for _ in range(2))
+    other.step(log_prior(PRIOR), 0, "lost")
+    belief = log_prior(PRIOR)
+    for number, signal in enumerate(likelihoods(1)):
+        belief = rows.step(update(belief, np.log(signal)).log_belief, 0, ("won", "lost")[number % 2])
+    other.restore(0, rows.state(0))
+    assert np.array_equal(rows.step(belief, 0, "won"), other.step(belief, 0, "won"))
+    start = rows.learnt(0, belief).rows(1, PRIOR, "f8")
+    start.step(belief, 0, "a third way")
+    start.reset(0)
+
+
 def test_the_share_that_has_just_changed_is_that_of_the_hazards():
     rows, belief = LearntDynamics("time").rows(1, PRIOR, "f8"), log_prior([0.9, 0.1, 0.0])
     after = rows.step(belief, 0)
@@ -168,6 +181,8 @@ def test_arguments_that_break_their_rule():
     with pytest.raises(InputError, match="by must be 'time', 'type' or 'outcome'"):
         TypeDynamics.learnt("weather")  # pyright: ignore[reportArgumentType]
     rows = LearntDynamics("outcome").rows(1, PRIOR, "f8")
+    with pytest.raises(InputError, match="outcome must be a word, a number or None"):
+        rows.step(log_prior(PRIOR), 0, ("won", 3))
     for number in range(MOST_CATEGORIES):
         rows.step(log_prior(PRIOR), 0, number)
     with pytest.raises(InputError, match=f"at most {MOST_CATEGORIES} ways"):

@@ -123,9 +123,9 @@ def test_users_take_four_bytes_a_type_and_twelve_a_policy_of_learnt_models():
     assert beliefs.algorithm.nbytes / n <= 4 * 68 + 9
     learnt = UserBeliefs(PolicyLibrary.from_means(mean, 1.0, count=5), n, dynamics=static)
     assert learnt.algorithm.nbytes / n <= 4 * 68 + 12 * 50 + 9
-    # By default the belief over five hazards given the type, and whether it has just changed.
+    # By default the belief over five hazards given the type.
     moving = UserBeliefs(PolicyLibrary.from_means(mean, 1.0), n)
-    assert moving.algorithm.nbytes / n <= 4 * 68 * (1 + 5 + 1) + 9
+    assert moving.algorithm.nbytes / n <= 4 * 68 * (1 + 5) + 9
 
 
 def test_a_user_may_come_twice_across_and_within_blocks(monkeypatch):

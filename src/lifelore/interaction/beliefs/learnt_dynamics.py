@@ -138,15 +138,13 @@ class LearntRows:
     ----------
     shares : (n_users, n_types, n_ways) float
         P(way | type), rows sum to 1: hazards, then the matrices.
-    changed : (n_users, n_types) float
-        P(the type has just changed | it is now this type), after the last step.
+    moved : (n_users, n_types) float
+        P(the type has just changed by a matrix | it is now this type), after the last step.
     tables : dict of str to TransitionCounts
     """
 
     def __init__(self, settings: LearntDynamics, n_users: int, prior: Array, dtype: Any) -> None:
-        self.settings, self._dtype = settings, np.dtype(dtype)
-        self._prior = prior.astype(dtype)
-        n_types, n_rates = len(prior), len(HAZARDS)
+        self.settings, self._prior, n_types = settings, prior.astype(dtype), len(prior)
         made = {"by_type": (n_types, False), "by_outcome": (1, True), "by_both": (n_types, True)}
         wanted = {"time": (), "type": ("by_type",), "outcome": tuple(made)}[settings.by]
         self.tables = {name: TransitionCounts(n_users, *made[name], prior, dtype) for name in wanted}
@@ -157,17 +155,14 @@ class LearntRows:
         rates = np.concatenate([HAZARDS, np.zeros(len(wanted))])
         stay = np.concatenate([1 - HAZARDS, np.zeros(len(wanted))])
         self._rates, self._stay = rates.astype(dtype), stay.astype(dtype)
-        self._tables_from = n_rates
         self._categories: dict[Hashable, int] = {None: 0}
         for category in settings.categories:
             self._categories.setdefault(category, len(self._categories))
         self._fit()
         weights = settings.start.get("weights", weights)
         self._first = np.tile(weights, (n_types, 1)).astype(dtype)
-        self.shares, self.changed = (
-            np.empty((n_users, n_types, len(weights)), dtype),
-            np.zeros((n_users, n_types), dtype),
-        )
+        self.shares = np.empty((n_users, n_types, len(weights)), dtype)
+        self.moved = np.zeros((n_users, n_types if wanted else 0), dtype)
         self.reset(slice(None))
 
     # ---- the belief --------------------------------------------------------------------------------------
@@ -181,48 +176,53 @@ class LearntRows:
             How the episode ended, such as ``"won"``.
         """
         joint = np.exp(log_belief)[..., None] * self.shares[users]
-        weights = joint.sum(axis=-2)
-        anew = (weights * self._rates)[..., None, :] * self._prior[:, None]
-        after = joint * self._stay + anew
-        moved = anew.sum(axis=-1)
+        weights = np.add.reduce(joint, axis=-2)
+        after = joint * self._stay
+        after += (weights * self._rates)[..., None, :] * self._prior[:, None]
+        moved: Any = 0.0
         if self.tables:
             category = self._category(outcome)
-            for way, table in enumerate(self.tables.values(), self._tables_from):
+            for way, table in enumerate(self.tables.values(), len(HAZARDS)):
                 table.learn(users, joint[..., way] / np.maximum(weights[..., way, None], LEAST))
                 after[..., way], stayed = table.step(users, joint[..., way], category)
-                moved += after[..., way] - stayed
-        total = after.sum(axis=-1)
-        least = np.maximum(total, LEAST)
-        self.shares[users], self.changed[users] = after / least[..., None], moved / least
-        return np.log(least / least.sum(axis=-1, keepdims=True))
+                moved = moved + after[..., way] - stayed
+        total = np.maximum(np.add.reduce(after, axis=-1), LEAST)
+        self.shares[users] = after / total[..., None]
+        if self.tables:
+            self.moved[users] = moved / total
+        return np.log(total / np.add.reduce(total, axis=-1, keepdims=True))
 
     def changed_share(self, log_belief: Array, users: Any) -> Array:
         """P(the type has just changed | it is now this type) after a `step`, (..., n_types)."""
-        return self.changed[users]
+        belief = np.exp(log_belief)
+        rate = self._weights(users, belief) @ self._rates
+        share = rate[..., None] * self._prior / np.maximum(belief, LEAST)
+        return np.minimum(share + self.moved[users] if self.tables else share, 1.0)
 
-    def weights(self, user: int, log_belief: Array) -> Array:
-        """Probability of each way in which the types of a user change, (n_ways,)."""
-        return np.exp(log_belief) @ self.shares[user]
+    def _weights(self, users: Any, belief: Array) -> Array:
+        """Probability of each way in which the types of `users` change, (..., n_ways)."""
+        return np.add.reduce(belief[..., None] * self.shares[users], axis=-2)
 
     def learnt(self, user: int, log_belief: Array) -> LearntDynamics:
         """Settings that start from what a user has shown."""
         learnt = {name: table.counts[user].copy() for name, table in self.tables.items()}
-        weights = self.weights(user, log_belief)
+        weights = self._weights(user, np.exp(log_belief))
         return LearntDynamics(self.settings.by, {"weights": weights, **learnt}, list(self._categories)[1:])
 
     # ---- rows ----------------------------------------------------------------------------------------------
 
     def reset(self, users: Any) -> None:
         """Set `users` back to what the settings start from."""
-        self.shares[users], self.changed[users] = self._first, 0
+        self.shares[users], self.moved[users] = self._first, 0
         for name, table in self.tables.items():
-            table.counts[users] = self.settings.start.get(name, 0)
-            table.before[users], table.category[users] = 0, -1
+            table.counts[users], table.before[users], table.category[users] = 0, 0, -1
+            if (start := self.settings.start.get(name)) is not None:
+                table.counts[users, : len(start)] = start
 
     def grow(self, n_users: int) -> None:
         """Make room for `n_users` users."""
         old = len(self.shares)
-        for owner, name in [(self, "shares"), (self, "changed"), *self._of_tables()]:
+        for owner, name in self._arrays():
             array = getattr(owner, name)
             more = np.zeros((n_users - old, *array.shape[1:]), array.dtype)
             setattr(owner, name, np.concatenate([array, more]))
@@ -230,10 +230,11 @@ class LearntRows:
 
     def state(self, user: int) -> dict[str, Array]:
         """What a user has shown, as small arrays."""
-        found = {"shares": self.shares[user].copy(), "changed": self.changed[user].copy()}
+        found = {"shares": self.shares[user].copy()}
         for name, table in self.tables.items():
             found |= {f"{name}.{part}": np.array(getattr(table, part)[user]) for part in PARTS}
         if self.tables:
+            found["moved"] = self.moved[user].copy()
             found["categories"] = np.frombuffer(json.dumps(list(self._categories)).encode(), np.uint8)
         return found
 
@@ -243,24 +244,29 @@ class LearntRows:
         if not state:
             return
         try:
-            if self.tables:
-                self._category(json.loads(np.asarray(state["categories"]).tobytes()))
+            self.shares[user] = state["shares"]
+            if not self.tables:
+                return
+            self.moved[user] = state["moved"]
+            # Rows may know the ways in which episodes end in another order.
+            known = self._category(json.loads(np.asarray(state["categories"]).tobytes()))
             for name, table in self.tables.items():
-                counts = np.asarray(state[f"{name}.counts"])
-                table.counts[user, : len(counts)] = counts
-                table.before[user], table.category[user] = state[f"{name}.before"], state[f"{name}.category"]
-            self.shares[user], self.changed[user] = state["shares"], state["changed"]
+                counts, last = np.asarray(state[f"{name}.counts"]), int(state[f"{name}.category"])
+                table.counts[user, known if table.by_outcome else [0]] = counts
+                table.before[user] = state[f"{name}.before"]
+                table.category[user] = known[last] if table.by_outcome and last >= 0 else last
         except (KeyError, ValueError, TypeError) as error:
             raise InputError(f"the dynamics' state is not of these dynamics: {error}") from None
 
     @property
     def nbytes(self) -> int:
         """Memory in bytes."""
-        owned = [(self, "shares"), (self, "changed"), *self._of_tables()]
-        return sum(getattr(owner, name).nbytes for owner, name in owned)
+        return sum(getattr(owner, name).nbytes for owner, name in self._arrays())
 
-    def _of_tables(self) -> list[tuple[Any, str]]:
-        return [(table, part) for table in self.tables.values() for part in PARTS]
+    def _arrays(self) -> list[tuple[Any, str]]:
+        """Every array with a row for each user: its owner and its name."""
+        of_tables = [(table, part) for table in self.tables.values() for part in PARTS]
+        return [(self, "shares"), (self, "moved"), *of_tables]
 
     def _category(self, outcome: Any) -> Any:
         if isinstance(outcome, list | np.ndarray):
@@ -271,6 +277,8 @@ class LearntRows:
         return found
 
     def _number(self, outcome: Any) -> int:
+        if not isinstance(outcome, str | float | int | None):
+            raise InputError(f"outcome must be a word, a number or None, got {outcome!r:.80}")
         if outcome not in self._categories and len(self._categories) > MOST_CATEGORIES:
             raise InputError(
                 f"episodes may end in at most {MOST_CATEGORIES} ways; name few categories, not every return"
