@@ -16,10 +16,10 @@ GAME = "s-maze 160"
 """The default of the claims of chapter 4."""
 
 
-def recorded_ball_games(n_games: int, n_training: int, seed: int) -> Recorded:
-    """`n_games` of every pair, which pay minus the loss; moves are known from `n_training` more."""
+def recorded_ball_games(n_games: int, seed: int) -> Recorded:
+    """`n_games` of every pair, which pay minus the loss; moves are known from as many others."""
     game, scale = Game.parsed(GAME).game, LossScale()
-    signal = train(game, n_training, seed).move_signal()
+    signal = train(game, n_games, seed).move_signal()
     kinds, speeds = np.mgrid[: game.n_types, : game.n_speeds].reshape(2, -1).repeat(n_games, axis=1)
     players = Players.drawn(kinds, 1, stream(seed, "C5.9", "ball game"))
     recorder = MoveRecorder(speeds, signal)

@@ -8,7 +8,6 @@ opponent is a signal, so that the belief, and with it the policy, changes within
 from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +15,8 @@ from numpy.typing import NDArray
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
+from reproduction.chapter5.c5_09_switching.agents import Player
+from reproduction.chapter5.c5_09_switching.schedules import Lived
 
 Array = NDArray[np.float64]
 WON, DRAWN, LOST = "won", "drawn", "lost"
@@ -97,7 +98,9 @@ class MatrixGame:
         """Types × best responses: a win pays 1, and signals are pairs of a state and a move there."""
         win = self.win_probs
         log_moves = np.log(np.maximum(np.moveaxis(self.moves, 0, -1), LEAST_PROB))
-        signal = LikelihoodSignal(lambda policy, seen: log_moves[seen], self.n_types, self.n_types)
+        signal = LikelihoodSignal(
+            lambda policy, seen: log_moves[seen], self.n_types, self.n_types, sample=self.sample_signal
+        )
         return PolicyLibrary(CategoricalOutcomes([0.0, 1.0], np.stack([1 - win, win], axis=-1)), signal)
 
     def sample_signal(self, generator: np.random.Generator, type_: int, policy: int) -> tuple[int, int]:
@@ -116,17 +119,8 @@ class MatrixGame:
         below = self.moves[type_, state].cumsum()[:-1]
         return int((generator.random() >= below).sum())
 
-    def play(self, generator: np.random.Generator, type_: int, agent: Any) -> tuple[float, str, int]:
-        """An episode of an agent that selects a policy before each step.
-
-        Returns
-        -------
-        gain : float
-            1 where it won, else 0.
-        outcome : {"won", "drawn", "lost"}
-        policy : int
-            That of the last step.
-        """
+    def play(self, generator: np.random.Generator, type_: int, agent: Player) -> Lived:
+        """An episode of an agent that selects a policy before each step; a win gains and pays 1."""
         state, score, policy = 0, 0, 0
         for step in range(self.n_steps):
             policy = agent.select()
@@ -136,4 +130,6 @@ class MatrixGame:
             state = int(self.following[state, action, move])
             if self.over[state]:
                 break
-        return float(score > 0), WON if score > 0 else DRAWN if score == 0 else LOST, policy
+        outcome, won = WON if score > 0 else DRAWN if score == 0 else LOST, float(score > 0)
+        agent.end_episode(outcome, won)
+        return Lived(won, outcome, policy)

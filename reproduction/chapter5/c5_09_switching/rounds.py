@@ -7,7 +7,7 @@ before each round, so that the belief changes within the episode.
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +15,27 @@ from numpy.typing import NDArray
 from lifelore.core.streams import stream
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
+from reproduction.chapter5.c5_09_switching.agents import Player
+from reproduction.chapter5.c5_09_switching.schedules import Lived
 
 Array = NDArray[np.float64]
-Round = Callable[[np.random.Generator, int, int], tuple[Any, float]]
-"""``round_of(generator, type, policy)``: the signal of a round, and what its outcome rests on, its pay."""
+
+
+class Shown(NamedTuple):
+    """A round: its signal, its pay as the library's performance model knows it, and its score.
+
+    Scores of the rounds decide how the episode ends; None where they are the pays.
+    """
+
+    signal: Any
+    pay: float
+    score: float | None = None
+
+
+Round = Callable[[np.random.Generator, int, int], Shown]
+"""``round_of(generator, type, policy)``: a round."""
 N_OUTCOMES, TRIALS = 3, 600
-"""Categories in which episodes end, and episodes behind the pays that divide them."""
+"""Categories in which episodes end, and episodes behind the scores that divide them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,34 +67,32 @@ class RoundWorld:
 
     @cached_property
     def edges(self) -> Array:
-        """Pays of an episode between its outcomes: thirds of the episodes of best policies on all types alike."""
+        """Scores of an episode between its outcomes: thirds of the episodes of best policies, all types alike."""
         generator, best = stream(0, "C5.9", "outcomes"), self.library.performance.mean.argmax(axis=1)
         types = generator.integers(self.n_types, size=TRIALS).tolist()
-        paid = [
-            sum(self.round_of(generator, type_, int(best[type_]))[1] for _ in range(self.n_rounds))
+        scores = [
+            sum(score_of(self.round_of(generator, type_, int(best[type_]))) for _ in range(self.n_rounds))
             for type_ in types
         ]
-        return np.quantile(paid, np.arange(1, N_OUTCOMES) / N_OUTCOMES)
+        return np.quantile(scores, np.arange(1, N_OUTCOMES) / N_OUTCOMES)
 
-    def play(self, generator: np.random.Generator, type_: int, agent: Any) -> tuple[float, int, int]:
-        """An episode of an agent that selects a policy before each round.
-
-        Returns
-        -------
-        gain : float
-            The sum of the expected gains of the policies that it selected.
-        outcome : int
-            Third of the pay, 0 the least.
-        policy : int
-            That of the last round.
-        """
-        gain, paid, policy = 0.0, 0.0, 0
+    def play(self, generator: np.random.Generator, type_: int, agent: Player) -> Lived:
+        """An episode of an agent that selects a policy before each round; outcomes are thirds, 0 the least."""
+        gain, score, policy, pay = 0.0, 0.0, 0, 0.0
         for _ in range(self.n_rounds):
             policy = agent.select()
-            signal, pay = self.round_of(generator, type_, policy)
-            agent.observe(policy, signal)
-            gain, paid = gain + float(self.gain[type_, policy]), paid + pay
-        return gain, int(np.searchsorted(self.edges, paid, side="right")), policy
+            shown = self.round_of(generator, type_, policy)
+            pay = shown.pay
+            agent.observe(policy, shown.signal, pay)
+            gain, score = gain + float(self.gain[type_, policy]), score + score_of(shown)
+        outcome = int(np.searchsorted(self.edges, score, side="right"))
+        agent.end_episode(outcome, pay)
+        return Lived(gain, outcome, policy)
+
+
+def score_of(shown: Shown) -> float:
+    """The score of a round."""
+    return shown.pay if shown.score is None else shown.score
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,14 +112,14 @@ class Recorded:
     def signal(self) -> LikelihoodSignal:
         """The signal model of numbers of games."""
         by_number = self.log_likelihood.reshape(-1, self.log_likelihood.shape[-1])
-        return LikelihoodSignal(lambda policy, game: by_number[game], *self.pay.shape[:2])
+        return LikelihoodSignal(lambda policy, game: by_number[game], *self.pay.shape[:2], sample=self.sample)
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int) -> int:
         """The number of a recorded game."""
         n_policies, n = self.pay.shape[1:]
         return (type_ * n_policies + policy) * n + int(generator.integers(n))
 
-    def round_of(self, generator: np.random.Generator, type_: int, policy: int) -> tuple[int, float]:
+    def round_of(self, generator: np.random.Generator, type_: int, policy: int) -> Shown:
         """A game of the pair, each as likely."""
         game = self.sample(generator, type_, policy)
-        return game, float(self.pay.flat[game])
+        return Shown(game, float(self.pay.flat[game]))

@@ -6,10 +6,9 @@ it. An agent's share is what it gains in all episodes over what an agent gains t
 sums over runs in each world, and the mean over worlds. Intervals resample runs.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import product
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,21 +16,35 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.core.streams import stream
 from reproduction.chapter5.c5_09_switching.agents import AGENTS, KNOWS, OKR, OURS, STATIC, KnowsType
+from reproduction.chapter5.c5_09_switching.matrix_games import MatrixGame
+from reproduction.chapter5.c5_09_switching.rounds import RoundWorld
 from reproduction.chapter5.c5_09_switching.schedules import GROUPS, SCHEDULES, Opponent
 from reproduction.chapter5.c5_09_switching.small_games import GAMES
-from reproduction.chapter5.c5_09_switching.thesis_worlds import PLAIN, RECORDED
+from reproduction.chapter5.c5_09_switching.thesis_worlds import ball_game, golf, pacman, surveillance, telephone
 from reproduction.engine.estimates import exact_value
 
 Array = NDArray[np.float64]
-WORLDS = (*PLAIN, *RECORDED, *GAMES)
+World = RoundWorld | MatrixGame
+OF_THESIS: dict[str, Callable[[Mapping, int], RoundWorld]] = {
+    "golf": lambda settings, seed: golf(),
+    "telephone": lambda settings, seed: telephone(),
+    "surveillance": lambda settings, seed: surveillance(),
+    "Pacman": lambda settings, seed: pacman(settings["recorded"], settings["training"], seed),
+    "ball game": lambda settings, seed: ball_game(settings["recorded"], seed),
+}
+"""Worlds of the thesis by name, from the settings and a seed."""
 
 
 @cache
-def world_of(name: str, recorded: int, training: int, seed: int) -> Any:
+def _world(name: str, recorded: int, training: int, seed: int) -> World:
+    if name in GAMES:
+        return GAMES[name]()
+    return OF_THESIS[name]({"recorded": recorded, "training": training}, seed)
+
+
+def world_of(name: str, settings: Mapping, seed: int) -> World:
     """A world by name, made once."""
-    if name in RECORDED:
-        return RECORDED[name](recorded, training, seed)
-    return PLAIN[name]() if name in PLAIN else GAMES[name]()
+    return _world(name, settings["recorded"], settings["training"], seed)
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -41,7 +54,7 @@ def cells(settings: Mapping) -> list[dict]:
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """What each agent gains in each run, (n_runs,) by agent."""
-    world = world_of(cell["world"], settings["recorded"], settings["training"], seed)
+    world = world_of(cell["world"], settings, seed)
     gains = {
         name: [round(_gain(settings, cell, world, name, run, seed), 4) for run in range(settings["runs"])]
         for name in AGENTS
@@ -49,7 +62,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     return {**cell, "gains": gains}
 
 
-def _gain(settings: Mapping, cell: Mapping, world: Any, name: str, run: int, seed: int) -> float:
+def _gain(settings: Mapping, cell: Mapping, world: World, name: str, run: int, seed: int) -> float:
     here = seed, "C5.9", cell["world"], cell["schedule"], run
     pays = world.library.performance.mean
     opponent = Opponent(pays, world.outcomes, cell["schedule"], stream(*here, "opponent"))
@@ -57,10 +70,9 @@ def _gain(settings: Mapping, cell: Mapping, world: Any, name: str, run: int, see
     for episode in range(settings["episodes"]):
         if isinstance(agent, KnowsType):
             agent.type = opponent.type
-        gained, outcome, policy = world.play(stream(*here, "luck", episode), opponent.type, agent)
-        agent.end_episode(outcome)
-        opponent.end_episode(outcome, policy)
-        gain += gained
+        lived = world.play(stream(*here, "luck", episode), opponent.type, agent)
+        opponent.end_episode(lived)
+        gain += lived.gain
     return gain
 
 
@@ -76,14 +88,15 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         for name, group in product(AGENTS, GROUPS)
         if name != KNOWS
     }
-    if OKR in AGENTS:
-        found["okr_upper"] = exact_value(min(_upper(results, OKR, group) for group in GROUPS.values()))
-    return found | {"static_upper": exact_value(_upper(results, STATIC, GROUPS["known"]))}
+    return found | {
+        "okr_upper": exact_value(min(_upper(results, OKR, group) for group in GROUPS.values())),
+        "static_upper": exact_value(_upper(results, STATIC, GROUPS["known"])),
+    }
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """All worlds, those of the thesis, and the small games."""
-    for words, names in (("all", WORLDS), ("of the thesis", (*PLAIN, *RECORDED)), ("small games", tuple(GAMES))):
+    for words, names in (("all", OF_THESIS | GAMES), ("of the thesis", OF_THESIS), ("small games", GAMES)):
         own = [result for result in results if result["world"] in names]
         if own:
             yield {"worlds": words}, measure(settings, own)

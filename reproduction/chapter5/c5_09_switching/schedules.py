@@ -13,13 +13,12 @@ NOISE = 0.2
 """Probability that a noisy pattern is left for any of the used types."""
 
 
-class Past(NamedTuple):
-    """What decides the next type: the place of the last type among the used types, the outcome, the policy."""
+class Lived(NamedTuple):
+    """An episode: what the agent gained, how it ended, and the policy of its last round or step."""
 
-    place: int
+    gain: float
     outcome: Hashable
     policy: int
-    episode: int
 
 
 class Opponent:
@@ -50,10 +49,10 @@ class Opponent:
         """The type of the next episode."""
         return int(self.used[self.place])
 
-    def end_episode(self, outcome: Hashable, policy: int) -> None:
-        """Take the type of the next episode, after one that ended so, with this policy in its last round."""
+    def end_episode(self, lived: Lived) -> None:
+        """Take the type of the next episode."""
         self.episode += 1
-        self.place = self._next(self, Past(self.place, outcome, policy, self.episode))
+        self.place = self._next(self, lived)
 
     def anew(self) -> int:
         """Any of the used types."""
@@ -72,18 +71,18 @@ class Opponent:
         return self.kinds.index(outcome)
 
 
-def _every(n: int) -> Callable[[Opponent, Past], int]:
-    return lambda opponent, past: opponent.anew() if past.episode % n == 0 else past.place
+def _every(n: int) -> Callable[[Opponent, Lived], int]:
+    return lambda opponent, lived: opponent.anew() if opponent.episode % n == 0 else opponent.place
 
 
-def _noisy(pattern: Callable[["Opponent", Past], int]) -> Callable[["Opponent", Past], int]:
-    return lambda opponent, past: opponent.anew() if opponent.slips() else pattern(opponent, past)
+def _noisy(pattern: Callable[["Opponent", Lived], int]) -> Callable[["Opponent", Lived], int]:
+    return lambda opponent, lived: opponent.anew() if opponent.slips() else pattern(opponent, lived)
 
 
-PATTERNS: dict[str, Callable[[Opponent, Past], int]] = {
-    "by outcome": lambda opponent, past: opponent.number_of(past.outcome) % len(opponent.used),
-    "moves on": lambda opponent, past: (past.place + opponent.number_of(past.outcome)) % len(opponent.used),
-    "cycle": lambda opponent, past: (past.place + 1) % len(opponent.used),
+PATTERNS: dict[str, Callable[[Opponent, Lived], int]] = {
+    "by outcome": lambda opponent, lived: opponent.number_of(lived.outcome) % len(opponent.used),
+    "moves on": lambda opponent, lived: (opponent.place + opponent.number_of(lived.outcome)) % len(opponent.used),
+    "cycle": lambda opponent, lived: (opponent.place + 1) % len(opponent.used),
 }
 """Patterns by name: the place of the next type.
 
@@ -91,15 +90,17 @@ Each outcome has its own type; or the opponent stays where the outcome is its be
 places else; or the types go round, whatever happens.
 """
 STATIC, EVERY_TEN, EVERY_TWO, ADAPTIVE = "static", "every ten", "every two", "adaptive"
-SCHEDULES: dict[str, Callable[[Opponent, Past], int]] = {
-    STATIC: lambda opponent, past: past.place,
+SCHEDULES: dict[str, Callable[[Opponent, Lived], int]] = {
+    STATIC: lambda opponent, lived: opponent.place,
     EVERY_TEN: _every(10),
     EVERY_TWO: _every(2),
-    ADAPTIVE: lambda opponent, past: opponent.answer(past.policy),
+    ADAPTIVE: lambda opponent, lived: opponent.answer(lived.policy),
     **PATTERNS,
     **{f"{name}, noise": _noisy(pattern) for name, pattern in PATTERNS.items()},
-    "any of outcome": lambda opponent, past: int(opponent.by_outcome[opponent.number_of(past.outcome)]),
-    "any of both": lambda opponent, past: int(opponent.by_both[past.place, opponent.number_of(past.outcome)]),
+    "any of outcome": lambda opponent, lived: int(opponent.by_outcome[opponent.number_of(lived.outcome)]),
+    "any of both": lambda opponent, lived: int(
+        opponent.by_both[opponent.place, opponent.number_of(lived.outcome)]
+    ),
 }
 """By name: the place of the next type among the used types.
 

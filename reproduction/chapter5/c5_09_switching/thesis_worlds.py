@@ -5,20 +5,18 @@ deployment. Golf and the ball game have costs: there a round gains what its poli
 policy drawn at random.
 """
 
-from collections.abc import Callable, Mapping
-
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.domains.golf.golf import SHOTS, Golf, category_of
 from lifelore.domains.surveillance.surveillance import Surveillance
-from lifelore.domains.telephone.telephone import Telephone
+from lifelore.domains.telephone.telephone import UTILITY_OF_PATH, Telephone
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.signals.category_signal import CategorySignal
 from reproduction.chapter5.c5_09_switching.ball_games import recorded_ball_games
 from reproduction.chapter5.c5_09_switching.pacman_games import recorded_pacman
-from reproduction.chapter5.c5_09_switching.rounds import RoundWorld
+from reproduction.chapter5.c5_09_switching.rounds import RoundWorld, Shown
 
 Array = NDArray[np.float64]
 CALLS, DEPLOYMENTS, PACMAN_GAMES, BALL_GAMES = 6, 6, 3, 3
@@ -36,9 +34,9 @@ def golf() -> RoundWorld:
     world = Golf()
     library = PolicyLibrary.from_means(world.mean, world.deviation, signal=CategorySignal(world.category_probs))
 
-    def shot(generator: np.random.Generator, hole: int, club: int) -> tuple[int, float]:
+    def shot(generator: np.random.Generator, hole: int, club: int) -> Shown:
         error = float(world.sample_errors(generator, world.holes[hole], club))
-        return int(category_of(error)), -abs(error)
+        return Shown(int(category_of(error)), -abs(error))
 
     return RoundWorld(library, shot, above_random(world.mean), SHOTS)
 
@@ -49,9 +47,9 @@ def telephone() -> RoundWorld:
     success = world.utility_probs[..., 1]
     library = PolicyLibrary(win_or_not(success), CategorySignal(world.path_probs))
 
-    def call(generator: np.random.Generator, caller: int, model: int) -> tuple[int, float]:
+    def call(generator: np.random.Generator, caller: int, model: int) -> Shown:
         path = int(world.sample(generator, caller, model))
-        return path, float(path == 0)
+        return Shown(path, float(UTILITY_OF_PATH[path]), score=float(path == 0))
 
     return RoundWorld(library, call, success, CALLS)
 
@@ -61,9 +59,9 @@ def surveillance() -> RoundWorld:
     world = Surveillance()
     library = PolicyLibrary.from_means(world.mean, world.deviation)
 
-    def deployment(generator: np.random.Generator, place: int, target: int) -> tuple[float, float]:
+    def deployment(generator: np.random.Generator, place: int, target: int) -> Shown:
         pay = float(world.mean[place, target] + world.deviation * generator.standard_normal())
-        return pay, pay
+        return Shown(pay, pay)
 
     return RoundWorld(library, deployment, world.mean, DEPLOYMENTS)
 
@@ -76,9 +74,9 @@ def pacman(n_games: int, n_training: int, seed: int) -> RoundWorld:
     return RoundWorld(library, games.round_of, won, PACMAN_GAMES)
 
 
-def ball_game(n_games: int, n_training: int, seed: int) -> RoundWorld:
+def ball_game(n_games: int, seed: int) -> RoundWorld:
     """Episodes of a player with a ball of one of six sizes, at one of five speeds."""
-    games = recorded_ball_games(n_games, n_training, seed)
+    games = recorded_ball_games(n_games, seed)
     mean, deviation = games.pay.mean(axis=2), games.pay.std(axis=2)
     library = PolicyLibrary.from_means(mean, np.maximum(deviation, LEAST_DEVIATION), signal=games.signal())
     return RoundWorld(library, games.round_of, above_random(mean), BALL_GAMES)
@@ -92,10 +90,3 @@ def above_random(mean: Array) -> Array:
 def win_or_not(prob: Array) -> CategoricalOutcomes:
     """Pays of 1 with probability `prob` (T, P), else 0."""
     return CategoricalOutcomes([0.0, 1.0], np.stack([1 - prob, prob], axis=-1))
-
-
-PLAIN: Mapping[str, Callable[[], RoundWorld]] = {
-    "golf": golf, "telephone": telephone, "surveillance": surveillance,
-}  # fmt: skip
-RECORDED: Mapping[str, Callable[[int, int, int], RoundWorld]] = {"Pacman": pacman, "ball game": ball_game}
-"""Worlds by name; recorded worlds need the number of games, of training games, and a seed."""
