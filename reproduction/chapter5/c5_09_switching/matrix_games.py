@@ -21,8 +21,6 @@ from reproduction.chapter5.c5_09_switching.schedules import Lived
 Array = NDArray[np.float64]
 WON, DRAWN, LOST = "won", "drawn", "lost"
 """How an episode ends."""
-LEAST_PROB = 1e-6
-"""Least probability of a move in likelihoods; a smaller value lets one impossible move decide."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,7 +30,7 @@ class MatrixGame:
     Parameters
     ----------
     moves : (T, S, M) float
-        Probability of each move of the opponent by type and state; rows sum to 1.
+        Probability of each move of the opponent by type and state, above 0; rows sum to 1.
     following : (S, A, M) int
         The state after an action and a move.
     pay : (S, A, M) int
@@ -96,12 +94,11 @@ class MatrixGame:
     @cached_property
     def library(self) -> PolicyLibrary:
         """Types × best responses: a win pays 1, and signals are pairs of a state and a move there."""
-        win = self.win_probs
-        log_moves = np.log(np.maximum(np.moveaxis(self.moves, 0, -1), LEAST_PROB))
+        log_moves = np.log(np.moveaxis(self.moves, 0, -1))
         signal = LikelihoodSignal(
             lambda policy, seen: log_moves[seen], self.n_types, self.n_types, sample=self.sample_signal
         )
-        return PolicyLibrary(CategoricalOutcomes([0.0, 1.0], np.stack([1 - win, win], axis=-1)), signal)
+        return PolicyLibrary(win_or_not(self.win_probs), signal)
 
     def sample_signal(self, generator: np.random.Generator, type_: int, policy: int) -> tuple[int, int]:
         """A state and a move that an episode shows at a step drawn at random."""
@@ -133,3 +130,8 @@ class MatrixGame:
         outcome, won = WON if score > 0 else DRAWN if score == 0 else LOST, float(score > 0)
         agent.end_episode(outcome, won)
         return Lived(won, outcome, policy)
+
+
+def win_or_not(prob: Array) -> CategoricalOutcomes:
+    """Pays of 1 with probability `prob` (T, P), else 0."""
+    return CategoricalOutcomes([0.0, 1.0], np.stack([1 - prob, prob], axis=-1))

@@ -75,7 +75,7 @@ def _every(n: int) -> Callable[[Opponent, Lived], int]:
     return lambda opponent, lived: opponent.anew() if opponent.episode % n == 0 else opponent.place
 
 
-def _noisy(pattern: Callable[["Opponent", Lived], int]) -> Callable[["Opponent", Lived], int]:
+def _noisy(pattern: Callable[[Opponent, Lived], int]) -> Callable[[Opponent, Lived], int]:
     return lambda opponent, lived: opponent.anew() if opponent.slips() else pattern(opponent, lived)
 
 

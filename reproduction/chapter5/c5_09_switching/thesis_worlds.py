@@ -12,9 +12,9 @@ from lifelore.domains.golf.golf import SHOTS, Golf, category_of
 from lifelore.domains.surveillance.surveillance import Surveillance
 from lifelore.domains.telephone.telephone import UTILITY_OF_PATH, Telephone
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.signals.category_signal import CategorySignal
 from reproduction.chapter5.c5_09_switching.ball_games import recorded_ball_games
+from reproduction.chapter5.c5_09_switching.matrix_games import win_or_not
 from reproduction.chapter5.c5_09_switching.pacman_games import recorded_pacman
 from reproduction.chapter5.c5_09_switching.rounds import RoundWorld, Shown
 
@@ -85,8 +85,3 @@ def ball_game(n_games: int, seed: int) -> RoundWorld:
 def above_random(mean: Array) -> Array:
     """What each policy pays more than a policy drawn at random does, (T, P)."""
     return mean - mean.mean(axis=1, keepdims=True)
-
-
-def win_or_not(prob: Array) -> CategoricalOutcomes:
-    """Pays of 1 with probability `prob` (T, P), else 0."""
-    return CategoricalOutcomes([0.0, 1.0], np.stack([1 - prob, prob], axis=-1))
