@@ -11,7 +11,6 @@ import pytest
 from lifelore.agent.reuse.fit import fit
 from lifelore.agent.reuse.one_user import choose, update
 from lifelore.agent.reuse.study import open_study
-from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD
 from lifelore.memory import open_memory
 
 
@@ -144,11 +143,12 @@ def test_a_new_fit_says_what_it_sets_anew(reuse, log):
     assert "  incumbent is None, was big until now (--incumbent big keeps it)\n" in words
     assert "  rule is greedy, was information-directed until now (--rule information-directed keeps it)\n" in words
     assert "control" not in words
-    assert again["change"] == DEFAULT_HAZARD
+    assert again["change"] == "learnt"
     assert (
-        "  change is 0.0, was 0.002 until now (--change 0.002 keeps it)\n"
+        "  change is 0.0, was learnt until now (--change learnt keeps it)\n"
         in reuse("fit", log, "--change", "0").out
     )
+    assert "--change must be a probability or 'learnt', got 'x'" in reuse("fit", log, "--change", "x").refusal
 
 
 def test_a_context_that_no_log_has_is_said(reuse, tmp_path):

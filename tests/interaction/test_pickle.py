@@ -111,6 +111,8 @@ MORE: dict[str, dict[str, Any]] = {
     "exp3": {"gamma": 0.2},
     "clustered-ucb": {"clusters": [0, 1, 1, 0]},
     "gp-ucb": {"kernel": np.eye(4), "noise": 0.5},
+    "lin-ucb": {"features": np.eye(4)},
+    "bpr-plus": {"library": PolicyLibrary.from_means(np.eye(4), 0.5)},
 }
 HAZARD = TypeDynamics.hazard(0.1, PRIOR)
 MAKERS: dict[str, tuple[Callable[[], Any], Use]] = {

@@ -40,7 +40,8 @@ def make_peer(
         return baselines.GPUCB.from_library(library, kernel=kernel, **{"beta": None, **common})
     if name == "interval estimation":
         return baselines.IntervalEstimation.from_library(library, **common)
-    return baselines.UCB1.from_library(library, **common)
+    # Auer et al.'s algorithm is for payoffs in a known interval, which the library's bounds are.
+    return baselines.UCB1.from_library(library, scale=library.performance.bounds(), **common)
 
 
 def kernel_of(name: str, library: PolicyLibrary) -> NDArray[np.float64] | None:

@@ -81,8 +81,8 @@ def fit(
     ] = None,
     explore: Annotated[float, Option(help="Share of the other choices that are drawn from all policies.")] = 0.0,
     change: Annotated[
-        float, Option(help="Probability that the type of a user is drawn anew between two choices.")
-    ] = 0.002,
+        str, Option(help="Probability that a user's type changes between two choices; learnt: from each user.")
+    ] = "learnt",
     models: Annotated[
         str,
         Option(help="uncertain: models of few runs learn from each user too. plug-in: estimates are the truth."),
@@ -110,7 +110,7 @@ def fit(
     from lifelore.memory import open_memory
 
     rule = rule or DEFAULT_RULE
-    settings = FitSettings(name, model, types, control, incumbent, rule, explore, change, models, seed)
+    settings = FitSettings(name, model, types, control, incumbent, rule, explore, _change(change), models, seed)
     form = log_format(
         columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features
     )
@@ -336,6 +336,18 @@ def log_format(
         names, separator, decimal_comma, encoding, tuple(missing or ()), missing_outcome, missing_policy,
         features=columns_of_numbers,
     )  # fmt: skip
+
+
+def _change(given: str) -> Any:
+    """A probability, or the word for dynamics that are learnt."""
+    from lifelore.core.errors import InputError
+
+    if given == "learnt":
+        return given
+    try:
+        return float(given)
+    except ValueError:
+        raise InputError(f"--change must be a probability or 'learnt', got {given!r}") from None
 
 
 def _say(document: dict[str, Any], line: str, as_json: bool) -> None:

@@ -4,6 +4,7 @@ import math
 
 from lifelore.agent.reuse.one_user import choose
 from lifelore.agent.reuse.study import open_study
+from lifelore.interaction.beliefs.learnt_dynamics import HAZARD_WEIGHTS, HAZARDS
 from lifelore.memory import open_memory
 
 
@@ -17,8 +18,9 @@ def observe(client, decision, outcome):
     return client.post("/v1/studies/s/outcomes", json={"decision": decision, "outcome": outcome})
 
 
-def belief_after(policy: int, outcome: float, change=0.002) -> float:
-    """β(calm) after an outcome, by Bayes' rule from a uniform prior, worked by hand."""
+def belief_after(policy: int, outcome: float) -> float:
+    """β(calm) after an outcome and an episode, by Bayes' rule from a uniform prior, worked by hand."""
+    change = HAZARDS @ HAZARD_WEIGHTS / HAZARD_WEIGHTS.sum()
     means = ((8.0, 2.0), (3.0, 8.5))
     weights = [math.exp(-((outcome - means[kind][policy]) ** 2) / (2 * 2.0**2)) for kind in (0, 1)]
     posterior = weights[0] / sum(weights)

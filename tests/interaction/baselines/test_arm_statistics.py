@@ -28,3 +28,22 @@ def test_a_prior_is_as_if_it_had_been_seen():
     prior.add(np.array([0]), np.array([4.0]))
     assert prior.mean[0, 0] == pytest.approx(13 / 4)
     assert np.sqrt(prior.squares[0, 0] / 3) == pytest.approx(np.std([1, 2, 6, 4], ddof=1))
+
+
+def test_what_is_removed_was_never_there():
+    random = np.random.default_rng(6)
+    policies, paid = random.integers(3, size=(50, 2)), random.normal(1e3, 1, (50, 2))
+    arms, rest = ArmStatistics.empty(2, 3), ArmStatistics.empty(2, 3)
+    for number in range(50):
+        arms.add(policies[number], paid[number])
+        if number >= 20:
+            arms.remove(policies[number - 20], paid[number - 20])
+    for number in range(30, 50):
+        rest.add(policies[number], paid[number])
+    assert arms.pulls.tolist() == rest.pulls.tolist()
+    assert arms.mean == pytest.approx(rest.mean, rel=1e-12)
+    assert arms.squares == pytest.approx(rest.squares, abs=1e-6)
+    arms = ArmStatistics.empty(1, 1)
+    arms.add(np.array([0]), np.array([0.3]))
+    arms.remove(np.array([0]), np.array([0.3]))
+    assert (arms.pulls.item(), arms.mean.item(), arms.squares.item()) == (0, 0, 0)

@@ -10,6 +10,7 @@ import pytest
 import lifelore.interaction.baselines as room
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.baselines import BASELINES, Baseline
+from lifelore.interaction.library.policy_library import PolicyLibrary
 
 SETTINGS = {"exp3": {"horizon": 50}}
 NAMES = sorted(BASELINES)
@@ -53,9 +54,7 @@ def test_one_task_is_a_batch_of_one(name, library):
 @pytest.mark.parametrize("name", NAMES)
 def test_the_best_policy_of_each_task_is_played_in_the_end(name, library):
     noise = np.random.default_rng(2).normal(0, 0.1, (1500, 6, 4))
-    settings = {"exploration": 0.2} if name == "ucb1" else {}
-    if name == "exp3":
-        settings = {"gamma": 0.1}
+    settings = {"gamma": 0.1} if name == "exp3" else {}
     player = BASELINES[name].from_library(library, n_tasks=6, seed=4, **settings)
     chosen = played(player, library.performance.mean, 1500, noise)
     best = library.performance.mean.argmax(axis=1)[np.arange(6) % 2]
@@ -67,7 +66,7 @@ def test_the_best_policy_of_each_task_is_played_in_the_end(name, library):
 def test_the_same_seed_gives_the_same_choices(name, library):
     noise = np.random.default_rng(5).normal(0, 0.3, (40, 3, 4))
     runs = [played(make(name, library, n_tasks=3, seed=7), library.performance.mean, 40, noise) for _ in range(2)]
-    assert np.array_equal(*runs)
+    assert np.array_equal(runs[0], runs[1])
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -92,7 +91,11 @@ def test_bad_input_is_refused_and_nothing_is_learnt_from_it(name, library):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_no_policies_or_tasks_is_refused(name, library):
-    extra = {"gp-ucb": {"kernel": np.eye(1), "noise": 1.0}}.get(name, {})
+    extra = {
+        "gp-ucb": {"kernel": np.eye(1), "noise": 1.0},
+        "lin-ucb": {"features": [[1.0]]},
+        "bpr-plus": {"library": PolicyLibrary.from_means([[1.0]], 1.0)},
+    }.get(name, {})
     extra |= SETTINGS.get(name, {})
     with pytest.raises(InputError, match="n_policies must be at least 1, got 0"):
         BASELINES[name](0, **extra)

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError, NotFoundError
+from lifelore.interaction.beliefs.learnt_dynamics import HAZARD_WEIGHTS, HAZARDS
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
@@ -156,10 +157,26 @@ def test_types_may_change_once_after_all_signals_of_an_episode():
 
 def test_types_may_change_unless_they_are_static():
     agent = BayesianPolicyReuse(coin_library(prior=[0.6, 0.4]), prior=[1.0, 0.0])
-    assert (agent.algorithm.dynamics.kind, agent.algorithm.dynamics.rate) == ("hazard", 0.002)
-    assert agent.algorithm.dynamics.law == pytest.approx([0.6, 0.4])
+    assert (agent.algorithm.dynamics.kind, agent.algorithm.dynamics.by) == ("learnt", "time")
     agent.end_episode()
-    assert agent.belief == pytest.approx([0.9992, 0.0008])
+    rate = HAZARDS @ HAZARD_WEIGHTS / HAZARD_WEIGHTS.sum()
+    assert agent.belief == pytest.approx([1 - 0.4 * rate, 0.4 * rate])
+    static = BayesianPolicyReuse(coin_library(), prior=[1.0, 0.0], dynamics=TypeDynamics.static())
+    static.end_episode()
+    assert static.belief.tolist() == [1.0, 0.0]
+
+
+def test_what_was_learnt_of_changes_goes_on_with_the_next_task():
+    agent = BayesianPolicyReuse(coin_library(), dynamics=TypeDynamics.learnt("outcome"))
+    for number in range(40):
+        for _ in range(6):
+            agent.observe("left", int(number % 2))
+        agent.end_episode("won" if number % 2 else "lost")
+    then = BayesianPolicyReuse(coin_library(), dynamics=agent.dynamics)
+    fresh = BayesianPolicyReuse(coin_library(), dynamics=TypeDynamics.learnt("outcome"))
+    for made in (then, fresh):
+        made.end_episode("lost")
+    assert then.belief.max() > 0.7 > 0.6 > fresh.belief.max()
 
 
 def test_what_is_given_out_cannot_change_the_agent():

@@ -323,28 +323,13 @@ def test_types_that_change_by_a_matrix_move_the_belief_alone():
     assert_same(states(made, 0)[1:], states(static, 0)[1:])
 
 
-class Watching:
-    """Dynamics that note how episodes ended."""
-
-    n_types, moves = None, True
-
-    def __init__(self):
-        self.seen = []
-
-    def step(self, log_belief, users=None, outcome=None):
-        self.seen.append((np.ravel(users).tolist(), outcome))
-        return log_belief
-
-    def changed_share(self, log_belief):
-        return None
-
-
 def test_dynamics_that_learn_are_told_whose_episodes_ended_and_how():
-    dynamics = Watching()
-    made = ReuseAlgorithm(FAMILIES["own"].library(), 3, dynamics=dynamics)  # pyright: ignore[reportArgumentType]
-    made.end_episode(np.array([2, 0]), ["won", "lost"])
+    made = ReuseAlgorithm(FAMILIES["own"].library(), 3, dynamics=TypeDynamics.learnt("outcome"))
+    for _ in range(2):
+        made.end_episode(np.array([2, 0]), ["won", "lost"])
     made.update(1, 0, "few")
-    assert dynamics.seen == [([2, 0], ["won", "lost"]), ([1], None)]
+    counts = made.changes.tables["by_outcome"].counts[:, :, 0].sum(axis=-1)  # pyright: ignore
+    assert counts == pytest.approx(np.array([[0, 0, 1], [0, 0, 0], [0, 1, 0]]))
 
 
 # ---- the library, and arguments ------------------------------------------------------------------------------

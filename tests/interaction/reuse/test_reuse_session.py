@@ -34,13 +34,14 @@ def played(agent: BayesianPolicyReuse, n: int) -> tuple[list[int], bytes]:
 
 
 @pytest.mark.parametrize("name", RULES)
-@pytest.mark.parametrize("kind", ["static", "hazard", "transitions"])
+@pytest.mark.parametrize("kind", ["static", "hazard", "transitions", "learnt"])
 def test_a_loaded_agent_goes_on_to_the_bit(name, kind, tmp_path):
     matrix = np.full((6, 6), 0.02) + 0.88 * np.eye(6)
     dynamics = {
         "static": TypeDynamics.static(),
         "hazard": TypeDynamics.hazard(0.02, np.full(6, 1 / 6)),
         "transitions": TypeDynamics.transitions(matrix),
+        "learnt": TypeDynamics.learnt("outcome"),
     }[kind]
     agent = BayesianPolicyReuse(library(), rule_named(name), dynamics=dynamics, horizon=40, seed=5)
     played(agent, 7)
@@ -51,6 +52,19 @@ def test_a_loaded_agent_goes_on_to_the_bit(name, kind, tmp_path):
     assert loaded.explain() == agent.explain()
     assert loaded.rule == agent.rule
     assert played(loaded, 12) == played(agent, 12)
+
+
+def test_what_an_earlier_task_taught_of_changes_comes_back():
+    first = BayesianPolicyReuse(library(), dynamics=TypeDynamics.learnt("outcome"))
+    for number in range(20):
+        first.observe(number % 6, 1.0)
+        first.end_episode(("won", "lost", 3)[number % 3])
+    agent = BayesianPolicyReuse(library(), dynamics=first.dynamics)
+    loaded = session_from_bytes(session_bytes(agent))
+    for one in (agent, loaded):
+        one.end_episode("lost")
+        one.end_episode(3)
+    assert np.array_equal(loaded.belief, agent.belief)
 
 
 def test_settings_zeros_and_other_generators_survive(tmp_path):

@@ -116,12 +116,16 @@ def test_sampling_follows_the_stated_probabilities(name):
 
 def test_users_take_four_bytes_a_type_and_twelve_a_policy_of_learnt_models():
     mean, n = np.zeros((68, 50)), 1000
-    beliefs = UserBeliefs(PolicyLibrary.from_means(mean, 1.0), n)
+    static = TypeDynamics.static()
+    beliefs = UserBeliefs(PolicyLibrary.from_means(mean, 1.0), n, dynamics=static)
     assert beliefs.log_belief.nbytes / n == 4 * 68
     # Beside it, whether an episode has begun, and the probability of the only spread: 9 bytes.
     assert beliefs.algorithm.nbytes / n <= 4 * 68 + 9
-    learnt = UserBeliefs(PolicyLibrary.from_means(mean, 1.0, count=5), n)
+    learnt = UserBeliefs(PolicyLibrary.from_means(mean, 1.0, count=5), n, dynamics=static)
     assert learnt.algorithm.nbytes / n <= 4 * 68 + 12 * 50 + 9
+    # By default the belief over five hazards given the type, and whether it has just changed.
+    moving = UserBeliefs(PolicyLibrary.from_means(mean, 1.0), n)
+    assert moving.algorithm.nbytes / n <= 4 * 68 * (1 + 5 + 1) + 9
 
 
 def test_a_user_may_come_twice_across_and_within_blocks(monkeypatch):

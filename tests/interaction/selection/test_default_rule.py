@@ -12,7 +12,7 @@ from lifelore.app import reuse_command
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
-from lifelore.interaction.selection import DEFAULT_RULE, ExpectedImprovement, default_rule, rule_named
+from lifelore.interaction.selection import DEFAULT_RULE, Greedy, default_rule, rule_named
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.joint_signal import JointSignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
@@ -56,7 +56,7 @@ def test_signals_without_a_table_get_a_rule_that_needs_none():
     ):
         library = PolicyLibrary.from_means([[1.0, 0.0], [0.0, 1.0]], 1.0, signal=signal)
         assert library.has_table == has_table
-        assert (default_rule(library) == ExpectedImprovement(of="pay")) != has_table
+        assert (default_rule(library) == Greedy()) != has_table
         assert BayesianPolicyReuse(library).select() in (0, 1)
     plain = PolicyLibrary.from_means([[1.0, 0.0]], 1.0)
     assert isinstance(plain.signal, ReturnSignal)

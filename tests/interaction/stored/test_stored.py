@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.reuse_session import load_session
@@ -70,9 +71,10 @@ def test_a_library_gives_the_beliefs_that_it_gave(name, folder):
     for number, signal in enumerate(told["signals"]):
         found = library.signal.log_likelihood(number % library.n_policies, signal)
         assert_same(found.tolist(), told["log_likelihoods"][number], f"log likelihood {number}")
+    # Agents of those versions had this hazard, and improvement of the pay where signals have no table.
+    hazard = TypeDynamics.hazard(0.002, library.prior)
     for models in ("plug-in", "uncertain"):
-        agent = BayesianPolicyReuse(library, models=models)
-        assert agent.rule.name == told[models]["rule"]
+        agent = BayesianPolicyReuse(library, told[models]["rule"], dynamics=hazard, models=models)
         for number, signal in enumerate(told["signals"]):
             agent.update(number % library.n_policies, signal)
             assert_same(agent.belief.tolist(), told[models]["beliefs"][number], f"{models} {number}")

@@ -6,9 +6,18 @@ from typing import Any
 
 from lifelore.agent.personalise.library_document import described
 from lifelore.agent.reuse.log_columns import check_word
-from lifelore.agent.reuse.study import ACTIVE, KIND, PILOT, RETIRED, VERSION, Study, check_study_name
+from lifelore.agent.reuse.study import (
+    ACTIVE,
+    KIND,
+    LEARNT,
+    PILOT,
+    RETIRED,
+    VERSION,
+    Change,
+    Study,
+    check_study_name,
+)
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import DEFAULT_RULE
 from lifelore.interaction.signals.return_signal import ReturnSignal
@@ -23,7 +32,7 @@ class StudySettings:
     incumbent: str | None = None
     rule: str = DEFAULT_RULE
     explore: float = 0.0
-    change: float = DEFAULT_HAZARD
+    change: Change = LEARNT
     models: str = "uncertain"
 
 

@@ -12,13 +12,22 @@ from numpy.typing import NDArray
 from lifelore.agent.reuse.library_from_log import TypedRows, library_of
 from lifelore.agent.reuse.log import ReuseLog, read_log
 from lifelore.agent.reuse.log_format import LogFormat
-from lifelore.agent.reuse.study import ACTIVE, KIND, PILOT, RETIRED, VERSION, Study, check_study_name
+from lifelore.agent.reuse.study import (
+    ACTIVE,
+    KIND,
+    LEARNT,
+    PILOT,
+    RETIRED,
+    VERSION,
+    Change,
+    Study,
+    check_study_name,
+)
 from lifelore.agent.reuse.types_of_users import typed_rows
 from lifelore.agent.reuse.warm import keep_fitted_past
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.feature_prior import FeaturePrior
-from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import DEFAULT_RULE
 from lifelore.memory import Memory
@@ -55,7 +64,7 @@ class FitSettings:
     incumbent: str | None = None
     rule: str = DEFAULT_RULE
     explore: float = 0.0
-    change: float = DEFAULT_HAZARD
+    change: Change = LEARNT
     models: str = "uncertain"
     seed: int = 0
 

@@ -8,7 +8,7 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property, lru_cache
-from typing import Any, NoReturn
+from typing import Any, Literal, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,14 +18,17 @@ from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.feature_prior import FeaturePrior
-from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD, TypeDynamics
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
+from lifelore.interaction.reuse.reuse_algorithm import Dynamics, ReuseAlgorithm
 from lifelore.interaction.selection import DEFAULT_RULE, SelectionRule, restored_rule, rule_named
 from lifelore.memory import Memory
 from lifelore.memory.byte_words import bytes_of, words_of
 
 KIND, VERSION = "reuse_study", 1
+LEARNT: Literal["learnt"] = "learnt"
+Change = float | Literal["learnt"]
+"""How often the types of users change, see `Study`."""
 ACTIVE, PILOT, RETIRED = "active", "pilot", "retired"
 """A policy is chosen from; or given to the control group alone, till a fit knows it; or given to nobody."""
 LONGEST_NAME = 60
@@ -56,8 +59,9 @@ class Study:
         Name of the selection rule.
     explore : float
         Share of the others' choices that are any active policy, in [0, 1].
-    change : float
+    change : float or "learnt"
         Probability that a user's type is drawn anew before the next choice, in [0, 1]; at 0 types are static.
+        "learnt" is a belief over such probabilities for each user.
     models : {"uncertain", "plug-in"}
         As for `BayesianPolicyReuse`.
     fitted : dict
@@ -74,7 +78,7 @@ class Study:
     incumbent: str | None = None
     rule: str = DEFAULT_RULE
     explore: float = 0.0
-    change: float = DEFAULT_HAZARD
+    change: Change = LEARNT
     models: str = "uncertain"
     fitted: dict[str, Any] = field(default_factory=dict)
     rule_settings: dict[str, Any] = field(default_factory=dict)
@@ -84,7 +88,7 @@ class Study:
         check_study_name(self.name)
         _check_share("control", self.control, below_one=True)
         _check_share("explore", self.explore)
-        _check_share("change", self.change)
+        _check_change(self.change)
         rule_named(self.rule, **self.rule_settings)
         if self.models not in MODELS:
             raise InputError(f"models must be one of {', '.join(MODELS)}, got {self.models!r}")
@@ -119,8 +123,10 @@ class Study:
         return rule_named(self.rule, **self.rule_settings)
 
     @cached_property
-    def dynamics(self) -> TypeDynamics:
+    def dynamics(self) -> Dynamics:
         """How types change."""
+        if isinstance(self.change, str):
+            return TypeDynamics.learnt()
         return TypeDynamics.hazard(self.change, self.library.prior) if self.change else TypeDynamics.static()
 
     @cached_property
@@ -281,6 +287,13 @@ def _refuse_unknown(memory: Memory, name: str) -> NoReturn:
     raise NotFoundError(
         f"no study '{name}' in {memory.location}; known: {known or 'none'}. Begin with 'lifelore reuse fit'{other}"
     )
+
+
+def _check_change(change: Change) -> None:
+    if isinstance(change, str) and change != LEARNT:
+        raise InputError(f"change must be {LEARNT!r} or a probability, got {change!r}")
+    if not isinstance(change, str):
+        _check_share("change", change)
 
 
 def _check_share(name: str, share: float, below_one: bool = False) -> None:

@@ -54,7 +54,9 @@ class StudyRequest(BaseModel):
     incumbent: str | None = Field(None, description="Policy of the control group; left out: each policy alike.")
     rule: str = Field("information-directed", description="Selection rule.", examples=["sampling"])
     explore: FiniteFloat = Field(0.0, description="Share of choices that are drawn from all policies, in [0, 1].")
-    change: FiniteFloat = Field(0.002, description="Probability that a user's type changes between two choices.")
+    change: FiniteFloat | Literal["learnt"] = Field(
+        "learnt", description="Probability that a user's type changes between two choices, or how often is learnt."
+    )
     models: Literal["uncertain", "plug-in"] = Field(
         "uncertain", description="Whether models of few runs learn too."
     )

@@ -1,13 +1,19 @@
-"""Baselines of policy reuse: methods that learn from the payoffs of the policies they play and know no types.
+"""Baselines of policy reuse: bandits, and methods of other papers that know a library's types.
 
-All have the methods ``select()`` and ``update(policy, reward)``; see `Baseline`.
+All have the methods ``select()`` and ``update(policy, reward)``; see `Baseline`. They learn from the payoffs of
+the policies they play. `BPRPlus` and `LinUCB` also know what each type pays; the others know no types. `BayesOKR`
+reads signals within an episode, so it has the methods of policy reuse and is no `Baseline`.
 """
 
 from lifelore.interaction.baselines.baseline import Baseline
+from lifelore.interaction.baselines.bayes_okr import BayesOKR
+from lifelore.interaction.baselines.bpr_plus import BPRPlus
 from lifelore.interaction.baselines.epsilon_greedy_means import EpsilonGreedyMeans
 from lifelore.interaction.baselines.exp3 import EXP3
 from lifelore.interaction.baselines.gp_ucb import GPUCB
 from lifelore.interaction.baselines.interval_estimation import IntervalEstimation
+from lifelore.interaction.baselines.lin_ucb import LinUCB
+from lifelore.interaction.baselines.sliding_window_ucb import SlidingWindowUCB
 from lifelore.interaction.baselines.thompson import GaussianThompson
 from lifelore.interaction.baselines.try_all import TryAll
 from lifelore.interaction.baselines.ucb1 import UCB1
@@ -15,7 +21,8 @@ from lifelore.interaction.baselines.ucb1 import UCB1
 BASELINES: dict[str, type[Baseline]] = {
     kind.name: kind
     for kind in (
-        TryAll, UCB1, IntervalEstimation, EXP3, GPUCB, GaussianThompson, EpsilonGreedyMeans,
+        TryAll, UCB1, SlidingWindowUCB, IntervalEstimation, EXP3, GPUCB, LinUCB, GaussianThompson,
+        EpsilonGreedyMeans, BPRPlus,
     )
 }  # fmt: skip
 """Every baseline by its name."""
@@ -25,9 +32,13 @@ __all__ = [
     "EXP3",
     "GPUCB",
     "UCB1",
+    "BPRPlus",
     "Baseline",
+    "BayesOKR",
     "EpsilonGreedyMeans",
     "GaussianThompson",
     "IntervalEstimation",
+    "LinUCB",
+    "SlidingWindowUCB",
     "TryAll",
 ]

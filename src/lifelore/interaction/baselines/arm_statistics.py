@@ -62,6 +62,18 @@ class ArmStatistics:
         self.mean[every, policies] += away / self.pulls[every, policies]
         self.squares[every, policies] += away * (rewards - self.mean[every, policies])
 
+    def remove(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
+        """Undo `add` of one payoff a row; a policy without a pull left has the mean 0 again."""
+        every = np.arange(len(policies))
+        left = self.pulls[every, policies] - 1
+        away = rewards - self.mean[every, policies]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            mean = np.where(left > 0, self.mean[every, policies] - away / left, 0.0)
+        self.squares[every, policies] = np.where(
+            left > 0, self.squares[every, policies] - away * (rewards - mean), 0.0
+        )
+        self.pulls[every, policies], self.mean[every, policies] = left, mean
+
 
 class ArmBaseline(Baseline):
     """Base class of baselines that learn nothing but the statistics of each policy.

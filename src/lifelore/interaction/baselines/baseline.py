@@ -18,6 +18,9 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.outcome_model import LARGEST
 from lifelore.interaction.selection.choice import choose
 
+LEAST = 1e-9
+"""Deviation in place of 0 where a library is certain."""
+
 
 class Baseline(ABC):
     """A way to choose among policies by payoffs alone.

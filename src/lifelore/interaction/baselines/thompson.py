@@ -6,11 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.interaction.baselines.arm_statistics import ArmBaseline, ArmStatistics
-from lifelore.interaction.baselines.baseline import library_moments, row_of
+from lifelore.interaction.baselines.baseline import LEAST, library_moments, row_of
 from lifelore.interaction.library.policy_library import PolicyLibrary
-
-LEAST = 1e-9
-"""Deviation in place of 0 where a library is certain."""
 
 
 class GaussianThompson(ArmBaseline):

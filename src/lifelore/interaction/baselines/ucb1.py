@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.baselines.arm_statistics import ArmBaseline, ArmStatistics
-from lifelore.interaction.baselines.baseline import library_moments
+from lifelore.interaction.baselines.baseline import LEAST, Moments, library_moments
 from lifelore.interaction.library.policy_library import PolicyLibrary
 
 
@@ -27,8 +27,8 @@ class UCB1(ArmBaseline):
     n_policies, n_tasks, seed
         As in `Baseline`.
 
-    `from_library` gives the prior means under G₀ and the scale from the library's bounds, as the thesis does.
-    Thesis: §4.6.4, Fig. 4.11.
+    `from_library` gives the prior means under G₀ and an interval of width σ as the scale (`fitting_scale`).
+    Thesis: §4.6.4, Fig. 4.11, with the library's bounds as the scale.
 
     Examples
     --------
@@ -58,8 +58,9 @@ class UCB1(ArmBaseline):
 
     @classmethod
     def settings_from(cls, library: PolicyLibrary) -> dict[str, Any]:
-        """Prior means under the library's prior, scale from its bounds."""
-        return {"prior_means": library_moments(library).mean, "scale": library.performance.bounds()}
+        """Prior means under the library's prior, scale of the width of payoffs' deviation."""
+        moments = library_moments(library)
+        return {"prior_means": moments.mean, "scale": fitting_scale(moments)}
 
     def _scores(self) -> NDArray[np.float64]:
         pulls = self.arms.pulls
@@ -70,6 +71,22 @@ class UCB1(ArmBaseline):
 
     def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
         super()._learn(policies, to_unit(rewards, self.scale))
+
+
+def fitting_scale(moments: Moments) -> tuple[float, float]:
+    """An interval of width σ about the mean payoff, (low, high): the bonus is then σ·√(2 ln t / n).
+
+    The mean of n payoffs that are sub-Gaussian with deviation σ is below its expectation by more than
+    σ·√(2 ln t / n) with probability at most 1/t. For normal payoffs this bonus has the least regret in the long
+    run (Katehakis and Robbins, 1995). The bounds of a library of normal outcomes are wider than eight deviations,
+    so with them the bonus exceeds all differences of means for hundreds of plays.
+
+    σ is the larger of two deviations: of a payoff from its type's mean, and of the types' means, which is the
+    error of a prior mean that counts as a play; root mean square over policies.
+    """
+    deviation = max(float(np.sqrt((np.maximum(moments.spread, moments.noise) ** 2).mean())), LEAST)
+    centre = float(moments.mean.mean())
+    return centre - deviation / 2, centre + deviation / 2
 
 
 def checked_scale(scale: tuple[float, float] | None) -> tuple[float, float]:

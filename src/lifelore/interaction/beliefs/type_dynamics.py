@@ -1,12 +1,12 @@
-"""How types change between episodes: static, by a hazard rate, or by a matrix of transitions.
+"""How types change between episodes: static, by a hazard rate, by a matrix of transitions, or by what is learnt.
 
 With a hazard h, a new type is drawn from the prior with probability h before each episode:
-β ← (1 - h) β + h G₀. Where a type changes once in 100 episodes, any h from 0.0005 to 0.05 divides the regret by
-seven. The default is a hazard of `DEFAULT_HAZARD`. The thesis assumes static types, h = 0.
+β ← (1 - h) β + h G₀. The thesis assumes static types, h = 0. How often types change is seldom known, so the
+default is a belief over hazards, `TypeDynamics.learnt`.
 """
 
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,16 +14,17 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.belief import SUM_TOLERANCE, log_prior, log_sum
 
+if TYPE_CHECKING:
+    from lifelore.interaction.beliefs.learnt_dynamics import By, LearntDynamics
+
 Array = NDArray[Any]
-DEFAULT_HAZARD = 0.002
-"""Default probability per episode of a new type; a larger one forgets sooner what a known user showed."""
 ROWS_AT_ONCE = 1 << 20
 """Size of the largest temporary array when many beliefs take a step of a matrix; more is no faster."""
 
 
 @dataclass(frozen=True, eq=False)
 class TypeDynamics:
-    """The step of a belief between two episodes; made by `static`, `hazard` or `transitions`.
+    """The step of a belief between two episodes; made by `static`, `hazard`, `transitions` or `learnt`.
 
     Parameters
     ----------
@@ -95,6 +96,37 @@ class TypeDynamics:
             )
         return cls("transitions", 0.0, matrix / matrix.sum(axis=1, keepdims=True))
 
+    @staticmethod
+    def learnt(by: "By" = "time") -> "LearntDynamics":
+        """How types change is learnt, episode by episode, as a belief over several ways.
+
+        Parameters
+        ----------
+        by : {"time", "type", "outcome"}
+            "time": types are static, or change at random at one of several hazards up to 0.1; the default of
+            agents. "type": or by a pattern of types, as a matrix. "outcome": or by a pattern that depends on how
+            the last episode ended, which `end_episode(outcome=…)` names, and on the last type. Costs memory for
+            n_types² numbers a user, times the number of ways in which episodes end.
+
+        Raises
+        ------
+        InputError
+            `by` is none of the three.
+
+        Examples
+        --------
+        >>> from lifelore import BayesianPolicyReuse, PolicyLibrary
+        >>> library = PolicyLibrary.from_means([[1.0, 0.0], [0.0, 1.0]], 0.1)
+        >>> agent = BayesianPolicyReuse(library, dynamics=TypeDynamics.learnt(by="type"))
+        >>> for episode in range(10):  # an opponent that takes turns
+        ...     agent.update("policy 0", float(episode % 2 == 0))
+        >>> agent.belief.round(2).tolist()
+        [0.89, 0.11]
+        """
+        from lifelore.interaction.beliefs.learnt_dynamics import LearntDynamics
+
+        return LearntDynamics(by)
+
     @property
     def n_types(self) -> int | None:
         """Number of types that the dynamics are for; None where it does not matter."""
@@ -105,16 +137,12 @@ class TypeDynamics:
         """Whether a step changes beliefs."""
         return self.kind == "transitions" or self.rate > 0
 
-    def step(self, log_belief: Array, users: Any = None, outcome: Any = None) -> Array:
-        """The belief before the next episode, (..., n_types) to the same, normalised.
+    def rows(self, n_users: int, prior: Array, dtype: Any) -> "FixedRows":
+        """The dynamics for each of `n_users` users, of whom nothing is learnt."""
+        return FixedRows(self)
 
-        Parameters
-        ----------
-        users : int or (k,) int64, optional
-            Whose beliefs these are, and
-        outcome : optional
-            how the episode ended; for dynamics that learn. These do not.
-        """
+    def step(self, log_belief: Array) -> Array:
+        """The log belief before the next episode, (..., n_types) to the same, normalised."""
         if not self.moves:
             return log_belief
         return self._hazarded(log_belief) if self.kind == "hazard" else np.minimum(self._moved(log_belief), 0.0)
@@ -167,3 +195,30 @@ class _HazardTerms(NamedTuple):
     log_stay: Array
     anew: Array
     log_anew: Array
+
+
+class FixedRows:
+    """Dynamics that are the same for all users and learn nothing; methods as of `LearntRows`."""
+
+    nbytes = 0
+
+    def __init__(self, settings: TypeDynamics) -> None:
+        self.settings = settings
+
+    def step(self, log_belief: Array, users: Any, outcome: Any = None) -> Array:
+        return self.settings.step(log_belief)
+
+    def changed_share(self, log_belief: Array, users: Any) -> Array | None:
+        return self.settings.changed_share(log_belief)
+
+    def reset(self, users: Any) -> None: ...
+
+    def grow(self, n_users: int) -> None: ...
+
+    def state(self, user: int) -> dict[str, Array]:
+        return {}
+
+    def restore(self, user: int, state: Any) -> None: ...
+
+    def learnt(self, user: int, log_belief: Array) -> TypeDynamics:
+        return self.settings

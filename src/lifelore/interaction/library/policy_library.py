@@ -15,6 +15,7 @@ from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, StoreError
 from lifelore.core.protocols import SignalModel
 from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.finite_signals.simulated_table import simulated_table
 from lifelore.interaction.library.library_names import checked_prior, distinct_names, index_of, new_name
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
@@ -190,25 +191,38 @@ class PolicyLibrary:
 
     @property
     def has_table(self) -> bool:
-        """Whether `table` can list the signals, or bin them."""
-        return all(hasattr(signal, "table") for signal in (self.signal, *getattr(self.signal, "factors", ())))
+        """Whether `table` can list the signals, bin them, or draw samples of them."""
+        signals = (self.signal, *getattr(self.signal, "factors", ()))
+        return all(hasattr(signal, "table") for signal in signals) or self._samples
+
+    @property
+    def _samples(self) -> bool:
+        """Whether the signal model draws signals."""
+        return getattr(self.signal, "sample", None) is not None
 
     def table(self, n_bins: int = 8) -> SignalTable:
         """The table of signals from a finite alphabet, computed once for each `n_bins`; see `forget_tables`.
 
+        Of signals without an alphabet that the signal model can draw, `n_bins` signals of each type and policy
+        are the alphabet (`simulated_table`).
+
         Raises
         ------
         InputError
-            The signal model has no table, which belief entropy, knowledge gradient and information-directed need.
+            There is neither, which belief entropy, knowledge gradient and information-directed need.
         """
         if n_bins not in self._tables:
-            make = getattr(self.signal, "table", None)
-            if make is None:
+            signal: Any = self.signal
+            if hasattr(signal, "table"):
+                self._tables[n_bins] = signal.table(n_bins)
+            elif self._samples:
+                likelihood, sample = signal.log_likelihood, signal.sample
+                self._tables[n_bins] = simulated_table(likelihood, sample, self.n_types, self.n_policies, n_bins)
+            else:
                 raise InputError(
-                    f"{type(self.signal).__name__} has no finite alphabet of signals; choose a rule that needs "
-                    "no table (expected improvement, belief sampling), or a signal with a table"
+                    f"{type(signal).__name__} has no finite alphabet of signals; choose a rule that needs none "
+                    "(greedy, belief sampling), or give the signal model a method sample(generator, type, policy)"
                 )
-            self._tables[n_bins] = make(n_bins)
         return self._tables[n_bins]
 
     def observe(self, type_: str | int, policy: str | int, value: float) -> None:

@@ -16,12 +16,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Models
 from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, Evidence, Explanation, relative_evidence, two_best
 from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
-from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
+from lifelore.interaction.reuse.reuse_algorithm import Dynamics, ReuseAlgorithm
 from lifelore.interaction.selection import SelectionRule, rule_of
 from lifelore.interaction.selection.choice import Available, available_mask, best_policies
 
@@ -55,7 +54,7 @@ class BayesianPolicyReuse:
     prior : (n_types,) float, optional
         At least 0, sums to 1 to 1e-9; the library's prior by default.
     dynamics : TypeDynamics, optional
-        By default a hazard of 0.002 that draws from the library's prior; `TypeDynamics.static()` as in the thesis.
+        By default `TypeDynamics.learnt()`, a belief over hazards; `TypeDynamics.static()` as in the thesis.
         Each end of an episode is a step, and the order of signals matters unless types are static.
     horizon : int, optional
         Number of episodes K, at least 1; the knowledge gradient weighs information by the episodes left.
@@ -88,7 +87,7 @@ class BayesianPolicyReuse:
     >>> agent = BayesianPolicyReuse(library)
     >>> agent.update("left", 0.5)
     >>> agent.belief.round(3).tolist(), library.policies[agent.select()]
-    ([0.001, 0.999], 'right')
+    ([0.007, 0.993], 'right')
     """
 
     def __init__(
@@ -96,7 +95,7 @@ class BayesianPolicyReuse:
         library: PolicyLibrary,
         rule: SelectionRule | str | None = None,
         prior: ArrayLike | None = None,
-        dynamics: TypeDynamics | None = None,
+        dynamics: Dynamics | None = None,
         horizon: int | None = None,
         seed: int | np.random.Generator = 0,
         models: Models = "uncertain",
@@ -248,6 +247,11 @@ class BayesianPolicyReuse:
     def log_belief(self) -> Array:
         """log β, (n_types,); finite however small β is, minus infinity where it is 0; a copy."""
         return self.algorithm.log_belief[0].copy()
+
+    @property
+    def dynamics(self) -> Dynamics:
+        """How types change, with what was learnt of it: for the next task of the same opponent or user."""
+        return self.algorithm.changes.learnt(0, self.algorithm.log_belief[0])
 
     @property
     def episodes_left(self) -> int | None:

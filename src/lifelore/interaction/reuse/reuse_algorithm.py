@@ -20,7 +20,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.belief import log_prior, update
-from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD, TypeDynamics
+from lifelore.interaction.beliefs.learnt_dynamics import LearntDynamics
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Models, Numbers, law_of
 from lifelore.interaction.outcomes.spread import Spread
@@ -32,6 +33,7 @@ from lifelore.interaction.signals.return_signal import ReturnSignal
 
 Array = NDArray[Any]
 Precision = Literal["f4", "f8"]
+Dynamics = TypeDynamics | LearntDynamics
 
 
 class Observed(NamedTuple):
@@ -59,9 +61,7 @@ class ReuseAlgorithm:
     prior : (n_types,) float, optional
         The library's by default.
     dynamics : TypeDynamics, optional
-        By default a hazard of `DEFAULT_HAZARD` that draws from the library's prior; the thesis's types are static.
-        Any object with `moves`, `n_types`, `step` and `changed_share` serves, and may learn from what
-        `end_episode` gives it.
+        By default `TypeDynamics.learnt`, a belief over hazards; the thesis's types are static.
     models : {"uncertain", "plug-in"}
         Whether a model learnt from a finite number of runs is known to be uncertain.
     spread : Spread, optional
@@ -86,7 +86,7 @@ class ReuseAlgorithm:
         n_users: int = 1,
         *,
         prior: ArrayLike | None = None,
-        dynamics: TypeDynamics | None = None,
+        dynamics: Dynamics | None = None,
         models: Models = "uncertain",
         spread: Spread | None = None,
         dtype: Precision = "f8",
@@ -97,7 +97,7 @@ class ReuseAlgorithm:
             raise InputError(f"dtype must be 'f4' or 'f8', got {dtype!r}")
         self.library = library
         self.models: Models = models
-        self.dynamics = dynamics or TypeDynamics.hazard(DEFAULT_HAZARD, library.prior)
+        self.dynamics: Dynamics = dynamics or TypeDynamics.learnt()
         if self.dynamics.n_types not in (None, library.n_types):
             raise InputError(f"dynamics are for {self.dynamics.n_types} types, the library has {library.n_types}")
         self._dtype = dtype
@@ -113,6 +113,7 @@ class ReuseAlgorithm:
         self.log_belief: Array = np.tile(self.log_prior, (n_users, 1))
         # Whether an episode has begun since the last signal: only then may the type have changed.
         self._begun = np.ones(n_users, bool)
+        self.changes = self.dynamics.rows(n_users, self.library.prior, self._dtype)
         self._models = {name: UserModel(law, n_users) for name, law in laws.items()}
         self.signals = self._models["signal"]
         self.outcomes = self._models.get("outcomes", self.signals)
@@ -247,7 +248,7 @@ class ReuseAlgorithm:
     def end_episode(self, users: Numbers, outcome: Any = None) -> None:
         """Take the dynamics' step for `users`; dynamics that learn read by `outcome` how the episodes ended."""
         if self.dynamics.moves:
-            self.log_belief[users] = self.dynamics.step(self.log_belief[users], users, outcome)
+            self.log_belief[users] = self.changes.step(self.log_belief[users], users, outcome)
             self._begun[users] = True
 
     def update(self, users: Numbers, policies: Numbers, signals: Any, outcomes: Any = None) -> Observed:
@@ -261,6 +262,7 @@ class ReuseAlgorithm:
     def reset(self, users: Numbers) -> None:
         """Set `users` back to the prior, and forget what they have shown."""
         self.log_belief[users], self._begun[users] = self.log_prior, True
+        self.changes.reset(users)
         for model in self._models.values():
             model.reset(users)
 
@@ -269,12 +271,14 @@ class ReuseAlgorithm:
         more = n_users - self.n_users
         self.log_belief = np.concatenate([self.log_belief, np.tile(self.log_prior, (more, 1))])
         self._begun = np.concatenate([self._begun, np.ones(more, bool)])
+        self.changes.grow(n_users)
         for model in self._models.values():
             model.grow(n_users)
 
     def state(self, user: int) -> dict[str, Array]:
         """What a user has shown, as small arrays; empty between episodes where only the belief learns."""
         states = {name: model.state(user) for name, model in self._models.items()}
+        states["changes"] = self.changes.state(user)
         found = {f"{name}.{key}": array for name, state in states.items() for key, array in state.items()}
         return found if self._begun[user] else found | {"begun": np.array(False)}
 
@@ -285,20 +289,21 @@ class ReuseAlgorithm:
             raise InputError(f"log_belief must be the logs of a belief over {self.library.n_types} types")
         for name, model in self._models.items():
             model.restore(user, named_part(state, f"{name}."))
+        self.changes.restore(user, named_part(state, "changes."))
         self.log_belief[user], self._begun[user] = row, bool(state.get("begun", True))
 
     @property
     def nbytes(self) -> int:
         """Memory of all rows in bytes."""
         statistics = sum(model.shown.nbytes + model.log_weights.nbytes for model in self._models.values())
-        return self.log_belief.nbytes + self._begun.nbytes + statistics
+        return self.log_belief.nbytes + self._begun.nbytes + self.changes.nbytes + statistics
 
     def _changed(self, users: Numbers, log_belief: Array) -> Array | None:
         """P(the type has just changed to this), (..., n_types); None where it cannot have, or no law learns."""
         if not self.signals.law.learns:
             return None
         begun = self._begun[users]
-        share = self.dynamics.changed_share(log_belief) if begun.any() else None
+        share = self.changes.changed_share(log_belief, users) if begun.any() else None
         return None if share is None else share * begun[..., None]
 
     def _learn_outcomes(self, users: Numbers, policies: Numbers, outcomes: Any, log_belief: Array) -> None:

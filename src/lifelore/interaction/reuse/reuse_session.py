@@ -4,12 +4,14 @@ about            uint8, UTF-8 JSON: format, version, rule, dynamics, models, hor
 library          uint8, the library's own file (`library_file`)
 log_belief       (n_types,) float64
 law              the dynamics' prior or matrix, where they have one
+dynamics.*       what dynamics that learn started from, where that is an earlier task
 scores           (n_policies,) float64 of the last selection, if any
 task.*           what the task has shown, where models are uncertain
 novelty.*        the evidence that no known type fits, where the agent computes it
 log_likelihood   (n, n_types) float64 of the last signals; evidence_policy and log_evidence (n,) beside it
 """
 
+import json
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -20,12 +22,13 @@ from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, StoreError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
+from lifelore.interaction.beliefs.learnt_dynamics import LearntDynamics
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.explanation import Evidence
 from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
-from lifelore.interaction.reuse.reuse_algorithm import named_part
+from lifelore.interaction.reuse.reuse_algorithm import Dynamics, named_part
 from lifelore.interaction.selection import RULES, restored_rule
 
 FORMAT = PackedFormat("lifelore policy reuse session", 3, "session", "save_session", oldest=1)
@@ -80,6 +83,7 @@ def session_bytes(agent: BayesianPolicyReuse) -> bytes:
         "settings": asdict(agent.rule),  # pyright: ignore[reportArgumentType]
         "dynamics": agent.algorithm.dynamics.kind,
         "rate": agent.algorithm.dynamics.rate,
+        "by": getattr(agent.algorithm.dynamics, "by", None),
         "models": agent.models,
         "horizon": agent.horizon,
         "episode": agent.episode,
@@ -99,7 +103,7 @@ def session_from_bytes(
     header, arrays = FORMAT.unpack(content, where)
     try:
         library = PolicyLibrary.from_bytes(arrays["library"].tobytes(), f"the library in {where}", signal)
-        dynamics = TypeDynamics(header["dynamics"], header["rate"], arrays.get("law"))
+        dynamics = _dynamics(header, arrays)
         rule = restored_rule(header["rule"], header["settings"])
         generator = generator_from_state(header["generator"])
         # Files of version 1 are older than uncertain models.
@@ -113,6 +117,14 @@ def session_from_bytes(
     return agent
 
 
+def _dynamics(header: dict[str, Any], arrays: Arrays) -> Dynamics:
+    if header["dynamics"] != LearntDynamics.kind:
+        return TypeDynamics(header["dynamics"], header["rate"], arrays.get("law"))
+    start = named_part(arrays, "dynamics.")
+    categories = json.loads(start.pop("categories").tobytes()) if start else []
+    return LearntDynamics(header["by"], start, categories)
+
+
 def _arrays(agent: BayesianPolicyReuse) -> Arrays:
     last = list(agent._evidence)
     arrays: Arrays = {
@@ -122,8 +134,12 @@ def _arrays(agent: BayesianPolicyReuse) -> Arrays:
         "log_evidence": np.array([signal.log_evidence for signal in last], np.float64),
         "log_likelihood": np.array([signal.log_likelihood for signal in last]).reshape(-1, agent.library.n_types),
     }
-    if agent.algorithm.dynamics.law is not None:
-        arrays["law"] = agent.algorithm.dynamics.law
+    dynamics = agent.algorithm.dynamics
+    if isinstance(dynamics, LearntDynamics) and dynamics.start:
+        arrays |= {f"dynamics.{name}": array for name, array in dynamics.start.items()}
+        arrays["dynamics.categories"] = np.frombuffer(json.dumps(dynamics.categories).encode(), np.uint8)
+    elif dynamics.law is not None:
+        arrays["law"] = dynamics.law
     arrays |= {f"task.{name}": array for name, array in agent.algorithm.state(0).items()}
     if agent.novelty is not None:
         arrays |= {f"novelty.{name}": array for name, array in agent.novelty.state().items()}

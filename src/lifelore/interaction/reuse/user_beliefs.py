@@ -14,11 +14,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Models, law_of
 from lifelore.interaction.outcomes.spread import Spread
-from lifelore.interaction.reuse.reuse_algorithm import Precision, ReuseAlgorithm
+from lifelore.interaction.reuse.reuse_algorithm import Dynamics, Precision, ReuseAlgorithm
 from lifelore.interaction.reuse.user_names import UserNames, are_names
 from lifelore.interaction.selection import SelectionRule, rule_of
 from lifelore.interaction.selection.choice import available_mask, best_policies
@@ -47,7 +46,7 @@ class UserBeliefs:
     prior : (n_types,) float, optional
         The library's by default.
     dynamics : TypeDynamics, optional
-        By default a hazard of 0.002 that draws from the library's prior; `TypeDynamics.static()` as in the thesis.
+        By default `TypeDynamics.learnt()`, a belief over hazards; `TypeDynamics.static()` as in the thesis.
         Each `update` is also the step between two episodes.
     models : {"uncertain", "plug-in"}
         As in `BayesianPolicyReuse`.
@@ -84,7 +83,7 @@ class UserBeliefs:
         dtype: Precision = "f4",
         *,
         prior: ArrayLike | None = None,
-        dynamics: TypeDynamics | None = None,
+        dynamics: Dynamics | None = None,
         models: Models = "uncertain",
         spread: float | None = None,
         unknown: Literal["error", "add"] = "error",

@@ -39,8 +39,9 @@ RULES: dict[str, type] = {
 
 DEFAULT_RULE = "information-directed"
 """Name of the rule where none is given, for agents, many users and `lifelore reuse`; claim O1 decides it."""
-WITHOUT_TABLE = "expected-improvement"
-"""Name of the rule in its place where the signals have no table."""
+WITHOUT_TABLE = "greedy"
+"""Name of the rule in its place where the signals have no table and cannot be drawn. Improvement of the pay, which
+was in its place, pursues unlikely types where every episode tells the type."""
 BEFORE: dict[str, dict[str, Any]] = {
     "expected-improvement": {"of": "outcome"},
     "knowledge-gradient": {"candidates": "responses"},

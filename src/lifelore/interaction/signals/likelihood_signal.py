@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.finite_signals.simulated_table import Sample
 from lifelore.interaction.outcomes.outcome_model import check_known
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
 
@@ -24,6 +25,10 @@ class LikelihoodSignal:
     n_types : int
     n_policies : int, optional
         Checked where given.
+    sample : callable, or sequences of stored signals, optional
+        ``sample(generator, type, policy)`` draws an episode's signal, or ``sample[type][policy]`` holds some, at
+        least one. Rules that look ahead, the default too, then know what a policy will tell; without it the
+        default rule is greedy.
 
     Examples
     --------
@@ -33,11 +38,16 @@ class LikelihoodSignal:
     """
 
     def __init__(
-        self, function: Callable[[int, Any], ArrayLike], n_types: int, n_policies: int | None = None
+        self,
+        function: Callable[[int, Any], ArrayLike],
+        n_types: int,
+        n_policies: int | None = None,
+        sample: Sample | Sequence[Sequence[Sequence[Any]]] | None = None,
     ) -> None:
         if n_types < 1:
             raise InputError(f"n_types must be at least 1, got {n_types}")
         self.function, self.n_types, self.n_policies = function, n_types, n_policies
+        self.sample: Sample | None = sample if sample is None or callable(sample) else partial(_stored, sample)
 
     def log_likelihood(self, policy: int, signal: Any) -> Array:
         """The checked answer of the function.
@@ -67,8 +77,10 @@ class LikelihoodSignal:
     ) -> "LikelihoodSignal":
         """The model of some types and policies."""
         chosen = chosen_of(types, self.n_types)
-        cut = partial(_part, self.function, chosen, None if policies is None else tuple(map(int, policies)))
-        return LikelihoodSignal(cut, len(chosen), self.n_policies if policies is None else len(policies))
+        some = None if policies is None else tuple(map(int, policies))
+        cut = partial(_part, self.function, chosen, some)
+        sample = None if self.sample is None else partial(_sample_part, self.sample, chosen, some)
+        return LikelihoodSignal(cut, len(chosen), self.n_policies if some is None else len(some), sample)
 
 
 def _part(
@@ -80,3 +92,23 @@ def _part(
 ) -> Array:
     """A caller's function for some types and policies; not a closure, which could not be pickled."""
     return np.asarray(function(policy if policies is None else policies[policy], signal))[types]
+
+
+def _sample_part(
+    sample: Sample,
+    types: NDArray[np.int64],
+    policies: tuple[int, ...] | None,
+    generator: np.random.Generator,
+    type_: int,
+    policy: int,
+) -> Any:
+    """A caller's samples for some types and policies."""
+    return sample(generator, int(types[type_]), policy if policies is None else policies[policy])
+
+
+def _stored(stored: Sequence[Any], generator: np.random.Generator, type_: int, policy: int) -> Any:
+    """One of the stored signals of a type and policy."""
+    signals = stored[type_][policy]
+    if not len(signals):
+        raise InputError(f"sample must hold signals of each type and policy, none of {type_} and {policy}")
+    return signals[int(generator.integers(len(signals)))]

@@ -14,12 +14,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.belief import entropy
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Models
 from lifelore.interaction.reuse.novelty.known_tasks import Tasks, known_tasks
 from lifelore.interaction.reuse.novelty.misfit import Misfit
 from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
+from lifelore.interaction.reuse.reuse_algorithm import Dynamics
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 from lifelore.interaction.selection import SelectionRule
 
@@ -147,7 +147,7 @@ def watch(
     generator: np.random.Generator,
     *,
     prior: ArrayLike | None = None,
-    dynamics: TypeDynamics | None = None,
+    dynamics: Dynamics | None = None,
     models: Models = "uncertain",
 ) -> Watched:
     """Play `n` tasks by a rule over the horizon, and record what a detector sees.

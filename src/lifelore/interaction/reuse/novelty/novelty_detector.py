@@ -15,13 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Models
 from lifelore.interaction.reuse.novelty.calibration import NoveltyCalibration, check_rate, known_statistic
 from lifelore.interaction.reuse.novelty.misfit import Misfit
 from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
-from lifelore.interaction.reuse.reuse_algorithm import named_part
+from lifelore.interaction.reuse.reuse_algorithm import Dynamics, named_part
 from lifelore.interaction.selection import SelectionRule, rule_of
 
 MASS = 0.05
@@ -71,7 +70,7 @@ class NoveltyDetector:
         library: PolicyLibrary,
         mass: float = MASS,
         prior: ArrayLike | None = None,
-        dynamics: TypeDynamics | None = None,
+        dynamics: Dynamics | None = None,
         models: Models = "uncertain",
         calibration: NoveltyCalibration | None = None,
     ) -> None:
@@ -231,7 +230,7 @@ class NoveltyDetector:
         cls,
         state: Mapping[str, NDArray[Any]],
         library: PolicyLibrary,
-        dynamics: TypeDynamics | None = None,
+        dynamics: Dynamics | None = None,
         models: Models = "uncertain",
     ) -> Self:
         """The detector of a `state`, bit for bit; InputError where it is not of this library."""

@@ -18,7 +18,7 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Models, Numbers, law_of
 from lifelore.interaction.reuse.explanation import MAX_SURPRISE
 from lifelore.interaction.reuse.novelty.broad_library import broad_library
-from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
+from lifelore.interaction.reuse.reuse_algorithm import Dynamics, ReuseAlgorithm
 
 Array = NDArray[Any]
 
@@ -52,7 +52,7 @@ class UnknownEvidence:
         library: PolicyLibrary,
         n_tasks: int = 1,
         prior: ArrayLike | None = None,
-        dynamics: TypeDynamics | None = None,
+        dynamics: Dynamics | None = None,
         models: Models = "uncertain",
     ) -> None:
         self.broad = ReuseAlgorithm(broad_library(library), n_tasks, dynamics=TypeDynamics.static())

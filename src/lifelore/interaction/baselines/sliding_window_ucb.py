@@ -1,0 +1,83 @@
+"""Sliding-window UCB: upper confidence bounds from the last plays, for payoffs that change.
+
+Garivier and Moulines, On upper-confidence bound policies for switching bandit problems, 2011. With τ the window, N
+the plays of a policy among the last τ, and X their mean payoff:
+
+    X + B·√(ξ ln min(t, τ) / N)
+
+B is the width of the `scale`. It is UCB1 on the last τ plays, with c = √(ξ / 2).
+"""
+
+from collections import deque
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.baselines.ucb1 import UCB1, to_unit
+
+WINDOW = 100
+"""Number of plays that count where neither a window nor a horizon is given; fewer forget sooner."""
+XI = 0.6
+"""ξ of the paper's experiments; its bounds on regret need more than 1/2."""
+
+
+class SlidingWindowUCB(UCB1):
+    """UCB1 on the last `window` plays; prior means are not forgotten.
+
+    Parameters
+    ----------
+    window : int, optional
+        τ ≥ 1, number of plays.
+    horizon : int, optional
+        Number of plays T ≥ 1 to come: τ = 2·√(T ln T / changes), which the paper derives. Give at most one of the
+        two; 100 plays count without both.
+    changes : int
+        Expected number of changes until the horizon, at least 1.
+    exploration : float
+        c = √(ξ / 2); ξ = 0.6 by default, as in the paper's experiments.
+    scale, prior_means, prior_pulls, n_policies, n_tasks, seed
+        As in `UCB1`.
+
+    Examples
+    --------
+    >>> player = SlidingWindowUCB(2, window=2)
+    >>> for policy in (0, 1, 1):
+    ...     player.update(policy, 1.0)
+    >>> player.select()    # no play of policy 0 is left
+    0
+    """
+
+    name: ClassVar[str] = "sliding-window-ucb"
+
+    def __init__(
+        self,
+        n_policies: int,
+        *,
+        window: int | None = None,
+        horizon: int | None = None,
+        changes: int = 1,
+        exploration: float = (XI / 2) ** 0.5,
+        **settings: Any,
+    ) -> None:
+        super().__init__(n_policies, exploration=exploration, **settings)
+        self.window = _window(window, horizon, changes)
+        self._recent: deque[tuple[NDArray[np.int64], NDArray[np.float64]]] = deque()
+
+    def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
+        super()._learn(policies, rewards)
+        self._recent.append((policies, to_unit(rewards, self.scale)))
+        if len(self._recent) > self.window:
+            self.arms.remove(*self._recent.popleft())
+
+
+def _window(window: int | None, horizon: int | None, changes: int) -> int:
+    if window is not None and horizon is not None:
+        raise InputError("give either window or horizon")
+    for name, value in (("window", window), ("horizon", horizon), ("changes", changes)):
+        if value is not None and value < 1:
+            raise InputError(f"{name} must be at least 1, got {value}")
+    if horizon is None:
+        return WINDOW if window is None else window
+    return max(1, round(2 * (horizon * np.log(horizon) / changes) ** 0.5))
