@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.reuse.library_from_log import TypedRows, library_of, model_of
+from lifelore.agent.reuse.library_from_log import TypedRows, library_of
 from lifelore.agent.reuse.log import ReuseLog
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
@@ -68,7 +68,7 @@ def _found(log: ReuseLog, model: str, n_types: int | None, generator: np.random.
         raise InputError(f"types must be at most {len(users)}, the users of the log, got {n_types}")
     policies, of_policy = np.unique(log.policy.codes, return_inverse=True)
     rows = OutcomeRows(of_user, of_policy, log.outcomes, (len(users), len(policies)))
-    family = "categorical" if model_of(log, model) == "categorical" else "gaussian"
+    family = "categorical" if model == "categorical" else "gaussian"
     found = user_types(rows, generator, family=family, n_types=n_types)
     names = tuple(f"type {number + 1}" for number in range(found.n_types))
     every: NDArray[np.int64] = np.arange(len(log))

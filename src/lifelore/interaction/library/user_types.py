@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import logsumexp
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.beliefs.belief import log_sum
 from lifelore.interaction.outcomes.outcome_families import FAMILIES, OutcomeFamily
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 
@@ -27,8 +27,9 @@ Array = NDArray[np.float64]
 
 STARTS = 6
 """Number of starts for each number of types, half of them k-means++; more cost time and may fit better."""
-STEPS, ENOUGH = 300, 1e-7
-"""Largest number of steps of a start, and the relative gain in log likelihood below which it ends."""
+FIRST, STEPS, ENOUGH = 15, 300, 1e-7
+"""Number of steps of every start, largest number of more steps of the best start (Biernacki et al. 2003), and the
+relative gain in log likelihood below which they end."""
 SAMPLED_USERS = 5_000
 """Of more users, a random sample of so many gives the number of types and the start for all; more cost time."""
 PATIENCE = 2
@@ -121,7 +122,7 @@ def _extended(
     found = user_types(part, generator, **settings)
     shares = np.zeros((rows.shape[0], found.n_types))
     shares[sample] = found.probs
-    probs, weights, _ = _maximised(made, _expected(made, shares, found.weights)[0])
+    probs, weights, _ = _maximised(made, _expected(made, shares, found.weights)[0], STEPS)
     return _named(_Fit(probs, weights, min(found.criteria)), found.criteria)
 
 
@@ -133,8 +134,8 @@ class _Fit(NamedTuple):
 
 def _best_start(family: OutcomeFamily, rows: OutcomeRows, size: int, generator: np.random.Generator) -> _Fit:
     n_parameters = family.n_parameters(size)
-    fits = (_maximised(family, shares) for shares in _starts(rows, size, generator))
-    probs, weights, likelihood = max(fits, key=lambda fit: fit[2])
+    fits = (_maximised(family, shares, FIRST) for shares in _starts(rows, size, generator))
+    probs, weights, likelihood = _maximised(family, max(fits, key=lambda fit: fit[2])[0], STEPS)
     return _Fit(probs, weights, -2 * likelihood + n_parameters * np.log(len(rows.values)))
 
 
@@ -170,10 +171,10 @@ def _near_seeds(profiles: Array, size: int, generator: np.random.Generator) -> N
     return np.stack(away).argmin(axis=0)
 
 
-def _maximised(family: OutcomeFamily, shares: Array) -> tuple[Array, Array, float]:
+def _maximised(family: OutcomeFamily, shares: Array, steps: int) -> tuple[Array, Array, float]:
     """Shares, weights and log likelihood at the end of expectation–maximisation from `shares`."""
     likelihood, before = -np.inf, -np.inf
-    for _ in range(STEPS):
+    for _ in range(steps):
         shares, likelihood = _expected(family, shares, shares.mean(axis=0))
         if likelihood - before < ENOUGH * abs(likelihood):
             break
@@ -185,7 +186,7 @@ def _expected(family: OutcomeFamily, shares: Array, weights: Array) -> tuple[Arr
     """Each user's shares in the types fitted to `shares`, and the log likelihood of all outcomes."""
     with np.errstate(divide="ignore"):
         joint = family.stats @ family.fit(shares).T + np.log(weights)
-    each = np.asarray(logsumexp(joint, axis=1, keepdims=True))
+    each = log_sum(joint.T)[:, None]
     return np.exp(joint - each), float(each.sum())
 
 

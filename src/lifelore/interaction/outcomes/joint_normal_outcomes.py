@@ -113,4 +113,4 @@ class JointNormalOutcomes(GaussianOutcomes):
         """Refuse: outcomes of a type do not say how policies go together."""
         raise InputError("a joint-normal model learns from users' outcomes side by side; see joint_normal_fit")
 
-    observe = absorb = with_policy = from_rows
+    observe = absorb = with_policy = from_rows  # pyright: ignore[reportAssignmentType]
