@@ -6,12 +6,15 @@ from scipy.stats import multivariate_normal
 
 from lifelore.interaction.outcomes.joint_normal_fit import (
     PSEUDO,
+    JointNormalFit,
     UserMeans,
     expected,
     first_fit,
+    halved,
     joint_normal_fit,
     step,
 )
+from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 
 FACTORS = np.array([[0.9, 0.0], [0.8, 0.1], [0.0, 0.9], [0.2, -0.8], [0.5, 0.5]])
@@ -146,6 +149,25 @@ def test_one_outcome_a_policy_still_tells_how_policies_go_together():
     assert fit.model.covariance[away] == pytest.approx(COVARIANCE[away], abs=0.12)
     whole = np.diag(fit.model.covariance) + fit.model.noise**2
     assert whole == pytest.approx(np.diag(COVARIANCE) + 0.36, rel=0.1)
+    # Of the factors' covariance nothing is a policy's own: 0.1 and the noise 0.36 are, and are halved.
+    assert fit.model.noise**2 == pytest.approx(0.23, abs=0.08)
+
+
+def test_halves_of_own_variance_keep_the_likelihood_of_single_outcomes():
+    model = JointNormalOutcomes(MEAN, COVARIANCE, 0.3)
+    users, policies = np.repeat(np.arange(20), 3), np.tile([[0, 1, 3], [2, 4, 1]], (10, 1)).ravel()
+    rows = OutcomeRows(users, policies, np.random.default_rng(0).normal(size=60), (20, 5))
+    fit = JointNormalFit(model, np.array([0.4, 0.6]), np.ones((20, 2)), 1.0, 0.0)
+    changed = fit._replace(model=halved(model))
+    likelihoods = [expected(UserMeans.of(rows), each)[1].log_likelihood for each in (fit, changed)]
+    assert likelihoods[0] == pytest.approx(likelihoods[1])
+    # The largest share of every variance that the covariance can lack, by trying.
+    shares = np.linspace(0, 1, 10_001)
+    diagonal = np.diag(COVARIANCE)
+    least = np.linalg.eigvalsh(COVARIANCE - shares[:, None, None] * np.diag(diagonal))[:, 0]
+    unshared = shares[least >= 0].max() * diagonal
+    assert changed.model.noise**2 == pytest.approx((unshared + 0.09) / 2, abs=1e-3)
+    assert changed.model.deviation == pytest.approx(model.deviation)
 
 
 def test_odd_logs():

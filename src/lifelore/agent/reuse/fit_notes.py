@@ -18,10 +18,11 @@ def fit_notes(study: Study, document: Mapping[str, Any]) -> list[str]:
     """Sentences on what is personalised and how well held-out users were served, for the document of a fit."""
     notes = []
     if not personalised_by(study):
-        learns = study.models == "uncertain" and study.library.performance.spread.mean > 0
+        counts = study.models == "uncertain" and study.library.performance.spread.mean > 0
+        own = " but by counting a user's own outcomes of each policy" if counts else ""
         notes.append(
-            "nothing is personalised: one type was found, and no policy tells of another; every user starts with "
-            f"{document['types'][0]['best']}" + "; own outcomes tell of the policies tried alone" * learns
+            f"nothing is personalised{own}: one type was found, and no policy tells of another; every user starts "
+            f"with {document['types'][0]['best']}"
         )
     if study.library.n_types == 1 and (document["contexts"] or document["features"]):
         notes.append("contexts and features change nothing: they tell of types, and there is one")

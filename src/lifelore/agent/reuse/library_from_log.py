@@ -13,8 +13,8 @@ from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutco
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 from lifelore.interaction.outcomes.spread import spread_between
 
-FITTED_USERS = 4_000
-"""Of more users, an even sample gives the covariance of joint-normal outcomes; more cost time."""
+FITTED_NUMBERS = 4_000_000
+"""Largest number of users times squared policies that a covariance is fitted to, else to a sample of users."""
 
 
 class TypedRows(NamedTuple):
@@ -80,7 +80,9 @@ def _joint_normal(
     if log.weights is not None:
         raise InputError("model must be gaussian, student-t or categorical where lines have weights")
     users, of_user = np.unique(log.user.codes[places], return_inverse=True)
-    some = np.isin(of_user, np.linspace(0, len(users) - 1, min(len(users), FITTED_USERS)).astype(np.int64))
+    most = min(len(users), max(1, FITTED_NUMBERS // len(names) ** 2))
+    some = np.isin(of_user, np.linspace(0, len(users) - 1, most).astype(np.int64))
+    # Every policy needs a row.
     some |= np.isin(np.arange(len(places)), np.unique(of_policy, return_index=True)[1])
     fitted, of_fitted = np.unique(of_user[some], return_inverse=True)
     rows = OutcomeRows(of_fitted, of_policy[some], log.outcomes[places][some], (len(fitted), len(names)))

@@ -3,7 +3,8 @@
 Candidates are types with normal outcomes, types with categories where outcomes have few values, and jointly normal
 outcomes with a single type and with the types found. Each of `PARTS` parts of the users is held out once. Within a
 family the number of types is the smallest whose log score is not clearly below the best. Of families whose choices
-are not clearly worse than the best family's, the one with the best log score wins; the simplest of equals.
+are not clearly worse than the best family's, the one with the best log score wins. A single type without shared
+items, which personalises nothing, is chosen where it is not clearly worse.
 """
 
 from collections.abc import Callable, Iterable
@@ -107,7 +108,7 @@ class _Trial:
             if len(found) - 1 - int(np.argmax(means)) >= PATIENCE:
                 break
         self.tried += found
-        return _simplest(found, SIZE)
+        return _smallest(found)
 
     def _candidate(self, model: str, types: int | None) -> Candidate:
         libraries = [self._fit(log, model, types) for log in self._logs]
@@ -151,13 +152,18 @@ def _policy_means(log: ReuseLog, held_out: HeldOut) -> Array:
 
 
 def _best(found: list[Candidate]) -> Candidate:
+    """The family with the best log score; one that personalises nothing, where that is not clearly worse."""
     top = max(found, key=lambda one: _mean(one.scores.value))
-    return _simplest([one for one in found if not _worse(one.scores.value, top.scores.value, CLEARLY)], CLEARLY)
+    good = [one for one in found if not _worse(one.scores.value, top.scores.value, CLEARLY)]
+    best = max(good, key=lambda one: one.scores.log_score.mean())
+    plain = [one for one in good if one.types == 1 and one.model != "joint-normal"]
+    return next((one for one in plain if not _worse(one.scores.log_score, best.scores.log_score, CLEARLY)), best)
 
 
-def _simplest(found: list[Candidate], errors: float) -> Candidate:
-    top = max(found, key=lambda one: one.scores.log_score.mean())
-    return next(one for one in found if not _worse(one.scores.log_score, top.scores.log_score, errors))
+def _smallest(found: list[Candidate]) -> Candidate:
+    """The smallest number of types whose log score is not clearly below the best."""
+    best = max(found, key=lambda one: one.scores.log_score.mean())
+    return next(one for one in found if not _worse(one.scores.log_score, best.scores.log_score, SIZE))
 
 
 def _worse(own: Array, other: Array, errors: float) -> bool:

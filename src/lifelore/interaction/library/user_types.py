@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import log_sum
+from lifelore.interaction.outcomes.log_probability import normalised
 from lifelore.interaction.outcomes.outcome_families import FAMILIES, OutcomeFamily
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 
@@ -186,8 +186,8 @@ def _expected(family: OutcomeFamily, shares: Array, weights: Array) -> tuple[Arr
     """Each user's shares in the types fitted to `shares`, and the log likelihood of all outcomes."""
     with np.errstate(divide="ignore"):
         joint = family.stats @ family.fit(shares).T + np.log(weights)
-    each = log_sum(joint.T)[:, None]
-    return np.exp(joint - each), float(each.sum())
+    shares, each = normalised(joint)
+    return shares, float(each.sum())
 
 
 def _named(fit: _Fit, criteria: tuple[float, ...]) -> UserTypes:

@@ -7,25 +7,26 @@
 `shrinkage` users. Their number is the one under which held-out users are likeliest, so that few users give a
 covariance that is nearly diagonal. Little and Rubin (2019, §11.2); mixtures as in McLachlan and Peel (2000).
 
-Where nobody has two outcomes with a policy, only the sum of Σ's diagonal and v is known, and what Σ's other
-entries leave possible: the split stays near its start, half and half.
+Where nobody has two outcomes with a policy, they tell Σ's diagonal and v by their sum alone. What of it Σ's other
+entries do not need is then divided in halves.
 """
 
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import logsumexp
 
 from lifelore.interaction.outcomes.joint_normal_law import LOG_2_PI, Tried
 from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes
+from lifelore.interaction.outcomes.log_probability import normalised
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 from lifelore.interaction.outcomes.outcome_moments import least_variance
 
 Array = NDArray[Any]
 
-STEPS, ENOUGH = 40, 1e-4
-"""Largest number of steps, and the gain in log likelihood an outcome below which they end."""
+SEARCH, STEPS, ENOUGH = 12, 40, 1e-4
+"""Largest number of steps for each shrinkage tried, and of the fit; the gain in log likelihood an outcome below
+which they end."""
 SHRINKAGES = (30.0, 3.0, 1.0, 0.3, 0.1, 0.03)
 """Users of the prior around the diagonal that are tried, as multiples of the number of policies."""
 PARTS, MANY = 4, 200
@@ -55,7 +56,6 @@ def joint_normal_fit(
     rows: OutcomeRows,
     probs: Array | None = None,
     shrinkage: float | None = None,
-    generator: np.random.Generator | None = None,
 ) -> JointNormalFit:
     """Fit to outcomes of users.
 
@@ -66,15 +66,13 @@ def joint_normal_fit(
     probs : (n_users, n_types) float, optional
         Types to start from, as `user_types` finds them; a single type by default.
     shrinkage : float, optional
-        Users, > 0; by default that under which held-out users are likeliest.
-    generator : numpy generator, optional
-        Draws the users that are held out; by default every fourth is.
+        Users, > 0; by default that under which held-out users (every fourth) are likeliest.
     """
     users = UserMeans.of(rows)
     probs = np.ones((len(users.number), 1)) if probs is None else probs
-    if shrinkage is None:
-        shrinkage = _likeliest_shrinkage(users, probs, generator)
-    return _maximised(users, first_fit(users, probs, shrinkage))
+    start = _likeliest_shrinkage(users, probs) if shrinkage is None else first_fit(users, probs, shrinkage)
+    fit = _maximised(users, start, STEPS)
+    return fit if (users.number > 1).any() else fit._replace(model=halved(fit.model))
 
 
 class UserMeans(NamedTuple):
@@ -113,39 +111,47 @@ def first_fit(users: UserMeans, probs: Array, shrinkage: float) -> JointNormalFi
     mean = (probs.T @ (number * users.mean) + PSEUDO * users.of_all) / (weight + PSEUDO)
     apart = (users.mean - probs @ mean) ** 2 * number
     whole = (apart.sum() + users.squares.sum()) / number.sum()
-    repeated = (number - 1).clip(0).sum()
-    noise = users.squares.sum() / repeated if repeated > number.sum() / 10 else whole / 2
-    noise = np.clip(noise, 0.05 * whole, 0.95 * whole) + users.least
-    n_policies = number.shape[1]
-    covariance = max(whole - noise, noise / 100) * np.eye(n_policies)
-    model = JointNormalOutcomes(mean, covariance, np.full(n_policies, np.sqrt(noise)))
+    half = (whole + users.least) / 2
+    model = JointNormalOutcomes(mean, half * np.eye(number.shape[1]), np.sqrt(half))
     return JointNormalFit(model, probs.mean(axis=0), probs, shrinkage, -np.inf)
 
 
-def _likeliest_shrinkage(users: UserMeans, probs: Array, generator: np.random.Generator | None) -> float:
-    """The shrinkage under which held-out users are likeliest; each search starts from the one before."""
+def halved(model: JointNormalOutcomes) -> JointNormalOutcomes:
+    """The model whose noise is half of a policy's own variance, of outcomes that no other policy shares.
+
+    Single outcomes of policies have the same likelihood.
+    """
+    diagonal = np.diag(model.covariance)
+    scale = np.sqrt(np.outer(diagonal, diagonal))
+    unshared = max(np.linalg.eigvalsh(model.covariance / scale)[0], 0.0) * diagonal
+    half = (unshared + model.noise**2) / 2
+    return JointNormalOutcomes(model.mean, model.covariance + np.diag(half - unshared), np.sqrt(half))
+
+
+def _likeliest_shrinkage(users: UserMeans, probs: Array) -> JointNormalFit:
+    """A fit to some users with the shrinkage that makes the others likeliest; each starts from the one before."""
     n_users, n_policies = users.number.shape
-    order = np.arange(n_users) if generator is None else generator.permutation(n_users)
+    found = first_fit(users, probs, SHRINKAGES[0] * n_policies)
     if n_users < PARTS:
-        return SHRINKAGES[0] * n_policies
-    held_out = [order % PARTS == part for part in range(PARTS if n_users < MANY else 1)]
+        return found
+    held_out = [np.arange(n_users) % PARTS == part for part in range(PARTS if n_users < MANY else 1)]
     fits = [first_fit(users.take(~out), probs[~out], 0.0) for out in held_out]
-    best, found = -np.inf, SHRINKAGES[0] * n_policies
+    best = -np.inf
     for multiple in SHRINKAGES:
         likelihood = 0.0
         for place, out in enumerate(held_out):
             start = fits[place]._replace(shrinkage=multiple * n_policies)
-            fits[place] = _maximised(users.take(~out), start)
+            fits[place] = _maximised(users.take(~out), start, SEARCH)
             likelihood += expected(users.take(out), fits[place])[1].log_likelihood
         if likelihood < best:
             break
-        best, found = likelihood, multiple * n_policies
+        best, found = likelihood, fits[0]
     return found
 
 
-def _maximised(users: UserMeans, fit: JointNormalFit) -> JointNormalFit:
+def _maximised(users: UserMeans, fit: JointNormalFit, steps: int) -> JointNormalFit:
     enough, before = ENOUGH * users.number.sum(), -np.inf
-    for _ in range(STEPS):
+    for _ in range(steps):
         fit = step(users, fit)
         if fit.log_likelihood - before < enough:
             break
@@ -163,8 +169,8 @@ def expected(users: UserMeans, fit: JointNormalFit) -> tuple[Tried, JointNormalF
     likelihood = -0.5 * (noise[:, None] + (residual**2).sum(axis=2)) - height[:, None]
     with np.errstate(divide="ignore"):
         joint = likelihood + np.log(fit.weights)
-    each = np.asarray(logsumexp(joint, axis=1, keepdims=True))
-    return tried, fit._replace(probs=np.exp(joint - each), log_likelihood=float(each.sum()))
+    probs, each = normalised(joint)
+    return tried, fit._replace(probs=probs, log_likelihood=float(each.sum()))
 
 
 def step(users: UserMeans, fit: JointNormalFit) -> JointNormalFit:

@@ -12,7 +12,7 @@ process regression over policies (Rasmussen and Williams 2006, §2.2); draws fol
 2020).
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -122,25 +122,37 @@ class JointNormalLaw:
 
         By default of all policies.
         """
-        if policies is None:
-            policies = np.broadcast_to(np.arange(self.n_policies), (len(users), self.n_policies))
-        step = max(1, AT_ONCE // self.n_policies**2)
-        parts = []
-        for start in range(0, max(1, len(users)), step):
-            own = policies[start : start + step]
-            tried, scaled = self.tried(shown, users[start : start + step])
-            gain = tried.gain(self.covariance, own)
-            location = np.moveaxis(self.mean[:, own], 0, 1) + tried.residual(scaled, self.mean) @ gain
-            parts.append((location, np.diag(self.covariance)[own] - (gain * gain).sum(axis=1)))
-        location, variance = (np.concatenate(part) for part in zip(*parts, strict=True))
+        policies = self._every(len(users)) if policies is None else policies
+        location = np.moveaxis(self.mean[:, policies], 0, 1).copy()
+        variance = np.diag(self.covariance)[policies]
+        for rows, tried, scaled, gain in self.blocks(shown, users, policies):
+            location[rows] += tried.residual(scaled, self.mean) @ gain
+            variance[rows] -= (gain * gain).sum(axis=1)
         return location, np.maximum(variance, 0.0)
 
-    def tried(self, shown: Shown, users: Array) -> tuple[Tried, Array]:
-        """What `users` (k,) have tried, and R x̄, (k, m)."""
-        number, total = np.moveaxis(shown["sums"][users].astype(np.float64), -1, 0)
-        tried = Tried.of(number, self.covariance)
-        scaled = np.take_along_axis(total, tried.places, axis=1)
-        return tried, scaled / np.where(tried.root > 0, tried.root, 1.0)
+    def drawn(self, shown: Shown, users: Array, generator: np.random.Generator) -> Array:
+        """Draws of the mean outcomes of `users` (k,) around their posterior means, (k, n_policies), as there."""
+        # Users around their type's mean, less what their own outcomes would have told of that.
+        found = generator.standard_normal((len(users), self.n_policies)) @ self.root.T
+        noise = generator.standard_normal(found.shape)
+        for rows, tried, _, gain in self.blocks(shown, users, self._every(len(users))):
+            apart, error = (np.take_along_axis(each[rows], tried.places, axis=1) for each in (found, noise))
+            told = tried.inverse @ (tried.root * apart + error)[:, :, None]
+            found[rows] -= (told.transpose(0, 2, 1) @ gain)[:, 0]
+        return found
+
+    def blocks(self, shown: Shown, users: Array, policies: Array) -> Iterator[tuple[slice, Tried, Array, Array]]:
+        """Rows of `users` (k,), what these have tried, R x̄ (rows, m), and Gᵀ of their `policies` (k, q)."""
+        step = max(1, AT_ONCE // self.n_policies**2)
+        for start in range(0, len(users), step):
+            rows = slice(start, start + step)
+            number, total = np.moveaxis(shown["sums"][users[rows]].astype(np.float64), -1, 0)
+            tried = Tried.of(number, self.covariance)
+            scaled = np.take_along_axis(total, tried.places, axis=1) / np.where(tried.root > 0, tried.root, 1.0)
+            yield rows, tried, scaled, tried.gain(self.covariance, policies[rows])
+
+    def _every(self, n_users: int) -> Array:
+        return np.broadcast_to(np.arange(self.n_policies), (n_users, self.n_policies))
 
     def learn(self, shown: Shown, users: Numbers, policies: Numbers, signals: Any) -> None:
         """Add outcomes of distinct users."""
@@ -194,14 +206,6 @@ class JointNormalRows(NormalPrediction):
         self._law, self._shown, self._shape = law, shown, np.shape(users)
         self._users = np.atleast_1d(users)
 
-    @property
-    def n_types(self) -> int:
-        return self._law.n_types
-
-    @property
-    def n_policies(self) -> int:
-        return self._law.n_policies
-
     @cached_property
     def mean(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
         """Expected mean outcome of each pair, (..., n_types, n_policies)."""
@@ -211,7 +215,7 @@ class JointNormalRows(NormalPrediction):
     def mean_variance(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
         """Variance of each pair's mean outcome, (..., n_types, n_policies)."""
         variance = self._posterior[1].reshape(*self._shape, 1, -1) * self._law.unit**2
-        return np.broadcast_to(variance, (*self._shape, self.n_types, self.n_policies))
+        return np.broadcast_to(variance, self.mean.shape)
 
     @cached_property
     def deviation(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -220,17 +224,9 @@ class JointNormalRows(NormalPrediction):
 
     def drawn_on(self, types: Any, generator: np.random.Generator) -> Array:
         """A draw of each user's mean outcomes on a type, (...) int to (..., n_policies)."""
-        law, types = self._law, np.atleast_1d(types)
-        apart = generator.standard_normal((len(self._users), law.n_policies)) @ law.root.T
-        noise = generator.standard_normal(apart.shape)
-        # A user drawn from the type, moved by what its own outcomes would have told wrongly.
-        tried, _ = law.tried(self._shown, self._users)
-        own = np.take_along_axis(apart, tried.places, axis=1)
-        wrong = tried.root * own + np.take_along_axis(noise, tried.places, axis=1)
-        every = np.broadcast_to(np.arange(law.n_policies), apart.shape)
-        residual = (tried.inverse @ wrong[:, :, None]).transpose(0, 2, 1)
-        found = apart - (residual @ tried.gain(law.covariance, every))[:, 0]
-        return self._natural(self._posterior[0][np.arange(len(types)), types] + found)
+        types = np.atleast_1d(types)
+        location = self._posterior[0][np.arange(len(types)), types]
+        return self._natural(location + self._law.drawn(self._shown, self._users, generator))
 
     @cached_property
     def _posterior(self) -> tuple[Array, Array]:
