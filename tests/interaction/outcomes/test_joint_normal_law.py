@@ -172,6 +172,12 @@ def test_many_users_in_blocks_are_the_same_as_each_alone(monkeypatch):
         beliefs.update(users, policies, values)
         for user, policy, value in zip(users, policies, values, strict=True):
             alone[user].update([0], [policy], [value])
+    single = UserBeliefs(library, 20, "f4", seed=0)
+    single.algorithm.log_belief[:] = beliefs.log_belief
+    for user in range(20):
+        single.algorithm.restore(user, beliefs.log_belief[user], beliefs.algorithm.state(user))
+    near = single.algorithm.known(np.arange(20)).performance.mean
+    assert near == pytest.approx(beliefs.algorithm.known(np.arange(20)).performance.mean, rel=1e-5, abs=1e-5)
     monkeypatch.setattr("lifelore.interaction.outcomes.joint_normal_law.AT_ONCE", 50)
     found = beliefs.algorithm.known(np.arange(20)).performance.mean
     for user, one in enumerate(alone):

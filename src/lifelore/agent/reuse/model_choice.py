@@ -1,10 +1,11 @@
 """Which model of outcomes, and with how many types, serves users best who were held out when it was fitted.
 
-Candidates are types with normal outcomes, types with categories where outcomes have few values, and jointly normal
-outcomes with a single type and with the types found. Each of `PARTS` parts of the users is held out once. Within a
-family the number of types is the smallest whose log score is not clearly below the best. Of families whose choices
-are not clearly worse than the best family's, the one with the best log score wins. A single type without shared
-items, which personalises nothing, is chosen where it is not clearly worse.
+Candidates are types with categories where outcomes have few values, types with normal outcomes, and jointly normal
+outcomes with a single type and with the types found. Each of `PARTS` parts of the users is held out once.
+
+Within a family, the smallest number of types wins that is not clearly below the number with the best log score, by
+log scores and choices together. Of families whose choices are not clearly worse than the best family's, the first
+in the order above wins in the same way: what is not needed is not personalised.
 """
 
 from collections.abc import Callable, Iterable
@@ -28,8 +29,9 @@ FEW_VALUES = 10
 """Outcomes of at most so many different values may be categories."""
 MOST_TYPES, PATIENCE = 12, 2
 """Largest number of types, and numbers of types tried beyond the best so far."""
-SIZE, CLEARLY = 1.0, 1.64
-"""Standard errors of the mean difference between users beyond which a number of types, or a family, is worse."""
+CLEARLY, TOGETHER = 1.64, 1.0
+"""Standard errors of the mean difference between users beyond which a family's choices are clearly worse than
+another's, and a candidate's log score and choices together."""
 
 
 class Candidate(NamedTuple):
@@ -108,7 +110,7 @@ class _Trial:
             if len(found) - 1 - int(np.argmax(means)) >= PATIENCE:
                 break
         self.tried += found
-        return _smallest(found)
+        return _simplest(found)
 
     def _candidate(self, model: str, types: int | None) -> Candidate:
         libraries = [self._fit(log, model, types) for log in self._logs]
@@ -152,24 +154,26 @@ def _policy_means(log: ReuseLog, held_out: HeldOut) -> Array:
 
 
 def _best(found: list[Candidate]) -> Candidate:
-    """The family with the best log score; one that personalises nothing, where that is not clearly worse."""
+    """The simplest of candidates whose choices are not clearly worse than the best's."""
     top = max(found, key=lambda one: _mean(one.scores.value))
-    good = [one for one in found if not _worse(one.scores.value, top.scores.value, CLEARLY)]
-    best = max(good, key=lambda one: one.scores.log_score.mean())
-    plain = [one for one in good if one.types == 1 and one.model != "joint-normal"]
-    return next((one for one in plain if not _worse(one.scores.log_score, best.scores.log_score, CLEARLY)), best)
+    return _simplest([one for one in found if _errors(one.scores.value - top.scores.value) > -CLEARLY])
 
 
-def _smallest(found: list[Candidate]) -> Candidate:
-    """The smallest number of types whose log score is not clearly below the best."""
-    best = max(found, key=lambda one: one.scores.log_score.mean())
-    return next(one for one in found if not _worse(one.scores.log_score, best.scores.log_score, SIZE))
+def _simplest(found: list[Candidate]) -> Candidate:
+    """The first that, by log score and value together, is not clearly below that of the best log score."""
+    best = max(found, key=lambda one: one.scores.log_score.mean()).scores
+    for one in found:
+        score, value = (_errors(own - other) for own, other in zip(one.scores, best, strict=True))
+        if (score + value) / np.sqrt(2) >= -TOGETHER:
+            break
+    return one  # pyright: ignore[reportPossiblyUnboundVariable]
 
 
-def _worse(own: Array, other: Array, errors: float) -> bool:
-    """Whether users' numbers are clearly below others'."""
-    found = _interval(own - other, errors)
-    return found is not None and found[2] < 0
+def _errors(differences: Array) -> float:
+    """Mean of users' differences in standard errors, NaN left out; 0 where they do not vary."""
+    known = differences[~np.isnan(differences)]
+    spread = float(known.std(ddof=1)) if len(known) > 1 else 0.0
+    return float(known.mean()) / spread * np.sqrt(len(known)) if spread > 0 else 0.0
 
 
 def _mean(numbers: Array) -> float:
@@ -178,10 +182,10 @@ def _mean(numbers: Array) -> float:
     return float(known.mean()) if known.size else 0.0
 
 
-def _interval(differences: Array, errors: float = 1.96) -> list[float] | None:
+def _interval(differences: Array) -> list[float] | None:
     """Mean of users' differences, NaN left out, and the ends of its interval; None for fewer than two users."""
     known = differences[~np.isnan(differences)]
     if len(known) < 2:
         return None
-    mean, half = float(known.mean()), errors * float(known.std(ddof=1)) / np.sqrt(len(known))
+    mean, half = float(known.mean()), 1.96 * float(known.std(ddof=1)) / np.sqrt(len(known))
     return [mean, mean - half, mean + half]
