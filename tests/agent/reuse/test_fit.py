@@ -90,6 +90,8 @@ def test_types_are_found_where_the_log_names_none(fitted):
     assert (document["model"], document["personalised_by"]) == ("gaussian", ["types"])
     assert document["held_out"]["users"] > 50
     assert document["held_out"]["over_single"][1] > 0.5
+    few, _ = fitted(list(many(MEANS, users=14)), name="few")
+    assert [one["best"] for one in few["types"]] in (["p0", "p1"], ["p1", "p0"])
     asked, _ = fitted(list(many(MEANS)), types=1, name="one")
     assert len(asked["types"]) == 1
 

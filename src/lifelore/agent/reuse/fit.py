@@ -44,7 +44,7 @@ class FitSettings:
         Of outcomes; ``auto``: the one that serves users best who are held out, see `model_choice`.
     types : int, optional
         How many types to look for where the log names none; by default the number that serves held-out users
-        best, by the Bayesian criterion where there are too few users for that.
+        best, 1 where there are too few users for that.
     control, incumbent, rule, explore, change, models
         As in `Study`.
     seed : int
@@ -94,7 +94,7 @@ def fit(
         Plain data: ``study``; ``rows`` learnt from, ``guessed`` and ``left_out`` (of users whose type the log
         does not name: their outcomes showed it, or did not); ``pending`` (lines left out without an outcome),
         ``filled_outcomes``, ``filled_policies``, ``without_policy`` (see `ReuseLog`); ``users``; ``model``;
-        ``types_found``, ``criteria`` of the number of types by the Bayesian criterion; ``held_out``: how models
+        ``types_found``, ``held_out``: how models
         were compared on users held out (None where they were not): number of ``users`` and mean ``value`` of the
         chosen model's choices, its difference and 95 % interval to the best single policy (``over_single``) and
         to counting a user's own outcomes with a prior worth two (``over_counting``), and all ``candidates``;
@@ -217,7 +217,6 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
         "users": len(log.user.names),
         "model": library.performance.kind,  # type: ignore[attr-defined]
         "types_found": typed.found,
-        "criteria": list(typed.criteria),
         "types": [
             {
                 "name": name,

@@ -25,7 +25,6 @@ class TypedRows(NamedTuple):
     names : of the types
     guessed : how many rows' types were guessed from outcomes
     found : whether the types themselves were found
-    criteria : of each number of types tried
     """
 
     rows: NDArray[np.int64]
@@ -33,7 +32,6 @@ class TypedRows(NamedTuple):
     names: tuple[str, ...]
     guessed: int = 0
     found: bool = False
-    criteria: tuple[float, ...] = ()
 
     def users(self, log: ReuseLog) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Users of the rows, as places in ``log.user.names``, and the type of each."""

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from lifelore.agent.reuse.held_out import COUNTED, HeldOut, Scores
 from lifelore.agent.reuse.log import ReuseLog
+from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 
 Array = NDArray[np.float64]
@@ -23,7 +24,7 @@ Fit = Callable[[ReuseLog, str, int | None], PolicyLibrary]
 
 PARTS = 3
 """Parts of the users, each held out once; more cost time."""
-LEAST_USERS, MOST_USERS = 30, 1500
+LEAST_USERS, MOST_USERS = 12, 1500
 """Users with two outcomes below whom nothing is held out, and beyond whom a random sample is used."""
 FEW_VALUES = 10
 """Outcomes of at most so many different values may be categories."""
@@ -43,7 +44,7 @@ class Candidate(NamedTuple):
 
 
 class ModelChoice(NamedTuple):
-    """A model, a number of types (None: as the log or the Bayesian criterion says), and how it was chosen.
+    """A model, a number of types (None: those that the log names), and how it was chosen.
 
     held_out : None where too few users could be held out
     """
@@ -66,19 +67,27 @@ def chosen_model(
         Number of types; by default chosen.
     fit : callable
         ``fit(log, model, types)`` gives the library of a part of the log.
+
+    Raises
+    ------
+    InputError
+        The log names types and `types` is given.
     """
+    if types is not None and log.says_types:
+        raise InputError("types must be left out where the log has a column 'type'; it names them")
+    given = None if log.says_types else types or 1
     if model == "joint-normal" or (model != "auto" and (types or log.says_types)):
-        return ModelChoice(model, types or (None if log.says_types else 1))
+        return ModelChoice(model, given)
     rows, users = _sample(log, generator)
     if users < max(LEAST_USERS, 2 * (types or 0)):
-        return ModelChoice("gaussian" if model == "auto" else model, types)
+        return ModelChoice("gaussian" if model == "auto" else model, given)
     trial = _Trial(log.take(rows), fit, generator)
     found: list[Candidate] = []
     families = [model]
     if model == "auto":
         few = len(np.unique(log.outcomes)) <= FEW_VALUES
         families = ["categorical", "gaussian"] if few else ["gaussian"]
-    sizes = range(1, MOST_TYPES + 1) if types is None else [types]
+    sizes = range(1, min(MOST_TYPES, users // 2) + 1) if types is None else [types]
     for family in families:
         found.append(trial.best_size(family, [None] if log.says_types else sizes))
     if model == "auto" and not log.says_types and log.weights is None:
