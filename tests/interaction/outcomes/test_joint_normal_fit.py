@@ -173,7 +173,7 @@ def test_halves_of_own_variance_keep_the_likelihood_of_single_outcomes():
 def test_odd_logs():
     """One user, one outcome, and outcomes that do not vary."""
     one = joint_normal_fit(OutcomeRows(np.zeros(1, int), np.zeros(1, int), np.array([3.5]), (1, 1)))
-    assert one.model.mean.tolist() == [[3.5]]
+    assert one.model.mean == pytest.approx(3.5)
     users, policies = np.repeat(np.arange(8), 2), np.tile([0, 1], 8)
     same = joint_normal_fit(OutcomeRows(users, policies, np.full(16, 2.0), (8, 2)))
     assert same.model.mean == pytest.approx(np.full((1, 2), 2.0))

@@ -31,6 +31,8 @@ SHRINKAGES = (30.0, 3.0, 1.0, 0.3, 0.1, 0.03)
 """Users of the prior around the diagonal that are tried, as multiples of the number of policies."""
 PARTS, MANY = 4, 200
 """Parts of the users; each is held out once to choose the shrinkage, of `MANY` users only the first part."""
+PAIRS = 20.0
+"""Pairs of a user's outcomes that the start of a covariance counts beside those of the users."""
 PSEUDO = 1.0
 """Outcomes of each type and policy, and of each policy's noise, that the numbers of all count as."""
 
@@ -106,13 +108,23 @@ class UserMeans(NamedTuple):
 
 
 def first_fit(users: UserMeans, probs: Array, shrinkage: float) -> JointNormalFit:
-    """The fit to start from: policies are independent, half of a mean's variance is between users."""
+    """The fit to start from: the covariance is the mean product of two outcomes of a user, one variance for all.
+
+    Steps change a covariance slowly where noise is large, so that the start counts.
+    """
     number, weight = users.number, probs.T @ users.number
     mean = (probs.T @ (number * users.mean) + PSEUDO * users.of_all) / (weight + PSEUDO)
-    apart = (users.mean - probs @ mean) ** 2 * number
-    whole = (apart.sum() + users.squares.sum()) / number.sum()
-    half = (whole + users.least) / 2
-    model = JointNormalOutcomes(mean, half * np.eye(number.shape[1]), np.sqrt(half))
+    apart = users.mean - probs @ mean
+    total, square = number * apart, users.squares + number * apart**2
+    pairs, products = number.T @ number, total.T @ total
+    own_pairs, own_products = np.trace(pairs) - number.sum(), np.trace(products) - square.sum()
+    whole = square.sum() / number.sum() + users.least
+    variance = np.clip((own_products + PAIRS * whole / 2) / (own_pairs + PAIRS), 0.02 * whole, 0.9 * whole)
+    covariance = products / (pairs + PAIRS)
+    np.fill_diagonal(covariance, variance)
+    values, vectors = np.linalg.eigh(covariance)
+    covariance = (vectors * values.clip(variance / 10)) @ vectors.T
+    model = JointNormalOutcomes(mean, covariance, np.full(len(covariance), np.sqrt(whole - variance)))
     return JointNormalFit(model, probs.mean(axis=0), probs, shrinkage, -np.inf)
 
 
@@ -143,9 +155,8 @@ def _likeliest_shrinkage(users: UserMeans, probs: Array) -> JointNormalFit:
             start = fits[place]._replace(shrinkage=multiple * n_policies)
             fits[place] = _maximised(users.take(~out), start, SEARCH)
             likelihood += expected(users.take(out), fits[place])[1].log_likelihood
-        if likelihood < best:
-            break
-        best, found = likelihood, fits[0]
+        if likelihood > best:
+            best, found = likelihood, fits[0]
     return found
 
 
