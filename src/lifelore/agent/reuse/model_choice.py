@@ -31,8 +31,8 @@ FEW_VALUES = 10
 MOST_TYPES, PATIENCE = 12, 2
 """Largest number of types, and numbers of types tried beyond the best so far."""
 CLEARLY, TOGETHER = 1.64, 1.0
-"""Standard errors of the mean difference between users beyond which a family's choices are clearly worse than
-another's, and a candidate's log score and choices together."""
+"""Standard errors of the mean difference between users beyond which a candidate is clearly worse: by choices alone
+or where it personalises nothing; and by log scores and choices together."""
 
 
 class Candidate(NamedTuple):
@@ -173,7 +173,8 @@ def _simplest(found: list[Candidate]) -> Candidate:
     best = max(found, key=lambda one: one.scores.log_score.mean()).scores
     for one in found:
         score, value = (_errors(own - other) for own, other in zip(one.scores, best, strict=True))
-        if (score + value) / np.sqrt(2) >= -TOGETHER:
+        alike = one.types == 1 and one.model != "joint-normal"
+        if (score + value) / np.sqrt(2) >= -(CLEARLY if alike else TOGETHER):
             break
     return one  # pyright: ignore[reportPossiblyUnboundVariable]
 
