@@ -19,7 +19,7 @@ def log(tmp_path_factory):
     """Two kinds of users, each best served by another policy."""
     generator = np.random.default_rng(0)
     lines = ["user,policy,outcome"]
-    for user in range(40):
+    for user in range(120):
         for _ in range(10):
             policy = generator.integers(2)
             chance = 0.9 if policy == user % 2 else 0.1
@@ -42,7 +42,7 @@ def reuse(ask, tmp_path):
 def test_from_a_log_to_a_report(reuse, log, tmp_path):
     said = reuse("fit", log, "--control", "0.4")
     assert said.status == 0
-    assert said.out.startswith("study default: 400 outcomes of 40 users, 2 policies, 2 types found, categorical")
+    assert said.out.startswith("study default: 1200 outcomes of 120 users, 2 policies, 2 types found, categorical")
     assert "best served by dark" in said.out
     for user in range(12):
         for _ in range(2):
@@ -61,7 +61,7 @@ def test_from_a_log_to_a_report(reuse, log, tmp_path):
     assert "uplift: " in words
     assert f"report.json, report.png and calibration.png written to {tmp_path / 'out'}\n" in words
     assert "calibration, quantiles of outcomes: mean distance 0." in words
-    assert reuse("fit", log, tmp_path / "d.csv").out.startswith("study default: 424 outcomes of 52 users")
+    assert reuse("fit", log, tmp_path / "d.csv").out.startswith("study default: 1224 outcomes of 132 users")
 
 
 def test_in_words(reuse, log):
@@ -182,7 +182,7 @@ def test_features_make_the_prior(reuse, log, tmp_path):
         "\n".join([rows[0] + ",Age", *(f"{row},{age}" for row, age in zip(rows[1:], ages, strict=True))])
     )
     assert (
-        "the prior follows from age, by 40 users: 0."
+        "the prior follows from age, by 120 users: 0."
         in reuse("fit", path, "--features", "age", "--control", "0").out
     )
     made = [
@@ -241,7 +241,7 @@ def test_bad_logs_keep_what_was_there(text, reuse, lived, tmp_path):
         (["fit", "{log}", "--incumbent", "none"], "incumbent must be a policy in use, got 'none'"),
         (["fit", "{log}", "--control", "1"], "control must lie between 0 and 1"),
         (["fit", "{log}", "--rule", "none"], "rule must be one of"),
-        (["fit", "{log}", "--types", "41"], "types must be at most 40, the users of the log, got 41"),
+        (["fit", "{log}", "--types", "121"], "types must be at most 120, the users of the log, got 121"),
         (["fit"], "Missing argument"),
         (["choose"], "Missing option '--user'"),
         (["choose", "--user", ""], "user must be 1 to 200 printable characters"),
@@ -296,7 +296,7 @@ HEAVY = {
 """Modules that cost a start time and that a choice does not need."""
 
 
-@pytest.mark.parametrize("model", ["gaussian", "categorical"])
+@pytest.mark.parametrize("model", ["gaussian", "categorical", "joint-normal"])
 def test_choosing_and_updating_import_nothing_heavy(reuse, log, tmp_path, model):
     reuse("fit", log, "--model", model)
     made = reuse("choose", "--user", "ann", "--json").document

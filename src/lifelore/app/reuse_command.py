@@ -67,7 +67,7 @@ def fit(
     logs: Logs,
     name: Name = "default",
     model: Annotated[
-        str, Option(help="Model of the outcomes: auto, gaussian, student-t or categorical.")
+        str, Option(help="Model: auto (by users held out), gaussian, student-t, categorical or joint-normal.")
     ] = "auto",
     types: Annotated[int | None, Option(help="Number of types; default: selected by the outcomes.")] = None,
     control: Annotated[float, Option(help="Share of users in the control group.")] = 0.1,
@@ -372,6 +372,8 @@ def _print_fit(document: dict[str, Any]) -> None:
         *LEFT_OUT,
         ("of unknown type left out", "left_out"),
     )
+    for note in document["notes"]:
+        print(f"  {note}")
     if document["features"]:
         print(_features_line(document["features"]))
     if document["borrowed"]:

@@ -87,24 +87,52 @@ def test_types_are_found_where_the_log_names_none(fitted):
     assert document["types_found"]
     assert [one["best"] for one in document["types"]] in (["p0", "p1"], ["p1", "p0"])
     assert [one["users"] for one in document["types"]] == [30, 30]
-    assert np.argmin(document["criteria"]) == 1
+    assert (document["model"], document["personalised_by"]) == ("gaussian", ["types"])
+    assert document["held_out"]["users"] > 50
+    assert document["held_out"]["over_single"][1] > 0.5
+    few, _ = fitted(list(many(MEANS, users=14)), name="few")
+    assert [one["best"] for one in few["types"]] in (["p0", "p1"], ["p1", "p0"])
     asked, _ = fitted(list(many(MEANS)), types=1, name="one")
     assert len(asked["types"]) == 1
 
 
 @pytest.mark.parametrize(
-    ("outcomes", "model", "kind"),
-    [
-        (["0", "1"], "auto", "categorical"),
-        ([str(i) for i in range(10)], "auto", "categorical"),
-        ([str(i) for i in range(11)], "auto", "gaussian"),
-        (["0", "1"], "student-t", "student-t"),
-    ],
+    ("model", "kind"),
+    [("auto", "gaussian"), ("categorical", "categorical"), ("student-t", "student-t"), ("joint-normal",) * 2],
 )
-def test_few_values_are_categories(outcomes, model, kind, fitted):
-    lines = [f"u{i % 3},p,{outcome}" for i, outcome in enumerate(outcomes * 3)]
-    document, study = fitted(lines, model=model)
+def test_three_users_hold_nobody_out(model, kind, fitted):
+    document, study = fitted([f"u{i % 3},p{i % 2},{i // 2 % 2}" for i in range(18)], model=model)
     assert document["model"] == study.library.performance.kind == kind
+    assert document["held_out"] is None
+    assert any("models were not compared" in note for note in document["notes"])
+
+
+def test_who_gets_the_same_as_everybody_is_told_so(fitted):
+    document, _ = fitted(["a,web,x,1", "a,web,y,0", "b,app,x,2"], "user,context,policy,outcome", types=1)
+    assert document["personalised_by"] == []
+    assert document["notes"][0].startswith("nothing is personalised: one type was found")
+    assert "every user starts with x" in document["notes"][0]
+    assert document["notes"][1].startswith("contexts and features change nothing")
+    items, _ = fitted(["a,x,1", "a,y,0", "b,x,2"], model="joint-normal")
+    assert items["personalised_by"] == ["items"]
+    assert not any("nothing is personalised" in note for note in items["notes"])
+
+
+def test_a_joint_normal_study_serves_a_user(fitted, memory):
+    """Who likes one of two policies that go together is given the other when the first is gone."""
+    random = np.random.default_rng(0)
+    lines = []
+    for user in range(120):
+        sweet, salty = random.normal(0, 2, 2)
+        for policy, liked in (("cake", sweet), ("pie", sweet), ("crisps", salty), ("nuts", salty)):
+            lines.append(f"u{user},{policy},{liked + random.normal(0, 0.5):.3f}")
+    document, study = fitted(lines, model="joint-normal", control=0.0, rule="greedy")
+    assert document["types_found"]
+    for liked, other in (("cake", "pie"), ("nuts", "crisps")):
+        rest = [policy for policy in ("cake", "pie", "crisps", "nuts") if policy != liked]
+        made = choose(memory, study, f"likes {liked}", available=[liked])
+        update(memory, study, made["decision"], 4.0)
+        assert choose(memory, study, f"likes {liked}", available=rest)["policy"] == other
 
 
 def test_contexts_have_priors_of_their_own(fitted):
@@ -146,7 +174,10 @@ def test_nothing_in_use_is_refused_and_memory_stays(fitted, memory):
 @pytest.mark.parametrize(
     ("settings", "said"),
     [
-        ({"model": "magic"}, "model must be one of auto, gaussian, student-t, categorical, got 'magic'"),
+        (
+            {"model": "magic"},
+            "model must be one of auto, gaussian, student-t, categorical, joint-normal, got 'magic'",
+        ),
         ({"types": 0}, "types must be at least 1, got 0"),
         ({"types": 3}, "types must be at most 2, the users of the log, got 3"),
         ({"name": "a/b"}, "name must be at most 60 characters"),

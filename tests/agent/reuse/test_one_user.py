@@ -150,7 +150,7 @@ def test_an_outcome_is_a_finite_number(outcome, memory):
 
 def test_a_category_never_seen_is_refused_and_the_decision_stays_open(memory, tmp_path):
     (tmp_path / "log.csv").write_text("user,policy,outcome\n" + "a,p,1\na,q,0\nb,p,0\nb,q,1\n" * 3)
-    fit([tmp_path / "log.csv"], memory, FitSettings("c", control=0))
+    fit([tmp_path / "log.csv"], memory, FitSettings("c", "categorical", control=0))
     study = open_study(memory, "c")
     made = choose(memory, study, "ann")["decision"]
     with pytest.raises(InputError, match=r"outcome must be one of 0, 1, got 0\.5"):

@@ -28,7 +28,7 @@ def drawn(n_users=120, each=15, family="gaussian", seed=0, means=MEANS):
 @pytest.mark.parametrize("family", ["gaussian", "categorical"])
 def test_types_that_are_there_are_found_and_counted(family):
     rows, true = drawn(family=family, each=15 if family == "gaussian" else 40)
-    found = user_types(rows, np.random.default_rng(1), family=family)
+    found = user_types(rows, np.random.default_rng(1), 3, family=family)
     assert found.n_types == 3
     agree = np.array([[np.mean(found.labels[true == t] == f) for f in range(3)] for t in range(3)])
     assert (agree.max(axis=1) > 0.9).all()
@@ -40,28 +40,18 @@ def test_types_that_are_there_are_found_and_counted(family):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("family", ["gaussian", "categorical"])
-def test_users_all_alike_are_one_type(family):
-    rows, _ = drawn(family=family, means=MEANS[:1])
-    assert user_types(rows, np.random.default_rng(1), family=family).n_types == 1
-
-
-def test_the_criterion_of_one_type_by_hand():
-    rows, _ = drawn(n_users=10, each=6)
-    found = user_types(rows, np.random.default_rng(0), n_types=1)
-    likelihood = 0.0
-    for policy in range(3):
-        values = rows.values[rows.policies == policy]
-        likelihood += norm.logpdf(values, values.mean(), values.std()).sum()
-    # Three means, three deviations, no weight.
-    assert found.criteria == (pytest.approx(-2 * likelihood + 6 * np.log(60)),)
+def test_a_single_type_has_all_users(family):
+    rows, _ = drawn(family=family)
+    found = user_types(rows, np.random.default_rng(1), 1, family=family)
+    assert found.probs.tolist() == [[1.0]] * 120
 
 
 @pytest.mark.parametrize("family", ["gaussian", "categorical"])
 def test_of_many_users_a_sample_gives_the_start_and_all_are_fitted(family, monkeypatch):
     rows, _ = drawn(n_users=240, each=20, family=family)
-    whole = user_types(rows, np.random.default_rng(1), family=family)
+    whole = user_types(rows, np.random.default_rng(1), 3, family=family)
     monkeypatch.setattr("lifelore.interaction.library.user_types.SAMPLED_USERS", 90)
-    found = user_types(rows, np.random.default_rng(1), family=family)
+    found = user_types(rows, np.random.default_rng(1), 3, family=family)
     assert found.n_types == whole.n_types == 3
     agree = np.array([[np.mean(found.labels[whole.labels == t] == f) for f in range(3)] for t in range(3)])
     assert (agree.max(axis=1) > 0.97).all()
@@ -100,23 +90,23 @@ def test_the_product_is_the_log_likelihood_of_every_outcome(family):
 def test_large_outcomes_are_grouped_as_small_ones_are():
     rows, _ = drawn()
     shifted = rows._replace(values=1e6 + 1e3 * rows.values)
-    near, far = (user_types(each, np.random.default_rng(1)) for each in (rows, shifted))
+    near, far = (user_types(each, np.random.default_rng(1), 3) for each in (rows, shifted))
     assert np.array_equal(near.labels, far.labels)
 
 
 def test_the_same_seed_finds_the_same_types():
     rows, _ = drawn(n_users=40, each=5)
-    first, second = (user_types(rows, np.random.default_rng(2), n_types=4) for _ in range(2))
+    first, second = (user_types(rows, np.random.default_rng(2), 4) for _ in range(2))
     assert np.array_equal(first.probs, second.probs)
 
 
 @pytest.mark.slow
 def test_constant_outcomes_and_single_users():
     one = OutcomeRows(np.zeros(2, int), np.arange(2), np.ones(2), (1, 2))
-    assert user_types(one, np.random.default_rng(0)).n_types == 1
+    assert user_types(one, np.random.default_rng(0), 1).n_types == 1
     same = OutcomeRows(np.repeat(np.arange(5), 2), np.tile(np.arange(2), 5), np.ones(10), (5, 2))
     for family in ("gaussian", "categorical"):
-        found = user_types(same, np.random.default_rng(0), family=family, n_types=3)
+        found = user_types(same, np.random.default_rng(0), 3, family=family)
         assert np.isfinite(found.probs).all()
         assert found.n_types == 1
 
@@ -125,10 +115,10 @@ def test_bad_input():
     rows, _ = drawn(n_users=6)
     generator = np.random.default_rng(0)
     with pytest.raises(InputError, match="family must be one of gaussian, categorical, got 'beta'"):
-        user_types(rows, generator, family="beta")
+        user_types(rows, generator, 2, family="beta")
     with pytest.raises(InputError, match="n_types must lie between 1 and the 6 users, got 7"):
-        user_types(rows, generator, n_types=7)
+        user_types(rows, generator, 7)
     with pytest.raises(InputError, match="values must be finite"):
-        user_types(rows._replace(values=rows.values * np.nan), generator)
+        user_types(rows._replace(values=rows.values * np.nan), generator, 2)
     with pytest.raises(InputError, match="every user and every policy needs a row"):
-        user_types(rows._replace(shape=(7, 3)), generator)
+        user_types(rows._replace(shape=(7, 3)), generator, 2)

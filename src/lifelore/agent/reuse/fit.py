@@ -9,9 +9,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.agent.reuse.fit_notes import fit_notes, personalised_by
 from lifelore.agent.reuse.library_from_log import TypedRows, library_of
 from lifelore.agent.reuse.log import ReuseLog, read_log
 from lifelore.agent.reuse.log_format import LogFormat
+from lifelore.agent.reuse.model_choice import chosen_model
 from lifelore.agent.reuse.study import (
     ACTIVE,
     KIND,
@@ -32,7 +34,7 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import DEFAULT_RULE
 from lifelore.memory import Memory
 
-MODELS = ("auto", "gaussian", "student-t", "categorical")
+MODELS = ("auto", "gaussian", "student-t", "categorical", "joint-normal")
 KEPT_SETTINGS = ("control", "incumbent", "rule", "explore", "change", "models")
 """Settings of a study that a new fit sets anew; where one is another than before, the fit says so."""
 CONTEXT_USERS = 5.0
@@ -47,10 +49,11 @@ class FitSettings:
     ----------
     name : str
         Of the study.
-    model : {"auto", "gaussian", "student-t", "categorical"}
-        Of outcomes; ``auto``: categorical for at most 10 different values, else gaussian.
+    model : {"auto", "gaussian", "student-t", "categorical", "joint-normal"}
+        Of outcomes; ``auto``: the one that serves users best who are held out, see `model_choice`.
     types : int, optional
-        How many types to look for where the log names none; default by the Bayesian criterion.
+        How many types to look for where the log names none; by default the number that serves held-out users
+        best, 1 where there are too few users for that.
     control, incumbent, rule, explore, change, models
         As in `Study`.
     seed : int
@@ -100,7 +103,12 @@ def fit(
         Plain data: ``study``; ``rows`` learnt from, ``guessed`` and ``left_out`` (of users whose type the log
         does not name: their outcomes showed it, or did not); ``pending`` (lines left out without an outcome),
         ``filled_outcomes``, ``filled_policies``, ``without_policy`` (see `ReuseLog`); ``users``; ``model``;
-        ``types_found``, ``criteria`` of each number of types tried; ``types`` (name, users, prior, best policy);
+        ``types_found``, ``held_out``: how models
+        were compared on users held out (None where they were not): number of ``users`` and mean ``value`` of the
+        chosen model's choices, its difference and 95 % interval to the best single policy (``over_single``) and
+        to counting a user's own outcomes with a prior worth two (``over_counting``), and all ``candidates``;
+        ``personalised_by``: "types", "items" (what a policy shows tells of others), both, or nothing; ``notes``:
+        sentences for the reader; ``types`` (name, users, prior, best policy);
         ``policies`` (name, state, mean); ``means`` and ``outcomes`` by type and policy; ``borrowed`` (pairs
         without an outcome, which got the policy's outcomes on all types); ``contexts``; ``features`` (None
         without them): their ``names``, ``users`` who have all, chosen ``strength`` and held-out ``gain`` in nats
@@ -116,16 +124,17 @@ def fit(
     settings = settings or FitSettings()
     log = read_log(sources, form)
     earlier = _earlier(memory, settings.name)
-    study, typed, counts = study_of_log(log, settings, dict(earlier.get("states", {})))
+    study, typed, counts, held_out = study_of_log(log, settings, dict(earlier.get("states", {})))
     study.keep(memory)
     keep_fitted_past(memory, study, log)
-    return _document(study, log, typed, counts) | {"changed": _changed(study, earlier)}
+    document = _document(study, log, typed, counts) | {"changed": _changed(study, earlier), "held_out": held_out}
+    return document | {"personalised_by": personalised_by(study), "notes": fit_notes(study, document)}
 
 
 def study_of_log(
     log: ReuseLog, settings: FitSettings, earlier: dict[str, str] | None = None
-) -> tuple[Study, TypedRows, NDArray[np.float64]]:
-    """The study that a log gives, its typed rows, and the number of outcomes of each type and policy.
+) -> tuple[Study, TypedRows, NDArray[np.float64], dict[str, Any] | None]:
+    """The study that a log gives, its typed rows, the number of outcomes of each type and policy, and `held_out`.
 
     Parameters
     ----------
@@ -135,11 +144,16 @@ def study_of_log(
         What each policy is in an earlier study of the name.
     """
     generator = stream(settings.seed, "reuse types", settings.name)
-    typed = typed_rows(log, settings.model, settings.types, generator)
-    library, counts = library_of(log, typed, settings.model)
+
+    def library_of_part(part: ReuseLog, model: str, types: int | None) -> PolicyLibrary:
+        return library_of(part, typed_rows(part, model, types, generator), model)[0]
+
+    choice = chosen_model(log, settings.model, settings.types, library_of_part, generator)
+    typed = typed_rows(log, choice.model, choice.types, generator)
+    library, counts = library_of(log, typed, choice.model)
     # Computed once and stored with the library.
     library.performance.spread  # noqa: B018  # pyright: ignore
-    return _study(log, library, typed, settings, earlier or {}), typed, counts
+    return _study(log, library, typed, settings, earlier or {}), typed, counts, choice.held_out
 
 
 def _study(
@@ -212,7 +226,6 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
         "users": len(log.user.names),
         "model": library.performance.kind,  # type: ignore[attr-defined]
         "types_found": typed.found,
-        "criteria": list(typed.criteria),
         "types": [
             {
                 "name": name,

@@ -8,11 +8,13 @@ from numpy.typing import NDArray
 from lifelore.agent.reuse.log import ReuseLog
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.joint_normal_fit import joint_normal_fit
+from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 from lifelore.interaction.outcomes.spread import spread_between
 
-FEW_VALUES = 10
-"""Outcomes of at most so many different values are categories, not amounts, unless the settings name a model."""
+FITTED_NUMBERS = 4_000_000
+"""Largest number of users times squared policies that a covariance is fitted to, else to a sample of users."""
 
 
 class TypedRows(NamedTuple):
@@ -23,7 +25,6 @@ class TypedRows(NamedTuple):
     names : of the types
     guessed : how many rows' types were guessed from outcomes
     found : whether the types themselves were found
-    criteria : of each number of types tried
     """
 
     rows: NDArray[np.int64]
@@ -31,7 +32,6 @@ class TypedRows(NamedTuple):
     names: tuple[str, ...]
     guessed: int = 0
     found: bool = False
-    criteria: tuple[float, ...] = ()
 
     def users(self, log: ReuseLog) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Users of the rows, as places in ``log.user.names``, and the type of each."""
@@ -58,8 +58,10 @@ def library_of(log: ReuseLog, typed: TypedRows, model: str) -> tuple[PolicyLibra
     lent, weights = _lent(rows, np.ones(len(places)) if log.weights is None else log.weights[places])
     prior = np.ones(len(typed.names)) + np.bincount(typed.users(log)[1], minlength=len(typed.names))
     names = [log.policy.names[code] for code in policies]
+    if model == JointNormalOutcomes.kind:
+        return _joint_normal(log, typed, places, of_policy, names), rows.sums()
     library = PolicyLibrary.from_rows(
-        lent, typed.names, names, model_of(log, model), prior=prior / prior.sum(),
+        lent, typed.names, names, model, prior=prior / prior.sum(),
         weights=None if log.weights is None else weights,
     )  # fmt: skip
     # Users are the tasks: those of one type may differ.
@@ -69,11 +71,24 @@ def library_of(log: ReuseLog, typed: TypedRows, model: str) -> tuple[PolicyLibra
     return library, rows.sums()
 
 
-def model_of(log: ReuseLog, model: str) -> str:
-    """The outcomes' model, chosen by their values where it is ``auto``."""
-    if model != "auto":
-        return model
-    return "categorical" if len(np.unique(log.outcomes)) <= FEW_VALUES else "gaussian"
+def _joint_normal(
+    log: ReuseLog, typed: TypedRows, places: NDArray[np.int64], of_policy: NDArray[np.int64], names: list[str]
+) -> PolicyLibrary:
+    """The library of users whose outcomes are jointly normal, fitted from the users' types on."""
+    if log.weights is not None:
+        raise InputError("model must be gaussian, student-t or categorical where lines have weights")
+    users, of_user = np.unique(log.user.codes[places], return_inverse=True)
+    most = min(len(users), max(1, FITTED_NUMBERS // len(names) ** 2))
+    some = np.isin(of_user, np.linspace(0, len(users) - 1, most).astype(np.int64))
+    # Every policy needs a row.
+    some |= np.isin(np.arange(len(places)), np.unique(of_policy, return_index=True)[1])
+    fitted, of_fitted = np.unique(of_user[some], return_inverse=True)
+    rows = OutcomeRows(of_fitted, of_policy[some], log.outcomes[places][some], (len(fitted), len(names)))
+    types = dict(zip(*typed.users(log), strict=True))
+    near = np.eye(len(typed.names))[[types[user] for user in users[fitted].tolist()]]
+    found = joint_normal_fit(rows, 0.9 * near + 0.1 / len(typed.names))
+    prior = 1 + len(users) * found.weights
+    return PolicyLibrary(found.model, None, typed.names, tuple(names), prior / prior.sum())  # pyright: ignore
 
 
 def _lent(rows: OutcomeRows, weights: NDArray[np.float64]) -> tuple[OutcomeRows, NDArray[np.float64]]:

@@ -51,7 +51,7 @@ def replayed_choices(
     to_library = np.array([numbers.get(policy, -1) for policy in log.policy.names], np.int64)
     usable = available_mask(study.active, study.library.policies)
     users, user_of = np.unique(log.user.codes[rows], return_inverse=True)
-    policies, outcomes, turn = to_library[log.policy.codes[rows]], log.outcomes[rows], _turns(user_of)
+    policies, outcomes, turn = to_library[log.policy.codes[rows]], log.outcomes[rows], turns(user_of)
     # By policy of the library; users take their turns side by side.
     expected, probs = np.zeros((2, len(rows), study.library.n_policies))
     for first in range(0, len(users), USERS_AT_ONCE):
@@ -91,7 +91,7 @@ def _strangers(study: Study, log: ReuseLog, users: list[int]) -> ReuseAlgorithm:
     return algorithm
 
 
-def _turns(user_of: NDArray[np.int64]) -> NDArray[np.int64]:
+def turns(user_of: NDArray[np.int64]) -> NDArray[np.int64]:
     """The number of rows of the same user before each row, (n,)."""
     order = np.argsort(user_of, kind="stable")
     count = np.bincount(user_of)

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.reuse.library_from_log import TypedRows, library_of, model_of
+from lifelore.agent.reuse.library_from_log import TypedRows, library_of
 from lifelore.agent.reuse.log import ReuseLog
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
@@ -21,12 +21,10 @@ def typed_rows(log: ReuseLog, model: str, n_types: int | None, generator: np.ran
     Raises
     ------
     InputError
-        The log names types and `n_types` is given, or there are more types than users.
+        There are more types than users.
     """
     if not log.says_types:
-        return _found(log, model, n_types, generator)
-    if n_types is not None:
-        raise InputError("types must be left out where the log has a column 'type'; it names them")
+        return _found(log, model, n_types or 1, generator)
     return _with_guessed(log, _named(log), model)
 
 
@@ -61,15 +59,15 @@ def _with_guessed(log: ReuseLog, named: TypedRows, model: str) -> TypedRows:
     )
 
 
-def _found(log: ReuseLog, model: str, n_types: int | None, generator: np.random.Generator) -> TypedRows:
+def _found(log: ReuseLog, model: str, n_types: int, generator: np.random.Generator) -> TypedRows:
     """Types found among users by their outcomes."""
     users, of_user = np.unique(log.user.codes, return_inverse=True)
-    if n_types is not None and n_types > len(users):
+    if n_types > len(users):
         raise InputError(f"types must be at most {len(users)}, the users of the log, got {n_types}")
     policies, of_policy = np.unique(log.policy.codes, return_inverse=True)
     rows = OutcomeRows(of_user, of_policy, log.outcomes, (len(users), len(policies)))
-    family = "categorical" if model_of(log, model) == "categorical" else "gaussian"
-    found = user_types(rows, generator, family=family, n_types=n_types)
+    family = "categorical" if model == "categorical" else "gaussian"
+    found = user_types(rows, generator, n_types, family=family)
     names = tuple(f"type {number + 1}" for number in range(found.n_types))
     every: NDArray[np.int64] = np.arange(len(log))
-    return TypedRows(every, found.labels[of_user], names, 0, True, found.criteria)
+    return TypedRows(every, found.labels[of_user], names, 0, True)

@@ -23,7 +23,9 @@ class FitRequest(BaseModel):
 
     model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"log": EXAMPLE, "types": 2}})
     log: str = Field(description="CSV with the columns user, policy, outcome, and if known type and context.")
-    model: Literal["auto", "gaussian", "student-t", "categorical"] = Field("auto", description="Outcomes' model.")
+    model: Literal["auto", "gaussian", "student-t", "categorical", "joint-normal"] = Field(
+        "auto", description="Outcomes' model."
+    )
     types: int | None = Field(
         None, ge=1, le=100, description="Number of types; left out: selected by the outcomes."
     )

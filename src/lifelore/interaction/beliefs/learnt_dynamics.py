@@ -31,7 +31,7 @@ HAZARDS = np.array([0.0, 0.001, 0.01, 0.03, 0.1])
 """Probabilities per episode of a new type; 0 is a static type."""
 HAZARD_WEIGHTS = np.array([0.5, 0.2, 0.1, 0.1, 0.1])
 """Their probabilities at the start, relative to one another."""
-WEIGHT_OF_TABLES = 0.5
+WEIGHT_OF_TABLES = 0.25
 """Probability at the start that types change by a matrix, where one may be learnt."""
 CONCENTRATION = 1.0
 """Number of transitions that the types' popularity counts as in a row, and the prior in the popularity."""

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from lifelore.core.errors import InputError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
-from lifelore.interaction.outcomes.outcome_kinds import KINDS as OUTCOMES
+from lifelore.interaction.outcomes.outcome_kinds import STORED as OUTCOMES
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.joint_signal import JointSignal
 from lifelore.interaction.signals.ordered_normal_signal import OrderedNormalSignal

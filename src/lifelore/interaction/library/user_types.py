@@ -1,9 +1,9 @@
-"""Types of users found by their outcomes: a mixture of outcome models whose size minimises the Bayesian criterion.
+"""Types of users found by their outcomes: a mixture of outcome models of a given number of types.
 
 Each user has a hidden type. Given the type, outcomes are independent, with a distribution for each pair of type
 and policy. Policy reuse has the same model, so users need not have met every policy, and users with many outcomes
 have more weight. The mixture is fitted by expectation–maximisation from the seeds of k-means++ and from random
-starts. The number of types minimises −2 log L + n_parameters · log n_outcomes.
+starts.
 
 The families are ``gaussian``, with a deviation for each policy shared by all types, and ``categorical``; see
 `outcome_families`.
@@ -13,13 +13,12 @@ Thesis: §4.3.3 assumes a given clustering; §4.7.2 names clustering as a way to
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import logsumexp
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.log_probability import normalised
 from lifelore.interaction.outcomes.outcome_families import FAMILIES, OutcomeFamily
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 
@@ -27,12 +26,11 @@ Array = NDArray[np.float64]
 
 STARTS = 6
 """Number of starts for each number of types, half of them k-means++; more cost time and may fit better."""
-STEPS, ENOUGH = 300, 1e-7
-"""Largest number of steps of a start, and the relative gain in log likelihood below which it ends."""
+FIRST, STEPS, ENOUGH = 15, 300, 1e-7
+"""Number of steps of every start, largest number of more steps of the best start (Biernacki et al. 2003), and the
+relative gain in log likelihood below which they end."""
 SAMPLED_USERS = 5_000
-"""Of more users, a random sample of so many gives the number of types and the start for all; more cost time."""
-PATIENCE = 2
-"""Number of sizes tried beyond the best so far."""
+"""Of more users, a random sample of so many gives the start for all; more cost time."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,14 +43,10 @@ class UserTypes:
         P(type | the user's outcomes); rows sum to 1.
     weights : (n_types,) float64
         Share of users, descending.
-    criteria : tuple of float
-        The Bayesian criterion (smaller is better) for each number of types from 1, or for the requested number. Of
-        more than `SAMPLED_USERS` users, that of the sample.
     """
 
     probs: Array
     weights: Array
-    criteria: tuple[float, ...]
 
     @property
     def labels(self) -> NDArray[np.int64]:
@@ -66,12 +60,7 @@ class UserTypes:
 
 
 def user_types(
-    rows: OutcomeRows,
-    generator: np.random.Generator,
-    *,
-    family: str = "gaussian",
-    n_types: int | None = None,
-    most: int = 12,
+    rows: OutcomeRows, generator: np.random.Generator, n_types: int, *, family: str = "gaussian"
 ) -> UserTypes:
     """Group users by their outcomes.
 
@@ -81,10 +70,9 @@ def user_types(
         With numbers of users in place of types; every user and every policy has a row.
     generator : numpy generator
         For the starts.
+    n_types : int
+        Largest number of types; a type that is no user's most probable type is left out.
     family : {"gaussian", "categorical"}
-    n_types : int, optional
-        Largest number of types; a type that is no user's most probable type is left out. By default the number
-        with the least criterion, at most `most`.
 
     Raises
     ------
@@ -95,22 +83,17 @@ def user_types(
         raise InputError(f"family must be one of {', '.join(FAMILIES)}, got {family!r}")
     made = FAMILIES[family](_checked(rows))
     n_users = rows.shape[0]
-    if n_types is not None and not 1 <= n_types <= n_users:
+    if not 1 <= n_types <= n_users:
         raise InputError(f"n_types must lie between 1 and the {n_users} users, got {n_types}")
     if n_users > SAMPLED_USERS:
-        return _extended(made, rows, generator, family=family, n_types=n_types, most=most)
-    tried: list[_Fit] = []
-    for size in range(1, min(most, n_users) + 1) if n_types is None else [n_types]:
-        tried.append(_best_start(made, rows, size, generator))
-        if size - 1 - int(np.argmin([fit.criterion for fit in tried])) >= PATIENCE and n_types is None:
-            break
-    best = min(tried, key=lambda fit: fit.criterion)
-    return _named(best, tuple(fit.criterion for fit in tried))
+        return _named(_of_sample(made, rows, generator, n_types, family))
+    starts = (_maximised(made, shares, FIRST) for shares in _starts(rows, n_types, generator))
+    return _named(_maximised(made, max(starts, key=lambda fit: fit[1])[0], STEPS)[0])
 
 
-def _extended(
-    made: OutcomeFamily, rows: OutcomeRows, generator: np.random.Generator, **settings: Any
-) -> UserTypes:
+def _of_sample(
+    made: OutcomeFamily, rows: OutcomeRows, generator: np.random.Generator, n_types: int, family: str
+) -> Array:
     """The types of a sample of users, then fitted to all users from there."""
     sample = np.sort(generator.choice(rows.shape[0], SAMPLED_USERS, replace=False))
     chosen = np.isin(rows.types, sample)
@@ -118,24 +101,10 @@ def _extended(
     policies, of_policy = np.unique(rows.policies[chosen], return_inverse=True)
     shape = len(sample), len(policies)
     part = OutcomeRows(np.searchsorted(sample, rows.types[chosen]), of_policy, rows.values[chosen], shape)
-    found = user_types(part, generator, **settings)
+    found = user_types(part, generator, n_types, family=family)
     shares = np.zeros((rows.shape[0], found.n_types))
     shares[sample] = found.probs
-    probs, weights, _ = _maximised(made, _expected(made, shares, found.weights)[0])
-    return _named(_Fit(probs, weights, min(found.criteria)), found.criteria)
-
-
-class _Fit(NamedTuple):
-    probs: Array
-    weights: Array
-    criterion: float
-
-
-def _best_start(family: OutcomeFamily, rows: OutcomeRows, size: int, generator: np.random.Generator) -> _Fit:
-    n_parameters = family.n_parameters(size)
-    fits = (_maximised(family, shares) for shares in _starts(rows, size, generator))
-    probs, weights, likelihood = max(fits, key=lambda fit: fit[2])
-    return _Fit(probs, weights, -2 * likelihood + n_parameters * np.log(len(rows.values)))
+    return _maximised(made, _expected(made, shares, found.weights)[0], STEPS)[0]
 
 
 def _starts(rows: OutcomeRows, size: int, generator: np.random.Generator) -> Iterator[Array]:
@@ -170,31 +139,31 @@ def _near_seeds(profiles: Array, size: int, generator: np.random.Generator) -> N
     return np.stack(away).argmin(axis=0)
 
 
-def _maximised(family: OutcomeFamily, shares: Array) -> tuple[Array, Array, float]:
-    """Shares, weights and log likelihood at the end of expectation–maximisation from `shares`."""
+def _maximised(family: OutcomeFamily, shares: Array, steps: int) -> tuple[Array, float]:
+    """Shares and log likelihood at the end of expectation–maximisation from `shares`."""
     likelihood, before = -np.inf, -np.inf
-    for _ in range(STEPS):
+    for _ in range(steps):
         shares, likelihood = _expected(family, shares, shares.mean(axis=0))
         if likelihood - before < ENOUGH * abs(likelihood):
             break
         before = likelihood
-    return shares, shares.mean(axis=0), likelihood
+    return shares, likelihood
 
 
 def _expected(family: OutcomeFamily, shares: Array, weights: Array) -> tuple[Array, float]:
     """Each user's shares in the types fitted to `shares`, and the log likelihood of all outcomes."""
     with np.errstate(divide="ignore"):
         joint = family.stats @ family.fit(shares).T + np.log(weights)
-    each = np.asarray(logsumexp(joint, axis=1, keepdims=True))
-    return np.exp(joint - each), float(each.sum())
+    shares, each = normalised(joint)
+    return shares, float(each.sum())
 
 
-def _named(fit: _Fit, criteria: tuple[float, ...]) -> UserTypes:
+def _named(shares: Array) -> UserTypes:
     """The types that are the most probable type of a user, the most common type first."""
-    used = np.unique(fit.probs.argmax(axis=1))
-    probs = fit.probs[:, used] / fit.probs[:, used].sum(axis=1, keepdims=True)
+    used = np.unique(shares.argmax(axis=1))
+    probs = shares[:, used] / shares[:, used].sum(axis=1, keepdims=True)
     order = np.argsort(-probs.mean(axis=0), kind="stable")
-    return UserTypes(probs[:, order], probs.mean(axis=0)[order], criteria)
+    return UserTypes(probs[:, order], probs.mean(axis=0)[order])
 
 
 def _checked(rows: OutcomeRows) -> OutcomeRows:

@@ -30,6 +30,14 @@ def log_of(probs: Array) -> Array:
     return np.log(probs, out=np.full_like(probs, -np.inf), where=probs > 0)
 
 
+def normalised(logs: Array) -> tuple[Array, Array]:
+    """The distributions of log weights (n, k), each row with a finite one, and the log of each row's sum, (n,)."""
+    top = logs.max(axis=1, keepdims=True)
+    weights = np.exp(logs - top)
+    total = weights.sum(axis=1, keepdims=True)
+    return weights / total, (np.log(total) + top)[:, 0]
+
+
 def checked_counts(count: ArrayLike, shape: tuple[int, ...]) -> Array:
     """The number of samples behind each row of probabilities, a number or of `shape`, as a float64 of `shape`.
 

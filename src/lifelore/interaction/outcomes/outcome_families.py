@@ -5,9 +5,8 @@ met a policy then has the outcomes of all users. Rows of outcomes have users in 
 
 A family has
 
-    stats            sufficient statistics of each user's outcomes, (n_users, n_stats)
-    fit(shares)      the most likely types, (n_types, n_stats), given the users' shares in types (n_users, n_types)
-    n_parameters(n)  number of free parameters of n types and their weights
+    stats        sufficient statistics of each user's outcomes, (n_users, n_stats)
+    fit(shares)  the most likely types, (n_types, n_stats), given the users' shares in types (n_users, n_types)
 
 so that ``stats @ fit(shares).T`` are log likelihoods (n_users, n_types).
 """
@@ -45,9 +44,6 @@ class GaussianFamily:
         flat = np.broadcast_to(-0.5 / variance, mean.shape)
         return np.hstack([-0.5 * np.log(2 * np.pi * variance) + flat * mean**2, mean / variance, flat])
 
-    def n_parameters(self, n_types: int) -> int:
-        return n_types * len(self._overall) + len(self._overall) + n_types - 1
-
 
 class CategoricalFamily:
     """Stats: how often each user got each value with each policy, (n_users, n_values n_policies)."""
@@ -65,10 +61,6 @@ class CategoricalFamily:
             logs = np.log(counts / counts.sum(axis=1, keepdims=True))
         # A value that a policy never gave has a count of 0 for every user, so its weight is irrelevant.
         return np.where(np.isfinite(logs), logs, 0.0).reshape(len(logs), -1)
-
-    def n_parameters(self, n_types: int) -> int:
-        seen = int((self._overall > 0).sum() - self._overall.shape[2])
-        return n_types * seen + n_types - 1
 
     def _by_value(self, counts: Array) -> Array:
         return counts.reshape(len(counts), self._n_values, -1)

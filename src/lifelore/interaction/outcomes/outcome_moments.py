@@ -172,7 +172,7 @@ def _moments(rows: OutcomeRows, shrinkage: float, pooled: float | None = None) -
     mean = rows.sums(rows.values) / np.where(count > 0, count, 1.0)
     squares = rows.sums((rows.values - mean[rows.types, rows.policies]) ** 2)
     if pooled is None:
-        pooled = max(_pooled(squares, count, mean), _least_variance(rows.values))
+        pooled = max(_pooled(squares, count, mean), least_variance(rows.values))
     freedom = np.where(count > 0, shrinkage + count - 1, shrinkage)
     return OutcomeMoments(mean, (shrinkage * pooled + squares) / freedom, count, freedom, pooled, shrinkage)
 
@@ -205,6 +205,7 @@ def _pooled(squares: Array, count: Array, mean: Array) -> float:
     return float(mean.var(axis=0).mean()) if len(mean) > 1 else float(mean.var())
 
 
-def _least_variance(values: Array) -> float:
+def least_variance(values: Array) -> float:
+    """Least variance learnt from `values` (n,), see `FLOOR`."""
     extent = float(values.max() - values.min()) or max(1.0, float(np.abs(values).max()))
     return max(FLOOR * extent, LEAST_DEVIATION) ** 2
