@@ -136,8 +136,8 @@ class LearntRows:
 
     Attributes
     ----------
-    shares : (n_users, n_types, n_ways) float
-        P(way | type), rows sum to 1: hazards, then the matrices.
+    shares : (n_users, n_ways, n_types) float
+        P(way | type), columns sum to 1: hazards, then the matrices.
     moved : (n_users, n_types) float
         P(the type has just changed by a matrix | it is now this type), after the last step.
     tables : dict of str to TransitionCounts
@@ -154,14 +154,14 @@ class LearntRows:
             weights = np.concatenate([(1 - WEIGHT_OF_TABLES) * weights, of_tables])
         rates = np.concatenate([HAZARDS, np.zeros(len(wanted))])
         stay = np.concatenate([1 - HAZARDS, np.zeros(len(wanted))])
-        self._rates, self._stay = rates.astype(dtype), stay.astype(dtype)
+        self._rates, self._stay = rates.astype(dtype), stay.astype(dtype)[:, None]
         self._categories: dict[Hashable, int] = {None: 0}
         for category in settings.categories:
             self._categories.setdefault(category, len(self._categories))
         self._fit()
         weights = settings.start.get("weights", weights)
-        self._first = np.tile(weights, (n_types, 1)).astype(dtype)
-        self.shares = np.empty((n_users, n_types, len(weights)), dtype)
+        self._first = np.repeat(weights[:, None], n_types, axis=1).astype(dtype)
+        self.shares = np.empty((n_users, len(weights), n_types), dtype)
         self.moved = np.zeros((n_users, n_types if wanted else 0), dtype)
         self.reset(slice(None))
 
@@ -175,19 +175,20 @@ class LearntRows:
         outcome : hashable, or for many users a sequence of these, optional
             How the episode ended, such as ``"won"``.
         """
-        joint = np.exp(log_belief)[..., None] * self.shares[users]
-        weights = np.add.reduce(joint, axis=-2)
+        joint = np.exp(log_belief)[..., None, :] * self.shares[users]
+        weights = np.add.reduce(joint, axis=-1)
         after = joint * self._stay
-        after += (weights * self._rates)[..., None, :] * self._prior[:, None]
+        after += (weights * self._rates)[..., None] * self._prior
         moved: Any = 0.0
         if self.tables:
             category = self._category(outcome)
             for way, table in enumerate(self.tables.values(), len(HAZARDS)):
-                table.learn(users, joint[..., way] / np.maximum(weights[..., way, None], LEAST))
-                after[..., way], stayed = table.step(users, joint[..., way], category)
-                moved = moved + after[..., way] - stayed
-        total = np.maximum(np.add.reduce(after, axis=-1), LEAST)
-        self.shares[users] = after / total[..., None]
+                table.learn(users, joint[..., way, :] / np.maximum(weights[..., way, None], LEAST))
+                after[..., way, :], stayed = table.step(users, joint[..., way, :], category)
+                moved = moved + after[..., way, :] - stayed
+        total = np.maximum(np.add.reduce(after, axis=-2), LEAST)
+        after /= total[..., None, :]
+        self.shares[users] = after
         if self.tables:
             self.moved[users] = moved / total
         return np.log(total / np.add.reduce(total, axis=-1, keepdims=True))
@@ -201,7 +202,7 @@ class LearntRows:
 
     def _weights(self, users: Any, belief: Array) -> Array:
         """Probability of each way in which the types of `users` change, (..., n_ways)."""
-        return np.add.reduce(belief[..., None] * self.shares[users], axis=-2)
+        return np.vecdot(belief[..., None, :], self.shares[users])
 
     def learnt(self, user: int, log_belief: Array) -> LearntDynamics:
         """Settings that start from what a user has shown."""
