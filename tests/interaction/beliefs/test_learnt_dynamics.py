@@ -169,12 +169,14 @@ def test_a_state_goes_to_rows_that_know_outcomes_in_another_order():
     start.reset(0)
 
 
-def test_the_share_that_has_just_changed_is_that_of_the_hazards():
-    rows, belief = LearntDynamics("time").rows(1, PRIOR, "f8"), log_prior([0.9, 0.1, 0.0])
-    after = rows.step(belief, 0)
+def test_the_share_that_has_just_changed_was_another_type():
+    rows, before = LearntDynamics("time").rows(1, PRIOR, "f8"), np.array([0.9, 0.1, 0.0])
+    after = rows.step(log_prior(before), 0)
     rate = HAZARDS @ HAZARD_WEIGHTS / HAZARD_WEIGHTS.sum()
-    assert rows.changed_share(after, 0) == pytest.approx(rate * PRIOR / np.exp(after), rel=1e-9)
-    assert np.exp(after) == pytest.approx((1 - rate) * np.exp(belief) + rate * PRIOR, rel=1e-9)
+    assert np.exp(after) == pytest.approx((1 - rate) * before + rate * PRIOR, rel=1e-9)
+    assert rows.changed_share(after, 0) == pytest.approx(rate * PRIOR * (1 - before) / np.exp(after), rel=1e-9)
+    alone = LearntDynamics("time").rows(1, np.ones(1), "f8")
+    assert alone.changed_share(alone.step(np.zeros(1), 0), 0) == pytest.approx([0.0], abs=1e-15)
 
 
 def test_arguments_that_break_their_rule():

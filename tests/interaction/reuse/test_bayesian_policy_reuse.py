@@ -166,6 +166,14 @@ def test_types_may_change_unless_they_are_static():
     assert static.belief.tolist() == [1.0, 0.0]
 
 
+def test_a_user_of_the_only_type_is_not_forgotten():
+    samples = np.random.default_rng(0).normal(size=(1, 2, 10))
+    agent = BayesianPolicyReuse(PolicyLibrary.from_samples(samples))
+    for _ in range(50):
+        agent.update(0, 2.0)
+    assert agent.algorithm.state(0)["signal.shown"][0, 0] == pytest.approx(50)
+
+
 def test_what_was_learnt_of_changes_goes_on_with_the_next_task():
     agent = BayesianPolicyReuse(coin_library(), dynamics=TypeDynamics.learnt("outcome"))
     for number in range(40):

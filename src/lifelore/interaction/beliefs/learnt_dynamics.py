@@ -175,7 +175,7 @@ class LearntRows:
         outcome : hashable, or for many users a sequence of these, optional
             How the episode ended, such as ``"won"``.
         """
-        joint = np.exp(log_belief)[..., None, :] * self.shares[users]
+        joint = self._joint(users, log_belief)
         weights = np.add.reduce(joint, axis=-1)
         after = joint * self._stay
         after += (weights * self._rates)[..., None] * self._prior
@@ -194,20 +194,23 @@ class LearntRows:
         return np.log(total / np.add.reduce(total, axis=-1, keepdims=True))
 
     def changed_share(self, log_belief: Array, users: Any) -> Array:
-        """P(the type has just changed | it is now this type) after a `step`, (..., n_types)."""
-        belief = np.exp(log_belief)
-        rate = self._weights(users, belief) @ self._rates
-        share = rate[..., None] * self._prior / np.maximum(belief, LEAST)
-        return np.minimum(share + self.moved[users] if self.tables else share, 1.0)
+        """P(the type was another | it is now this type) after a `step`, (..., n_types)."""
+        joint, rates = self._joint(users, log_belief), self._rates[:, None]
+        weights = joint.sum(axis=-1, keepdims=True)
+        # Of the types drawn anew, those that were the same type before have not changed.
+        before = (joint - weights * rates * self._prior) / np.maximum(self._stay, LEAST)
+        others = (rates * (weights - before)).sum(axis=-2) * self._prior
+        share = others / np.maximum(np.exp(log_belief), LEAST)
+        return np.clip(share + self.moved[users] if self.tables else share, 0.0, 1.0)
 
-    def _weights(self, users: Any, belief: Array) -> Array:
-        """Probability of each way in which the types of `users` change, (..., n_ways)."""
-        return np.vecdot(belief[..., None, :], self.shares[users])
+    def _joint(self, users: Any, log_belief: Array) -> Array:
+        """p(way, type), (..., n_ways, n_types)."""
+        return np.exp(log_belief)[..., None, :] * self.shares[users]
 
     def learnt(self, user: int, log_belief: Array) -> LearntDynamics:
         """Settings that start from what a user has shown."""
         learnt = {name: table.counts[user].copy() for name, table in self.tables.items()}
-        weights = self._weights(user, np.exp(log_belief))
+        weights = self._joint(user, log_belief).sum(axis=-1)
         return LearntDynamics(self.settings.by, {"weights": weights, **learnt}, list(self._categories)[1:])
 
     # ---- rows ----------------------------------------------------------------------------------------------
