@@ -36,7 +36,7 @@ HOLDS = {
     "courier_in_an_office": lore_needs_fewer_steps,
     "minigrid_partial_view": lambda lines: numbers(lines[0])[0] > 0.1,
     "many_users": choosing_for_each_user_pays,
-    "one_user": lambda lines: len(lines) == 4 and "'bold': 1.0" in lines[-1],
+    "one_user": lambda lines: len(lines) == 4 and "'bold': 0.99" in lines[-1],
     "own_gymnasium_world": lambda lines: numbers(lines[0])[0] > 0,
     "prior_guides_learning": the_prior_starts_better,
 }
