@@ -185,6 +185,8 @@ def test_arguments_that_break_their_rule():
     rows = LearntDynamics("outcome").rows(1, PRIOR, "f8")
     with pytest.raises(InputError, match="outcome must be a word, a number or None"):
         rows.step(log_prior(PRIOR), 0, ("won", 3))
+    rows.step(log_prior(PRIOR), 0, np.int64(3))
+    LearntDynamics("outcome").rows(1, PRIOR, "f8").restore(0, rows.state(0))
     for number in range(MOST_CATEGORIES):
         rows.step(log_prior(PRIOR), 0, number)
     with pytest.raises(InputError, match=f"at most {MOST_CATEGORIES} ways"):
