@@ -90,28 +90,11 @@ def test_algorithm_7_has_the_posterior_of_all_outcomes():
     assert algorithm.belief(0) == pytest.approx(joint / joint.sum())
 
 
-def test_draws_have_the_posteriors_mean_and_covariance():
-    shown, each = users_of(law())
-    n = 40_000
-    for user, own in enumerate(each):
-        rows = law().prediction(shown, np.full(n, user), np.zeros((n, 1)))
-        draws = rows.drawn_on(np.ones(n, np.int64), np.random.default_rng(user))
-        mean, covariance = conditioned(own, 1)
-        # Five standard errors of a mean, and of a covariance of normals: √((c_ii c_jj + c_ij²) / n).
-        sure = 5 * np.sqrt(np.diag(covariance) / n) + 1e-12
-        assert (np.abs(draws.mean(axis=0) - mean) <= sure).all()
-        size = np.sqrt((np.outer(np.diag(covariance), np.diag(covariance)) + covariance**2) / n)
-        assert (np.abs(np.cov(draws.T) - covariance) <= 5 * size + 1e-12).all()
-    single = law().prediction(shown, 0, np.zeros(1)).drawn_on(1, np.random.default_rng(0))
-    assert single.shape == (4,)
-
-
-def test_without_covariance_a_draw_is_the_types_mean():
+def test_without_covariance_users_have_the_means_of_their_types():
     sure = JointNormalOutcomes(MEAN, np.zeros((4, 4)), DEVIATION).law()
     shown, _ = users_of(sure)
     found = sure.prediction(shown, np.arange(3), np.zeros((3, 1)))
     types = np.array([0, 1, 1])
-    assert found.drawn_on(types, np.random.default_rng(0)) == pytest.approx(found.mean_on(types))
     assert found.mean_on(types) == pytest.approx(MEAN[types])
 
 

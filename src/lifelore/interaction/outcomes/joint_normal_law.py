@@ -8,8 +8,7 @@ After n_π outcomes with mean x̄_π, u is normal again. With R = diag √(n / v
 
 The covariance is the same for all types. Only policies that the user has tried have a row in K, so the time
 depends on their number. K has no singular value below 1: Σ may be singular. The formulas are those of Gaussian
-process regression over policies (Rasmussen and Williams 2006, §2.2); draws follow Matheron's rule (Wilson et al.
-2020).
+process regression over policies (Rasmussen and Williams 2006, §2.2).
 """
 
 from collections.abc import Iterator, Mapping
@@ -87,7 +86,6 @@ class JointNormalLaw:
         self.middle, self.unit = mean.mean(axis=0), deviation.copy()
         self.mean = (mean - self.middle) / self.unit
         self.covariance = covariance / np.outer(self.unit, self.unit)
-        self.root = _root(self.covariance)
         self._bins: dict[int, Array] = {}
 
     # ---- the law of signals --------------------------------------------------------------------------------
@@ -129,17 +127,6 @@ class JointNormalLaw:
             location[rows] += tried.residual(scaled, self.mean) @ gain
             variance[rows] -= (gain * gain).sum(axis=1)
         return location, np.maximum(variance, 0.0)
-
-    def drawn(self, shown: Shown, users: Array, generator: np.random.Generator) -> Array:
-        """Draws of the mean outcomes of `users` (k,) around their posterior means, (k, n_policies), as there."""
-        # Users around their type's mean, less what their own outcomes would have told of that.
-        found = generator.standard_normal((len(users), self.n_policies)) @ self.root.T
-        noise = generator.standard_normal(found.shape)
-        for rows, tried, _, gain in self.blocks(shown, users, self._every(len(users))):
-            apart, error = (np.take_along_axis(each[rows], tried.places, axis=1) for each in (found, noise))
-            told = tried.inverse @ (tried.root * apart + error)[:, :, None]
-            found[rows] -= (told.transpose(0, 2, 1) @ gain)[:, 0]
-        return found
 
     def blocks(self, shown: Shown, users: Array, policies: Array) -> Iterator[tuple[slice, Tried, Array, Array]]:
         """Rows of `users` (k,), what these have tried, R x̄ (rows, m), and Gᵀ of their `policies` (k, q)."""
@@ -222,21 +209,9 @@ class JointNormalRows(NormalPrediction):
         """Standard deviation of the next outcome, (..., n_types, n_policies)."""
         return np.sqrt(self.mean_variance + self._law.unit**2)
 
-    def drawn_on(self, types: Any, generator: np.random.Generator) -> Array:
-        """A draw of each user's mean outcomes on a type, (...) int to (..., n_policies)."""
-        types = np.atleast_1d(types)
-        location = self._posterior[0][np.arange(len(types)), types]
-        return self._natural(location + self._law.drawn(self._shown, self._users, generator))
-
     @cached_property
     def _posterior(self) -> tuple[Array, Array]:
         return self._law.posterior(self._shown, self._users)
 
     def _natural(self, scaled: Array) -> Array:
         return (self._law.middle + self._law.unit * scaled).reshape(*self._shape, *scaled.shape[1:])
-
-
-def _root(covariance: Array) -> Array:
-    """L with L Lᵀ = the covariance, which may be singular."""
-    values, vectors = np.linalg.eigh(covariance)
-    return vectors * np.sqrt(np.maximum(values, 0.0))
