@@ -290,10 +290,11 @@ def _refuse_unknown(memory: Memory, name: str) -> NoReturn:
 
 
 def _check_change(change: Change) -> None:
-    if isinstance(change, str) and change != LEARNT:
+    if change == LEARNT:
+        return
+    if isinstance(change, str):
         raise InputError(f"change must be {LEARNT!r} or a probability, got {change!r}")
-    if not isinstance(change, str):
-        _check_share("change", change)
+    _check_share("change", change)
 
 
 def _check_share(name: str, share: float, below_one: bool = False) -> None:

@@ -1,9 +1,9 @@
 """Beliefs about very many users, numbered or named: rows of Algorithm 7, updated and read in blocks.
 
-With float32 rows a user takes 4 bytes a type, and with models learnt from a finite number of runs 12 bytes more a
-policy (4 a cell, where outcomes are counted). float32 rows agree with float64 rows to 1e-5. A
-`BayesianPolicyReuse` for each user has the same numbers to 1e-12, where both know the same spread. Thesis: §4.2,
-Alg. 7, with many tasks side by side.
+With float32 rows a user takes 24 bytes a type, 4 where the dynamics are given, and with models learnt from a
+finite number of runs 12 bytes more a policy (4 a cell, where outcomes are counted). float32 rows agree with
+float64 rows to 1e-5. A `BayesianPolicyReuse` for each user has the same numbers to 1e-12, where both know the same
+spread. Thesis: §4.2, Alg. 7, with many tasks side by side.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
