@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lifelore.action.features.learnt_contexts import LearntContexts as LearntContexts
     from lifelore.action.priors.action_prior import ActionPrior as ActionPrior
+    from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld as GymnasiumWorld
     from lifelore.agent.external_world.live_in import live_in as live_in
     from lifelore.agent.external_world.stored_prior import BatchContexts as BatchContexts
     from lifelore.agent.external_world.stored_prior import prior_from_memory as prior_from_memory
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from lifelore.agent.live.life_settings import LifeSettings as LifeSettings
     from lifelore.agent.perceive.perceive import PerceiveSettings as PerceiveSettings
     from lifelore.agent.perceive.perceive import perceive as perceive
-    from lifelore.bridges.gymnasium_world import GymnasiumWorld as GymnasiumWorld
     from lifelore.core.errors import LifeloreError as LifeloreError
     from lifelore.core.labelled_cloud import LabelledCloud as LabelledCloud
     from lifelore.core.learning.q_learner import QLearning as QLearning
@@ -53,7 +53,7 @@ _HOME = {
     "BayesianPolicyReuse": "lifelore.interaction.reuse.bayesian_policy_reuse",
     "Beat": "lifelore.interaction.adaptation.beat",
     "Domain": "lifelore.core.mdp",
-    "GymnasiumWorld": "lifelore.bridges.gymnasium_world",
+    "GymnasiumWorld": "lifelore.agent.external_world.gymnasium_world",
     "LabelledCloud": "lifelore.core.labelled_cloud",
     "LearntContexts": "lifelore.action.features.learnt_contexts",
     "LifeSettings": "lifelore.agent.live.life_settings",

@@ -14,7 +14,7 @@ from gymnasium.envs.toy_text.frozen_lake import generate_random_map
 from gymnasium.wrappers import TransformObservation
 from numpy.typing import NDArray
 
-from lifelore.bridges.gymnasium_world import GymnasiumWorld
+from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
 from lifelore.core.streams import stream
 
 LAKE = 4

@@ -1,1 +1,1 @@
-"""Connections to other programs: Gymnasium, MiniGrid, Stable-Baselines3, rosbags and PDDL planners."""
+"""Connections to other programs: MiniGrid, Stable-Baselines3, rosbags and PDDL planners."""

@@ -15,8 +15,8 @@ from scipy.stats import binomtest
 
 from lifelore.action.priors.action_prior import ONE
 from lifelore.agent.external_world.context_code import context_code
+from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
 from lifelore.agent.external_world.live_in import live_in
-from lifelore.bridges.gymnasium_world import GymnasiumWorld
 from lifelore.core.errors import InputError
 from lifelore.memory import open_memory
 

@@ -64,7 +64,7 @@ def live_in(
     Parameters
     ----------
     world : World
-        ``lifelore.bridges.gymnasium_world.GymnasiumWorld``, or your own object. `live_in` does not close it.
+        `GymnasiumWorld`, or your own object. `live_in` does not close it.
     tasks, episodes, max_steps : int
         Tasks to live through now, episodes of a task, maximum steps of an episode; ≥ 1.
     memory : str or Path, optional

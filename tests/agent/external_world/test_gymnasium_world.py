@@ -13,7 +13,7 @@ from gymnasium.spaces import Box, Dict, Discrete, MultiBinary, MultiDiscrete
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lifelore.bridges.gymnasium_world import GymnasiumWorld, hashable
+from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld, hashable
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import World
 
@@ -206,7 +206,7 @@ def test_order_of_a_dict_does_not_matter(seen, random):
 @pytest.mark.slow
 def test_states_are_the_same_in_every_process():
     told = (
-        "import numpy as np; from lifelore.bridges.gymnasium_world import hashable;"
+        "import numpy as np; from lifelore.agent.external_world.gymnasium_world import hashable;"
         "print(hashable({'b': np.eye(2), 'a': 'x', 'c': np.int8(3)}))"
     )
     answers = {
