@@ -56,7 +56,6 @@ ROOMS = {
     "lifelore.action": "Action priors",
     "lifelore.interaction": "Policy reuse",
     "lifelore.domains": "Worlds",
-    "lifelore.bridges": "Bridges to other systems",
     "lifelore.figures": "Figures",
     "lifelore.memory": "Memory",
     "lifelore.core": "Tasks, learners and protocols",

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lifelore.action.features.learnt_contexts import LearntContexts as LearntContexts
     from lifelore.action.priors.action_prior import ActionPrior as ActionPrior
+    from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent as LongLivedAgent
     from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld as GymnasiumWorld
     from lifelore.agent.external_world.live_in import live_in as live_in
     from lifelore.agent.external_world.stored_prior import BatchContexts as BatchContexts
@@ -58,6 +59,7 @@ _HOME = {
     "LearntContexts": "lifelore.action.features.learnt_contexts",
     "LifeSettings": "lifelore.agent.live.life_settings",
     "LifeloreError": "lifelore.core.errors",
+    "LongLivedAgent": "lifelore.agent.any_tasks.long_lived_agent",
     "Memory": "lifelore.memory",
     "PairLabel": "lifelore.core.relations",
     "PerceiveSettings": "lifelore.agent.perceive.perceive",

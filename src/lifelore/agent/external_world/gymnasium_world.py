@@ -82,7 +82,7 @@ class GymnasiumWorld:
         # The environment of the first task is made at once, because it defines the actions.
         self._task: int | None = 0
         self._env = _made(env_or_factory, 0)
-        self.n_actions, self._first_action = _actions(self._env)
+        self.n_actions, self.first_action = _actions(self._env)
         self._current: tuple[Any, Hashable] | None = None
 
     def __enter__(self) -> Self:
@@ -101,6 +101,13 @@ class GymnasiumWorld:
     def env(self) -> gymnasium.Env:
         """The environment of the current task."""
         return self._env
+
+    @property
+    def observation(self) -> Any:
+        """The present observation, as the environment gave it; InputError before the first."""
+        if self._current is None:
+            raise InputError("observation needs an episode; call reset(task, seed)")
+        return self._current[0]
 
     @property
     def name(self) -> str:
@@ -139,7 +146,7 @@ class GymnasiumWorld:
         observation, _ = self._env.reset(seed=int(number.integers(2**31)))
         if self._reset_by == "task":
             self._env.unwrapped.np_random = np.random.default_rng(int(episode.integers(2**31)))
-        return self._seen(observation)
+        return self.see(observation)
 
     def _change_task(self, task: int) -> None:
         if self._factory:
@@ -148,10 +155,10 @@ class GymnasiumWorld:
             self._task = self._current = None
             self._env = _made(self._factory, task)
             actions = _actions(self._env)
-            if actions != (self.n_actions, self._first_action):
+            if actions != (self.n_actions, self.first_action):
                 raise InputError(
                     f"env_or_factory must make environments of one action space: task {task} has {actions[0]} "
-                    f"actions from {actions[1]}, the first had {self.n_actions} from {self._first_action}"
+                    f"actions from {actions[1]}, the first had {self.n_actions} from {self.first_action}"
                 )
         self._task = task
 
@@ -159,12 +166,12 @@ class GymnasiumWorld:
         """Take action number `action` of [0, n_actions): (state, reward, terminated, truncated)."""
         if self._current is None:
             raise InputError("step must follow reset, got step first; call reset(task, seed)")
-        observation, reward, terminated, truncated, _ = self._env.step(self._first_action + int(action))
+        observation, reward, terminated, truncated, _ = self._env.step(self.first_action + int(action))
         if not isinstance(reward, SupportsFloat):
             raise InputError(
                 f"reward of {self.name} must be a number, got {type(reward).__name__}; correct its step"
             )
-        return self._seen(observation), float(reward), bool(terminated), bool(truncated)
+        return self.see(observation), float(reward), bool(terminated), bool(truncated)
 
     def context(self, state: Hashable, last_reward: float) -> Hashable:
         """Features of the current state; the observations of other states are not stored."""
@@ -178,7 +185,8 @@ class GymnasiumWorld:
         features = self._context(observation, last_reward) if self._with_reward else self._context(observation)
         return _require_hashable("context", features)
 
-    def _seen(self, observation: Any) -> Hashable:
+    def see(self, observation: Any) -> Hashable:
+        """The state of an observation, which is now the present one."""
         state = _require_hashable("state", self._state(observation)) if self._state else hashable(observation)
         self._current = observation, state
         return state

@@ -1,0 +1,4 @@
+"""`LongLivedAgent`: a life in tasks of anyone's Gymnasium environments, with types, policies and an action prior.
+
+Read in this order: `long_lived_agent`, `one_task`, `reuse`, `learners`, `experience`, `known_moves`, `moves`.
+"""

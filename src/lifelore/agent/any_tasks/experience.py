@@ -1,0 +1,219 @@
+"""What a long-lived agent has learnt in anyone's tasks, and its form as records of memory.
+
+Counts add up and the newest value of a policy's cell wins, so that robots can merge memories in any order. Types
+that nothing tells apart are joined when experience is read, never in memory.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
+from lifelore.action.priors.action_prior import VERSION, ActionPrior
+from lifelore.agent.any_tasks.moves import ONE, OutcomeCounts
+from lifelore.agent.any_tasks.policies import QTable, StoredPolicy, StoresItself, stored
+from lifelore.core.protocols import Record
+from lifelore.memory import Memory
+
+KIND = "life in tasks"
+HOPELESS = 0.1
+"""Share of the range of mean returns above the least one up to which a policy counts as worthless."""
+DATE_BITS = 32
+"""Bits of a task's context beside its date in a slot."""
+
+
+@dataclass(eq=False)
+class TypeExperience:
+    """What a type has shown.
+
+    Parameters
+    ----------
+    moves : OutcomeCounts
+    sightings : dict of (int, int) to float
+        Belief in the type at the end of tasks, by date and context.
+    returns : dict of str to (3,) float64
+        Number, sum and sum of squares of the returns of each policy, by name, in tasks of this type.
+    policy : QTable, StoredPolicy or callable, optional
+        Learnt in tasks of this type, under its name.
+    idle : int
+        Tasks in a row in which learning brought no gain.
+    """
+
+    moves: OutcomeCounts = field(default_factory=OutcomeCounts)
+    sightings: dict[tuple[int, int], float] = field(default_factory=dict)
+    returns: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    policy: Any = None
+    idle: int = 0
+
+
+class TaskNews(NamedTuple):
+    """What a task has taught.
+
+    belief : how much each type, by name, learns from the task
+    returns : of each policy, by name, that ran
+    prior : counts of useful actions
+    learner, policy : the type whose policy was learnt, by name, and the policy; None where none was
+    idle : tasks in a row in which exploring this policy brought no gain
+    fresh : last returns of a learner that began with nothing
+    """
+
+    date: int
+    context: int
+    belief: Mapping[str, float]
+    moves: OutcomeCounts
+    returns: Mapping[str, list[float]]
+    prior: ActionPrior
+    learner: str | None = None
+    policy: Any = None
+    idle: int = 0
+    fresh: Sequence[float] = ()
+
+
+class Experience:
+    """Types by name, the action prior, and how many tasks showed each cause.
+
+    Parameters
+    ----------
+    key : str
+        Meaning of states, actions and contexts.
+    n_actions : int
+    alpha0 : float
+        As of `ActionPrior`.
+    """
+
+    def __init__(self, key: str, n_actions: int, alpha0: float = 0.1) -> None:
+        self.key, self.n_actions = key, n_actions
+        self.types: dict[str, TypeExperience] = {}
+        self.prior = ActionPrior(n_actions, alpha0, f"{key}/prior")
+        self.causes = OutcomeCounts()
+        self.n_tasks = 0
+        self.fresh = np.zeros(2)  # number and sum of last returns of learners that began with nothing
+
+    # ---- reading -----------------------------------------------------------------------------------
+
+    @property
+    def contexts(self) -> list[int]:
+        """Codes of the contexts of tasks, sorted."""
+        return sorted({context for one in self.types.values() for _, context in one.sightings})
+
+    def is_hopeless(self, name: str) -> bool:
+        """Whether the policy of a type earns about the least that this life has seen: nothing can be lost."""
+        means = {
+            (type_, policy): sums[1] / sums[0]
+            for type_, one in self.types.items()
+            for policy, sums in one.returns.items()
+            if sums[0] > 0
+        }
+        low, high = min(means.values(), default=0.0), max(means.values(), default=0.0)
+        return means.get((name, name), low) <= low + HOPELESS * (high - low)
+
+    @property
+    def hope(self) -> float:
+        """Return that a learner from nothing usually reaches in the end; infinity where none was seen."""
+        return float(self.fresh[1] / self.fresh[0]) if self.fresh[0] else np.inf
+
+    # ---- learning ----------------------------------------------------------------------------------
+
+    def learn(self, news: TaskNews) -> list[Record]:
+        """Learn from a task; return the records by which memory adds it."""
+        records = [record for record in self._records(news) if len(record.slots)]
+        self.add(records)
+        if news.learner is not None:
+            # Policies that cannot be stored are kept as long as the agent lives.
+            self.types[news.learner].policy = news.policy
+        return records
+
+    def _records(self, news: TaskNews) -> Iterable[Record]:
+        for name, belief in news.belief.items():
+            yield _scaled(news.moves, belief).to_record(KIND, f"{self.key}/moves/{name}")
+            date = np.array([news.date << DATE_BITS | news.context], np.int64)
+            yield Record(KIND, f"{self.key}/sightings/{name}", 1, "add", date, _fixed([belief]))
+            for policy, values in news.returns.items():
+                sums = belief * np.array([len(values), np.sum(values), np.square(values).sum()])
+                key = f"{self.key}/returns/{name}/{policy}"
+                yield Record(KIND, key, 1, "add", np.arange(3), _fixed(sums))
+        if news.learner is not None:
+            idle = np.array([news.idle], np.int64)
+            yield Record(KIND, f"{self.key}/idle/{news.learner}", 1, "newest", np.zeros(1, np.int64), idle)
+            yield from self._policy_records(news.learner, news.policy)
+        if len(news.fresh):
+            sums = _fixed([len(news.fresh), np.sum(news.fresh)])
+            yield Record(KIND, f"{self.key}/fresh", 1, "add", np.arange(2), sums)
+        shown = OutcomeCounts()
+        for cause in news.moves.by_cause:
+            shown.add(cause, 0)
+        yield shown.to_record(KIND, f"{self.key}/causes")
+        yield Record(KIND, f"{self.key}/tasks", 1, "add", np.zeros(1, np.int64), np.ones(1, np.int64))
+        yield news.prior.to_record({"prior": "tasks", "means": self.key})
+
+    def _policy_records(self, name: str, policy: Any) -> Iterable[Record]:
+        if isinstance(policy, QTable):
+            before = self.types[name].policy if name in self.types else None
+            known = before if isinstance(before, QTable) else None
+            yield from policy.to_records(KIND, f"{self.key}/table/{name}", known)
+        elif isinstance(policy, StoresItself):
+            yield stored(policy, KIND, f"{self.key}/bytes/{name}")
+
+    def add(self, records: Iterable[Record]) -> None:
+        """Add records of this key; others are left out."""
+        for record in records:
+            part, _, rest = record.key.removeprefix(f"{self.key}/").partition("/")
+            if record.kind == PRIOR_KIND and record.key == self.prior.key:
+                self.prior.merge(ActionPrior.from_record(record, self.n_actions, self.prior.alpha0))
+            elif record.kind == KIND and record.key.startswith(f"{self.key}/"):
+                self._add(part, rest, record)
+
+    def _add(self, part: str, rest: str, record: Record) -> None:
+        name, _, policy = rest.partition("/")
+        values = record.values.tolist()
+        match part:
+            case "tasks":
+                self.n_tasks += values[0]
+            case "fresh":
+                self.fresh += record.values / ONE
+            case "causes":
+                self.causes.merge(OutcomeCounts.from_record(record))
+            case "moves":
+                self._type(name).moves.merge(OutcomeCounts.from_record(record))
+            case "sightings":
+                seen = self._type(name).sightings
+                for slot, value in zip(record.slots.tolist(), values, strict=True):
+                    when = divmod(slot, 1 << DATE_BITS)
+                    seen[when] = seen.get(when, 0.0) + value / ONE
+            case "returns":
+                sums = self._type(name).returns.setdefault(policy, np.zeros(3))
+                sums += record.values / ONE
+            case "idle":
+                self._type(name).idle = values[0]
+            case "table":
+                if not isinstance(self._type(name).policy, QTable):
+                    self._type(name).policy = QTable()
+                self._type(name).policy.update(record, self.n_actions)
+            case "bytes":
+                self._type(name).policy = StoredPolicy.from_record(record)
+
+    def _type(self, name: str) -> TypeExperience:
+        return self.types.setdefault(name, TypeExperience())
+
+    @classmethod
+    def recalled(cls, key: str, n_actions: int, memory: Memory, alpha0: float = 0.1) -> "Experience":
+        """What a memory holds under this key."""
+        made = cls(key, n_actions, alpha0)
+        keys = [(KIND, name, version) for name, version, _ in memory.keys(KIND) if name.startswith(f"{key}/")]
+        found = (memory.recall(*name) for name in [*keys, (PRIOR_KIND, made.prior.key, VERSION)])
+        made.add([record for record in found if record is not None])
+        return made
+
+
+def _scaled(moves: OutcomeCounts, weight: float) -> OutcomeCounts:
+    scaled = OutcomeCounts()
+    for cause, outcome, count in moves.items():
+        scaled.add(cause, outcome, weight * count)
+    return scaled
+
+
+def _fixed(values: Any) -> NDArray[np.int64]:
+    return np.rint(np.asarray(values, np.float64) * ONE).astype(np.int64)

@@ -1,0 +1,171 @@
+"""What the types of a life have shown of moves, and the law of the next outcome under each.
+
+In most causes types are alike, in some they differ. For each cause c with counts n_i of type i:
+
+    alike        outcomes of all types have one law: DM(Σ_i n_i)
+    apart        each type has its own: Π_i DM(n_i)
+    q_c          probability of *apart*, from both and the share ρ of such causes, which is learnt (EM)
+    P_i(o | c)   (1 − q_c) (Σ_j n_j + own + b) / … + q_c (n_i + own + b) / …
+
+DM is the Dirichlet-multinomial law of one pseudo-observation, spread over the outcomes that the cause has
+shown and one more; ``own`` are the outcomes of the present task. So a cause that a type has not shown is expected
+to be as in other types, as far as causes are usually alike.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import gammaln
+
+from lifelore.agent.any_tasks.moves import OutcomeCounts
+from lifelore.agent.any_tasks.novelty import log_odds
+
+Array = NDArray[np.float64]
+
+MOST_EFFECTS = 12
+"""Most outcomes of a cause that are told apart; the rest counts as never shown."""
+APART = (0.1, 10.0)
+"""Share ρ before anything was seen, and the number of causes that it counts as."""
+ALIKE = -1.0
+"""Log odds below which two types are joined: to keep one type as two costs less than to mix two in one."""
+ROUNDS = 20
+"""Rounds of expectation and maximisation for ρ."""
+
+
+class KnownMoves:
+    """Counts of outcomes by cause, of several types.
+
+    Causes and outcomes are numbered when they are read, so that memories of several robots merge in any order. The
+    last effect of each cause stands for all outcomes that no type has shown.
+
+    Parameters
+    ----------
+    types : sequence of OutcomeCounts
+
+    Attributes
+    ----------
+    counts : (n_types, n_causes, n_effects) float64
+    base : (n_causes, n_effects) float64
+        The pseudo-observation b.
+    """
+
+    def __init__(self, types: Sequence[OutcomeCounts]) -> None:
+        self.codes = sorted({cause for one in types for cause in one.by_cause})
+        self._places = {code: place for place, code in enumerate(self.codes)}
+        totals: list[dict[int, float]] = [{} for _ in self.codes]
+        for one in types:
+            for cause, outcome, count in one.items():
+                row = totals[self._places[cause]]
+                row[outcome] = row.get(outcome, 0.0) + count
+        self._effects = [_most(row) for row in totals]
+        n_effects = 1 + max((len(row) for row in self._effects), default=0)
+        self.counts = np.zeros((len(types), len(self.codes), n_effects))
+        for number, one in enumerate(types):
+            self.counts[number] = self.own(one, n_effects)
+        shown = np.array([len(row) for row in self._effects], np.int64)[:, None]
+        known = (np.arange(n_effects) < shown) | (np.arange(n_effects) == n_effects - 1)
+        self.base: Array = known / (shown + 1)
+
+    @property
+    def n_causes(self) -> int:
+        """Number of causes."""
+        return len(self.codes)
+
+    def place(self, cause: int, outcome: int) -> tuple[int, int] | None:
+        """Numbers of a cause and its effect, by their codes; None for a cause that no type has shown."""
+        place = self._places.get(cause)
+        return None if place is None else (place, self._effects[place].get(outcome, -1))
+
+    def own(self, moves: OutcomeCounts, n_effects: int | None = None) -> Array:
+        """The counts of moves, (n_causes, n_effects); those of unknown causes are left out."""
+        counts = np.zeros((self.n_causes, n_effects or self.counts.shape[2]))
+        for cause, outcome, count in moves.items():
+            found = self.place(cause, outcome)
+            if found is not None:
+                counts[found] += count
+        return counts
+
+    # ---- laws --------------------------------------------------------------------------------------
+
+    @cached_property
+    def pooled(self) -> Array:
+        """Counts of all types together, (n_causes, n_effects)."""
+        return self.counts.sum(axis=0)
+
+    @cached_property
+    def apart(self) -> Array:
+        """q, the probability that types differ in a cause, (n_causes,)."""
+        evidence = self._log_dm(self.counts).sum(axis=0) - self._log_dm(self.pooled)
+        several = (self.counts.any(axis=2)).sum(axis=0) > 1
+        share = APART[0]
+        for _ in range(ROUNDS):
+            found = _sigmoid(evidence + np.log(share / (1 - share)))
+            share = (found[several].sum() + APART[0] * APART[1]) / (several.sum() + APART[1])
+        return _sigmoid(evidence + np.log(share / (1 - share)))
+
+    @cached_property
+    def laws(self) -> Array:
+        """P(effect | cause; type) before a task has shown anything, (n_types, n_causes, n_effects)."""
+        return self._law(np.arange(self.n_causes), np.zeros(self.base.shape))
+
+    def law(self, cause: int, own: Array) -> Array:
+        """P(effect | cause; type), (n_types, n_effects), after the task's own counts (n_effects,) of the cause."""
+        return self._law(np.array([cause]), own[None])[:, 0]
+
+    def _law(self, causes: NDArray[np.int64], own: Array) -> Array:
+        alike = self.pooled[causes] + own + self.base[causes]
+        each = self.counts[:, causes] + own + self.base[causes]
+        q = self.apart[causes, None]
+        return (1 - q) * alike / alike.sum(axis=1, keepdims=True) + q * each / each.sum(axis=2, keepdims=True)
+
+    # ---- types that are one, or another -----------------------------------------------------------------
+
+    def evidence_of_another(self, type_: int, moves: OutcomeCounts) -> float:
+        """Log odds that the moves of a task are of a type of its own, and not of a known one."""
+        own = self.own(moves)
+        alike = self._log_dm(self.pooled + own) - self._log_dm(self.pooled)
+        each = self._log_dm(self.counts[type_] + own) - self._log_dm(self.counts[type_])
+        known = np.logaddexp(np.log1p(-self.apart) + alike, np.log(self.apart) + each)
+        return float(log_odds(self._log_dm(own) - known))
+
+    def joined(self) -> list[list[int]]:
+        """Groups of types that nothing tells apart, by number; each type is in one."""
+        groups = [[number] for number in range(len(self.counts))]
+        sums = list(self.counts)
+        pairs = {(i, j): self._apart(sums[i], sums[j]) for j in range(len(sums)) for i in range(j)}
+        while pairs:
+            i, j = min(pairs, key=pairs.__getitem__)
+            if pairs[i, j] >= ALIKE:
+                break
+            groups[i] += groups[j]
+            groups[j] = []
+            sums[i] = sums[i] + sums[j]
+            pairs = {
+                pair: self._apart(sums[pair[0]], sums[pair[1]]) if i in pair else found
+                for pair, found in pairs.items()
+                if j not in pair
+            }
+        return [sorted(group) for group in groups if group]
+
+    def _apart(self, first: Array, second: Array) -> float:
+        """Log odds that counts (n_causes, n_effects) are of two types and not of one."""
+        common = first.any(axis=1) & second.any(axis=1)
+        return float(log_odds((self._log_dm(first) + self._log_dm(second) - self._log_dm(first + second))[common]))
+
+    def _log_dm(self, counts: Array) -> Array:
+        """Log probability of sequences with counts (..., n_causes, n_effects), (..., n_causes)."""
+        base = np.where(self.base > 0, self.base, 1.0)
+        gain = np.where(self.base > 0, gammaln(base + counts) - gammaln(base), 0.0).sum(axis=-1)
+        return gain - gammaln(1 + counts.sum(axis=-1))
+
+
+def _most(row: Mapping[int, float]) -> dict[int, int]:
+    """Numbers of the most counted outcomes, in the order of their codes."""
+    kept = sorted(row, key=lambda outcome: (-row[outcome], outcome))[:MOST_EFFECTS]
+    return {outcome: number for number, outcome in enumerate(sorted(kept))}
+
+
+def _sigmoid(value: Array) -> Array:
+    return 1 / (1 + np.exp(-np.clip(value, -20, 20)))

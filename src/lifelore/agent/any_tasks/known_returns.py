@@ -1,0 +1,61 @@
+"""Returns of each known policy on each known type; what never ran is guessed, and known to be a guess."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.any_tasks.experience import Experience
+from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
+
+Array = NDArray[np.float64]
+
+LEAST_DEVIATION = 1e-3
+"""Least deviation of returns, as a share of the largest size of a mean."""
+GUESS = 1.0
+"""Number of returns that a guess counts as."""
+
+
+def known_returns(
+    experience: Experience, types: Sequence[Sequence[str]], policies: Sequence[str]
+) -> GaussianOutcomes:
+    """Normal returns of each policy on each type.
+
+    A pair that never ran is guessed as the policy's mean on other types, but at most as the least mean of the
+    type's own policies: a policy that was learnt for another type is hardly better. All pairs share one deviation.
+
+    Parameters
+    ----------
+    experience : Experience
+    types : sequence of sequences of str
+        The members of each type, by name.
+    policies : sequence of str
+    """
+    sums = np.array([[_sums(experience, members, policy) for policy in policies] for members in types])
+    number, total, squares = np.moveaxis(sums, -1, 0)
+    ran = number > 0
+    mean = np.divide(total, number, out=np.zeros_like(total), where=ran)
+    within = np.maximum(squares - number * mean**2, 0.0).sum() / max(number.sum() - ran.sum(), 1.0)
+    scale = np.abs(mean[ran]).max(initial=1e-6)
+    own = np.array([[policy in members for policy in policies] for members in types])
+    guess = np.minimum(_mean_of(mean, ran & ~own, 0)[None], _least_of(mean, ran & own)[:, None])
+    number = np.where(ran, number, GUESS)
+    return GaussianOutcomes(np.where(ran, mean, guess), max(np.sqrt(within), LEAST_DEVIATION * scale), number)
+
+
+def _sums(experience: Experience, members: Sequence[str], policy: str) -> Array:
+    rows = (experience.types[name].returns.get(policy) for name in members)
+    return sum((row for row in rows if row is not None), start=np.zeros(3))
+
+
+def _mean_of(values: Array, chosen: NDArray[np.bool_], axis: int) -> Array:
+    """Means of the chosen values along an axis; of all chosen values, or 0, where there are none."""
+    number = chosen.sum(axis=axis)
+    usual = float(values[chosen].mean()) if chosen.any() else 0.0
+    return np.where(number > 0, np.where(chosen, values, 0.0).sum(axis=axis) / np.maximum(number, 1), usual)
+
+
+def _least_of(values: Array, chosen: NDArray[np.bool_]) -> Array:
+    """The least chosen value of each row; the least of all, or 0, where a row has none."""
+    least = np.where(chosen, values, np.inf).min(axis=1)
+    return np.where(np.isfinite(least), least, least.min() if np.isfinite(least.min()) else 0.0)

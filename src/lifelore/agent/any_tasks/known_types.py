@@ -1,0 +1,86 @@
+"""The known types of a life as recognition reads them: alike ones joined, with what they have shown and where."""
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.any_tasks.experience import Experience
+from lifelore.agent.any_tasks.known_moves import KnownMoves
+from lifelore.agent.any_tasks.moves import OutcomeCounts
+from lifelore.agent.long_lived.type_prior import TypePrior
+
+Array = NDArray[np.float64]
+
+
+class JoinedType(NamedTuple):
+    """Types that nothing tells apart.
+
+    members : their names in memory
+    """
+
+    members: tuple[str, ...]
+
+    @property
+    def name(self) -> str:
+        """The members' names."""
+        return "+".join(self.members)
+
+
+class KnownTypes:
+    """The known types.
+
+    Parameters
+    ----------
+    experience : Experience
+        Read once.
+
+    Attributes
+    ----------
+    types : list of JoinedType
+    moves : KnownMoves
+        Of these types, in their order.
+    frequency : (n_causes,) float64
+        Number of tasks that have shown each cause.
+    """
+
+    def __init__(self, experience: Experience) -> None:
+        self.experience = experience
+        names = sorted(experience.types)
+        groups = KnownMoves([experience.types[name].moves for name in names]).joined()
+        self.types = [JoinedType(tuple(names[number] for number in group)) for group in groups]
+        self.moves = KnownMoves([self._moves(one.members) for one in self.types])
+        self.frequency = np.array([experience.causes.total(code) for code in self.moves.codes])
+
+    def __len__(self) -> int:
+        return len(self.types)
+
+    def _moves(self, members: Sequence[str]) -> OutcomeCounts:
+        if len(members) == 1:
+            return self.experience.types[members[0]].moves
+        joined = OutcomeCounts()
+        for name in members:
+            joined.merge(self.experience.types[name].moves)
+        return joined
+
+    def type_prior(self) -> TypePrior:
+        """The prior over types by context and date, learnt from the sightings."""
+        prior = TypePrior(np.full(len(self), 1 / len(self)))
+        for (date, context), belief in self.sighted().items():
+            prior.count(context, belief, date)
+        return prior
+
+    def sighted(self) -> dict[tuple[int, int], Array]:
+        """Belief in each type at the end of tasks, (n_types,), by date and context in their order."""
+        return self._sighted
+
+    @cached_property
+    def _sighted(self) -> dict[tuple[int, int], Array]:
+        rows: dict[tuple[int, int], Array] = {}
+        for number, one in enumerate(self.types):
+            for name in one.members:
+                for when, belief in self.experience.types[name].sightings.items():
+                    rows.setdefault(when, np.zeros(len(self)))[number] += belief
+        return {when: rows[when] for when in sorted(rows)}

@@ -1,0 +1,349 @@
+"""`LongLivedAgent`: an agent that lives in tasks of anyone's Gymnasium environments and becomes good at them."""
+
+import os
+import uuid
+from collections.abc import Callable, Hashable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from threading import Event
+from types import TracebackType
+from typing import Any, NamedTuple, Self
+
+import gymnasium
+
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.agent.any_tasks.experience import Experience
+from lifelore.agent.any_tasks.known_types import KnownTypes
+from lifelore.agent.any_tasks.learners import Learner, checked_learner
+from lifelore.agent.any_tasks.moves import MoveCodes
+from lifelore.agent.any_tasks.one_task import AGENTS, OneTask, TaskSettings
+from lifelore.agent.any_tasks.reuse import SIGNALS
+from lifelore.agent.any_tasks.task_result import TaskResult
+from lifelore.agent.external_world.context_code import context_code
+from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld, ResetBy
+from lifelore.agent.external_world.task import GuidanceSettings
+from lifelore.agent.long_lived.curiosity import curious_contexts
+from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.core.learning.q_learner import QLearning
+from lifelore.memory import open_memory
+
+CONTEXT_BITS = 31
+"""Bits of the code of a task's context; with a thousand contexts, two share a code in 0.02 % of lives."""
+
+
+class TypeSummary(NamedTuple):
+    """A known type.
+
+    tasks : number of tasks behind it, by belief
+    contexts : number of tasks by context, the most frequent first; a context of another process is its code
+    returns : mean return of each policy that ran in its tasks, by name
+    """
+
+    tasks: float
+    contexts: dict[Any, float]
+    returns: dict[str, float]
+
+
+class CuriousContext(NamedTuple):
+    """A context that the agent would rather meet next, see `lifelore.agent.long_lived.curiosity`.
+
+    entropy : of the types that the agent expects there, nats
+    frequency : share of all tasks
+    unsure : part of the entropy that more tasks would remove, nats
+    """
+
+    context: Any
+    entropy: float
+    frequency: float
+    unsure: float
+
+
+class LongLivedAgent:
+    """An agent over policies for tasks of your own environments (thesis chapter 5).
+
+    A task is an environment whose hidden type stays for its episodes, in a context that the agent sees. The agent
+    expects the types that the context usually has, runs the policy that is worth most, follows each move by Bayes'
+    rule, notices when no known type fits, learns a policy then, and remembers all of it.
+
+    Parameters
+    ----------
+    key : str
+        Meaning of states, actions and features; lives of one key share what they learn.
+    memory : str or Path, optional
+        SQLite file or ``postgresql://`` URL, one transaction a task. None: what is learnt ends with the agent.
+    state : callable, optional
+        ``state(observation)`` to a hashable state over which policies are learnt. Default: the observation.
+    features : callable, optional
+        ``features(observation)`` or ``features(observation, last_reward)`` to hashable features that the action
+        prior is conditioned on. Default: the state.
+    learner : {"q", "model", "textbook"} or callable
+        Q-learning that replays each episode once, Dyna, plain Q-learning; or a function
+        ``learner(env, prior, start)``, which plays episodes of ``env`` and returns a policy, from observation to
+        action. ``start`` is the policy to start from, or None. Memory keeps the policy if it has ``to_bytes()``
+        and the learner ``from_bytes(content)``.
+    episodes, max_steps : int
+        Of a task, and of an episode; ≥ 1.
+    discount : float
+        γ in [0, 1].
+    learning_rate, epsilon : float
+        First learning rate of a move, and rate of exploration where a policy is learnt; in [0, 1].
+    signals : {"moves", "returns"}
+        What tells types apart: each (state, action, reward, next state) within an episode; or the returns of
+        episodes, where states are met too rarely.
+    false_alarm : float
+        Probability of an alarm in a task of a known type, in (0, 1).
+    agent : str
+        A name of `lifelore.agent.any_tasks.one_task.AGENTS`: ``"full"``, or an ablation.
+    robot : str
+        Name of the robot in memory.
+    reset_by : {"episode", "task"}
+        Whether the environment is reset with another seed in each episode, or the same in all of a task.
+    seed : int
+        Draws the seeds of the episodes and the agent's choices.
+
+    Attributes
+    ----------
+    prior : ActionPrior
+        Useful actions by features.
+
+    Raises
+    ------
+    InputError, NotFoundError
+        An argument breaks its rule.
+
+    Examples
+    --------
+    >>> import gymnasium
+    >>> agent = LongLivedAgent(key="lake", episodes=5, max_steps=50)
+    >>> lake = gymnasium.make("FrozenLake-v1", is_slippery=False)
+    >>> first, second = agent.live(lake, context="north"), agent.live(lake, context="north")
+    >>> first.new, second.new, second.type == first.type
+    (True, False, True)
+    """
+
+    def __init__(
+        self,
+        *,
+        key: str,
+        memory: str | Path | None = None,
+        state: Callable[[Any], Hashable] | None = None,
+        features: Callable[..., Hashable] | None = None,
+        learner: str | Learner = "q",
+        episodes: int = 30,
+        max_steps: int = 1000,
+        discount: float = 0.95,
+        learning_rate: float = 0.5,
+        epsilon: float = 0.1,
+        signals: str = "moves",
+        false_alarm: float = 0.05,
+        agent: str = "full",
+        robot: str = "robot",
+        reset_by: ResetBy = "episode",
+        seed: int = 0,
+    ) -> None:
+        if agent not in AGENTS:
+            raise NotFoundError(f"agent must be one of {', '.join(AGENTS)}, got {agent!r}")
+        if signals not in SIGNALS:
+            raise NotFoundError(f"signals must be {' or '.join(SIGNALS)}, got {signals!r}")
+        for name, value, least in (("discount", discount, 0.0), ("false_alarm", false_alarm, 1e-4)):
+            if not least <= value <= 1 or (name == "false_alarm" and value == 1):
+                raise InputError(f"{name} must lie between {least:g} and 1, got {value}")
+        for name, value in {"key": key, "robot": robot}.items():
+            if not value.strip() or "/" in value:
+                raise InputError(f"{name} must be a name without '/', got {value!r}")
+        self.settings = TaskSettings(
+            QLearning(episodes, max_steps, learning_rate, epsilon, 1.0, epsilon),
+            GuidanceSettings(form="support", ties="prior"),
+            discount,
+            checked_learner(learner),
+            signals,
+            false_alarm,
+        )
+        self.key, self.robot, self.seed, self.abilities = key, robot, seed, AGENTS[agent]
+        self._state, self._features = state, features
+        self._reset_by: ResetBy = reset_by
+        self._codes, self._contexts = MoveCodes(), dict[int, Hashable]()
+        self._experience: Experience | None = None
+        self._memory = None if memory is None else open_memory(memory)
+        self._revision = ""
+        self._process, self._lived = f"{os.getpid()}-{uuid.uuid4().hex[:12]}", 0
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the memory; all tasks are stored already."""
+        if self._memory is not None:
+            self._memory.close()
+
+    # ---- live --------------------------------------------------------------------------------------
+
+    def live(self, env: gymnasium.Env, context: Hashable = None, *, stop: Event | None = None) -> TaskResult:
+        """Live one task: `episodes` episodes of an environment whose hidden type stays.
+
+        Parameters
+        ----------
+        env : gymnasium.Env
+            With discrete actions, the same number in all tasks; not closed.
+        context : hashable, optional
+            What is seen of the task beforehand, such as a place, a day, or a customer's name.
+        stop : threading.Event, optional
+            Set it to drop the task.
+
+        Raises
+        ------
+        InputError
+            The environment has other actions, a state is not hashable, or a reward is not finite.
+        StoreError
+            Memory cannot store the task, or another process has taken it over.
+        Stopped
+            The stop event was set; nothing of the task is kept.
+        """
+        world = self._world(env)
+        code = self._context_code(context)
+        with self._task_number() as number:
+            experience = self._recalled(world.n_actions)
+            task = OneTask(
+                experience, world, self._codes, self.settings, self.abilities, TaskResult(number, context), code,
+                self.seed, stop or Event(),
+            )  # fmt: skip
+            news = task.live(f"{self.robot}.{number}")
+            records = [] if news is None else experience.learn(news)
+            if self._memory is not None and not self._memory.contribute(
+                self.robot,
+                records,
+                process=self._process,
+                seq=self._lived,
+                task=self._document(task),
+                taken=number,
+            ):
+                self._experience = None
+                raise StoreError(f"task {number} took so long that another process took it over; live it again")
+        if self._memory is not None:
+            self._revision = self._memory.revision()
+        self._lived += 1
+        return task.result
+
+    def informed(self, env: gymnasium.Env, type: str, *, episodes: int | None = None) -> TaskResult:
+        """Live the next task as if somebody told its type, for scoring; nothing is learnt or stored.
+
+        Parameters
+        ----------
+        env : gymnasium.Env
+        type : str
+            Name of a known type.
+        episodes : int, optional
+            Number of episodes to play, ≥ 1; by default those of a task.
+
+        Raises
+        ------
+        NotFoundError
+            No known type has this name.
+        """
+        world = self._world(env)
+        experience = self._recalled(world.n_actions)
+        if type not in experience.types:
+            raise NotFoundError(f"type must be one of {', '.join(experience.types)}, got {type!r}")
+        learning = self.settings.learning
+        settings = replace(self.settings, learning=replace(learning, episodes=episodes or learning.episodes))
+        task = OneTask(
+            experience, world, self._codes, settings, self.abilities, TaskResult(self._lived, None), 0, self.seed,
+            Event(), type,
+        )  # fmt: skip
+        task.live("")
+        return task.result
+
+    def _world(self, env: gymnasium.Env) -> GymnasiumWorld:
+        if not isinstance(env, gymnasium.Env):
+            raise InputError(f"env must be a gymnasium.Env, got {type(env).__name__}; pass gymnasium.make(...)")
+        return GymnasiumWorld(env, self._features, self._state, seed=self.seed, reset_by=self._reset_by)
+
+    def _context_code(self, context: Hashable) -> int:
+        code = context_code(context, CONTEXT_BITS)
+        if self._contexts.setdefault(code, context) != context:
+            raise InputError(f"contexts {self._contexts[code]!r} and {context!r} share a code; rename one")
+        return code
+
+    @contextmanager
+    def _task_number(self) -> Iterator[int]:
+        """The number of a task that no other process of this robot lives."""
+        if self._memory is None:
+            yield self._lived
+            return
+        with self._memory.taken_task(self.robot, process=self._process) as number:
+            yield number
+
+    def _recalled(self, n_actions: int) -> Experience:
+        """What is known, read again where another process has changed the memory."""
+        if self._memory is not None and (self._experience is None or self._memory.revision() != self._revision):
+            self._experience = Experience.recalled(self.key, n_actions, self._memory)
+            self._revision = self._memory.revision()
+        if self._experience is None:
+            self._experience = Experience(self.key, n_actions)
+        if self._experience.n_actions != n_actions:
+            raise InputError(
+                f"env must have the {self._experience.n_actions} actions of the tasks before, got {n_actions}"
+            )
+        return self._experience
+
+    def _document(self, task: OneTask) -> dict[str, Any]:
+        return {"key": self.key, "world": task.world.name, **task.result.to_dict()}
+
+    # ---- what is known -----------------------------------------------------------------------------
+
+    @property
+    def types(self) -> dict[str, TypeSummary]:
+        """The known types by name; types that nothing tells apart are joined."""
+        experience = self._experience
+        if experience is None:
+            return {}
+        return {
+            one.name: self._summary([experience.types[name] for name in one.members])
+            for one in KnownTypes(experience).types
+        }
+
+    @property
+    def policies(self) -> tuple[str, ...]:
+        """Names of the known policies: each has the name of the type that it was learnt for."""
+        types = {} if self._experience is None else self._experience.types
+        return tuple(name for name in sorted(types) if types[name].policy is not None)
+
+    @property
+    def prior(self) -> ActionPrior:
+        """The action prior, by code of the features."""
+        if self._experience is None:
+            raise InputError("prior needs a task that was lived; live through one first")
+        return self._experience.prior
+
+    def curiosity(self) -> list[CuriousContext]:
+        """Contexts by how much the agent would rather meet them next: entropy × frequency, the largest first."""
+        if self._experience is None:
+            return []
+        return [
+            CuriousContext(self._label(one.context), one.entropy, one.frequency, one.unsure)
+            for one in curious_contexts(KnownTypes(self._experience))  # pyright: ignore[reportArgumentType]
+        ]
+
+    def explain(self, result: TaskResult) -> str:
+        """Why the agent acted as it did in a task, in a few lines."""
+        return result.explain()
+
+    def _summary(self, members: list[Any]) -> TypeSummary:
+        contexts, sums = dict[Any, float](), dict[str, Any]()
+        for one in members:
+            for (_, context), belief in one.sightings.items():
+                contexts[self._label(context)] = contexts.get(self._label(context), 0.0) + belief
+            for policy, row in one.returns.items():
+                sums[policy] = sums.get(policy, 0.0) + row
+        means = {policy: float(row[1] / row[0]) for policy, row in sorted(sums.items())}
+        often = dict(sorted(contexts.items(), key=lambda pair: -pair[1]))
+        return TypeSummary(sum(contexts.values()), often, means)
+
+    def _label(self, code: int) -> Any:
+        return self._contexts.get(code, code)

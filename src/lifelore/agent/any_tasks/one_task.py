@@ -1,0 +1,390 @@
+"""One task of an agent that lives in anyone's environments, from top to bottom.
+
+β ← prior over types, given the context and the date                                   recognise
+for each episode:
+    π ← the known policy that is worth most under β                                    reuse
+    until the episode ends:
+        act by π, or by the learner; each move teaches what acted
+        β, alarm ← the outcome of the move                                             notice
+    explore, if no type fits or the policy of the type that fits still improves        learn
+count moves, returns, useful actions, and the belief in this context                   remember
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from threading import Event
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.agent.any_tasks.contest import Contest
+from lifelore.agent.any_tasks.experience import Experience, TaskNews
+from lifelore.agent.any_tasks.known_types import KnownTypes
+from lifelore.agent.any_tasks.learners import FixedPolicy, Player, TableLearner
+from lifelore.agent.any_tasks.moves import MoveCodes, OutcomeCounts, Step, counted
+from lifelore.agent.any_tasks.policies import QTable, StoredPolicy
+from lifelore.agent.any_tasks.recorded_env import RecordedEnv
+from lifelore.agent.any_tasks.reuse import TaskReuse
+from lifelore.agent.any_tasks.task_result import LEARNER, TaskResult
+from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
+from lifelore.agent.external_world.task import GuidanceSettings
+from lifelore.agent.live.task_result import Stopped
+from lifelore.core.errors import InputError
+from lifelore.core.learning.q_learner import QLearning
+from lifelore.core.streams import stream
+
+NOWHERE = -1
+"""A context that no task has."""
+STOP_CHECK = 200
+"""Steps between checks of the stop event."""
+SURE = 0.9
+"""Least belief in a type whose policy a task goes on to learn."""
+PATIENCE = 3
+"""Part of a task's episodes for which one that learns from nothing may play on hope."""
+SHORT = 2.0
+"""Deviations by which returns fall short of what a policy usually gets, from where the task is worth learning."""
+SETTLED = 3
+"""Tasks in a row without a gain after which a policy is no longer explored."""
+LEAST_FRESH = 6
+"""Episodes from which on the end of learning from nothing counts as what it reaches."""
+STRANGE = 0.1
+"""Share of steps in states that a policy does not know, above which it is explored again."""
+
+
+class Abilities(NamedTuple):
+    """Which parts of the agent work; ablations switch them off.
+
+    prior : the action prior guides exploration
+    reuse : types and their policies are remembered and reused
+    context : the context of a task tells which types to expect
+    memory : anything is carried from task to task
+    learner : name of a learner in place of the agent's own
+    """
+
+    prior: bool = True
+    reuse: bool = True
+    context: bool = True
+    memory: bool = True
+    learner: str | None = None
+
+
+AGENTS: Mapping[str, Abilities] = {
+    "full": Abilities(),
+    "no-prior": Abilities(prior=False),
+    "no-reuse": Abilities(reuse=False),
+    "no-context": Abilities(context=False),
+    "scratch": Abilities(prior=False, reuse=False, memory=False),
+    "textbook": Abilities(prior=False, reuse=False, memory=False, learner="textbook"),
+}
+"""The agent, its ablations, and a textbook's Q-learning with ε = 0.1 and no past."""
+
+
+@dataclass(frozen=True)
+class TaskSettings:
+    """How a task is lived; the fields as the arguments of `LongLivedAgent`."""
+
+    learning: QLearning
+    guidance: GuidanceSettings
+    discount: float
+    learner: Any
+    signals: str
+    false_alarm: float
+
+
+class OneTask:
+    """A task in progress; `live` lives it.
+
+    Parameters
+    ----------
+    experience : Experience
+        Only read.
+    world : GymnasiumWorld
+        Its hidden type stays.
+    codes : MoveCodes
+    settings : TaskSettings
+    abilities : Abilities
+    result : TaskResult
+        Filled in.
+    context, seed : int
+        Code of the task's context, and the agent's seed.
+    stop : threading.Event
+        Set it to drop the task: `live` raises `Stopped`.
+    given : str, optional
+        The type, if it is told: nothing is recognised and no alarm is raised.
+    """
+
+    def __init__(
+        self,
+        experience: Experience,
+        world: GymnasiumWorld,
+        codes: MoveCodes,
+        settings: TaskSettings,
+        abilities: Abilities,
+        result: TaskResult,
+        context: int,
+        seed: int,
+        stop: Event,
+        given: str | None = None,
+    ) -> None:
+        self.experience, self.world, self.codes, self.settings = experience, world, codes, settings
+        self.abilities, self.result, self.context, self.seed = abilities, result, context, seed
+        self.stop, self.given = stop, given
+        self.generator = stream(seed, "task", result.number, "own")
+        self.reuse: TaskReuse | None = None
+        self.players: dict[
+            str, Player
+        ] = {}  # policies that ran, by name; each learns from the moves that it makes
+        self.learner: Player | None = None  # explores, once the task is worth learning
+        self.goes_on_with: str | None = None  # whose policy the learner goes on with
+        self.steps: list[Step] = []
+        self.ran: dict[str, list[float]] = {}  # returns of policies that ran from begin to end of an episode
+        self.strange = 0  # steps in states that what acted did not know
+
+    def live(self, name: str) -> TaskNews | None:
+        """Live the task; `name` is that of the new type, if it has one."""
+        self.recognise()
+        while len(self.result.returns) < self.settings.learning.episodes:
+            if self.learner is None and self.worth_learning():
+                self.begin_learning()
+            self.live_episode()
+        return self.remember(name)
+
+    # ---- recognise ---------------------------------------------------------------------------------
+
+    def recognise(self) -> None:
+        """Which types does this context usually have?"""
+        experience, settings = self.experience, self.settings
+        if not self.abilities.reuse or not any(one.policy is not None for one in experience.types.values()):
+            return
+        known = KnownTypes(experience)
+        prior = known.type_prior().prior(self.context if self.abilities.context else NOWHERE, self.result.number)
+        if self.given is not None:
+            prior = np.array([float(self.given in one.members) for one in known.types])
+        self.reuse = TaskReuse(
+            experience,
+            known,
+            prior,
+            settings.signals,
+            settings.false_alarm,
+            settings.learning.episodes,
+            self.seed,
+        )
+        self.result.prior = self.reuse.by_name(prior)
+
+    @property
+    def alarmed(self) -> bool:
+        """Whether no known type fits."""
+        return self.reuse is not None and self.given is None and self.reuse.alarmed
+
+    # ---- reuse, and notice -------------------------------------------------------------------------
+
+    def live_episode(self) -> None:
+        """Play an episode by the learner, or by the policy that is worth most; take in each move."""
+        number = self.result.number
+        seed = int(stream(self.seed, "task", number, "world", len(self.result.returns)).integers(2**31))
+        began = self.reuse.begin_episode() if self.learner is None and self.reuse is not None else LEARNER
+        state, reward, steps, ended, whole = self.world.reset(number, seed), 0.0, list[Step](), False, True
+        for count in range(self.settings.learning.max_steps):
+            if count % STOP_CHECK == 0 and self.stop.is_set():
+                raise Stopped
+            code, context = self.codes.state(state), self.codes.states[self.world.context(state, reward)]
+            self.strange += not self.running.knows(code)
+            action = self.running.act(code, context, explore=self.learner is not None)
+            state, reward, ended, truncated = self.world.step(action)
+            if not math.isfinite(reward):
+                raise InputError(f"reward must be a finite number, got {reward} for action {action}; correct step")
+            steps.append(Step(code, context, action, reward, self.codes.state(state), ended))
+            self.take_in(steps[-1])
+            whole = whole and (began == LEARNER or (self.learner is None and self.policy == began))
+            if ended or truncated:
+                break
+        earned = sum(self.settings.discount**place * step.reward for place, step in enumerate(steps))
+        self.running.end_episode(steps, earned, ended)
+        self.end_episode(steps, earned, began, whole)
+
+    @property
+    def policy(self) -> str | None:
+        """The policy in reuse, by name."""
+        return None if self.reuse is None else self.reuse.policy
+
+    @property
+    def running(self) -> Player:
+        """What acts now: the learner, or the policy in reuse."""
+        return self.learner if self.learner is not None else self.player(str(self.policy))
+
+    def take_in(self, step: Step) -> None:
+        """Learn from a move: its value, the belief in types, and whether any known type fits."""
+        self.running.observe(step)
+        if self.reuse is not None:
+            self.reuse.observe(self.codes.cause(step.state, step.action), self.codes.outcome(step))
+            if self.learner is None and self.alarmed and not callable(self.settings.learner):
+                self.begin_learning()
+
+    def end_episode(self, steps: list[Step], earned: float, began: str, whole: bool) -> None:
+        """Note what an episode has shown."""
+        result = self.result
+        self.steps += steps
+        if whole and began != LEARNER:
+            self.ran.setdefault(began, []).append(earned)
+        if self.reuse is not None:
+            self.reuse.end_episode(began if whole and began != LEARNER else None, earned, began != LEARNER)
+            result.beliefs.append(self.reuse.by_name(self.reuse.belief))
+        if self.alarmed and not result.alarm:
+            result.alarm, result.alarm_episode = True, len(result.returns)
+        result.returns.append(earned)
+        result.policies.append(began)
+
+    # ---- learn -------------------------------------------------------------------------------------
+
+    def worth_learning(self) -> bool:
+        """Whether no type fits, or the policy of the type that surely fits still improves."""
+        if self.reuse is None or self.alarmed or self.reuse.shortfall > SHORT:
+            return True
+        if not self.result.returns or self.reuse.belief.max() < SURE:
+            return False
+        own = self.reuse.own_policy()
+        strange = self.strange > STRANGE * max(len(self.steps), 1)
+        return own is not None and (self.experience.types[own].idle < SETTLED or strange)
+
+    def begin_learning(self) -> None:
+        """Explore from here on: the policy that still improves, or one of its own from the best reused policy."""
+        surely = self.reuse is not None and not self.alarmed and self.reuse.belief.max() >= SURE
+        own = self.reuse.own_policy() if self.reuse is not None and surely else None
+        best = max(self.ran, key=lambda name: np.mean(self.ran[name]), default=self.policy)
+        start, self.goes_on_with = own or best, own
+        if callable(self.settings.learner) and self.abilities.learner is None:
+            self.learner = self.taught(self.settings.learner, None if start is None else self.known_policy(start))
+            return
+        fresh = self.table(None, None)
+        fresh.take_over(self.steps)
+        if start is None:
+            self.learner = fresh
+            return
+        seeded = self.player(start)
+        if own is None:
+            seeded = self.table(self.experience.types[start].policy, None)
+            seeded.take_over(self.steps)
+        patience = self.settings.learning.episodes // PATIENCE
+        self.learner = Contest(seeded, fresh, self.experience.hope, patience)
+
+    def player(self, name: str) -> Player:
+        """The policy of a name, which learns in this task from the moves that it makes."""
+        if name not in self.players:
+            known = self.experience.types[name]
+            is_table = isinstance(known.policy, QTable)
+            self.players[name] = (
+                self.table(known.policy, known.moves) if is_table else self.fixed(self.known_policy(name))
+            )
+        return self.players[name]
+
+    def table(self, start: QTable | None, moves: OutcomeCounts | None) -> TableLearner:
+        """A learner by table that starts from a policy, and from what its type has shown before."""
+        settings, prior = self.settings, self.experience.prior if self.abilities.prior else None
+        own = self.abilities.learner or (settings.learner if isinstance(settings.learner, str) else "q")
+
+        def met(state: int, action: int) -> float:
+            return 0.0 if moves is None else moves.total(self.codes.cause(state, action))
+
+        return TableLearner(
+            own, self.experience.n_actions, prior, settings.learning, settings.discount, settings.guidance,
+            self.generator, start, met,
+        )  # fmt: skip
+
+    def taught(self, learner: Callable[..., Any], start: Any) -> FixedPolicy:
+        """The policy that the user's learner makes; what it plays counts as episodes of the task."""
+        played: list[tuple[list[Step], float, bool]] = []
+
+        def record(steps: list[Step], earned: float, ended: bool) -> None:
+            played.append((steps, earned, ended))
+            self.end_episode(steps, earned, LEARNER, whole=False)
+
+        env = RecordedEnv(self.world, self.codes, self.settings.discount, record)
+        made = self.fixed(learner(env, self.experience.prior, start))
+        for steps, earned, ended in played:
+            made.end_episode(steps, earned, ended)
+        return made
+
+    def fixed(self, policy: Callable[[Any], int]) -> FixedPolicy:
+        """A policy of the user's learner."""
+        world = self.world
+        return FixedPolicy(policy, lambda: world.observation, world.first_action, self.experience.n_actions)
+
+    def known_policy(self, name: str) -> Any:
+        """A known policy by name, made again by the user's learner where memory holds its bytes."""
+        policy = self.experience.types[name].policy
+        if isinstance(policy, StoredPolicy):
+            read = getattr(self.settings.learner, "from_bytes", None)
+            if read is None:
+                raise InputError(
+                    f"policy {name!r} is stored as bytes; pass a learner with from_bytes(content) -> policy"
+                )
+            policy = self.experience.types[name].policy = read(policy.content)
+        return policy
+
+    # ---- remember ----------------------------------------------------------------------------------
+
+    def remember(self, name: str) -> TaskNews | None:
+        """What the task has taught; None where the agent carries nothing from task to task."""
+        if not self.abilities.memory or self.given is not None:
+            return None
+        result, experience = self.result, self.experience
+        by_moves = self.settings.signals == "moves"
+        moves = counted(self.steps, self.codes) if by_moves else OutcomeCounts()
+        belief = self.learning_types(name, moves)
+        if result.new and self.learner is None:
+            self.begin_learning()
+        prior = ActionPrior(experience.n_actions, experience.prior.alpha0, experience.prior.key)
+        if self.learner is not None:
+            prior.update(*self.learner.best(), self.settings.guidance.weight)
+        news = TaskNews(result.number, self.context, belief, moves, dict(self.ran), prior)
+        own = result.type if result.new or self.reuse is None else self.reuse.own_policy()
+        if not belief or own is None:
+            return news
+        if self.learner is not None and (result.new or self.goes_on_with == own):
+            return self.with_learnt(news, own)
+        if own in self.players:
+            return news._replace(learner=own, policy=self.players[own].policy(), idle=experience.types[own].idle)
+        return news
+
+    def with_learnt(self, news: TaskNews, own: str) -> TaskNews:
+        """What a task has taught in which the policy of a type, `own`, was learnt."""
+        assert self.learner is not None, "a policy was learnt"
+        result = self.result
+        learnt = [value for value, by in zip(result.returns, result.policies, strict=True) if by == LEARNER]
+        late = learnt[len(learnt) // 2 :]
+        returns = dict(news.returns) | {own: [*self.ran.get(own, []), *late]}
+        known = self.experience.types.get(own)
+        idle = 0
+        if known is not None and not self.experience.is_hopeless(own) and not gained(late, known.returns.get(own)):
+            idle = known.idle + 1
+        fresh = self.learner.fresh_returns if isinstance(self.learner, Contest) else learnt
+        reached = fresh[len(fresh) // 2 :] if len(fresh) >= LEAST_FRESH else []
+        policy = self.learner.policy()
+        return news._replace(returns=returns, learner=own, policy=policy, idle=idle, fresh=reached)
+
+    def learning_types(self, name: str, moves: OutcomeCounts) -> dict[str, float]:
+        """How much each type learns from the task; a new one has the given name."""
+        if not self.abilities.reuse:
+            return {}
+        if self.reuse is not None and not self.alarmed and not self.reuse.differs(moves):
+            believed = self.reuse.by_name(self.reuse.belief)
+            self.result.type = max(believed, key=believed.__getitem__)
+            return self.reuse.by_member()
+        self.result.type, self.result.new = name, True
+        return {name: 1.0}
+
+
+def gained(late: Sequence[float], before: Any) -> bool:
+    """Whether last returns are above those of a policy before, by more than the error of their mean.
+
+    Parameters
+    ----------
+    late : sequence of float
+    before : (3,) float64, optional
+        Number, sum and sum of squares of the returns before.
+    """
+    if before is None or not before[0] or len(late) < 2:
+        return len(late) > 0
+    return float(np.mean(late)) - before[1] / before[0] > float(np.std(late, ddof=1)) / np.sqrt(len(late))

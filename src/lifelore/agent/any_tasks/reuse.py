@@ -1,0 +1,212 @@
+"""Which type a task has, and which known policy to run: Bayesian policy reuse over the library of a life.
+
+β      ← prior over types, given the context                          an action prior over policies, decayed
+π      ← the policy with the largest expected return under β
+β      ← β · P(outcome | state, action; type) after each move         or by the returns of episodes
+alarm  ← what is seen fits no known type, at a stated rate of false alarms
+"""
+
+import math
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.any_tasks.experience import Experience
+from lifelore.agent.any_tasks.known_returns import known_returns
+from lifelore.agent.any_tasks.known_types import KnownTypes
+from lifelore.agent.any_tasks.moves import OutcomeCounts
+from lifelore.agent.any_tasks.novelty import NoveltyAlarm
+from lifelore.core.streams import stream
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.reuse.novelty.calibration import LEAST_ALARMS
+from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
+from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
+
+Array = NDArray[np.float64]
+
+LEAST_BELIEF = 0.01
+"""Types of less belief learn nothing from a task."""
+MOST_AGAINST = 1.0, 3.0
+"""Most nats by which the return of one episode speaks for or against another type."""
+SIGNALS = ("moves", "returns")
+"""What recognition goes by."""
+
+
+class Alarm(Protocol):
+    """An alarm that no known type fits."""
+
+    @property
+    def alarm(self) -> bool: ...
+
+
+class TaskReuse:
+    """Reuse of the library in one task.
+
+    Parameters
+    ----------
+    experience : Experience
+        At least one of its types has a policy.
+    known : KnownTypes
+        Of the same experience.
+    prior : (n_types,) float
+    signals : {"moves", "returns"}
+        Whether each move is a signal, or the return of each episode that one policy ran.
+    false_alarm : float
+        Probability of an alarm in a task of a known type, in (0, 1).
+    n_episodes, seed : int
+    """
+
+    def __init__(
+        self,
+        experience: Experience,
+        known: KnownTypes,
+        prior: Array,
+        signals: str,
+        false_alarm: float,
+        n_episodes: int,
+        seed: int,
+    ) -> None:
+        self.known = known
+        self.policies = tuple(name for name in sorted(experience.types) if experience.types[name].policy)
+        self.names = tuple(one.name for one in known.types)
+        self.by_moves = signals == "moves"
+        likelihood = LikelihoodSignal(self._log_likelihood, len(known), len(self.policies))
+        members = [one.members for one in known.types]
+        library = PolicyLibrary(
+            known_returns(experience, members, self.policies),
+            likelihood if self.by_moves else None,  # pyright: ignore[reportArgumentType]
+            self.names,
+            self.policies,
+            prior,
+        )
+        static, generator = TypeDynamics.static(), stream(seed, "any tasks", "alarm", experience.n_tasks)
+        self.detector: NoveltyDetector | None = None
+        if self.by_moves:
+            # Twice the usual number of causes: tasks of unknown types try more.
+            horizon = 2 * known.frequency.sum() / max(experience.n_tasks, 1)
+            self.alarm: Alarm = NoveltyAlarm(
+                known.moves.laws, known.moves.base, prior, known.frequency, horizon, false_alarm, generator
+            )
+        else:
+            n_tasks = max(1000, int(np.ceil(LEAST_ALARMS / false_alarm)))
+            settings = {"horizon": n_episodes, "n_tasks": n_tasks, "seed": generator, "dynamics": static}
+            self.alarm = self.detector = NoveltyDetector.calibrate(library, false_alarm=false_alarm, **settings)
+        self.agent = BayesianPolicyReuse(library, dynamics=static, seed=seed, novelty=self.detector)
+        self._own: dict[int, Array] = {}  # outcomes of this task by cause
+        self._short: list[float] = []
+        self._ran: list[tuple[int, float]] = []
+        self._deviation = float(np.mean(library.performance.deviation))
+        self.policy = self.select()
+
+    # ---- choose ------------------------------------------------------------------------------------
+
+    @property
+    def belief(self) -> Array:
+        """β over the known types, (n_types,)."""
+        return self.agent.belief
+
+    @property
+    def alarmed(self) -> bool:
+        """Whether the alarm was raised: no known type fits."""
+        return self.alarm.alarm
+
+    def select(self) -> str:
+        """The policy that is worth most now, by name."""
+        self.policy = self.policies[self.agent.select()]
+        self._promised = float(self.agent.expected_utility().max())
+        self._believed = int(self.belief.argmax())
+        return self.policy
+
+    @property
+    def shortfall(self) -> float:
+        """By how many deviations the episodes so far fell short of what the belief promised before each."""
+        return float(np.sum(self._short) / np.sqrt(len(self._short))) if self._short else 0.0
+
+    # ---- signals -----------------------------------------------------------------------------------
+
+    def observe(self, cause: int, outcome: int) -> None:
+        """Take in a move, by codes; another policy runs from here where another type is believed most."""
+        found = self.known.moves.place(cause, outcome)
+        if not self.by_moves or found is None:
+            return
+        assert isinstance(self.alarm, NoveltyAlarm), "moves have an alarm of their own"
+        self.alarm.observe(*found)
+        self.agent.observe(self.policy, found)
+        place, effect = found
+        self._own.setdefault(place, np.zeros(self.known.moves.base.shape[1]))[effect] += 1
+        if int(self.belief.argmax()) != self._believed:
+            self.select()
+
+    def end_episode(self, policy: str | None, earned: float, reused: bool) -> None:
+        """End an episode.
+
+        Parameters
+        ----------
+        policy : str, optional
+            That ran it from begin to end.
+        earned : float
+            Its return.
+        reused : bool
+            Whether known policies played it.
+        """
+        if reused:
+            self._short.append((self._promised_at_begin - earned) / self._deviation)
+        if policy is not None:
+            self._ran.append((self.policies.index(policy), earned))
+            if not self.by_moves:
+                self.agent.observe(policy, earned)
+        self.agent.end_episode()
+
+    def begin_episode(self) -> str:
+        """The policy that is worth most for the next episode, by name."""
+        policy = self.select()
+        self._promised_at_begin = self._promised
+        return policy
+
+    def _log_likelihood(self, policy: int, found: tuple[int, int]) -> Array:
+        place, effect = found
+        own = self._own.get(place)
+        if own is None:
+            return np.log(self.known.moves.laws[:, place, effect])
+        return np.log(self.known.moves.law(place, own)[:, effect])
+
+    # ---- what it comes to --------------------------------------------------------------------------
+
+    def by_name(self, belief: Array) -> dict[str, float]:
+        """A belief over the known types by name."""
+        return dict(zip(self.names, belief.tolist(), strict=True))
+
+    def by_member(self) -> dict[str, float]:
+        """Belief in each type by the name of its first member, without those of little belief."""
+        pairs = zip(self.known.types, self.belief.tolist(), strict=True)
+        return {one.members[0]: value for one, value in pairs if value >= LEAST_BELIEF}
+
+    def own_policy(self) -> str | None:
+        """A policy of the type that is believed most, by name; None where it has none."""
+        members = self.known.types[int(self.belief.argmax())].members
+        if self.policy in members:
+            return self.policy
+        return next((name for name in members if name in self.policies), None)
+
+    def differs(self, moves: OutcomeCounts) -> bool:
+        """Whether the moves of the task are better explained by a type of its own."""
+        type_ = int(self.belief.argmax())
+        return self.known.moves.evidence_of_another(type_, moves) + self.returns_against(type_) > 0
+
+    def returns_against(self, type_: int) -> float:
+        """Evidence in nats that the returns of policies are not those that they get from a type."""
+        outcomes = self.agent.library.performance
+        usual, wide = float(outcomes.mean.mean()), float(np.hypot(outcomes.mean.std(), self._deviation))
+        against = 0.0
+        for policy, earned in self._ran:
+            known = log_normal(earned, float(outcomes.mean[type_, policy]), self._deviation)
+            against += float(np.clip(log_normal(earned, usual, wide) - known, -MOST_AGAINST[0], MOST_AGAINST[0]))
+        return float(np.clip(against, -MOST_AGAINST[1], MOST_AGAINST[1]))
+
+
+def log_normal(value: float, mean: float, deviation: float) -> float:
+    """Log density of a normal distribution."""
+    return -0.5 * ((value - mean) / deviation) ** 2 - math.log(deviation * math.sqrt(2 * math.pi))

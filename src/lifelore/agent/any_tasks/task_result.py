@@ -1,0 +1,89 @@
+"""What happened in a task of `LongLivedAgent`, and the task in words."""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+LEARNER = "learner"
+"""Stands for the learner among the policies of a task's episodes."""
+SHOWN = 3
+"""Types that a text names, the most probable ones."""
+
+
+@dataclass(eq=False)
+class TaskResult:
+    """What happened in a task.
+
+    Parameters
+    ----------
+    number : int
+        Of the task, from 0.
+    context : hashable
+        As it was given.
+    returns : list of float
+        Discounted return of each episode.
+    policies : list of str
+        With which policy each episode began: that of a type, by its name, or ``"learner"``.
+    type : str
+        Name of the type that the task was taken for at its end; empty where the agent keeps no types.
+    new : bool
+        Whether the task added this type.
+    alarm : bool
+        Whether the alarm was raised: outcomes fit no known type.
+    alarm_episode : int or None
+        Number of the episode in which it was raised.
+    prior : dict of str to float
+        Over the types that were known before the task, given its context.
+    beliefs : list of dict of str to float
+        The same at the end of each episode.
+    """
+
+    number: int
+    context: Any
+    returns: list[float] = field(default_factory=list)
+    policies: list[str] = field(default_factory=list)
+    type: str = ""
+    new: bool = False
+    alarm: bool = False
+    alarm_episode: int | None = None
+    prior: dict[str, float] = field(default_factory=dict)
+    beliefs: list[dict[str, float]] = field(default_factory=list)
+
+    def to_dict(self) -> dict[str, Any]:
+        """As JSON data; the context as text."""
+        return asdict(self) | {"context": repr(self.context)}
+
+    def explain(self) -> str:
+        """Why the agent acted as it did, in a few lines."""
+        n = len(self.returns)
+        lines = [f"task {self.number}, context {self.context!r}, {n} episode{'s' if n != 1 else ''}"]
+        if self.prior:
+            lines.append(f"expected  {_most_probable(self.prior)}")
+            lines.append(f"believed  {_most_probable(self.beliefs[0])} after the first episode")
+        else:
+            lines.append("expected  nothing: no type was known, or the agent keeps none")
+        if self.alarm:
+            lines.append(f"alarm     in episode {self.alarm_episode}: the outcomes fit no known type")
+        if self.type:
+            lines.append(f"taken for {self.type}{', a new type' if self.new else ''}")
+        lines.append(f"ran       {_runs(self.policies)}")
+        lines.append(
+            f"returns   {self.returns[0]:.4g} first, {self.returns[-1]:.4g} last, mean {sum(self.returns) / n:.4g}"
+        )
+        return "\n".join(lines)
+
+
+def _most_probable(belief: Mapping[str, float]) -> str:
+    best = sorted(belief.items(), key=lambda one: -one[1])[:SHOWN]
+    return ", ".join(f"{name} {value:.2f}" for name, value in best)
+
+
+def _runs(policies: list[str]) -> str:
+    """Policies in the order of their episodes, each with its number of episodes in a row."""
+    runs: list[tuple[str, int]] = []
+    for name in policies:
+        if runs and runs[-1][0] == name:
+            runs[-1] = name, runs[-1][1] + 1
+        else:
+            runs.append((name, 1))
+    return ", ".join(f"{name} × {count}" for name, count in runs)

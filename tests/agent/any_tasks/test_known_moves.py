@@ -1,0 +1,93 @@
+from math import exp, lgamma, log
+
+import numpy as np
+import pytest
+
+from lifelore.agent.any_tasks.known_moves import KnownMoves
+from lifelore.agent.any_tasks.moves import OutcomeCounts
+
+
+def counts_of(rows):
+    counts = OutcomeCounts()
+    for cause, outcomes in rows.items():
+        for outcome, number in outcomes.items():
+            counts.add(cause, outcome, number)
+    return counts
+
+
+def log_dm(counts, base):
+    """Log probability of a sequence, outcome by outcome."""
+    total = lgamma(sum(base)) - lgamma(sum(base) + sum(counts))
+    return total + sum(lgamma(b + c) - lgamma(b) for b, c in zip(base, counts, strict=True))
+
+
+FIRST = counts_of({10: {1: 6}, 11: {1: 2, 2: 2}, 12: {5: 3}})
+SECOND = counts_of({10: {2: 6}, 11: {1: 3, 2: 1}})
+
+
+def test_laws_are_those_of_the_formula():
+    moves = KnownMoves([FIRST, SECOND])
+    assert moves.codes == [10, 11, 12]
+    base = [1 / 3] * 3
+    for place, (first, second) in enumerate([((6, 0, 0), (0, 6, 0)), ((2, 2, 0), (3, 1, 0))]):
+        pooled = [a + b for a, b in zip(first, second, strict=True)]
+        evidence = log_dm(first, base) + log_dm(second, base) - log_dm(pooled, base)
+        q = moves.apart[place]
+        odds = log(q / (1 - q)) - evidence
+        assert 0.01 < 1 / (1 + exp(-odds)) < 0.9  # the learnt share, the same in both causes
+        for type_, own in enumerate((first, second)):
+            law = [
+                (1 - q) * (p + b) / (sum(pooled) + 1) + q * (c + b) / (sum(own) + 1)
+                for p, c, b in zip(pooled, own, base, strict=True)
+            ]
+            assert moves.laws[type_, place] == pytest.approx(law)
+    assert moves.apart[0] > 0.9 > 0.5 > moves.apart[1]
+    # What a type has not shown is expected to be as in the other, mostly.
+    place, effect = moves.place(12, 5)
+    assert 0.6 < moves.laws[1, place, effect] < moves.laws[0, place, effect]
+    assert moves.laws.sum(axis=2) == pytest.approx(np.ones((2, 3)))
+
+
+def test_own_outcomes_of_the_task_teach_every_type():
+    moves = KnownMoves([FIRST, SECOND])
+    own = np.zeros(moves.base.shape[1])
+    own[1] = 50
+    law = moves.law(0, own)
+    assert law[:, 1].min() > 0.85
+    assert law.sum(axis=1) == pytest.approx(np.ones(2))
+
+
+def test_unknown_causes_and_outcomes_have_their_place():
+    moves = KnownMoves([FIRST, SECOND])
+    assert moves.place(99, 1) is None
+    place, effect = moves.place(12, 77)
+    assert moves.laws[:, place, effect].max() < 0.35
+
+
+def test_types_that_nothing_tells_apart_are_joined():
+    random = np.random.default_rng(0)
+    laws = {"left": random.dirichlet([0.3] * 3, 60), "right": random.dirichlet([0.3] * 3, 60)}
+
+    def task(name):
+        rows = {cause: dict(enumerate(random.multinomial(6, law))) for cause, law in enumerate(laws[name])}
+        return counts_of({cause: {o: n for o, n in row.items() if n} for cause, row in rows.items()})
+
+    moves = KnownMoves([task("left"), task("right"), task("left"), task("right")])
+    assert sorted(moves.joined()) == [[0, 2], [1, 3]]
+
+
+def test_a_task_of_another_type_is_told_from_a_known_one():
+    random = np.random.default_rng(1)
+    law = random.dirichlet([0.3] * 3, 40)
+
+    def task(law):
+        return counts_of(
+            {c: {o: int(n) for o, n in enumerate(random.multinomial(8, row)) if n} for c, row in enumerate(law)}
+        )
+
+    moves = KnownMoves([task(law), task(random.dirichlet([0.3] * 3, 40))])
+    assert moves.evidence_of_another(0, task(law)) < 0
+    other = law.copy()
+    other[:4] = random.dirichlet([0.3] * 3, 4)  # differs in a tenth of its causes
+    found = [moves.evidence_of_another(0, task(other)) for _ in range(5)]
+    assert min(found) > 0

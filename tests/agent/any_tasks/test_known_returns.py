@@ -1,0 +1,29 @@
+import numpy as np
+import pytest
+
+from lifelore.agent.any_tasks.experience import Experience, TypeExperience
+from lifelore.agent.any_tasks.known_returns import known_returns
+
+
+def sums(*values):
+    return np.array([len(values), np.sum(values), np.square(values).sum()])
+
+
+def test_pairs_that_never_ran_are_guessed_with_doubt():
+    experience = Experience("key", 2)
+    experience.types["a"] = TypeExperience(returns={"a": sums(9.0, 11.0), "b": sums(2.0, 4.0)})
+    experience.types["b"] = TypeExperience(returns={"b": sums(20.0, 20.0)})
+    experience.types["c"] = TypeExperience(returns={"c": sums(1.0)})
+    found = known_returns(experience, [("a",), ("b",), ("c",)], ("a", "b", "c"))
+    usual = (3.0,)  # the only pair of a policy away from its own type
+    assert found.mean == pytest.approx(np.array([[10, 3, usual[0]], [usual[0], 20, usual[0]], [1, 1, 1]]))
+    deviation = np.sqrt((2 + 2 + 0) / (7 - 4))
+    assert found.deviation == pytest.approx(np.full((3, 3), deviation))
+    assert found.moments.count[0].tolist() == [2, 2, 1]
+
+
+def test_members_of_a_joined_type_count_together():
+    experience = Experience("key", 2)
+    experience.types["a"] = TypeExperience(returns={"a": sums(1.0)})
+    experience.types["b"] = TypeExperience(returns={"a": sums(3.0, 5.0)})
+    assert known_returns(experience, [("a", "b")], ("a",)).mean.tolist() == [[3.0]]

@@ -1,0 +1,290 @@
+import os
+import re
+import signal
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+
+from lifelore import LongLivedAgent, open_memory
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.streams import stream
+from tests.agent.any_tasks.windy_grid import SETTINGS, WINDS, WindyGrid
+
+
+def life(tasks, **settings):
+    """An agent after tasks with winds that mostly go with the context, and their results."""
+    agent = LongLivedAgent(**SETTINGS | settings)
+    random = stream(0, "life")
+    found = []
+    for _ in range(tasks):
+        context = int(random.integers(2))
+        wind = WINDS[context if random.random() < 0.8 else 1 - context]
+        found.append((wind, agent.live(WindyGrid(wind), context=("day", context))))
+    return agent, found
+
+
+@pytest.fixture(scope="module")
+def full():
+    return life(10)
+
+
+def mean_of(found):
+    return np.mean([np.mean(result.returns) for _, result in found[4:]])
+
+
+def test_known_types_are_recognised_and_their_policies_pay(full):
+    _agent, found = full
+    assert [result.new for _, result in found[:1]] == [True]
+    owner = {}
+    for wind, result in found:
+        assert len(result.returns) == len(result.policies) == SETTINGS["episodes"]
+        if not result.new:
+            assert owner.get(result.type.split("+")[0], wind) == wind  # never taken for the other wind
+        for name in result.type.split("+"):
+            owner.setdefault(name, wind)
+    assert set(owner.values()) == set(WINDS)
+    textbook = life(10, agent="textbook")[1]
+    assert mean_of(found) > mean_of(textbook) + 2
+    firsts = [result.returns[0] for _, result in found[4:]]
+    assert np.mean(firsts) > np.mean([result.returns[0] for _, result in textbook[4:]]) + 3
+
+
+def test_what_is_known_can_be_read(full):
+    agent, _found = full
+    assert set(agent.policies) == {name for joined in agent.types for name in joined.split("+")}
+    for summary in agent.types.values():
+        assert set(summary.contexts) <= {("day", 0), ("day", 1)}
+        assert summary.tasks == pytest.approx(sum(summary.contexts.values()))
+        assert all(np.isfinite(list(summary.returns.values())))
+    assert sum(summary.tasks for summary in agent.types.values()) == pytest.approx(10, abs=0.2)
+    assert 1 <= len(agent.prior) <= 3
+    curious = agent.curiosity()
+    assert {one.context for one in curious} == {("day", 0), ("day", 1)}
+    assert curious[0].entropy * curious[0].frequency >= curious[1].entropy * curious[1].frequency
+
+
+def test_a_result_explains_itself(full):
+    agent, found = full
+    new = next(result for _, result in found[1:] if result.new)
+    known = next(result for _, result in found[4:] if not result.new)
+    text = agent.explain(new)
+    assert f"taken for {new.type}, a new type" in text
+    assert re.search(r"learner × \d+", text)
+    assert f"expected  {max(known.prior, key=known.prior.get)} 0." in agent.explain(known)
+    assert "('day'" in text
+    assert known.to_dict()["returns"] == known.returns
+
+
+def test_ablations_keep_what_they_lack():
+    for name, types in {"no-reuse": 0, "scratch": 0, "textbook": 0, "no-prior": 1, "no-context": 1}.items():
+        agent, _found = life(2, agent=name)
+        assert len(agent.types) >= types if types else not agent.types, name
+        assert bool(len(agent.prior)) == (name not in ("scratch", "textbook")), name
+    same = [life(2, agent="textbook")[1][1][1].returns for _ in range(2)]
+    assert same[0] == same[1]
+
+
+def test_the_informed_agent_knows_the_type_and_learns_nothing(full):
+    agent, found = full
+    before = {name: one.tasks for name, one in agent.types.items()}
+    wind, result = found[-1]
+    name = result.type.split("+")[0]
+    told = agent.informed(WindyGrid(wind), name, episodes=3)
+    assert len(told.returns) == 3
+    assert told.prior == pytest.approx({one: float(name in one.split("+")) for one in agent.types})
+    assert {name: one.tasks for name, one in agent.types.items()} == before
+    with pytest.raises(NotFoundError, match="type must be one of"):
+        agent.informed(WindyGrid(wind), "nobody")
+
+
+# ---- memory ----------------------------------------------------------------------------------------------
+
+
+def test_a_life_goes_on_in_another_agent(tmp_path):
+    one = life(4)[1]
+    random = stream(0, "life")
+    found = []
+    for _ in range(4):
+        with LongLivedAgent(**SETTINGS, memory=tmp_path / "life.db") as agent:
+            context = int(random.integers(2))
+            wind = WINDS[context if random.random() < 0.8 else 1 - context]
+            found.append(agent.live(WindyGrid(wind), context=("day", context)))
+    assert [result.number for result in found] == [0, 1, 2, 3]
+    assert [result.type for result in found] == [result.type for _, result in one]
+    for before, after in zip(one, found, strict=True):
+        assert after.returns == pytest.approx(before[1].returns)
+
+
+def test_robots_share_what_they_learn(tmp_path):
+    for robot, wind in {"ann": -1, "bob": 1}.items():
+        with LongLivedAgent(**SETTINGS, memory=tmp_path / f"{robot}.db", robot=robot) as agent:
+            agent.live(WindyGrid(wind), context=wind)
+    with open_memory(tmp_path / "ann.db") as memory:
+        memory.merge_from(tmp_path / "bob.db")
+    with LongLivedAgent(**SETTINGS, memory=tmp_path / "ann.db", robot="cleo") as agent:
+        result = agent.live(WindyGrid(1), context=1)
+        assert set(agent.policies) >= {"ann.0", "bob.0"}
+        assert result.type == "bob.0"
+        assert result.policies[0] in ("ann.0", "bob.0")
+
+
+def test_another_process_on_the_memory_is_heard(tmp_path):
+    agents = [LongLivedAgent(**SETTINGS, memory=tmp_path / "life.db", robot=robot) for robot in ("ann", "bob")]
+    agents[0].live(WindyGrid(-1))
+    result = agents[1].live(WindyGrid(-1))
+    assert result.type == "ann.0"
+    for agent in agents:
+        agent.close()
+
+
+def test_a_killed_task_is_lived_again(tmp_path):
+    program = textwrap.dedent(f"""
+        import os, signal
+        from tests.agent.any_tasks.windy_grid import SETTINGS, WindyGrid
+        from lifelore import LongLivedAgent
+        agent = LongLivedAgent(**SETTINGS, memory={str(tmp_path / "life.db")!r})
+        agent.live(WindyGrid(-1))
+        class Dies(WindyGrid):
+            def step(self, action):
+                os.kill(os.getpid(), signal.SIGKILL)
+        agent.live(Dies(-1))
+    """)
+    root = Path(__file__).parents[3]
+    killed = subprocess.run(
+        [sys.executable, "-c", program], cwd=root, env=os.environ | {"PYTHONPATH": f"{root}/src:{root}"}
+    )
+    assert killed.returncode == -signal.SIGKILL
+    with LongLivedAgent(**SETTINGS, memory=tmp_path / "life.db") as agent:
+        result = agent.live(WindyGrid(-1))
+        assert result.number == 1
+        assert result.type == "robot.0"
+
+
+# ---- learners of the user --------------------------------------------------------------------------------
+
+
+class Constant:
+    """Always the same action, and it can be stored."""
+
+    def __init__(self, action):
+        self.action = action
+
+    def __call__(self, observation):
+        return self.action
+
+    def to_bytes(self):
+        return bytes([self.action])
+
+
+class RightLearner:
+    """Plays an episode at random and returns the policy that goes right."""
+
+    def __init__(self):
+        self.starts = []
+
+    def __call__(self, env, prior, start):
+        self.starts.append(start)
+        env.reset(seed=1)
+        ended = False
+        for _ in range(20):
+            if not ended:
+                _, _, ended, _, _ = env.step(env.action_space.sample())
+        env.reset(seed=2)
+        return Constant(3)
+
+    @staticmethod
+    def from_bytes(content):
+        return Constant(content[0])
+
+
+def test_a_learner_of_the_user_is_called_and_its_policy_reused(tmp_path):
+    settings = SETTINGS | {"learner": RightLearner(), "memory": tmp_path / "life.db"}
+    with LongLivedAgent(**settings) as agent:
+        first = agent.live(WindyGrid(0))
+    assert settings["learner"].starts == [None]
+    assert len(first.returns) == SETTINGS["episodes"]
+    assert first.new
+    settings["learner"] = RightLearner()
+    with LongLivedAgent(**settings) as agent:
+        second = agent.live(WindyGrid(0))
+    assert second.policies[0] == "robot.0"
+    for start in settings["learner"].starts:
+        assert isinstance(start, Constant)
+    with pytest.raises(InputError, match="from_bytes"), LongLivedAgent(**settings | {"learner": "q"}) as agent:
+        agent.live(WindyGrid(0))
+
+
+@pytest.mark.parametrize("learner", ["model", "textbook"])
+def test_other_learners_by_name(learner):
+    _, found = life(3, learner=learner)
+    assert found[0][1].new
+
+
+def test_returns_alone_tell_types_apart_too():
+    class Paid(gymnasium.Env):
+        """A bandit whose states never come again; the hidden type says which arm pays."""
+
+        observation_space, action_space = gymnasium.spaces.Box(0, 1, (1,)), gymnasium.spaces.Discrete(2)
+
+        def __init__(self, arm):
+            self.arm = arm
+
+        def reset(self, *, seed=None, options=None):
+            super().reset(seed=seed)
+            return self.np_random.random(1), {}
+
+        def step(self, action):
+            reward = 10.0 * (action == self.arm) + self.np_random.normal()
+            return self.np_random.random(1), reward, True, False, {}
+
+    settings = {"key": "arms", "state": lambda seen: 0, "signals": "returns", "episodes": 20}
+    agent = LongLivedAgent(**settings)
+    results = [agent.live(Paid(arm)) for arm in (0, 1, 0, 1, 0, 1)]
+    assert 2 <= len(agent.types) <= 3  # a type that was met while it was hardly known may stay as two
+    assert np.mean([np.mean(result.returns[3:]) for result in results[2:]]) > 8
+
+
+# ---- mistakes --------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("settings", "says"),
+    [
+        ({"agent": "fulll"}, "agent must be one of full"),
+        ({"learner": "sarsa"}, "learner must be q, model"),
+        ({"signals": "steps"}, "signals must be moves or returns"),
+        ({"discount": 1.5}, "discount must lie"),
+        ({"false_alarm": 1.0}, "false_alarm must lie"),
+        ({"key": " "}, "key must be a name"),
+        ({"robot": "a/b"}, "robot must be a name"),
+        ({"episodes": 0}, "episodes must"),
+    ],
+)
+def test_a_wrong_setting_is_named(settings, says):
+    with pytest.raises((InputError, NotFoundError), match=says):
+        LongLivedAgent(**SETTINGS | settings)
+
+
+def test_a_wrong_environment_is_named():
+    agent = LongLivedAgent(**SETTINGS)
+    with pytest.raises(InputError, match=r"env must be a gymnasium\.Env, got str"):
+        agent.live("FrozenLake-v1")
+    with pytest.raises(InputError, match="actions must be Discrete"):
+        agent.live(gymnasium.make("Pendulum-v1"))
+    with pytest.raises(InputError, match="prior needs a task"):
+        _ = agent.prior
+
+    class Nan(WindyGrid):
+        def step(self, action):
+            return np.array(self.place), float("nan"), True, False, {}
+
+    with pytest.raises(InputError, match="reward must be a finite number, got nan"):
+        agent.live(Nan(0))
+    agent.live(WindyGrid(0))
+    with pytest.raises(InputError, match="env must have the 4 actions"):
+        agent.live(gymnasium.make("CartPole-v1"))

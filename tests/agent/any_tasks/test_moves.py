@@ -1,0 +1,49 @@
+import subprocess
+import sys
+
+import pytest
+
+from lifelore.agent.any_tasks.moves import MOST_REPEATS, MoveCodes, OutcomeCounts, Step, counted
+from lifelore.core.errors import InputError
+
+
+def test_codes_tell_moves_apart_and_are_the_same_in_every_process():
+    codes = MoveCodes()
+    state = codes.state(("a", 1))
+    step = Step(state, 0, 2, 0.5, codes.state("b"), False)
+    assert codes.cause(state, 2) != codes.cause(state, 3)
+    assert codes.outcome(step) != codes.outcome(step._replace(ended=True))
+    assert codes.outcome(step) != codes.outcome(step._replace(reward=0.51))
+    assert codes.outcome(step) == codes.outcome(step._replace(reward=0.5 + 1e-9))
+    program = (
+        "from lifelore.agent.any_tasks.moves import MoveCodes\n"
+        "codes = MoveCodes()\nprint(codes.cause(codes.state(('a', 1)), 2))"
+    )
+    other = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert int(other.stdout) == codes.cause(state, 2)
+
+
+def test_a_state_without_a_code_is_named():
+    with pytest.raises(InputError, match="hashable"):
+        MoveCodes().state([1, 2])
+
+
+def test_counts_survive_a_record_and_add_up():
+    first, second = OutcomeCounts(), OutcomeCounts()
+    first.add(2**47 - 1, 2**16 - 1, 1.5)
+    second.add(2**47 - 1, 2**16 - 1)
+    second.add(3, 4, 0.25)
+    first.merge(OutcomeCounts.from_record(second.to_record("moves", "key")))
+    assert dict(first.by_cause) == {2**47 - 1: {2**16 - 1: 2.5}, 3: {4: 0.25}}
+    assert first.total(3) == 0.25
+    assert first.total(5) == 0.0
+
+
+def test_a_task_counts_a_cause_so_often_at_most():
+    codes = MoveCodes()
+    step = Step(codes.state(0), 0, 1, 0.0, codes.state(1), False)
+    other = step._replace(reward=1.0)
+    counts = counted([step] * (3 * MOST_REPEATS) + [other] * MOST_REPEATS, codes, weight=0.5)
+    cause = codes.cause(step.state, 1)
+    assert counts.total(cause) == pytest.approx(0.5 * MOST_REPEATS)
+    assert counts.by_cause[cause][codes.outcome(step)] == pytest.approx(0.75 * 0.5 * MOST_REPEATS)

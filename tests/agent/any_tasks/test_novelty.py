@@ -1,0 +1,59 @@
+import numpy as np
+import pytest
+
+from lifelore.agent.any_tasks.novelty import SHARES, NoveltyAlarm, log_odds
+
+
+def test_log_odds_are_the_mean_over_shares():
+    evidence = np.array([2.0, -0.5, -0.1, 3.0])
+    odds = [np.prod([(1 - share) + share * np.exp(e) for e in evidence]) for share in SHARES]
+    assert log_odds(evidence) == pytest.approx(np.log(np.mean(odds)))
+    assert log_odds(np.stack([evidence, -evidence])).shape == (2,)
+
+
+@pytest.fixture(scope="module")
+def world():
+    """Two types over fifty causes of four effects, noisy, which differ in a third of the causes."""
+    random = np.random.default_rng(0)
+    law = random.dirichlet([0.3] * 4, 50)
+    other = law.copy()
+    other[:17] = random.dirichlet([0.3] * 4, 17)
+    laws = np.stack([law, other])
+    return laws, np.full((50, 4), 0.25), np.array([0.7, 0.3])
+
+
+def rate(world, laws, n=400):
+    known, base, prior = world
+    random = np.random.default_rng(1)
+    raised = 0
+    for task in range(n):
+        alarm = NoveltyAlarm(
+            known, base, prior, np.ones(50), 40, 0.05, random if task % 20 else np.random.default_rng(task)
+        )
+        law = laws[0] if len(laws) == 1 else laws[random.choice(2, p=prior)]
+        for cause in random.permutation(50):
+            alarm.observe(int(cause), int(random.choice(4, p=law[cause])))
+        raised += alarm.alarm
+    return raised / n
+
+
+def test_alarms_come_as_often_as_stated_and_find_another_type(world):
+    assert 0.025 <= rate(world, world[0]) <= 0.085  # 400 tasks: 5 % ± 2.2
+    random = np.random.default_rng(2)
+    new = world[0][0].copy()
+    new[10:25] = random.dirichlet([0.3] * 4, 15)
+    assert rate(world, new[None], 100) > 0.5
+
+
+def test_repeats_and_causes_beyond_the_horizon_do_not_count(world):
+    known, base, prior = world
+    alarm = NoveltyAlarm(known, base, prior, np.ones(50), 2, 0.05, np.random.default_rng(0))
+    for effect in range(4):
+        alarm.observe(3, effect)
+    score = alarm.score
+    alarm.observe(3, 0)
+    assert alarm.score == score
+    alarm.observe(4, 0)
+    score = alarm.score
+    alarm.observe(5, 0)
+    assert alarm.score == score
