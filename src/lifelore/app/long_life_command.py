@@ -1,50 +1,33 @@
 """`lifelore live` in domains of jobs with hidden types, and `lifelore explain`."""
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+if TYPE_CHECKING:
+    from lifelore.app.setting_keys import SettingKeys
+
 Option = typer.Option
 
-APPLY = {
-    "domain", "tasks", "agent", "robot", "memory", "refresh", "episodes", "labels", "spare", "change", "seed",
-    "serve", "port", "as_json",
-}  # fmt: skip
-"""Options of `lifelore live` that apply to these domains."""
+FOREIGN = ("map", "goal", "goals", "out", "csv")
+"""Options of `lifelore live` that do not apply to these domains."""
 
 
-def live_long_life(context: typer.Context) -> int:
-    """Live through jobs with hidden types, with the options of `lifelore live`."""
-    from lifelore.agent.long_lived.live_task import LivingSettings
+def live_long_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json: bool) -> int:
+    """Live through jobs with hidden types, with the settings of `values`, by key."""
     from lifelore.agent.long_lived.long_life import LongLifeSettings, live_long
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.pages_beside import pages_beside
     from lifelore.core.errors import InputError
 
-    given: dict[str, Any] = context.params
-    sources = {name: context.get_parameter_source(name) for name in given}
-    typed = {name for name, source in sources.items() if source is not None and source.name == "COMMANDLINE"}
-    if foreign := sorted(typed - APPLY):
-        names = ", ".join(f"--{name.replace('_', '-')}" for name in foreign)
-        raise InputError(f"{names} does not apply to domain {given['domain']}; leave it out")
-    episodes = {} if given["episodes"] is None else {"n_episodes": given["episodes"]}
-    living = LivingSettings(**episodes, change=given["change"])
-    settings = LongLifeSettings(
-        given["domain"],
-        given["agent"] or "full",
-        20 if given["tasks"] is None else given["tasks"],
-        given["seed"],
-        given["robot"],
-        given["memory"],
-        living,
-        given["labels"],
-        given["spare"],
-        given["refresh"],
-    )
-    beside = pages_beside(given["serve"], given["port"], given["memory"])
+    if foreign := [f"--{name}" for name in FOREIGN if name in values]:
+        names = ", ".join(foreign)
+        raise InputError(f"{names} does not apply to domain {values['domain']}; leave it out")
+    settings = keys.build(LongLifeSettings, values)
+    beside = pages_beside(serve, values.get("port"), settings.memory)
     with beside, stop_on_interrupt() as stop, progress_bar("living") as progress:
         report = live_long(settings, progress, stop)
-    if given["as_json"]:
+    if as_json:
         print_json(report)
     else:
         _print_report(report, settings.robot)

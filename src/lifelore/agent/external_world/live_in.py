@@ -15,7 +15,8 @@ import numpy as np
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.external_world.context_code import MOST_ACTIONS, ContextCodes
 from lifelore.agent.external_world.stored_prior import recalled_prior
-from lifelore.agent.external_world.task import ExternalLearner, ExternalTask, GuidanceSettings
+from lifelore.agent.external_world.task import ExternalLearner, ExternalTask
+from lifelore.agent.live.life_settings import PriorSettings
 from lifelore.agent.live.output.long_table import LongTable
 from lifelore.agent.live.summary import plain, third
 from lifelore.agent.live.task_result import Stopped
@@ -116,11 +117,13 @@ def live_in(
         Memory cannot store the task, or the CSV file cannot be written; earlier tasks stay stored.
     """
     began = time.perf_counter()
-    _check_whole(tasks=tasks, episodes=episodes, max_steps=max_steps)
+    _check_tasks(tasks)
     _check_world(world)
     learning = QLearning(episodes, max_steps, learning_rate, epsilon, epsilon_decay, epsilon_floor)
     key = _key_of(world, key, needed=memory is not None)
-    settings = _Settings(tasks, robot, key, seed, discount, learning, GuidanceSettings(alpha0, weight, form, ties))
+    settings = _Settings(
+        tasks, robot, key, seed, discount, learning, PriorSettings("observation", alpha0, weight, form, ties)
+    )
     with (
         LongTable(csv, seed) if csv is not None else nullcontext() as table,
         open_memory(memory) if memory is not None else nullcontext() as opened,
@@ -143,7 +146,7 @@ class _Settings:
     seed: int
     discount: float
     learning: QLearning
-    guidance: GuidanceSettings
+    guidance: PriorSettings
 
     def __post_init__(self) -> None:
         if not 0 <= self.discount <= 1:
@@ -171,10 +174,9 @@ class _Settings:
         }
 
 
-def _check_whole(**settings: int) -> None:
-    for name, value in settings.items():
-        if not isinstance(value, int) or not 1 <= value <= 10**9:
-            raise InputError(f"{name} must be a whole number from 1 to 10^9, got {value}")
+def _check_tasks(tasks: int) -> None:
+    if not isinstance(tasks, int) or not 1 <= tasks <= 10**9:
+        raise InputError(f"tasks must be a whole number from 1 to 10^9, got {tasks}")
 
 
 def _check_world(world: World) -> None:
@@ -249,7 +251,7 @@ class _ExternalLife:
 
     def _task(self, index: int, stop: Event) -> ExternalTask:
         learning, discount = self.settings.learning, self.settings.discount
-        drawn = stream(self.settings.seed, "task", index, "world").integers(2**31, size=learning.episodes)
+        drawn = stream(self.settings.seed, "task", index, "world").integers(2**31, size=learning.episode_cap)
         return ExternalTask(self.world, self.codes, learning, discount, index, drawn.tolist(), stop)
 
     def _learner(self, name: str, index: int) -> ExternalLearner:

@@ -113,12 +113,12 @@ def live(
     """
     stop = stop or Event()
     began = time.perf_counter()
-    agents_for(settings.agent, settings.learning.learner)  # a mistake in the name shows before the map is read
+    agents_for(settings.agent, settings.learner)  # a mistake in the name shows before the map is read
     map_watch = MapWatch(settings.world) if settings.watch else None
     occupancy = map_from_settings(settings.world) if settings.world.domain == "building" else None
     world = world_from_settings(settings.world, occupancy)
     with open_memory(settings.memory.location) as memory:
-        first = agents_for(settings.agent, settings.learning.learner)[0]
+        first = agents_for(settings.agent, settings.learner)[0]
         place = _place(settings, world, occupancy, memory, first)
         names, notice = size_of_life(settings, place.world.n_states)
         if notify and notice:
@@ -149,7 +149,7 @@ def _place(
     settings: LifeSettings, world: GridWorld, occupancy: OccupancyMap | None, memory: Memory, agent: str
 ) -> Place:
     """The remembered building of the world, if the agent remembers transitions of buildings."""
-    name, remembers = settings.memory.building, AGENTS[agent].remembers and settings.learning.learner == "model"
+    name, remembers = settings.memory.building, AGENTS[agent].remembers and settings.learner == "model"
     if occupancy is not None and remembers:
         return recognised_place(settings.world, world, occupancy, memory, name)
     if name is not None:
@@ -331,7 +331,7 @@ class _RunningLife:
     def _known(self) -> dict[str, int]:
         """Number of places that the first agent knows, if it remembers any."""
         name = self.names[0]
-        if not AGENTS[name].remembers or self.settings.learning.learner != "model":
+        if not AGENTS[name].remembers or self.settings.learner != "model":
             return {}
         return {"places": int((self.lores[name].model.percept >= 0).sum())}
 
@@ -351,7 +351,7 @@ class _RunningLife:
         kind, lore, records = AGENTS[name], self.lores[name], []
         if kind.uses_prior and self.settings.prior.condition != "none":
             records.append(lore.learn_prior(result.best, goal, self.settings.prior.weight))
-        if kind.remembers and self.settings.learning.learner == "model":
+        if kind.remembers and self.settings.learner == "model":
             records.append(lore.model_news())
             if self.settings.destinations and result.reached:
                 records.append(lore.goals.found(goal))

@@ -16,7 +16,7 @@ def settings_document(settings: LifeSettings, world: GridWorld, location: str) -
         "cell": settings.world.cell,
         "robot_radius": settings.world.robot_radius,
         "destinations": settings.destinations,
-        "learner": learning.learner,
+        "learner": settings.learner,
         "prior": prior.condition,
         "sensor": settings.sensor.kind,
         "range": settings.sensor.reach,
@@ -47,6 +47,8 @@ def settings_document(settings: LifeSettings, world: GridWorld, location: str) -
         "again": settings.again or None,
         "watch": settings.watch or None,
         "refresh": settings.memory.refresh or None,
+        "compare": settings.compare,
+        "building": settings.memory.building,
         "size": settings.world.size,
         "loops": settings.world.loops,
     }

@@ -42,13 +42,13 @@ class LivingSettings:
     Parameters
     ----------
     n_episodes : int
-        Of a task, at least 1.
+        Number of episodes of a task, at least 1.
     false_alarm : float
         Probability of an alarm in a task of a known type, in (0, 1).
     unknown : float
         Prior probability that no known type fits, in (0, 1).
     change : float
-        Probability that the type changes between two episodes, in [0, 1); with 0 it is taken to stay.
+        Probability that the type changes between two episodes of a task, in [0, 1). With 0 it is taken to stay.
 
     Raises
     ------

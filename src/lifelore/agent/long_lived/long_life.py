@@ -44,9 +44,9 @@ class LongLifeSettings:
     living : LivingSettings
         With its `change` above 0, the hidden type does change within tasks so often (factory-customers alone).
     labelled : bool
-        tabletop: whether the points of the pictures carry the objects' labels.
+        Whether the points of the pictures carry the objects' labels, for ``tabletop``.
     n_spare : int
-        Tasks of spare time after those, in contexts that the agent is curious about, at least 0.
+        Number of further tasks, of spare time, in contexts that the agent is curious about, at least 0.
     refresh : bool
         Whether to recall before each task what other robots and processes have stored.
 
