@@ -5,9 +5,11 @@ from pathlib import Path
 
 import pytest
 
+from lifelore.app.live_command import OPTIONS
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.domains.buildings.office import office_map
 from lifelore.memory import open_memory
+from tests.app.changed_settings import changed
 
 DOCUMENT = {
     "domain", "map", "n_states", "building", "seed", "settings", "tasks", "summary", "memory", "seconds",
@@ -89,7 +91,7 @@ def check_summary(summary: dict, names: list[str], n_tasks: int) -> None:
         ((), ["lore", "scratch"]),
         (("--agent", "all"), ["lore", "model", "prior", "scratch", "undirected", "rmax", "frontier"]),
         (("--agent", "scratch"), ["scratch"]),
-        (("--learner", "q", "--episodes", "30"), ["lore", "scratch"]),
+        (("--set", "learner=q", "--set", "episodes=30"), ["lore", "scratch"]),
         (("--tasks", "1"), ["lore", "scratch"]),
     ],
     ids=["default", "all", "scratch", "q", "one task"],
@@ -120,7 +122,8 @@ def test_settings_in_the_report_are_those_that_were_told(ask, tmp_path):
         "form": "softmax", "ties": "prior", "learning_rate": 0.3, "epsilon": 0.8, "epsilon_decay": 0.9,
         "epsilon_floor": 0.1, "sensor": "touch",
     }  # fmt: skip
-    options = [f"--{name.replace('_', '-')}={value}" for name, value in told.items()]
+    options = [f"--{name}={told[name]}" for name in OPTIONS if name in told]
+    options += changed(**{name: value for name, value in told.items() if name not in OPTIONS})
     settings = ask("live", *options, "--memory", tmp_path / "life.db", "--json").document["settings"]
     unused = dict.fromkeys(("map", "start", "cell", "robot_radius", "range"))
     assert settings == told | unused | {"memory": str(tmp_path / "life.db")}
@@ -140,19 +143,19 @@ def repeatable(life: dict) -> dict:
 @pytest.mark.parametrize("learner", ["model", "q"])
 def test_the_same_seed_is_the_same_life_for_any_number_of_threads(learner, ask, tmp_path):
     lives = [
-        ask(*LATTICE, "--tasks", 3, "--learner", learner, "--episodes", 60, "--jobs", jobs, "--memory", f"{i}.db")
+        ask(*LATTICE, "--tasks", 3, *changed(learner=learner, episodes=60, jobs=jobs), "--memory", f"{i}.db")
         for i, jobs in enumerate((1, 3, 1))
     ]
     first, *others = [repeatable(life.document) for life in lives]
     assert others == [first, first]
-    other = ask(*LATTICE, "--tasks", 3, "--episodes", 60, "--seed", 1, "--memory", "other.db").document
+    other = ask(*LATTICE, "--tasks", 3, "--set", "episodes=60", "--seed", 1, "--memory", "other.db").document
     assert [task["goal"] for task in other["tasks"]] != [task["goal"] for task in first["tasks"]]
 
 
 def test_processes_repeat_a_life_too(start, answer):
     """Other hash seeds, other addresses: nothing of a process may enter a life."""
     children = [
-        start(*LATTICE, "--tasks", 3, "--jobs", jobs, "--memory", f"{jobs}.db") for jobs in (1, 3)
+        start(*LATTICE, "--tasks", 3, "--set", f"jobs={jobs}", "--memory", f"{jobs}.db") for jobs in (1, 3)
     ]  # fmt: skip
     one, three = (repeatable(answer(child).document) for child in children)
     assert one == three
@@ -202,11 +205,11 @@ def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
 
 
 def test_a_lidar_is_named_in_the_report_and_the_table(ask):
-    lidar = ("live", "--sensor", "lidar", "--range", "3", "--tasks", 2, "--memory", "life.db")
+    lidar = ("live", "--set", "sensor=lidar", "--set", "range=3", "--tasks", 2, "--memory", "life.db")
     settings = ask(*lidar, "--json").document["settings"]
     assert (settings["sensor"], settings["range"]) == ("lidar", 3.0)
     assert "steps to see goal" in ask(*lidar).out
-    assert "range applies to sensor lidar" in ask("live", "--range", "3", "--memory", "none.db").refusal
+    assert "range applies to sensor lidar" in ask("live", "--set", "range=3", "--memory", "none.db").refusal
     assert not Path("none.db").exists()
 
 
@@ -239,11 +242,12 @@ def test_the_measures_go_into_a_long_table(ask, tmp_path):
 
 
 def test_every_episode_is_logged_where_it_is_told(ask, tmp_path):
-    said = ask(*LATTICE, "--tasks", 1, "--memory", "life.db", "--l2log", tmp_path / "logs")
+    said = ask(*LATTICE, "--tasks", 1, "--memory", "life.db", *changed(l2log=tmp_path / "logs"))
     assert (said.status, said.err) == (0, "")
     assert set(said.document["settings"]) == TOLD
     rows = {path.parts[-4].split("-")[0] for path in (tmp_path / "logs").glob("*/*/0-train/data-log.tsv")}
     assert rows == {"lore", "scratch"}
     (tmp_path / "file").write_text("")
-    assert "folder must be a folder" in ask(*LATTICE, "--memory", "none.db", "--l2log", tmp_path / "file").refusal
+    refused = ask(*LATTICE, "--memory", "none.db", *changed(l2log=tmp_path / "file"))
+    assert "folder must be a folder" in refused.refusal
     assert not (tmp_path / "none.db").exists()

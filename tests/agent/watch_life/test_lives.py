@@ -5,13 +5,14 @@ from pathlib import Path
 import pytest
 
 from lifelore.agent.live.life import live
-from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings
+from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.agent.long_lived.explanation import explained
 from lifelore.agent.long_lived.live_task import LivingSettings
 from lifelore.agent.long_lived.long_life import LongLifeSettings, live_long
 from lifelore.agent.watch_life.known_family import TELLING_CAUSES, known_family
 from lifelore.agent.watch_life.lives import lives_in, task_of, tasks_of
 from lifelore.core.errors import NotFoundError
+from lifelore.core.learning.q_learner import QLearning
 from lifelore.domains.worlds import WorldSettings
 from lifelore.memory import open_memory
 
@@ -82,7 +83,7 @@ def test_a_missing_life_or_task_is_named(lived):
 def test_without_transitions_the_domain_of_a_map_is_unknown(tmp_path: Path):
     where = str(tmp_path / "m.db")
     settings = LifeSettings(
-        WorldSettings("lattice", size=7), LearningSettings("q", episodes=20), memory=MemorySettings(where), tasks=1
+        WorldSettings("lattice", size=7), "q", QLearning(episodes=20), memory=MemorySettings(where), tasks=1
     )
     live(settings)
     with open_memory(where) as memory:

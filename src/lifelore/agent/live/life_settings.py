@@ -162,8 +162,8 @@ class LifeSettings:
     tasks : int
         Tasks to live through now, ≥ 1; `goals` overrides it, see `n_tasks`.
     destinations : int
-        Number of recurring places that goals are drawn from and remembered at; 0: every place. Agents that remember
-        transitions then remember where goals were found too, and try those first (``goals.goal_counts``).
+        Number of recurring places that goals are drawn from and remembered at; 0: every place. Agents that
+        remember transitions then remember where goals were found, and try those first (``goals.goal_counts``).
     start : (x, y) or str, or (row, column), optional
         Place in which every episode starts: X,Y in metres or a known name, or ROW,COL; by default any. X and Y are
         for buildings, in the map's frame; ROW and COL are for other worlds.
