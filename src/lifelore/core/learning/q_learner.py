@@ -34,7 +34,7 @@ class QLearning:
     Parameters
     ----------
     episodes : int, optional
-        Maximum number of episodes of a task, from 1 to 10⁹; 1,000, or 100 or more where the learner plans.
+        Maximum number of episodes of a task, from 1 to 10⁸; 1,000, or 100 or more where the learner plans.
     max_steps : int, optional
         Maximum number of steps of an episode, from 1 to 10⁹; 1,000, in a life in a building 2,000.
     learning_rate : float
@@ -70,10 +70,9 @@ class QLearning:
     epsilon_floor: float = 0.01
 
     def __post_init__(self) -> None:
-        for name in ("episodes", "max_steps"):
-            value = getattr(self, name)
-            if value is not None and not (isinstance(value, int | np.integer) and 1 <= value <= 10**9):
-                raise InputError(f"{name} must be a whole number from 1 to 10^9, got {value}")
+        for name, value, most in (("episodes", self.episodes, 10**8), ("max_steps", self.max_steps, 10**9)):
+            if value is not None and not (isinstance(value, int | np.integer) and 1 <= value <= most):
+                raise InputError(f"{name} must be a whole number from 1 to {most:,}, got {value}")
         for name in ("learning_rate", "epsilon", "epsilon_decay", "epsilon_floor"):
             if not 0 <= getattr(self, name) <= 1:
                 raise InputError(f"{name} must lie in [0, 1], got {getattr(self, name)}")
