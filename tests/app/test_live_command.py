@@ -5,7 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from lifelore.app.live_command import OPTIONS
+from lifelore.agent.long_lived.live_task import LivingSettings
+from lifelore.agent.long_lived.long_life import LongLifeSettings
+from lifelore.app.live_command import OPTIONS, setting_keys
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.domains.buildings.office import office_map
 from lifelore.memory import open_memory
@@ -251,3 +253,99 @@ def test_every_episode_is_logged_where_it_is_told(ask, tmp_path):
     refused = ask(*LATTICE, "--memory", "none.db", *changed(l2log=tmp_path / "file"))
     assert "folder must be a folder" in refused.refusal
     assert not (tmp_path / "none.db").exists()
+
+
+SET = {
+    "building": {
+        "cell": 0.4, "robot_radius": 0.15, "min_free": 0.5, "sensor": "lidar", "range": 4.0, "refresh": True,
+        "compare": False, "watch": True, "building": "home", "start": [1.5, 1.5],
+    },
+    "lattice": {"destinations": 3, "size": 9, "learner": "q", "episodes": 7, "jobs": 1, "max_steps": 30,
+        "discount": 0.9, "goal_reward": 7.0, "wall_reward": -3.0, "prior": "state", "alpha0": 0.3, "weight": 2.0,
+        "form": "support", "ties": "prior", "learning_rate": 0.2, "epsilon": 0.5, "epsilon_decay": 0.9,
+        "epsilon_floor": 0.2,
+    },
+    "noise": {"density": 0.55},
+    "advice": {"loops": 0.3},
+}  # fmt: skip
+"""A domain to values, other than the defaults, of settings that it takes."""
+ELSEWHERE = {"again", "l2log", "port"}
+"""Settings that other tests look at: one needs a job list, two say where output goes."""
+
+
+def test_every_setting_is_set_and_stands_in_the_report(ask, tmp_path):
+    listed = {one["key"]: one for one in ask("live", "--settings", "--json").document["settings"]}
+    assert {key for told in SET.values() for key in told} == set(listed) - ELSEWHERE
+    path = map_of(office_map(3).state[:300, :300], tmp_path)
+    for domain, told in SET.items():
+        assert not [key for key, value in told.items() if value == listed[key]["default"]]
+        texts = told | {key: str(value).lower() for key, value in told.items() if isinstance(value, bool)}
+        texts |= {"start": "1.5,1.5"} if "start" in told else {}
+        place = ("--map", path) if domain == "building" else ()
+        options = ("live", "--domain", domain, *place, "--tasks", 1, "--memory", f"{domain}.db", "--json")
+        settings = ask(*options, *changed(**texts)).document["settings"]
+        assert {key: settings[key] for key in told} == told
+
+
+def test_an_interrupted_list_begins_again_by_a_setting(ask, tmp_path):
+    path = map_of(office_map(3).state[:300, :300], tmp_path)
+    Path("jobs.csv").write_text("name,x,y\nhere,1.475,1.525\n")
+    options = ("live", "--map", path, "--goals", "jobs.csv", "--memory", "life.db", "--json")
+    assert ask(*options, *changed(again="true")).document["settings"]["again"] is True
+    assert "again" not in ask(*options).document["settings"]
+    assert "again applies to a job list" in ask("live", *changed(again="true"), "--memory", "no.db").refusal
+
+
+def test_the_settings_of_hidden_types_reach_the_life():
+    keys = setting_keys("tabletop")
+    told = {
+        "episodes": 3,
+        "false_alarm": 0.1,
+        "unknown": 0.2,
+        "change": 0.3,
+        "labels": True,
+        "spare": 2,
+        "refresh": True,
+    }
+    assert set(told) == set(keys.settings) - ELSEWHERE
+    values = keys.read([f"{key}={str(value).lower()}" for key, value in told.items()])
+    settings = keys.build(LongLifeSettings, {"domain": "tabletop", "tasks": 5, "robot": "bo"} | values)
+    living = LivingSettings(n_episodes=3, false_alarm=0.1, unknown=0.2, change=0.3)
+    assert settings == LongLifeSettings(
+        "tabletop", n_tasks=5, robot="bo", living=living, labelled=True, n_spare=2, refresh=True
+    )
+
+
+def test_every_setting_says_what_it_means(ask):
+    for domain in ("building", "tabletop"):
+        rows = ask("live", "--domain", domain, "--settings", "--json").document["settings"]
+        assert all(len(row["meaning"].split()) >= 3 and row["meaning"].endswith(".") for row in rows)
+        lines = ask("live", "--domain", domain, "--settings").out.splitlines()
+        assert [line.split()[0] for line in lines[1:]] == [row["key"] for row in rows]
+        assert all(row["meaning"] in line for row, line in zip(rows, lines[1:], strict=True))
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        (("--set", "epsilom=1"), "no setting has the key 'epsilom'; near: epsilon, epsilon_floor, epsilon_decay"),
+        (("--set", "tasks=3"), "tasks is an option: --tasks"),
+        (("--set", "spare=1"), "spare applies to jobs with hidden types alone (tabletop, factory-customers"),
+        (("--domain", "tabletop", "--set", "cell=1"), "cell does not apply to domain tabletop; leave it out"),
+        (("--set", "epsilon=2"), "epsilon must lie in [0, 1], got 2.0"),
+        (("--set", "l2log"), "--set takes KEY=VALUE, got 'l2log'"),
+    ],
+)
+def test_a_wrong_setting_is_one_line(options, line, ask):
+    assert line in ask("live", "--memory", "none.db", *options).refusal
+    assert not Path("none.db").exists()
+
+
+def test_help_is_one_screen(ask, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    lines = ask("live", "--help").out.splitlines()
+    assert len(lines) <= 40
+    assert all(len(line) <= 80 for line in lines)
+    options = [line.split()[0] for line in lines if line.startswith("  --")]
+    assert len(options) == 16
+    assert options[-1] == "--help"
