@@ -341,6 +341,14 @@ def test_a_wrong_setting_is_one_line(options, line, ask):
     assert not Path("none.db").exists()
 
 
+def test_choices_are_those_that_settings_allow(ask):
+    rows = [row for row in ask("live", "--settings", "--json").document["settings"] if row["choices"]]
+    assert {row["key"] for row in rows} == {"learner", "prior", "form", "ties", "sensor"}
+    for row in rows:
+        refused = ask("live", "--memory", "none.db", *changed(**{row["key"]: "odd"})).refusal
+        assert f"{row['key']} must be one of {', '.join(row['choices'])}, got 'odd'" in refused
+
+
 def test_help_is_one_screen(ask, monkeypatch):
     monkeypatch.setenv("COLUMNS", "80")
     lines = ask("live", "--help").out.splitlines()

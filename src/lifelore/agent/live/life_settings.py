@@ -150,7 +150,8 @@ class LifeSettings:
     learner : {"model", "q"}
         Whether the agents plan on a learnt model of the moves, or learn by Q-learning as in the thesis.
     learning : QLearning
-        For learner model, only ``episodes`` and ``max_steps`` apply. Defaults: `episode_cap` and `step_cap`.
+        For learner model, only ``episodes`` and ``max_steps`` apply. Their defaults: `LifeSettings.episode_cap`,
+        `LifeSettings.step_cap`.
     prior : PriorSettings
     memory : MemorySettings
     sensor : SensorSettings
@@ -249,14 +250,16 @@ class LifeSettings:
         The default of learner q is 1,000. The default of learner model is 100, or the number of episodes that
         gives ten steps to each state where that is more.
         """
-        if self.learning.episodes is not None:
-            return self.learning.episodes
-        return max(100, ceil(10 * n_states / self.step_cap)) if self.learner == "model" else 1000
+        if self.learner == "model" and self.learning.episodes is None:
+            return max(100, ceil(10 * n_states / self.step_cap))
+        return self.learning.episode_cap
 
     @property
     def step_cap(self) -> int:
         """Maximum number of steps of an episode; by default 2,000 in buildings, 1,000 in the thesis's worlds."""
-        return self.learning.max_steps or (2000 if self.world.domain == "building" else 1000)
+        if self.world.domain == "building" and self.learning.max_steps is None:
+            return 2000
+        return self.learning.step_cap
 
 
 def _check_world(world: WorldSettings) -> None:

@@ -1,5 +1,6 @@
 """The settings of a life as JSON data."""
 
+from dataclasses import asdict
 from pathlib import Path
 
 from lifelore.agent.live.life_settings import LifeSettings
@@ -8,7 +9,7 @@ from lifelore.domains.grids.grid_world import GridWorld
 
 def settings_document(settings: LifeSettings, world: GridWorld, location: str) -> dict:
     """All settings in one flat dictionary, with the defaults of the world and the learner filled in."""
-    learning, prior = settings.learning, settings.prior
+    prior = settings.prior
     document = {
         "domain": settings.world.domain,
         "map": path_text(settings.world.map),
@@ -24,6 +25,7 @@ def settings_document(settings: LifeSettings, world: GridWorld, location: str) -
         "robot": settings.memory.robot,
         "start": settings.start,
         "memory": location,
+        **asdict(settings.learning),
         "episodes": settings.episode_cap(world.n_states),
         "max_steps": settings.step_cap,
         "seed": settings.seed,
@@ -36,10 +38,6 @@ def settings_document(settings: LifeSettings, world: GridWorld, location: str) -
         "weight": prior.weight,
         "form": prior.form,
         "ties": prior.ties,
-        "learning_rate": learning.learning_rate,
-        "epsilon": learning.epsilon,
-        "epsilon_decay": learning.epsilon_decay,
-        "epsilon_floor": learning.epsilon_floor,
     }
     optional = {
         "goal": settings.goal,

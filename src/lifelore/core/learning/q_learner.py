@@ -79,12 +79,12 @@ class QLearning:
 
     @property
     def episode_cap(self) -> int:
-        """`episodes`; 1,000 where they are not given."""
+        """``episodes``; 1,000 where they are not given."""
         return DEFAULT_CAP if self.episodes is None else self.episodes
 
     @property
     def step_cap(self) -> int:
-        """`max_steps`; 1,000 where they are not given."""
+        """``max_steps``; 1,000 where they are not given."""
         return DEFAULT_CAP if self.max_steps is None else self.max_steps
 
     def schedule(self, discount: float) -> Schedule:
