@@ -309,9 +309,9 @@ def test_the_settings_of_hidden_types_reach_the_life():
     }
     assert set(told) == set(keys.settings) - ELSEWHERE
     values = keys.read([f"{key}={str(value).lower()}" for key, value in told.items()])
-    settings = keys.build(LongLifeSettings, {"domain": "tabletop", "tasks": 5, "robot": "bo"} | values)
+    arguments = keys.arguments(LongLifeSettings, {"domain": "tabletop", "tasks": 5, "robot": "bo"} | values)
     living = LivingSettings(n_episodes=3, false_alarm=0.1, unknown=0.2, change=0.3)
-    assert settings == LongLifeSettings(
+    assert LongLifeSettings(**arguments) == LongLifeSettings(
         "tabletop", n_tasks=5, robot="bo", living=living, labelled=True, n_spare=2, refresh=True
     )
 

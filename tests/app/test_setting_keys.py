@@ -1,5 +1,6 @@
 """Settings by key: what classes say of their fields, what a text becomes, and which line refuses it."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import pytest
@@ -70,8 +71,34 @@ def test_values_become_an_object_with_its_groups():
     texts = ["radius=0.25", "open=false", "drawn_by=a = b", "number=3", "number=2", "lamp="]
     values = KEYS.read(texts)
     assert values == {"radius": 0.25, "open": False, "drawn_by": "a = b", "number": 2, "lamp": ""}
-    assert KEYS.build(Cart, {"owner": "eve"} | values) == Cart("eve", "a = b", Wheels(2, 0.25), False)
-    assert KEYS.build(Cart, {"owner": "eve"}) == Cart("eve")
+    built = Cart(**KEYS.arguments(Cart, {"owner": "eve"} | values))
+    assert built == Cart("eve", "a = b", Wheels(2, 0.25), False)
+    assert Cart(**KEYS.arguments(Cart, {"owner": "eve"})) == Cart("eve")
+
+
+def test_a_function_has_settings_too():
+    def drive(cart: Cart | str, *, miles: float = 1, wheels: Wheels, watch: Callable[[int], None] | None = None):
+        """Drive.
+
+        Parameters
+        ----------
+        cart : Cart or str
+            The cart, or a name.
+        miles : float
+            Way in miles.
+        watch : callable, optional
+            Called after each mile.
+        """
+
+    keys = SettingKeys((drive,), {"cart": "name"})
+    assert list(keys.settings.values()) == [
+        Setting("name", str, "The cart, or a name."),
+        Setting("miles", float, "Way in miles.", 1),
+        Setting("number", int, "Number of wheels.", 4),
+        Setting("radius", float, "Radius in metres; 0.5 where there are three."),
+    ]
+    values = keys.read(["name=red", "number=3"])
+    assert keys.arguments(drive, values) == {"cart": "red", "wheels": Wheels(3)}
 
 
 @pytest.mark.parametrize(

@@ -144,7 +144,7 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json
     out, csv, l2log = (values.get(name) for name in ("out", "csv", "l2log"))
     places = {name: _place(name, values[name], domain) for name in ("start", "goal") if name in values}
     jobs = {"goals": _jobs(values["goals"], values.get("tasks"))} if "goals" in values else {}
-    settings = keys.build(LifeSettings, values | places | jobs)
+    settings = LifeSettings(**keys.arguments(LifeSettings, values | places | jobs))
     new_folders = _missing_folders(memory, out)
     if out is not None:
         check_folder(out)

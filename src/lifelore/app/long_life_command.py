@@ -23,7 +23,7 @@ def live_long_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_
     if foreign := [f"--{name}" for name in FOREIGN if name in values]:
         names = ", ".join(foreign)
         raise InputError(f"{names} does not apply to domain {values['domain']}; leave it out")
-    settings = keys.build(LongLifeSettings, values)
+    settings = LongLifeSettings(**keys.arguments(LongLifeSettings, values))
     beside = pages_beside(serve, values.get("port"), settings.memory)
     with beside, stop_on_interrupt() as stop, progress_bar("living") as progress:
         report = live_long(settings, progress, stop)

@@ -1,15 +1,16 @@
 """Settings by key, for ``--set KEY=VALUE`` and ``--settings``.
 
-The keys, types and defaults are those of frozen dataclasses; a key's meaning is the first sentence on its field in
-the docstring of the class. A field whose type is such a class is a group, whose fields are keys too.
+The keys, types and defaults are those of the parameters of settings classes, or of functions; a key's meaning is
+the first sentence on its parameter in their docstrings. A parameter whose type is a dataclass is a group, whose
+fields are keys too. A parameter that is no text, number or truth value, such as a callback, is no setting.
 """
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import MISSING, Field, dataclass, field, fields, is_dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, is_dataclass
 from difflib import get_close_matches
 from functools import cached_property
-from inspect import getdoc
+from inspect import Parameter, getdoc, signature
 from typing import Any, get_args, get_type_hints
 
 from lifelore.app.console import print_json
@@ -57,17 +58,17 @@ class SettingKeys:
 
     Parameters
     ----------
-    classes : sequence of type
-        Frozen dataclasses.
+    sources : sequence of callable
+        Frozen dataclasses, or functions.
     names : mapping
-        Name of a field to its key, where they differ.
+        Name of a parameter to its key, where they differ.
     extra : sequence of Setting
-        Settings of no class.
+        Settings of no source.
     elsewhere : mapping
         Key to the words that follow it in a refusal: settings that the verb does not take by ``--set``.
     """
 
-    classes: Sequence[type]
+    sources: Sequence[Callable]
     names: Mapping[str, str] = field(default_factory=dict)
     extra: Sequence[Setting] = ()
     elsewhere: Mapping[str, str] = field(default_factory=dict)
@@ -75,7 +76,7 @@ class SettingKeys:
     @cached_property
     def settings(self) -> dict[str, Setting]:
         """The settings that ``--set`` takes, by key."""
-        found = [setting for kind in self.classes for setting in self._settings_of(kind)]
+        found = [setting for source in self.sources for setting in self._settings_of(source)]
         return {one.key: one for one in (*found, *self.extra) if one.key not in self.elsewhere}
 
     def read(self, texts: Sequence[str]) -> dict[str, Any]:
@@ -88,15 +89,15 @@ class SettingKeys:
         """
         return dict(self._pair(text) for text in texts)
 
-    def build(self, kind: type, values: Mapping[str, Any]) -> Any:
-        """An object of a settings class with some values by key, and its defaults otherwise."""
+    def arguments(self, source: Callable, values: Mapping[str, Any]) -> dict[str, Any]:
+        """The arguments of a source, with its groups, that values by key give; other keys are left out."""
         given = {}
-        for part, hint in _typed_fields(kind):
+        for part, hint in _typed_parameters(source):
             if is_dataclass(hint):
-                given[part.name] = self.build(hint, values)  # type: ignore[arg-type]
+                given[part.name] = hint(**self.arguments(hint, values))  # type: ignore[operator]
             elif (key := self._key(part)) in values:
                 given[part.name] = values[key]
-        return kind(**given)
+        return given
 
     def show(self, as_json: bool) -> None:
         """Print each setting with its type, default and meaning."""
@@ -119,21 +120,20 @@ class SettingKeys:
             choices = f" ({'|'.join(row['choices'])})" if row["choices"] else ""
             print(f"{row['key']:<14} {row['type']:<12} {default:<12} {row['meaning']}{choices}")
 
-    def _key(self, part: Field) -> str:
+    def _key(self, part: Parameter) -> str:
         return self.names.get(part.name, part.name)
 
-    def _settings_of(self, kind: type) -> Iterator[Setting]:
-        entries = _documented(kind)
-        for part, hint in _typed_fields(kind):
+    def _settings_of(self, source: Callable) -> Iterator[Setting]:
+        entries = _documented(source)
+        for part, hint in _typed_parameters(source):
+            kind = next((one for one in TYPES if one in (hint, *get_args(hint))), None)
             if is_dataclass(hint):
                 yield from self._settings_of(hint)  # type: ignore[arg-type]
-                continue
-            kinds = get_args(hint) or (hint,)
-            value_kind = next((one for one in (bool, int, float) if one in kinds), str)
-            types, meaning = entries.get(part.name, ("", ""))
-            choices = tuple(re.findall(r'"(\w+)"', types))
-            default = None if part.default is MISSING else part.default
-            yield Setting(self._key(part), value_kind, meaning, default, choices)
+            elif kind is not None:
+                types, meaning = entries.get(part.name, ("", ""))
+                choices = tuple(re.findall(r'"([\w-]+)"', types))
+                default = None if part.default is Parameter.empty else part.default
+                yield Setting(self._key(part), kind, meaning, default, choices)
 
     def _pair(self, text: str) -> tuple[str, Any]:
         key, equals, value = text.partition("=")
@@ -148,15 +148,15 @@ class SettingKeys:
         return key, self.settings[key].value(value)
 
 
-def _typed_fields(kind: type) -> Iterator[tuple[Field, Any]]:
-    hints = get_type_hints(kind)
-    for part in fields(kind):
-        yield part, hints[part.name]
+def _typed_parameters(source: Callable) -> Iterator[tuple[Parameter, Any]]:
+    hints = get_type_hints(source)
+    for part in signature(source).parameters.values():
+        yield part, hints.get(part.name)
 
 
-def _documented(kind: type) -> dict[str, tuple[str, str]]:
-    """Type and first sentence of each entry below *Parameters* in a class's docstring."""
-    section = (getdoc(kind) or "").partition("Parameters\n----------\n")[2].partition("\n\n")[0]
+def _documented(source: Callable) -> dict[str, tuple[str, str]]:
+    """Type and first sentence of each entry below *Parameters* in a docstring."""
+    section = (getdoc(source) or "").partition("Parameters\n----------\n")[2].partition("\n\n")[0]
     entries = re.findall(r"^(\w+) : (.*)\n((?:    .*\n?)*)", section, re.MULTILINE)
     return {name: (types, _first_sentence(" ".join(text.split()))) for name, types, text in entries}
 
