@@ -17,7 +17,7 @@ from lifelore.action.priors.action_prior import FORMS, ActionPrior
 from lifelore.action.priors.exploration import TIES, TRACE
 from lifelore.agent.external_world.context_code import ContextCodes
 from lifelore.agent.external_world.useful_actions import EpisodeReturns, useful_actions
-from lifelore.agent.live.task_result import Stopped
+from lifelore.agent.life.loop import Stopped
 from lifelore.core.compiled.random_state import random_state
 from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learner import QLearning
