@@ -15,11 +15,12 @@ APPLY = {
 
 def live_long_life(context: typer.Context) -> int:
     """Live through jobs with hidden types, with the options of `lifelore live`."""
-    from lifelore.agent.long_lived.live_task import LivingSettings
-    from lifelore.agent.long_lived.long_life import LongLifeSettings, live_long
+    from lifelore.agent.long_lived.families.by_name import family_named
+    from lifelore.agent.long_lived.long_life import live_long
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.pages_beside import pages_beside
     from lifelore.core.errors import InputError
+    from lifelore.memory.location import default_path
 
     given: dict[str, Any] = context.params
     sources = {name: context.get_parameter_source(name) for name in given}
@@ -27,28 +28,29 @@ def live_long_life(context: typer.Context) -> int:
     if foreign := sorted(typed - APPLY):
         names = ", ".join(f"--{name.replace('_', '-')}" for name in foreign)
         raise InputError(f"{names} does not apply to domain {given['domain']}; leave it out")
-    episodes = {} if given["episodes"] is None else {"n_episodes": given["episodes"]}
-    living = LivingSettings(**episodes, change=given["change"])
-    settings = LongLifeSettings(
-        given["domain"],
-        given["agent"] or "full",
-        20 if given["tasks"] is None else given["tasks"],
-        given["seed"],
-        given["robot"],
-        given["memory"],
-        living,
-        given["labels"],
-        given["spare"],
-        given["refresh"],
-    )
+    domain, seed, change = given["domain"], given["seed"], given["change"]
+    family = family_named(domain, seed, labelled=given["labels"], change=change)
     beside = pages_beside(given["serve"], given["port"], given["memory"])
     with beside, stop_on_interrupt() as stop, progress_bar("living") as progress:
-        report = live_long(settings, progress, stop)
+        report = live_long(
+            family,
+            tasks=20 if given["tasks"] is None else given["tasks"],
+            agent=given["agent"] or "full",
+            episodes=8 if given["episodes"] is None else given["episodes"],
+            seed=seed,
+            memory=default_path() if given["memory"] is None else given["memory"],
+            robot=given["robot"],
+            refresh=given["refresh"],
+            spare=given["spare"],
+            change=change,
+            progress=progress,
+            stop=stop,
+        )
     if given["as_json"]:
         print_json(report)
     else:
-        _print_report(report, settings.robot)
-    return INTERRUPTED if len(report["tasks"]) < settings.n_tasks + settings.n_spare else 0
+        _print_report(report, given["robot"])
+    return INTERRUPTED if stop.is_set() else 0
 
 
 def _print_report(report: dict[str, Any], robot: str) -> None:
