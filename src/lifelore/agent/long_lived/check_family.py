@@ -117,7 +117,7 @@ def check_constants(family: TaskFamily) -> None:
         raise _wrong(family, f"groups must be numbers from 0, got {np.min(family.groups)}")
     constant = np.isfinite(family.constancy).all() and np.min(family.constancy) > 0
     if not constant:
-        raise _wrong(family, f"constancy must be above 0, got {family.constancy}")
+        raise _wrong(family, f"constancy must be finite and above 0, got {np.min(family.constancy)}")
     _check_possible(family)
 
 
@@ -171,7 +171,7 @@ def checked_plan(family: TaskFamily, plan: Any, n_types: int) -> Plan:
             family, f"values of a plan must be of shape {n_types, n_types}, types × behaviours, got {values}"
         )
     if not np.isfinite(plan.values).all():
-        raise _wrong(family, f"values of a plan must be finite, got {plan.values}")
+        raise _wrong(family, "values of a plan must be finite, got infinite or missing ones")
     for name in ("acts", "trying"):
         acts = np.asarray(getattr(plan, name))
         if acts.shape != (n_types,):
