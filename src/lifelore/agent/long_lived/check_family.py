@@ -51,8 +51,7 @@ def check_family(family: TaskFamily, tasks: int = 3, episodes: int = 2, seed: in
     for number in range(tasks):
         drawn, task = checked_meeting(family, number, family.meet(number, AGENTS["full"]))
         again, _ = family.meet(number, AGENTS["full"])
-        if drawn != again:
-            raise _wrong(family, f"task {number} must be the same task each time, got {drawn} and {again}")
+        _rule(family, drawn == again, f"task {number} must be the same task each time, got {drawn} and {again}")
         checked_best_return(family, number, family.best_return(number))
         for episode in range(episodes):
             _play(family, task, f"episode {episode} of task {number}", generator)
@@ -66,8 +65,7 @@ def _play(family: TaskFamily, task: AgentTask, name: str, generator: np.random.G
     task.begin()
     for _ in range(MOST_ACTS):
         scene = task.describe()
-        if not isinstance(scene, str):
-            raise _wrong(family, f"describe must return a text, got {scene!r}")
+        _rule(family, isinstance(scene, str), f"describe must return a text, got {scene!r}")
         plan = checked_plan(family, task.plan(laws.copy(), tried.copy(), len(laws) - 1, shared), len(laws))
         act = int(generator.choice(np.concatenate([plan.acts, plan.trying])))
         step = checked_step(family, act, task.act(act))
@@ -75,11 +73,10 @@ def _play(family: TaskFamily, task: AgentTask, name: str, generator: np.random.G
         if step.ended:
             break
     else:
-        raise _wrong(family, f"{name} must end, got {MOST_ACTS} acts without an end; let the last Step have ended")
+        _rule(family, False, f"{name} must end, got {MOST_ACTS} acts without an end; let the last Step have ended")
     contexts, best = task.best_acts(laws[0], shared)
     shape = len(contexts), len(family.acts)
-    if best.shape != shape:
-        raise _wrong(family, f"best_acts must be of shape {shape}, contexts × acts, got {best.shape}")
+    _rule(family, best.shape == shape, f"best_acts must be of shape {shape}, contexts × acts, got {best.shape}")
 
 
 def check_constants(family: TaskFamily) -> None:
@@ -96,107 +93,95 @@ def check_constants(family: TaskFamily) -> None:
         if not hasattr(family, name):
             raise InputError(f"family {type(family).__name__} must have an attribute {name}; see TaskFamily")
     named = isinstance(family.name, str) and family.name.strip() and "/" not in family.name
-    if not named:
-        raise _wrong(family, f"name must be a text without '/', got {family.name!r}")
+    _rule(family, named, f"name must be a text without '/', got {family.name!r}")
     acts = isinstance(family.acts, tuple) and family.acts and all(isinstance(act, str) for act in family.acts)
-    if not acts:
-        raise _wrong(family, f"acts must be a tuple of names, at least one, got {family.acts!r}")
+    _rule(family, acts, f"acts must be a tuple of names, at least one, got {family.acts!r}")
     for name in ("n_causes", "n_effects"):
         n = getattr(family, name)
-        if not (isinstance(n, WHOLE) and n >= 1):
-            raise _wrong(family, f"{name} must be a whole number from 1, got {n!r}")
+        _rule(family, isinstance(n, WHOLE) and n >= 1, f"{name} must be a whole number from 1, got {n!r}")
     for name, kind in ARRAYS.items():
         array, shape = getattr(family, name), (family.n_causes,)
-        if not (isinstance(array, np.ndarray) and array.shape == shape):
-            raise _wrong(
-                family, f"{name} must be an array of shape {shape}, a value a cause, got {np.shape(array)}"
-            )
-        if not np.issubdtype(array.dtype, kind):
-            raise _wrong(family, f"{name} must hold {kind.__name__} values, got {array.dtype}")
-    if np.min(family.groups) < 0:
-        raise _wrong(family, f"groups must be numbers from 0, got {np.min(family.groups)}")
+        _rule(
+            family,
+            isinstance(array, np.ndarray) and array.shape == shape,
+            f"{name} must be an array of shape {shape}, a value a cause, got {np.shape(array)}",
+        )
+        _rule(
+            family, np.issubdtype(array.dtype, kind), f"{name} must hold {kind.__name__} values, got {array.dtype}"
+        )
+    _rule(family, np.min(family.groups) >= 0, f"groups must be numbers from 0, got {np.min(family.groups)}")
     constant = np.isfinite(family.constancy).all() and np.min(family.constancy) > 0
-    if not constant:
-        raise _wrong(family, f"constancy must be finite and above 0, got {np.min(family.constancy)}")
+    _rule(family, constant, f"constancy must be finite and above 0, got {np.min(family.constancy)}")
     _check_possible(family)
 
 
 def _check_possible(family: TaskFamily) -> None:
     possible, shape = family.possible, (family.n_causes, family.n_effects)
-    if not (isinstance(possible, np.ndarray) and possible.shape == shape):
-        raise _wrong(
-            family, f"possible must be an array of shape {shape}, causes × effects, got {np.shape(possible)}"
-        )
+    _rule(
+        family,
+        isinstance(possible, np.ndarray) and possible.shape == shape,
+        f"possible must be an array of shape {shape}, causes × effects, got {np.shape(possible)}",
+    )
     sums = np.where((possible >= 0).all(axis=1), possible.sum(axis=1), np.nan)
     wrong = np.flatnonzero(~(np.abs(sums - 1) <= ROW_SUM))
     if wrong.size:
         row = possible[wrong[0]].tolist()
-        raise _wrong(family, f"rows of possible must be probabilities with sum 1, got {row} for cause {wrong[0]}")
+        _rule(family, False, f"rows of possible must be probabilities with sum 1, got {row} for cause {wrong[0]}")
     smoothed = np.shape(family.smoothed(possible[None]))
-    if smoothed != (1, *shape):
-        raise _wrong(family, f"smoothed must keep the shape of counts, {(1, *shape)}, got {smoothed}")
+    _rule(
+        family, smoothed == (1, *shape), f"smoothed must keep the shape of counts, {(1, *shape)}, got {smoothed}"
+    )
 
 
 def checked_meeting(family: TaskFamily, number: int, met: Any) -> tuple[DrawnTask, AgentTask]:
     """What `TaskFamily.meet` has returned, if it follows the rules."""
     pair = isinstance(met, tuple) and len(met) == 2 and isinstance(met[0], DrawnTask)
-    if not pair:
-        raise _wrong(family, f"meet must return (DrawnTask, task), got {met!r}")
+    _rule(family, pair, f"meet must return (DrawnTask, task), got {met!r}")
     drawn, task = met
-    if drawn.number != number:
-        raise _wrong(family, f"meet must return task {number}, got task {drawn.number}")
+    _rule(family, drawn.number == number, f"meet must return task {number}, got task {drawn.number}")
     known = isinstance(drawn.context, WHOLE) and 0 <= drawn.context < MOST_CONTEXTS
-    if not known:
-        raise _wrong(
-            family, f"a context must lie in 0..{MOST_CONTEXTS - 1}, got {drawn.context!r} in task {number}"
-        )
+    _rule(family, known, f"a context must lie in 0..{MOST_CONTEXTS - 1}, got {drawn.context!r} in task {number}")
     return drawn, task
 
 
 def checked_best_return(family: TaskFamily, number: int, best: Any) -> float:
     """What `TaskFamily.best_return` has returned, if it is finite."""
-    if not _finite(best):
-        raise _wrong(family, f"best_return must be a finite number, got {best!r} for task {number}")
+    _rule(family, _finite(best), f"best_return must be a finite number, got {best!r} for task {number}")
     return float(best)
 
 
 def checked_plan(family: TaskFamily, plan: Any, n_types: int) -> Plan:
     """A plan with a value for each type and behaviour, and an act for each behaviour."""
-    if not isinstance(plan, Plan):
-        raise _wrong(family, f"plan must return a Plan, got {type(plan).__name__}")
+    _rule(family, isinstance(plan, Plan), f"plan must return a Plan, got {type(plan).__name__}")
     values = np.shape(plan.values)
     square = values == (n_types, n_types)
-    if not square:
-        raise _wrong(
-            family, f"values of a plan must be of shape {n_types, n_types}, types × behaviours, got {values}"
-        )
-    if not np.isfinite(plan.values).all():
-        raise _wrong(family, "values of a plan must be finite, got infinite or missing ones")
+    _rule(
+        family, square, f"values of a plan must be of shape {n_types, n_types}, types × behaviours, got {values}"
+    )
+    _rule(family, np.isfinite(plan.values).all(), "values of a plan must be finite, got infinite or missing ones")
     for name in ("acts", "trying"):
         acts = np.asarray(getattr(plan, name))
-        if acts.shape != (n_types,):
-            raise _wrong(family, f"{name} of a plan must be of shape {(n_types,)}, got {acts.shape}")
+        _rule(
+            family, acts.shape == (n_types,), f"{name} of a plan must be of shape {(n_types,)}, got {acts.shape}"
+        )
         known = np.issubdtype(acts.dtype, np.integer) and acts.min() >= 0 and acts.max() < len(family.acts)
-        if not known:
-            raise _wrong(family, f"{name} of a plan must lie in 0..{len(family.acts) - 1}, got {acts.tolist()}")
+        _rule(family, known, f"{name} of a plan must lie in 0..{len(family.acts) - 1}, got {acts.tolist()}")
     return plan
 
 
 def checked_step(family: TaskFamily, act: int, step: Any) -> Step:
     """A step with a finite reward and with effects that the family has."""
     name = family.acts[act]
-    if not isinstance(step, Step):
-        raise _wrong(family, f"act must return a Step, got {type(step).__name__} for {name!r}")
-    if not _finite(step.reward):
-        raise _wrong(family, f"a reward must be a finite number, got {step.reward!r} for act {name!r}")
+    _rule(family, isinstance(step, Step), f"act must return a Step, got {type(step).__name__} for {name!r}")
+    _rule(family, _finite(step.reward), f"a reward must be a finite number, got {step.reward!r} for act {name!r}")
     for effect in step.effects:
-        if len(effect) != 2:
-            raise _wrong(family, f"effects must be pairs (cause, effect), got {effect!r} for act {name!r}")
+        _rule(family, len(effect) == 2, f"effects must be pairs (cause, effect), got {effect!r} for act {name!r}")
         for what, n, got in zip(("cause", "effect"), (family.n_causes, family.n_effects), effect, strict=True):
-            if not (isinstance(got, WHOLE) and 0 <= got < n):
-                raise _wrong(
-                    family, f"{what} must lie in 0..{n - 1} (n_{what}s = {n}), got {got!r} for act {name!r}"
-                )
+            _rule(
+                family,
+                isinstance(got, WHOLE) and 0 <= got < n,
+                f"{what} must lie in 0..{n - 1} (n_{what}s = {n}), got {got!r} for act {name!r}",
+            )
     return step
 
 
@@ -204,5 +189,6 @@ def _finite(value: Any) -> bool:
     return isinstance(value, Real) and math.isfinite(value)
 
 
-def _wrong(family: TaskFamily, rule: str) -> InputError:
-    return InputError(f"family {family.name!r}: {rule}")
+def _rule(family: TaskFamily, holds: Any, rule: str) -> None:
+    if not holds:
+        raise InputError(f"family {family.name!r}: {rule}")
