@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from lifelore.agent.long_lived.live_task import LivingSettings
-from lifelore.agent.long_lived.long_life import LongLifeSettings
+from lifelore.agent.long_lived.long_life import live_long
 from lifelore.app.live_command import OPTIONS, setting_keys
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.domains.buildings.office import office_map
@@ -298,22 +297,14 @@ def test_an_interrupted_list_begins_again_by_a_setting(ask, tmp_path):
 
 def test_the_settings_of_hidden_types_reach_the_life():
     keys = setting_keys("tabletop")
-    told = {
-        "episodes": 3,
-        "false_alarm": 0.1,
-        "unknown": 0.2,
-        "change": 0.3,
-        "labels": True,
-        "spare": 2,
-        "refresh": True,
+    told = {"episodes": 3, "false_alarm": 0.1, "change": 0.3, "spare": 2, "refresh": True}
+    assert {*told, "labels"} == set(keys.settings) - ELSEWHERE
+    values = keys.read([f"{key}={str(value).lower()}" for key, value in told.items()] + ["labels=true"])
+    assert values == told | {"labels": True}
+    assert keys.arguments(live_long, {"tasks": 5, "robot": "bo", "csv": "x"} | values) == told | {
+        "tasks": 5,
+        "robot": "bo",
     }
-    assert set(told) == set(keys.settings) - ELSEWHERE
-    values = keys.read([f"{key}={str(value).lower()}" for key, value in told.items()])
-    arguments = keys.arguments(LongLifeSettings, {"domain": "tabletop", "tasks": 5, "robot": "bo"} | values)
-    living = LivingSettings(n_episodes=3, false_alarm=0.1, unknown=0.2, change=0.3)
-    assert LongLifeSettings(**arguments) == LongLifeSettings(
-        "tabletop", n_tasks=5, robot="bo", living=living, labelled=True, n_spare=2, refresh=True
-    )
 
 
 def test_every_setting_says_what_it_means(ask):

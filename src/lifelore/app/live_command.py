@@ -21,12 +21,9 @@ KEYS = {
     "condition": "prior",
     "kind": "sensor",
     "location": "memory",
-    "n_tasks": "tasks",
-    "n_episodes": "episodes",
-    "n_spare": "spare",
-    "labelled": "labels",
+    "family": "domain",
 }
-"""Name of a field of the settings to its key, where they differ."""
+"""Name of a parameter of the settings to its key, where they differ."""
 
 
 def live(
@@ -111,13 +108,16 @@ def setting_keys(domain: str) -> "SettingKeys":
     """The settings of a life in this domain, by key."""
     from lifelore.agent.live.life_settings import LifeSettings
     from lifelore.agent.long_lived.families.by_name import FAMILIES
-    from lifelore.agent.long_lived.long_life import LongLifeSettings
+    from lifelore.agent.long_lived.long_life import live_long
     from lifelore.app.setting_keys import Setting, SettingKeys
 
     port = Setting("port", int, "Port of --serve, 8321 by default; 0: any free port.")
     log = Setting("l2log", str, "Folder for a log of every episode in L2Logger's format.")
+    labels = Setting(
+        "labels", bool, "Whether the points of the pictures carry the objects' labels, for tabletop.", False
+    )
     life = SettingKeys((LifeSettings,), KEYS, (log, port))
-    long_life = SettingKeys((LongLifeSettings,), KEYS, (port,))
+    long_life = SettingKeys((live_long,), KEYS, (labels, port))
     if domain in FAMILIES:
         own, other, where = long_life, life, f"does not apply to domain {domain}; leave it out"
     else:

@@ -15,23 +15,28 @@ FOREIGN = ("map", "goal", "goals", "out", "csv")
 
 def live_long_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json: bool) -> int:
     """Live through jobs with hidden types, with the settings of `values`, by key."""
-    from lifelore.agent.long_lived.long_life import LongLifeSettings, live_long
+    from lifelore.agent.long_lived.families.by_name import family_named
+    from lifelore.agent.long_lived.long_life import live_long
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.pages_beside import pages_beside
     from lifelore.core.errors import InputError
+    from lifelore.memory.location import default_path
 
     if foreign := [f"--{name}" for name in FOREIGN if name in values]:
         names = ", ".join(foreign)
         raise InputError(f"{names} does not apply to domain {values['domain']}; leave it out")
-    settings = LongLifeSettings(**keys.arguments(LongLifeSettings, values))
-    beside = pages_beside(serve, values.get("port"), settings.memory)
+    labels, change, memory = values.get("labels", False), values.get("change", 0.0), values.get("memory")
+    family = family_named(values["domain"], values["seed"], labelled=labels, change=change)
+    stored = {"memory": default_path() if memory is None else memory}
+    arguments: dict[str, Any] = keys.arguments(live_long, values | stored) | {"family": family}
+    beside = pages_beside(serve, values.get("port"), memory)
     with beside, stop_on_interrupt() as stop, progress_bar("living") as progress:
-        report = live_long(settings, progress, stop)
+        report = live_long(**arguments, progress=progress, stop=stop)
     if as_json:
         print_json(report)
     else:
-        _print_report(report, settings.robot)
-    return INTERRUPTED if len(report["tasks"]) < settings.n_tasks + settings.n_spare else 0
+        _print_report(report, values["robot"])
+    return INTERRUPTED if stop.is_set() else 0
 
 
 def _print_report(report: dict[str, Any], robot: str) -> None:

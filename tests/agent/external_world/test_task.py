@@ -8,8 +8,8 @@ import pytest
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.external_world.context_code import ContextCodes
 from lifelore.agent.external_world.task import STOP_CHECK, ExternalLearner, ExternalTask
+from lifelore.agent.life.loop import Stopped
 from lifelore.agent.live.life_settings import PriorSettings
-from lifelore.agent.live.task_result import Stopped
 from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import uniform_rows

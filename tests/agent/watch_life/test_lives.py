@@ -7,8 +7,7 @@ import pytest
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.agent.long_lived.explanation import explained
-from lifelore.agent.long_lived.live_task import LivingSettings
-from lifelore.agent.long_lived.long_life import LongLifeSettings, live_long
+from lifelore.agent.long_lived.long_life import live_long
 from lifelore.agent.watch_life.known_family import TELLING_CAUSES, known_family
 from lifelore.agent.watch_life.lives import lives_in, task_of, tasks_of
 from lifelore.core.errors import NotFoundError
@@ -26,8 +25,7 @@ def lived(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict, dict]:
     in_grid = live(
         LifeSettings(WorldSettings("lattice", size=7), memory=MemorySettings(where, "ada"), tasks=3, jobs=1)
     ).report
-    customers = LongLifeSettings(FACTORY, n_tasks=4, robot="bo", memory=where, living=LivingSettings(n_episodes=3))
-    types = live_long(customers)
+    types = live_long(FACTORY, tasks=4, episodes=3, robot="bo", memory=where)
     with open_memory(where) as memory:
         memory.contribute("study: ada", [], process="p", seq=0, task={"index": 0, "goal": [0, 0], "world": "w"})
         memory.contribute("ada", [], process="another", seq=0, task={"run": 1})

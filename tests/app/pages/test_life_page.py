@@ -20,8 +20,7 @@ from playwright.sync_api import Browser, Dialog, Page, expect
 
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
-from lifelore.agent.long_lived.live_task import LivingSettings
-from lifelore.agent.long_lived.long_life import LongLifeSettings, live_long
+from lifelore.agent.long_lived.long_life import live_long
 from lifelore.app.pages.mount import app_with_pages
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.tokens import add_token
@@ -39,11 +38,7 @@ Opened = Callable[..., Page]
 
 def serve_customers(where: Path, n_tasks: int) -> dict:
     """Live through some orders of the factory."""
-    return live_long(
-        LongLifeSettings(
-            FACTORY, n_tasks=n_tasks, robot="bo", memory=str(where), living=LivingSettings(n_episodes=3)
-        )
-    )
+    return live_long(FACTORY, tasks=n_tasks, episodes=3, robot="bo", memory=where)
 
 
 def walk_lattice(where: Path, n_tasks: int) -> dict:

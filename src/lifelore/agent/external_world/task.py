@@ -17,8 +17,8 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import TRACE
 from lifelore.agent.external_world.context_code import ContextCodes
 from lifelore.agent.external_world.useful_actions import EpisodeReturns, useful_actions
+from lifelore.agent.life.loop import Stopped
 from lifelore.agent.live.life_settings import PriorSettings
-from lifelore.agent.live.task_result import Stopped
 from lifelore.core.compiled.random_state import random_state
 from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learner import QLearning
