@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 from benchmarks.peers.list_loop import tuned_rate
 from benchmarks.rounds import at_most, counted, interleaved, row, row_beside
 from lifelore.agent.live.life import live
-from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings
+from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.core.protocols import Progress
 from lifelore.domains.worlds import make_world
 
@@ -68,7 +68,7 @@ def life_seconds(agent: str, tasks: int, learner: str = "model", steps: list[int
     """Processor seconds of a life with a new memory; the steps of `scratch` in each task are added to `steps`."""
     with TemporaryDirectory() as folder:
         settings = LifeSettings(
-            learning=LearningSettings(learner),
+            learner=learner,
             memory=MemorySettings(str(Path(folder) / "life.db")),
             agent=agent,
             compare=False,

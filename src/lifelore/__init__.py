@@ -19,6 +19,12 @@ if TYPE_CHECKING:
     from lifelore.agent.external_world.stored_prior import prior_from_memory as prior_from_memory
     from lifelore.agent.live.life import live as live
     from lifelore.agent.live.life_settings import LifeSettings as LifeSettings
+    from lifelore.agent.long_lived.check_family import check_family as check_family
+    from lifelore.agent.long_lived.long_life import live_long as live_long
+    from lifelore.agent.long_lived.task_family import AgentTask as AgentTask
+    from lifelore.agent.long_lived.task_family import Plan as Plan
+    from lifelore.agent.long_lived.task_family import Step as Step
+    from lifelore.agent.long_lived.task_family import TaskFamily as TaskFamily
     from lifelore.agent.perceive.perceive import PerceiveSettings as PerceiveSettings
     from lifelore.agent.perceive.perceive import perceive as perceive
     from lifelore.core.errors import LifeloreError as LifeloreError
@@ -32,6 +38,7 @@ if TYPE_CHECKING:
     from lifelore.core.protocols import SignalModel as SignalModel
     from lifelore.core.protocols import World as World
     from lifelore.core.relations import PairLabel as PairLabel
+    from lifelore.domains.task_stream import TaskStream as TaskStream
     from lifelore.domains.worlds import make_world as make_world
     from lifelore.figures.lives.prior_table import plot_prior as plot_prior
     from lifelore.interaction.adaptation.beat import Beat as Beat
@@ -50,6 +57,7 @@ __version__ = "0.1.0"
 
 _HOME = {
     "ActionPrior": "lifelore.action.priors.action_prior",
+    "AgentTask": "lifelore.agent.long_lived.task_family",
     "BatchContexts": "lifelore.agent.external_world.stored_prior",
     "BayesianPolicyReuse": "lifelore.interaction.reuse.bayesian_policy_reuse",
     "Beat": "lifelore.interaction.adaptation.beat",
@@ -63,6 +71,7 @@ _HOME = {
     "Memory": "lifelore.memory",
     "PairLabel": "lifelore.core.relations",
     "PerceiveSettings": "lifelore.agent.perceive.perceive",
+    "Plan": "lifelore.agent.long_lived.task_family",
     "Policy": "lifelore.core.protocols",
     "PolicyLibrary": "lifelore.interaction.library.policy_library",
     "QLearning": "lifelore.core.learning.q_learner",
@@ -70,12 +79,17 @@ _HOME = {
     "RelationClassifier": "lifelore.perception.relations.relation_classifier",
     "Scene": "lifelore.perception.scene",
     "SignalModel": "lifelore.core.protocols",
+    "Step": "lifelore.agent.long_lived.task_family",
     "Tables": "lifelore.core.mdp",
     "Task": "lifelore.core.mdp",
+    "TaskFamily": "lifelore.agent.long_lived.task_family",
+    "TaskStream": "lifelore.domains.task_stream",
     "UserBeliefs": "lifelore.interaction.reuse.user_beliefs",
     "World": "lifelore.core.protocols",
+    "check_family": "lifelore.agent.long_lived.check_family",
     "live": "lifelore.agent.live.life",
     "live_in": "lifelore.agent.external_world.live_in",
+    "live_long": "lifelore.agent.long_lived.long_life",
     "make_world": "lifelore.domains.worlds",
     "open_memory": "lifelore.memory",
     "perceive": "lifelore.agent.perceive.perceive",

@@ -8,6 +8,7 @@ import pytest
 import typer
 
 from lifelore.app.command_line import app
+from lifelore.app.live_command import setting_keys
 
 ROOT = Path(__file__).parents[2]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), ROOT / "Makefile"])
@@ -42,6 +43,10 @@ def understand(command, arguments: list[str], name: str, typed: bool) -> list[st
     assert {word.split("=")[0] for word in arguments if word.startswith("-")} <= known
     if typed:
         command.make_context(name, arguments)
+    if name == "live":
+        domain = next((arguments[i + 1] for i, word in enumerate(arguments) if word == "--domain"), "building")
+        changed = [arguments[i + 1].partition("=")[0] for i, word in enumerate(arguments) if word == "--set"]
+        assert set(changed) - {"KEY"} <= set(setting_keys(domain).settings)
     return []
 
 

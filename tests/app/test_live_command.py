@@ -5,9 +5,12 @@ from pathlib import Path
 
 import pytest
 
+from lifelore.agent.long_lived.long_life import live_long
+from lifelore.app.live_command import OPTIONS, setting_keys
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.domains.buildings.office import office_map
 from lifelore.memory import open_memory
+from tests.app.changed_settings import changed
 
 DOCUMENT = {
     "domain", "map", "n_states", "building", "seed", "settings", "tasks", "summary", "memory", "seconds",
@@ -89,7 +92,7 @@ def check_summary(summary: dict, names: list[str], n_tasks: int) -> None:
         ((), ["lore", "scratch"]),
         (("--agent", "all"), ["lore", "model", "prior", "scratch", "undirected", "rmax", "frontier"]),
         (("--agent", "scratch"), ["scratch"]),
-        (("--learner", "q", "--episodes", "30"), ["lore", "scratch"]),
+        (("--set", "learner=q", "--set", "episodes=30"), ["lore", "scratch"]),
         (("--tasks", "1"), ["lore", "scratch"]),
     ],
     ids=["default", "all", "scratch", "q", "one task"],
@@ -120,7 +123,8 @@ def test_settings_in_the_report_are_those_that_were_told(ask, tmp_path):
         "form": "softmax", "ties": "prior", "learning_rate": 0.3, "epsilon": 0.8, "epsilon_decay": 0.9,
         "epsilon_floor": 0.1, "sensor": "touch",
     }  # fmt: skip
-    options = [f"--{name.replace('_', '-')}={value}" for name, value in told.items()]
+    options = [f"--{name}={told[name]}" for name in OPTIONS if name in told]
+    options += changed(**{name: value for name, value in told.items() if name not in OPTIONS})
     settings = ask("live", *options, "--memory", tmp_path / "life.db", "--json").document["settings"]
     unused = dict.fromkeys(("map", "start", "cell", "robot_radius", "range"))
     assert settings == told | unused | {"memory": str(tmp_path / "life.db")}
@@ -140,19 +144,19 @@ def repeatable(life: dict) -> dict:
 @pytest.mark.parametrize("learner", ["model", "q"])
 def test_the_same_seed_is_the_same_life_for_any_number_of_threads(learner, ask, tmp_path):
     lives = [
-        ask(*LATTICE, "--tasks", 3, "--learner", learner, "--episodes", 60, "--jobs", jobs, "--memory", f"{i}.db")
+        ask(*LATTICE, "--tasks", 3, *changed(learner=learner, episodes=60, jobs=jobs), "--memory", f"{i}.db")
         for i, jobs in enumerate((1, 3, 1))
     ]
     first, *others = [repeatable(life.document) for life in lives]
     assert others == [first, first]
-    other = ask(*LATTICE, "--tasks", 3, "--episodes", 60, "--seed", 1, "--memory", "other.db").document
+    other = ask(*LATTICE, "--tasks", 3, "--set", "episodes=60", "--seed", 1, "--memory", "other.db").document
     assert [task["goal"] for task in other["tasks"]] != [task["goal"] for task in first["tasks"]]
 
 
 def test_processes_repeat_a_life_too(start, answer):
     """Other hash seeds, other addresses: nothing of a process may enter a life."""
     children = [
-        start(*LATTICE, "--tasks", 3, "--jobs", jobs, "--memory", f"{jobs}.db") for jobs in (1, 3)
+        start(*LATTICE, "--tasks", 3, "--set", f"jobs={jobs}", "--memory", f"{jobs}.db") for jobs in (1, 3)
     ]  # fmt: skip
     one, three = (repeatable(answer(child).document) for child in children)
     assert one == three
@@ -202,11 +206,11 @@ def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
 
 
 def test_a_lidar_is_named_in_the_report_and_the_table(ask):
-    lidar = ("live", "--sensor", "lidar", "--range", "3", "--tasks", 2, "--memory", "life.db")
+    lidar = ("live", "--set", "sensor=lidar", "--set", "range=3", "--tasks", 2, "--memory", "life.db")
     settings = ask(*lidar, "--json").document["settings"]
     assert (settings["sensor"], settings["range"]) == ("lidar", 3.0)
     assert "steps to see goal" in ask(*lidar).out
-    assert "range applies to sensor lidar" in ask("live", "--range", "3", "--memory", "none.db").refusal
+    assert "range applies to sensor lidar" in ask("live", "--set", "range=3", "--memory", "none.db").refusal
     assert not Path("none.db").exists()
 
 
@@ -239,11 +243,108 @@ def test_the_measures_go_into_a_long_table(ask, tmp_path):
 
 
 def test_every_episode_is_logged_where_it_is_told(ask, tmp_path):
-    said = ask(*LATTICE, "--tasks", 1, "--memory", "life.db", "--l2log", tmp_path / "logs")
+    said = ask(*LATTICE, "--tasks", 1, "--memory", "life.db", *changed(l2log=tmp_path / "logs"))
     assert (said.status, said.err) == (0, "")
     assert set(said.document["settings"]) == TOLD
     rows = {path.parts[-4].split("-")[0] for path in (tmp_path / "logs").glob("*/*/0-train/data-log.tsv")}
     assert rows == {"lore", "scratch"}
     (tmp_path / "file").write_text("")
-    assert "folder must be a folder" in ask(*LATTICE, "--memory", "none.db", "--l2log", tmp_path / "file").refusal
+    refused = ask(*LATTICE, "--memory", "none.db", *changed(l2log=tmp_path / "file"))
+    assert "folder must be a folder" in refused.refusal
     assert not (tmp_path / "none.db").exists()
+
+
+SET = {
+    "building": {
+        "cell": 0.4, "robot_radius": 0.15, "min_free": 0.5, "sensor": "lidar", "range": 4.0, "refresh": True,
+        "compare": False, "watch": True, "building": "home", "start": [1.5, 1.5],
+    },
+    "lattice": {"destinations": 3, "size": 9, "learner": "q", "episodes": 7, "jobs": 1, "max_steps": 30,
+        "discount": 0.9, "goal_reward": 7.0, "wall_reward": -3.0, "prior": "state", "alpha0": 0.3, "weight": 2.0,
+        "form": "support", "ties": "prior", "learning_rate": 0.2, "epsilon": 0.5, "epsilon_decay": 0.9,
+        "epsilon_floor": 0.2,
+    },
+    "noise": {"density": 0.55},
+    "advice": {"loops": 0.3},
+}  # fmt: skip
+"""A domain to values, other than the defaults, of settings that it takes."""
+ELSEWHERE = {"again", "l2log", "port"}
+"""Settings that other tests look at: one needs a job list, two say where output goes."""
+
+
+def test_every_setting_is_set_and_stands_in_the_report(ask, tmp_path):
+    listed = {one["key"]: one for one in ask("live", "--settings", "--json").document["settings"]}
+    assert {key for told in SET.values() for key in told} == set(listed) - ELSEWHERE
+    path = map_of(office_map(3).state[:300, :300], tmp_path)
+    for domain, told in SET.items():
+        assert not [key for key, value in told.items() if value == listed[key]["default"]]
+        texts = told | {key: str(value).lower() for key, value in told.items() if isinstance(value, bool)}
+        texts |= {"start": "1.5,1.5"} if "start" in told else {}
+        place = ("--map", path) if domain == "building" else ()
+        options = ("live", "--domain", domain, *place, "--tasks", 1, "--memory", f"{domain}.db", "--json")
+        settings = ask(*options, *changed(**texts)).document["settings"]
+        assert {key: settings[key] for key in told} == told
+
+
+def test_an_interrupted_list_begins_again_by_a_setting(ask, tmp_path):
+    path = map_of(office_map(3).state[:300, :300], tmp_path)
+    Path("jobs.csv").write_text("name,x,y\nhere,1.475,1.525\n")
+    options = ("live", "--map", path, "--goals", "jobs.csv", "--memory", "life.db", "--json")
+    assert ask(*options, *changed(again="true")).document["settings"]["again"] is True
+    assert "again" not in ask(*options).document["settings"]
+    assert "again applies to a job list" in ask("live", *changed(again="true"), "--memory", "no.db").refusal
+
+
+def test_the_settings_of_hidden_types_reach_the_life():
+    keys = setting_keys("tabletop")
+    told = {"episodes": 3, "false_alarm": 0.1, "change": 0.3, "spare": 2, "refresh": True}
+    assert {*told, "labels"} == set(keys.settings) - ELSEWHERE
+    values = keys.read([f"{key}={str(value).lower()}" for key, value in told.items()] + ["labels=true"])
+    assert values == told | {"labels": True}
+    assert keys.arguments(live_long, {"tasks": 5, "robot": "bo", "csv": "x"} | values) == told | {
+        "tasks": 5,
+        "robot": "bo",
+    }
+
+
+def test_every_setting_says_what_it_means(ask):
+    for domain in ("building", "tabletop"):
+        rows = ask("live", "--domain", domain, "--settings", "--json").document["settings"]
+        assert all(len(row["meaning"].split()) >= 3 and row["meaning"].endswith(".") for row in rows)
+        lines = ask("live", "--domain", domain, "--settings").out.splitlines()
+        assert [line.split()[0] for line in lines[1:]] == [row["key"] for row in rows]
+        assert all(row["meaning"] in line for row, line in zip(rows, lines[1:], strict=True))
+
+
+@pytest.mark.parametrize(
+    ("options", "line"),
+    [
+        (("--set", "epsilom=1"), "no setting has the key 'epsilom'; near: epsilon, epsilon_floor, epsilon_decay"),
+        (("--set", "tasks=3"), "tasks is an option: --tasks"),
+        (("--set", "spare=1"), "spare applies to jobs with hidden types alone (tabletop, factory-customers"),
+        (("--domain", "tabletop", "--set", "cell=1"), "cell does not apply to domain tabletop; leave it out"),
+        (("--set", "epsilon=2"), "epsilon must lie in [0, 1], got 2.0"),
+        (("--set", "l2log"), "--set takes KEY=VALUE, got 'l2log'"),
+    ],
+)
+def test_a_wrong_setting_is_one_line(options, line, ask):
+    assert line in ask("live", "--memory", "none.db", *options).refusal
+    assert not Path("none.db").exists()
+
+
+def test_choices_are_those_that_settings_allow(ask):
+    rows = [row for row in ask("live", "--settings", "--json").document["settings"] if row["choices"]]
+    assert {row["key"] for row in rows} == {"learner", "prior", "form", "ties", "sensor"}
+    for row in rows:
+        refused = ask("live", "--memory", "none.db", *changed(**{row["key"]: "odd"})).refusal
+        assert f"{row['key']} must be one of {', '.join(row['choices'])}, got 'odd'" in refused
+
+
+def test_help_is_one_screen(ask, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    lines = ask("live", "--help").out.splitlines()
+    assert len(lines) <= 40
+    assert all(len(line) <= 80 for line in lines)
+    options = [line.split()[0] for line in lines if line.startswith("  --")]
+    assert len(options) == 16
+    assert options[-1] == "--help"

@@ -16,7 +16,7 @@ def where(tmp_path):
 
 
 def live(ask, where, *more, tasks=4):
-    fixed = ("live", "--domain", "factory-customers", "--memory", where, "--episodes", "2", "--json")
+    fixed = ("live", "--domain", "factory-customers", "--memory", where, "--set", "episodes=2", "--json")
     run = ask(*fixed, "--tasks", str(tasks), *more)
     assert run.status == 0, run.err
     return run.document
@@ -33,13 +33,13 @@ def test_a_life_goes_on_where_it_ended(ask, where):
 
 
 def test_spare_time_goes_to_contexts_that_were_met(ask, where):
-    document = live(ask, where, "--spare", "3")
+    document = live(ask, where, "--set", "spare=3")
     assert [task["spare"] for task in document["tasks"]] == [False] * 4 + [True] * 3
     met = {task["context"] for task in document["tasks"][:4]}
     assert {task["context"] for task in document["tasks"][4:]} <= met
     for more, rule in (
-        (["--spare", "-1"], "at least 0"),
-        (["--spare", "1", "--agent", "scratch"], "must be full"),
+        (["--set", "spare=-1"], "at least 0"),
+        (["--set", "spare=1", "--agent", "scratch"], "must be full"),
     ):
         refused = ask("live", "--domain", "factory-customers", "--memory", where, *more)
         assert refused.status == 2
@@ -47,13 +47,13 @@ def test_spare_time_goes_to_contexts_that_were_met(ask, where):
 
 
 def test_spare_time_is_for_jobs_with_hidden_types(ask, where):
-    refused = ask("live", "--domain", "rooms", "--memory", where, "--spare", "2")
+    refused = ask("live", "--domain", "rooms", "--memory", where, "--set", "spare=2")
     assert refused.status == 2
     assert "applies to jobs with hidden types alone" in refused.err
 
 
 def test_customers_who_change_are_followed(ask, where):
-    document = live(ask, where, "--change", "0.9", "--episodes", "4", tasks=3)
+    document = live(ask, where, "--set", "change=0.9", "--set", "episodes=4", tasks=3)
     assert [set(task) for task in document["tasks"]] == [TASK | {"changes", "hidden_types", "best_returns"}] * 3
     hidden = [task["hidden_types"] for task in document["tasks"]]
     assert [len(one) for one in hidden] == [4] * 3
@@ -90,9 +90,9 @@ def test_explain_says_why(ask, where):
     [
         (["live", "--domain", "factory-customers", "--map", "a.yaml"], "--map does not apply to domain"),
         (["live", "--domain", "factory-customers", "--agent", "lore"], "agent must be one of full"),
-        (["live", "--domain", "building-days", "--change", "0.1"], "take domain factory-customers"),
-        (["live", "--domain", "factory-customers", "--change", "1"], "change must be at least 0 and below 1"),
-        (["live", "--domain", "building", "--change", "0.1"], "--change applies to factory-customers alone"),
+        (["live", "--domain", "building-days", "--set", "change=0.1"], "take domain factory-customers"),
+        (["live", "--domain", "factory-customers", "--set", "change=1"], "change must be at least 0 and below 1"),
+        (["live", "--domain", "building", "--set", "change=0.1"], "applies to jobs with hidden types alone"),
         (["live", "--domain", "building-days", "--tasks", "0"], "tasks must be at least 1"),
         (["explain", "9"], "has no task 9"),
     ],

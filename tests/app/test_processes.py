@@ -19,6 +19,7 @@ import pytest
 
 from lifelore.app.command_line import run
 from lifelore.memory import open_memory
+from tests.app.changed_settings import changed
 
 SOAK_KILLS = int(os.environ.get("LIFELORE_SOAK_KILLS", "200"))
 LATTICE = ("live", "--domain", "lattice")
@@ -62,7 +63,7 @@ def test_ctrl_c_keeps_what_is_finished(start, answer, ask, wait_for_tasks, tmp_p
 def test_ctrl_c_is_heard_within_a_task(start, answer, ask, tmp_path):
     """The first task alone would take the better part of a minute: a thousand million steps, all at random."""
     memory = tmp_path / "life.db"
-    endless = ("--learner", "q", "--epsilon-decay", 1, "--episodes", 1_000_000, "--max-steps", 1000)
+    endless = changed(learner="q", epsilon_decay=1, episodes=1_000_000, max_steps=1000)
     child = start(*LATTICE, *endless, "--memory", memory, "--json")
     while not memory.exists():
         time.sleep(0.02)
@@ -78,7 +79,7 @@ def test_ctrl_c_is_heard_within_a_task(start, answer, ask, tmp_path):
 
 def killed_life(start, memory: Path, seconds: float, after: int | None, wait_for_tasks) -> None:
     """Start a life and kill it: `seconds` after its start, or after there are more than `after` tasks."""
-    child = start("live", "--tasks", 1_000_000, "--jobs", 1, "--memory", memory)
+    child = start("live", "--tasks", 1_000_000, "--set", "jobs=1", "--memory", memory)
     if after is not None:
         wait_for_tasks(child, memory, after + 1)
     time.sleep(seconds)
@@ -117,7 +118,7 @@ def test_soak_kills(start, ask, wait_for_tasks, tmp_path):
     kill_loop(start, ask, wait_for_tasks, tmp_path / "life.db", kills=SOAK_KILLS, seed=200)
 
 
-FIXED = ("--learner", "q", "--epsilon", 0, "--epsilon-floor", 0, "--episodes", 60)
+FIXED = changed(learner="q", epsilon=0, epsilon_floor=0, episodes=60)
 """Never exploring, a Q-learner never asks the prior: what a task teaches depends on seed and task number only."""
 SHARED = 10
 SLOTS = 2**18

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent
 from reproduction.chapter5.c5_10_one_life.worlds import FAMILIES
 
 FULL, SCRATCH, TEXTBOOK = "full", "scratch", "textbook"
@@ -25,10 +26,8 @@ def drawn_tasks(family: str, life: int, n_tasks: int) -> tuple[list[str], list[i
     return [one.hidden_type for one in draws], [one.context for one in draws]
 
 
-def agent_of(family: str, agent: str, life: int, false_alarm: float) -> Any:
+def agent_of(family: str, agent: str, life: int, false_alarm: float) -> LongLivedAgent:
     """An agent at the begin of a life."""
-    from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent  # pyright: ignore[reportMissingImports]
-
     own = FAMILIES[family]
     return LongLivedAgent(
         key=family,
@@ -84,12 +83,14 @@ def own_name(types: Sequence[str], named: Sequence[str]) -> str | None:
     return names.most_common(1)[0][0] if names else None
 
 
-def _informed(one: Any, family: str, life: int, types: Sequence[str], named: Sequence[str]) -> float | None:
+def _informed(
+    one: LongLivedAgent, family: str, life: int, types: Sequence[str], named: Sequence[str]
+) -> float | None:
     name = own_name(types, named)
     if name is None:
         return None
     with closing(FAMILIES[family].make(types[-1], life)) as env:
-        return _rounded(one.informed(env, type=name).returns[0])
+        return _rounded(one.informed(env, type=name, episodes=1).returns[0])
 
 
 def _most_believed(beliefs: Sequence[dict[str, float]]) -> str | None:

@@ -56,13 +56,14 @@ def _compiled() -> set[Path]:
 
 def _live(folder: Path) -> None:
     from lifelore.agent.live.life import live
-    from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings, SensorSettings
+    from lifelore.agent.live.life_settings import LifeSettings, MemorySettings, SensorSettings
+    from lifelore.core.learning.q_learner import QLearning
     from lifelore.domains.worlds import WorldSettings
 
     for learner, domain in (("model", "building"), ("q", "building"), ("q", "noise")):
-        learning = LearningSettings(learner, episodes=3, max_steps=50)
+        learning = QLearning(episodes=3, max_steps=50)
         memory = MemorySettings(str(folder / f"{learner} {domain}.db"))
-        live(LifeSettings(WorldSettings(domain), learning=learning, memory=memory, agent="all", tasks=2))
+        live(LifeSettings(WorldSettings(domain), learner, learning, memory=memory, agent="all", tasks=2))
     live(LifeSettings(memory=MemorySettings(str(folder / "lidar.db")), tasks=1, sensor=SensorSettings("lidar")))
 
 

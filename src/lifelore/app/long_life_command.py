@@ -1,54 +1,42 @@
 """`lifelore live` in domains of jobs with hidden types, and `lifelore explain`."""
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+if TYPE_CHECKING:
+    from lifelore.app.setting_keys import SettingKeys
+
 Option = typer.Option
 
-APPLY = {
-    "domain", "tasks", "agent", "robot", "memory", "refresh", "episodes", "labels", "spare", "change", "seed",
-    "serve", "port", "as_json",
-}  # fmt: skip
-"""Options of `lifelore live` that apply to these domains."""
+FOREIGN = ("map", "goal", "goals", "out", "csv")
+"""Options of `lifelore live` that do not apply to these domains."""
 
 
-def live_long_life(context: typer.Context) -> int:
-    """Live through jobs with hidden types, with the options of `lifelore live`."""
-    from lifelore.agent.long_lived.live_task import LivingSettings
-    from lifelore.agent.long_lived.long_life import LongLifeSettings, live_long
+def live_long_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json: bool) -> int:
+    """Live through jobs with hidden types, with the settings of `values`, by key."""
+    from lifelore.agent.long_lived.families.by_name import family_named
+    from lifelore.agent.long_lived.long_life import live_long
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.pages_beside import pages_beside
     from lifelore.core.errors import InputError
+    from lifelore.memory.location import default_path
 
-    given: dict[str, Any] = context.params
-    sources = {name: context.get_parameter_source(name) for name in given}
-    typed = {name for name, source in sources.items() if source is not None and source.name == "COMMANDLINE"}
-    if foreign := sorted(typed - APPLY):
-        names = ", ".join(f"--{name.replace('_', '-')}" for name in foreign)
-        raise InputError(f"{names} does not apply to domain {given['domain']}; leave it out")
-    episodes = {} if given["episodes"] is None else {"n_episodes": given["episodes"]}
-    living = LivingSettings(**episodes, change=given["change"])
-    settings = LongLifeSettings(
-        given["domain"],
-        given["agent"] or "full",
-        20 if given["tasks"] is None else given["tasks"],
-        given["seed"],
-        given["robot"],
-        given["memory"],
-        living,
-        given["labels"],
-        given["spare"],
-        given["refresh"],
-    )
-    beside = pages_beside(given["serve"], given["port"], given["memory"])
+    if foreign := [f"--{name}" for name in FOREIGN if name in values]:
+        names = ", ".join(foreign)
+        raise InputError(f"{names} does not apply to domain {values['domain']}; leave it out")
+    labels, change, memory = values.get("labels", False), values.get("change", 0.0), values.get("memory")
+    family = family_named(values["domain"], values["seed"], labelled=labels, change=change)
+    stored = {"memory": default_path() if memory is None else memory}
+    arguments: dict[str, Any] = keys.arguments(live_long, values | stored) | {"family": family}
+    beside = pages_beside(serve, values.get("port"), memory)
     with beside, stop_on_interrupt() as stop, progress_bar("living") as progress:
-        report = live_long(settings, progress, stop)
-    if given["as_json"]:
+        report = live_long(**arguments, progress=progress, stop=stop)
+    if as_json:
         print_json(report)
     else:
-        _print_report(report, settings.robot)
-    return INTERRUPTED if len(report["tasks"]) < settings.n_tasks + settings.n_spare else 0
+        _print_report(report, values["robot"])
+    return INTERRUPTED if stop.is_set() else 0
 
 
 def _print_report(report: dict[str, Any], robot: str) -> None:

@@ -37,7 +37,7 @@ def pages_beside(serve: bool, port: int | None, memory: str | None) -> Iterator[
         The service does not start: the port is taken, an extra is missing, or the memory cannot be opened.
     """
     if port is not None and not serve:
-        raise InputError(f"port belongs to --serve, got {port}; add --serve, or leave --port out")
+        raise InputError(f"port belongs to --serve, got {port}; add --serve, or leave port out")
     if not serve:
         yield
         return

@@ -25,20 +25,26 @@ class WorldSettings:
         One of `domain_names()`.
     map : str or Path, optional
         YAML of a ROS map, for ``building``; without it an invented office of this `seed`.
-    cell, robot_radius : float, optional
-        In metres, for ``building``; 0.5 and 0.2.
+    cell : float, optional
+        Side of a grid cell in metres, for ``building``; 0.5.
+    robot_radius : float, optional
+        Radius of the robot in metres, for ``building``; 0.2.
     min_free : float, optional
-        As in `building_from_map`, for ``building``; 0.25.
-    discount, goal_reward, wall_reward : float, optional
-        γ 0.99 in buildings, 0.95 in the thesis's worlds; 100 and -10, in the advice maze 1000 and 0.
+        Least share of a cell that must be free, for ``building``; 0.25. See `building_from_map`.
+    discount : float, optional
+        Discount γ, in (0, 1); 0.99 in buildings, else 0.95.
+    goal_reward : float, optional
+        Reward at the goal, > 0; 100, in ``advice`` 1000.
+    wall_reward : float, optional
+        Reward of a move into a wall, ≤ 0; -10, in ``advice`` 0.
     seed : int
         Draws the office, the noise maze or the advice maze.
     density : float, optional
-        Share of obstacles, for ``noise``; drawn from 0.5–0.8.
+        Share of obstacles, for ``noise``, in (0, 1); drawn from 0.5–0.8.
     size : int, optional
-        Cells a side, for ``lattice`` and ``noise``, 23, and ``advice``, 30.
+        Number of cells a side, for ``lattice`` and ``noise``, 23, and ``advice``, 30.
     loops : float, optional
-        As in `advice_maze`, for ``advice``; 0.1.
+        Share of the walls between corridors that are opened, for ``advice``; 0.1. See `advice_maze`.
     """
 
     domain: str = "building"

@@ -28,8 +28,8 @@ SECOND = counts_of({10: {2: 6}, 11: {1: 3, 2: 1}})
 def test_laws_are_those_of_the_formula():
     moves = KnownMoves([FIRST, SECOND])
     assert moves.codes == [10, 11, 12]
-    base = [1 / 3] * 3
     for place, (first, second) in enumerate([((6, 0, 0), (0, 6, 0)), ((2, 2, 0), (3, 1, 0))]):
+        base, total = moves.base[place].tolist(), moves.base[place].sum()
         pooled = [a + b for a, b in zip(first, second, strict=True)]
         evidence = log_dm(first, base) + log_dm(second, base) - log_dm(pooled, base)
         q = moves.apart[place]
@@ -37,7 +37,7 @@ def test_laws_are_those_of_the_formula():
         assert 0.01 < 1 / (1 + exp(-odds)) < 0.9  # the learnt share, the same in both causes
         for type_, own in enumerate((first, second)):
             law = [
-                (1 - q) * (p + b) / (sum(pooled) + 1) + q * (c + b) / (sum(own) + 1)
+                (1 - q) * (p + b) / (sum(pooled) + total) + q * (c + b) / (sum(own) + total)
                 for p, c, b in zip(pooled, own, base, strict=True)
             ]
             assert moves.laws[type_, place] == pytest.approx(law)
@@ -88,6 +88,20 @@ def test_a_task_of_another_type_is_told_from_a_known_one():
     moves = KnownMoves([task(law), task(random.dirichlet([0.3] * 3, 40))])
     assert moves.evidence_of_another(0, task(law)) < 0
     other = law.copy()
-    other[:4] = random.dirichlet([0.3] * 3, 4)  # differs in a tenth of its causes
+    other[:8] = random.dirichlet([0.3] * 3, 8)  # differs in a fifth of its causes
     found = [moves.evidence_of_another(0, task(other)) for _ in range(5)]
     assert min(found) > 0
+
+
+def test_worlds_that_surprise_are_expected_to_surprise():
+    steady = KnownMoves([counts_of({cause: {1: 20} for cause in range(30)})])
+    random = np.random.default_rng(0)
+    noisy = {}
+    for cause in range(30):  # each of a thousand rare outcomes has a ten-thousandth
+        rare = int((random.random(20) < 0.1).sum())
+        noisy[cause] = {1: 20 - rare} | {100 + n: 1 for n in range(rare)}
+    noisy = KnownMoves([counts_of(noisy)])
+    assert steady.laws[0, :, -1].max() < 0.03
+    shown = [len(row) - 1 for row in noisy._effects]
+    assert np.mean(shown) > 1
+    assert 0.05 < noisy.laws[0, :, -1].mean() < 0.2  # truly 0.1

@@ -12,9 +12,18 @@ def test_codes_tell_moves_apart_and_are_the_same_in_every_process():
     state = codes.state(("a", 1))
     step = Step(state, 0, 2, 0.5, codes.state("b"), False)
     assert codes.cause(state, 2) != codes.cause(state, 3)
-    assert codes.outcome(step) != codes.outcome(step._replace(ended=True))
-    assert codes.outcome(step) != codes.outcome(step._replace(reward=0.51))
-    assert codes.outcome(step) == codes.outcome(step._replace(reward=0.5 + 1e-9))
+    moved, paid = codes.pairs(step)
+    assert moved[0] == codes.cause(state, 2)
+    assert (moved[0] & 1, paid[0] & 1) == (0, 1)
+    for other in (step._replace(ended=True), step._replace(reward=0.51)):
+        assert codes.pairs(other)[0] == moved
+        assert codes.pairs(other)[1][0] == paid[0]
+        assert codes.pairs(other)[1][1] != paid[1]
+    assert codes.pairs(step._replace(reward=0.5 + 1e-9)) == (moved, paid)
+    elsewhere = codes.pairs(step._replace(following=codes.state("c")))
+    assert elsewhere[0][0] == moved[0]
+    assert elsewhere[0][1] != moved[1]
+    assert elsewhere[1][0] != paid[0]
     program = (
         "from lifelore.agent.any_tasks.moves import MoveCodes\n"
         "codes = MoveCodes()\nprint(codes.cause(codes.state(('a', 1)), 2))"
@@ -44,6 +53,7 @@ def test_a_task_counts_a_cause_so_often_at_most():
     step = Step(codes.state(0), 0, 1, 0.0, codes.state(1), False)
     other = step._replace(reward=1.0)
     counts = counted([step] * (3 * MOST_REPEATS) + [other] * MOST_REPEATS, codes, weight=0.5)
-    cause = codes.cause(step.state, 1)
-    assert counts.total(cause) == pytest.approx(0.5 * MOST_REPEATS)
-    assert counts.by_cause[cause][codes.outcome(step)] == pytest.approx(0.75 * 0.5 * MOST_REPEATS)
+    moved, paid = codes.pairs(step)
+    assert counts.by_cause[moved[0]] == {moved[1]: pytest.approx(0.5 * MOST_REPEATS)}
+    assert counts.total(paid[0]) == pytest.approx(0.5 * MOST_REPEATS)
+    assert counts.by_cause[paid[0]][paid[1]] == pytest.approx(0.75 * 0.5 * MOST_REPEATS)

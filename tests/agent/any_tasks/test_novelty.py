@@ -1,14 +1,26 @@
 import numpy as np
 import pytest
 
-from lifelore.agent.any_tasks.novelty import SHARES, NoveltyAlarm, log_odds
+from lifelore.agent.any_tasks.novelty import AGAIN, SHARES, NoveltyAlarm, log_odds
 
 
-def test_log_odds_are_the_mean_over_shares():
-    evidence = np.array([2.0, -0.5, -0.1, 3.0])
-    odds = [np.prod([(1 - share) + share * np.exp(e) for e in evidence]) for share in SHARES]
-    assert log_odds(evidence) == pytest.approx(np.log(np.mean(odds)))
-    assert log_odds(np.stack([evidence, -evidence])).shape == (2,)
+def test_log_odds_are_the_mean_over_shares_of_each_kind():
+    evidence, kinds = np.array([2.0, -0.5, -0.1, 3.0, 1.0]), np.array([0, 0, 0, 0, 1])
+    apart = np.array([0.0, 0.9, 0.0, 0.0, 0.4])
+    odds = 0.0
+    for kind in (0, 1):
+        every = []
+        for share in SHARES:
+            product = 1.0
+            for e, own, q in zip(evidence, kinds, apart, strict=True):
+                differs = share + (1 - share) * AGAIN * q
+                product *= 1.0 if own != kind else (1 - differs) + differs * np.exp(e)
+            every.append(product)
+        odds += np.log(np.mean(every))
+    assert log_odds(evidence, kinds, apart) == pytest.approx(odds)
+
+
+KINDS = np.arange(50) % 2
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +40,15 @@ def rate(world, laws, n=400):
     raised = 0
     for task in range(n):
         alarm = NoveltyAlarm(
-            known, base, prior, np.ones(50), 40, 0.05, random if task % 20 else np.random.default_rng(task)
+            known,
+            base,
+            KINDS,
+            np.zeros(50),
+            prior,
+            np.ones(50),
+            40,
+            0.05,
+            random if task % 20 else np.random.default_rng(task),
         )
         law = laws[0] if len(laws) == 1 else laws[random.choice(2, p=prior)]
         for cause in random.permutation(50):
@@ -47,7 +67,7 @@ def test_alarms_come_as_often_as_stated_and_find_another_type(world):
 
 def test_repeats_and_causes_beyond_the_horizon_do_not_count(world):
     known, base, prior = world
-    alarm = NoveltyAlarm(known, base, prior, np.ones(50), 2, 0.05, np.random.default_rng(0))
+    alarm = NoveltyAlarm(known, base, KINDS, np.zeros(50), prior, np.ones(50), 2, 0.05, np.random.default_rng(0))
     for effect in range(4):
         alarm.observe(3, effect)
     score = alarm.score

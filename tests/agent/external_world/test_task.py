@@ -7,8 +7,9 @@ import pytest
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.external_world.context_code import ContextCodes
-from lifelore.agent.external_world.task import STOP_CHECK, ExternalLearner, ExternalTask, GuidanceSettings
-from lifelore.agent.live.task_result import Stopped
+from lifelore.agent.external_world.task import STOP_CHECK, ExternalLearner, ExternalTask
+from lifelore.agent.life.loop import Stopped
+from lifelore.agent.live.life_settings import PriorSettings
 from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import uniform_rows
@@ -61,7 +62,7 @@ class Countdown:
 
 def lived(world, method, stop=None, seeds=None):
     """The learner and its numbers, of one task without a prior."""
-    learner = ExternalLearner(world.n_actions, None, GuidanceSettings(), stream(0, "own"))
+    learner = ExternalLearner(world.n_actions, None, PriorSettings(), stream(0, "own"))
     seeds = seeds or list(range(method.episodes))
     task = ExternalTask(world, ContextCodes(), method, 0.95, 7, seeds, stop or Event())
     return learner, task.live(learner)
@@ -81,7 +82,7 @@ def test_learning_is_the_kernels(guided, ties):
     rows = uniform_rows(tables, probs, probs if guided and ties == "prior" else None, context)
     expected, curve = method.learn(tables, 0.9, world=stream(1, "w"), own=stream(1, "own"), rows=rows)
 
-    learner = ExternalLearner(4, prior if guided else None, GuidanceSettings(ties=ties), stream(1, "own"))
+    learner = ExternalLearner(4, prior if guided else None, PriorSettings(ties=ties), stream(1, "own"))
     result = ExternalTask(Tabled(tables), codes, method, 0.9, 0, [0] * 60, Event()).live(learner)
     visited = np.flatnonzero(expected.visits.any(axis=1))
     assert len(visited) > 64
@@ -125,7 +126,7 @@ def test_episodes_have_the_seeds_given():
 
 
 def test_best_actions_count_where_a_state_is_worth_something():
-    learner = ExternalLearner(3, None, GuidanceSettings(), stream(0, "own"))
+    learner = ExternalLearner(3, None, PriorSettings(), stream(0, "own"))
     assert [part.shape for part in learner.best()] == [(0,), (0, 3)]
     for state, code in (("tie", 4), ("bad", 9), ("new", 4), ("tie", 5)):
         learner.act(state, code, 0.0)
@@ -170,4 +171,4 @@ def test_rewards_must_be_finite(reward):
 )
 def test_guidance_that_breaks_its_rule(settings, said):
     with pytest.raises(InputError, match=said):
-        GuidanceSettings(**settings)
+        PriorSettings(**settings)

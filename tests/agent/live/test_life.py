@@ -254,12 +254,11 @@ def test_fixed_start_and_destinations(tmp_path):
     ],
 )
 def test_settings_that_break_a_rule(tmp_path, changes, message):
-    changed = settings(tmp_path, tasks=1, **changes)
     if message is None:
-        assert len(live(changed).report["tasks"]) == 1
+        assert len(live(settings(tmp_path, tasks=1, **changes)).report["tasks"]) == 1
     else:
         with pytest.raises(InputError, match=message):
-            live(changed)
+            live(settings(tmp_path, tasks=1, **changes))
 
 
 @pytest.mark.parametrize(

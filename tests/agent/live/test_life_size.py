@@ -2,7 +2,7 @@
 
 from lifelore.agent.live import life_size
 from lifelore.agent.live.life import live
-from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings
+from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.agent.live.life_size import BIG, FIRST, LATER, estimated_seconds, size_of_life
 from lifelore.domains.worlds import WorldSettings
 
@@ -19,8 +19,8 @@ def test_above_the_limit_the_agent_lives_alone_and_says_so():
     names, notice = size_of_life(LifeSettings(tasks=1), BIG + 1)
     assert names == ["lore"]
     assert notice is not None
-    assert "--compare" in notice
-    assert "--cell" in notice
+    assert "--set compare=true" in notice
+    assert "--set cell=" in notice
     assert size_of_life(LifeSettings(tasks=1, agent="scratch"), BIG + 1)[0] == ["scratch"]
 
 
@@ -36,7 +36,7 @@ def test_a_long_life_says_how_long():
     assert "90,000 places" in notice
     assert "12 min for 1000 tasks of lore, scratch" in notice
     assert "fewer agents" in notice
-    quiet = LifeSettings(tasks=1000, learning=LearningSettings("q"))
+    quiet = LifeSettings(tasks=1000, learner="q")
     assert size_of_life(quiet, 90_000)[1] is None
 
 
@@ -46,6 +46,6 @@ def test_a_life_in_a_big_world_has_no_comparison_and_notifies_first(tmp_path, mo
     where = MemorySettings(str(tmp_path / "life.db"))
     report = live(LifeSettings(WorldSettings("lattice"), memory=where, tasks=1), notify=lines.append).report
     assert len(lines) == 1
-    assert "above 100 places scratch lives beside lore only with --compare" in lines[0]
+    assert "above 100 places scratch lives beside lore only with --set compare=true" in lines[0]
     assert list(report["tasks"][0]["agents"]) == ["lore"]
     assert list(report["summary"]) == ["agents"]

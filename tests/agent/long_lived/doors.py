@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lifelore.agent.long_lived.task_family import SAME_SCENE, Plan, Step
+from lifelore.agent.long_lived.task_family import Plan, Step, TaskFamily
 from lifelore.core.streams import stream
 from lifelore.domains.task_stream import DrawnTask, TaskStream
 
@@ -13,7 +13,7 @@ PRIZE, NOTHING, COST = 0, 1, -1.0
 
 
 @dataclass(frozen=True)
-class Doors:
+class Doors(TaskFamily):
     """An episode has two tries; the prize of 10 is behind the door of the type with probability 0.9."""
 
     stream: TaskStream
@@ -22,20 +22,6 @@ class Doors:
     acts = ("left", "middle", "right", "leave")
     n_causes = N
     n_effects = 2
-    judges = np.ones(N, np.bool_)
-    kinds = np.zeros(N, np.int64)
-    constancy = np.full(N, SAME_SCENE)
-
-    @property
-    def groups(self):
-        return np.arange(N)
-
-    @property
-    def possible(self):
-        return np.full((N, 2), 0.5)
-
-    def smoothed(self, counts):
-        return counts
 
     def meet(self, number, abilities, context=None):
         drawn = self.stream.draw(number, context)

@@ -5,13 +5,13 @@ from pathlib import Path
 import pytest
 
 from lifelore.agent.live.life import live
-from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings
+from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.agent.long_lived.explanation import explained
-from lifelore.agent.long_lived.live_task import LivingSettings
-from lifelore.agent.long_lived.long_life import LongLifeSettings, live_long
+from lifelore.agent.long_lived.long_life import live_long
 from lifelore.agent.watch_life.known_family import TELLING_CAUSES, known_family
 from lifelore.agent.watch_life.lives import lives_in, task_of, tasks_of
 from lifelore.core.errors import NotFoundError
+from lifelore.core.learning.q_learner import QLearning
 from lifelore.domains.worlds import WorldSettings
 from lifelore.memory import open_memory
 
@@ -25,8 +25,7 @@ def lived(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict, dict]:
     in_grid = live(
         LifeSettings(WorldSettings("lattice", size=7), memory=MemorySettings(where, "ada"), tasks=3, jobs=1)
     ).report
-    customers = LongLifeSettings(FACTORY, n_tasks=4, robot="bo", memory=where, living=LivingSettings(n_episodes=3))
-    types = live_long(customers)
+    types = live_long(FACTORY, tasks=4, episodes=3, robot="bo", memory=where)
     with open_memory(where) as memory:
         memory.contribute("study: ada", [], process="p", seq=0, task={"index": 0, "goal": [0, 0], "world": "w"})
         memory.contribute("ada", [], process="another", seq=0, task={"run": 1})
@@ -82,7 +81,7 @@ def test_a_missing_life_or_task_is_named(lived):
 def test_without_transitions_the_domain_of_a_map_is_unknown(tmp_path: Path):
     where = str(tmp_path / "m.db")
     settings = LifeSettings(
-        WorldSettings("lattice", size=7), LearningSettings("q", episodes=20), memory=MemorySettings(where), tasks=1
+        WorldSettings("lattice", size=7), "q", QLearning(episodes=20), memory=MemorySettings(where), tasks=1
     )
     live(settings)
     with open_memory(where) as memory:

@@ -19,12 +19,12 @@ from fastapi.testclient import TestClient
 from playwright.sync_api import Browser, Dialog, Page, expect
 
 from lifelore.agent.live.life import live
-from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings
-from lifelore.agent.long_lived.live_task import LivingSettings
-from lifelore.agent.long_lived.long_life import LongLifeSettings, live_long
+from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
+from lifelore.agent.long_lived.long_life import live_long
 from lifelore.app.pages.mount import app_with_pages
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.tokens import add_token
+from lifelore.core.learning.q_learner import QLearning
 from lifelore.domains.worlds import WorldSettings
 from lifelore.memory import open_memory
 
@@ -38,11 +38,7 @@ Opened = Callable[..., Page]
 
 def serve_customers(where: Path, n_tasks: int) -> dict:
     """Live through some orders of the factory."""
-    return live_long(
-        LongLifeSettings(
-            FACTORY, n_tasks=n_tasks, robot="bo", memory=str(where), living=LivingSettings(n_episodes=3)
-        )
-    )
+    return live_long(FACTORY, tasks=n_tasks, episodes=3, robot="bo", memory=where)
 
 
 def walk_lattice(where: Path, n_tasks: int) -> dict:
@@ -122,9 +118,9 @@ def test_a_life_on_a_map_has_arrows_and_curves(serve_pages: Callable[..., str], 
 
 
 def test_a_life_that_remembers_no_map_says_so(serve_pages: Callable[..., str], open_page: Opened, where: Path):
-    learning = LearningSettings("q", episodes=20)
+    learning = QLearning(episodes=20)
     memory = MemorySettings(str(where), "ada")
-    live(LifeSettings(WorldSettings("lattice", size=7), learning, memory=memory, tasks=1, jobs=1))
+    live(LifeSettings(WorldSettings("lattice", size=7), "q", learning, memory=memory, tasks=1, jobs=1))
     page = open_page(serve_pages(memory=where) + "/life")
     expect(page.locator("#map")).to_have_text("This agent remembers no map.")
     expect(page.locator("#curve circle")).to_have_count(2)
@@ -221,7 +217,7 @@ def nobody_listens_soon(address: str) -> bool:
 
 def test_live_serves_the_pages_as_long_as_it_lives(where: Path, open_page: Opened):
     command = [sys.executable, "-m", "lifelore.app.command_line", "live", "--domain", FACTORY, "--tasks", "200"]
-    options = ["--memory", str(where), "--robot", "bo", "--serve", "--port", "0"]
+    options = ["--memory", str(where), "--robot", "bo", "--serve", "--set", "port=0"]
     with subprocess.Popen([*command, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as life:
         assert life.stderr is not None
         line = next(line for line in life.stderr if line.startswith("pages at "))
@@ -239,7 +235,7 @@ def test_live_serves_the_pages_as_long_as_it_lives(where: Path, open_page: Opene
 @pytest.mark.parametrize("domain", [FACTORY, "lattice"])
 def test_the_service_of_a_life_that_is_killed_ends(where: Path, domain: str):
     command = [sys.executable, "-m", "lifelore.app.command_line", "live", "--domain", domain, "--tasks", "100000"]
-    options = ["--memory", str(where), "--robot", "bo", "--serve", "--port", "0"]
+    options = ["--memory", str(where), "--robot", "bo", "--serve", "--set", "port=0"]
     with subprocess.Popen([*command, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as life:
         assert life.stderr is not None
         address = next(line for line in life.stderr if line.startswith("pages at ")).split()[2]
@@ -251,7 +247,7 @@ def test_the_service_of_a_life_that_is_killed_ends(where: Path, domain: str):
 
 
 def test_a_port_needs_serve(where: Path):
-    command = [sys.executable, "-m", "lifelore.app.command_line", "live", "--tasks", "1", "--port", "1"]
+    command = [sys.executable, "-m", "lifelore.app.command_line", "live", "--tasks", "1", "--set", "port=1"]
     done = subprocess.run([*command, "--memory", str(where)], capture_output=True, text=True, check=False)
     assert done.returncode == 2
-    assert done.stderr.strip() == "lifelore: port belongs to --serve, got 1; add --serve, or leave --port out"
+    assert done.stderr.strip() == "lifelore: port belongs to --serve, got 1; add --serve, or leave port out"

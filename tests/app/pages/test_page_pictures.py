@@ -17,7 +17,7 @@ pytest.importorskip("playwright", reason="needs the extra browser")
 from playwright.sync_api import Page, expect
 
 from lifelore.agent.factory_lesson.lesson_task import lesson_task
-from lifelore.agent.long_lived.long_life import LongLifeSettings, live_long
+from lifelore.agent.long_lived.long_life import live_long
 from lifelore.agent.play_study.scripted_sessions import play_scripted_sessions
 from lifelore.agent.play_study.study_settings import StudySettings
 from lifelore.app.pages.shell.page_shell import PAGES
@@ -154,7 +154,7 @@ def test_see(serve_pages: Callable[..., str], open_page: Callable[..., Page], sa
 
 def test_life(serve_pages: Callable[..., str], open_page: Callable[..., Page], save: Save, tmp_path: Path):
     where = tmp_path / "life.db"
-    live_long(LongLifeSettings("factory-customers", n_tasks=20, robot="robot", memory=str(where)))
+    live_long("factory-customers", tasks=20, memory=where)
     page = open_page(f"{serve_pages(memory=where)}/life", tall(1240))
     expect(page.locator("#summary")).to_contain_text("has lived 20 tasks", timeout=LOADED)
     save(page, "life")

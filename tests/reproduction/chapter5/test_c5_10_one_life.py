@@ -286,7 +286,7 @@ class Fake:
 
         return Result
 
-    def informed(self, env, type):
+    def informed(self, env, type, episodes):
         class Result:
             returns = [100.0 + int(type.split()[-1])]  # noqa: RUF012
 

@@ -7,9 +7,11 @@ In most causes types are alike, in some they differ. For each cause c with count
     q_c          probability of *apart*, from both and the share ρ of such causes, which is learnt (EM)
     P_i(o | c)   (1 − q_c) (Σ_j n_j + own + b) / … + q_c (n_i + own + b) / …
 
-DM is the Dirichlet-multinomial law of one pseudo-observation, spread over the outcomes that the cause has
-shown and one more; ``own`` are the outcomes of the present task. So a cause that a type has not shown is expected
-to be as in other types, as far as causes are usually alike.
+DM is the Dirichlet-multinomial law with pseudo-observations b: α spread over the outcomes that the cause has shown
+and one more, and θ of outcomes never shown. Both are learnt, and ρ, for moves and for rewards: each outcome is
+predicted from all others (leave one out).
+``own`` are the outcomes of the present task. So a cause that a type has not shown is expected to be as in other
+types, as far as causes are usually alike.
 """
 
 from collections.abc import Mapping, Sequence
@@ -28,6 +30,10 @@ MOST_EFFECTS = 12
 """Most outcomes of a cause that are told apart; the rest counts as never shown."""
 APART = (0.1, 10.0)
 """Share ρ before anything was seen, and the number of causes that it counts as."""
+ALPHAS, THETAS = 2.0 ** np.arange(-5, 1), 2.0 ** np.arange(-6, 4)
+"""Values of α and θ that compete."""
+PRIOR_BASE = 2.0
+"""Weight of a prior for large α, in nats by factor e: a few outcomes alike do not make a law certain."""
 ALIKE = -1.0
 """Log odds below which two types are joined: to keep one type as two costs less than to mix two in one."""
 ROUNDS = 20
@@ -47,8 +53,12 @@ class KnownMoves:
     Attributes
     ----------
     counts : (n_types, n_causes, n_effects) float64
+    broad : (n_causes, n_effects) float64
+        The law of a cause of which nothing is known but its outcomes: each as probable, and one more.
+    kinds : (n_causes,) int64
+        0 where a cause is that of the next state, 1 where it is that of a reward.
     base : (n_causes, n_effects) float64
-        The pseudo-observation b.
+        The pseudo-observations b.
     """
 
     def __init__(self, types: Sequence[OutcomeCounts]) -> None:
@@ -66,7 +76,14 @@ class KnownMoves:
             self.counts[number] = self.own(one, n_effects)
         shown = np.array([len(row) for row in self._effects], np.int64)[:, None]
         known = (np.arange(n_effects) < shown) | (np.arange(n_effects) == n_effects - 1)
-        self.base: Array = known / (shown + 1)
+        self.broad: Array = known / (shown + 1)
+        self.kinds = np.array(self.codes, np.int64) & 1
+        self.base: Array = self.broad.copy()
+        for kind in np.unique(self.kinds).tolist():
+            own = self.kinds == kind
+            alpha, theta = learnt_base([row for row, mine in zip(totals, own.tolist(), strict=True) if mine])
+            self.base[own] *= alpha
+            self.base[own, -1] += theta
 
     @property
     def n_causes(self) -> int:
@@ -99,11 +116,16 @@ class KnownMoves:
         """q, the probability that types differ in a cause, (n_causes,)."""
         evidence = self._log_dm(self.counts).sum(axis=0) - self._log_dm(self.pooled)
         several = (self.counts.any(axis=2)).sum(axis=0) > 1
-        share = APART[0]
-        for _ in range(ROUNDS):
-            found = _sigmoid(evidence + np.log(share / (1 - share)))
-            share = (found[several].sum() + APART[0] * APART[1]) / (several.sum() + APART[1])
-        return _sigmoid(evidence + np.log(share / (1 - share)))
+        found = np.zeros(self.n_causes)
+        for kind in np.unique(self.kinds).tolist():
+            own = self.kinds == kind
+            found[own] = _apart(evidence[own], several[own])
+        return found
+
+    @cached_property
+    def known_apart(self) -> Array:
+        """q of the causes that several types have shown, (n_causes,); 0 in the others."""
+        return np.where(self.counts.any(axis=2).sum(axis=0) > 1, self.apart, 0.0)
 
     @cached_property
     def laws(self) -> Array:
@@ -128,7 +150,7 @@ class KnownMoves:
         alike = self._log_dm(self.pooled + own) - self._log_dm(self.pooled)
         each = self._log_dm(self.counts[type_] + own) - self._log_dm(self.counts[type_])
         known = np.logaddexp(np.log1p(-self.apart) + alike, np.log(self.apart) + each)
-        return float(log_odds(self._log_dm(own) - known))
+        return float(log_odds(self._log_dm(own) - known, self.kinds, self.known_apart))
 
     def joined(self) -> list[list[int]]:
         """Groups of types that nothing tells apart, by number; each type is in one."""
@@ -152,19 +174,54 @@ class KnownMoves:
     def _apart(self, first: Array, second: Array) -> float:
         """Log odds that counts (n_causes, n_effects) are of two types and not of one."""
         common = first.any(axis=1) & second.any(axis=1)
-        return float(log_odds((self._log_dm(first) + self._log_dm(second) - self._log_dm(first + second))[common]))
+        evidence = self._log_dm(first) + self._log_dm(second) - self._log_dm(first + second)
+        return float(log_odds(evidence[common], self.kinds[common], self.known_apart[common]))
 
     def _log_dm(self, counts: Array) -> Array:
         """Log probability of sequences with counts (..., n_causes, n_effects), (..., n_causes)."""
         base = np.where(self.base > 0, self.base, 1.0)
         gain = np.where(self.base > 0, gammaln(base + counts) - gammaln(base), 0.0).sum(axis=-1)
-        return gain - gammaln(1 + counts.sum(axis=-1))
+        total = self.base.sum(axis=1)
+        return gain - (gammaln(total + counts.sum(axis=-1)) - gammaln(total))
 
 
 def _most(row: Mapping[int, float]) -> dict[int, int]:
     """Numbers of the most counted outcomes, in the order of their codes."""
     kept = sorted(row, key=lambda outcome: (-row[outcome], outcome))[:MOST_EFFECTS]
     return {outcome: number for number, outcome in enumerate(sorted(kept))}
+
+
+def learnt_base(totals: Sequence[Mapping[int, float]]) -> tuple[float, float]:
+    """α and θ, of the grid, under which each outcome is best predicted from the others of its cause.
+
+    Parameters
+    ----------
+    totals : sequence of mapping of int to float
+        Counts of outcomes by code, of each cause.
+    """
+    counts = np.array([count for row in totals for count in row.values()])
+    others = np.array([sum(row.values()) for row in totals for _ in row]) - np.minimum(counts, 1.0)
+    broad = 1 / (1.0 + np.array([len(row) for row in totals for _ in row]))
+    several = others > 0
+    counts, others, broad = counts[several], others[several], broad[several]
+    best, found = -np.inf, (1.0, float(THETAS[0]))
+    for alpha in ALPHAS:
+        for theta in THETAS:
+            once = counts <= 1
+            law = np.where(once, alpha * broad + theta, counts - np.minimum(counts, 1.0) + alpha * broad)
+            score = float((counts * np.log(law / (others + alpha + theta))).sum()) + PRIOR_BASE * np.log(alpha)
+            if score > best:
+                best, found = score, (float(alpha), float(theta))
+    return found
+
+
+def _apart(evidence: Array, several: NDArray[np.bool_]) -> Array:
+    """q of causes of one kind; `several`: more than one type has shown the cause."""
+    share = APART[0]
+    for _ in range(ROUNDS):
+        found = _sigmoid(evidence + np.log(share / (1 - share)))
+        share = (found[several].sum() + APART[0] * APART[1]) / (several.sum() + APART[1])
+    return _sigmoid(evidence + np.log(share / (1 - share)))
 
 
 def _sigmoid(value: Array) -> Array:

@@ -22,7 +22,7 @@ from lifelore.agent.any_tasks.reuse import SIGNALS
 from lifelore.agent.any_tasks.task_result import TaskResult
 from lifelore.agent.external_world.context_code import context_code
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld, ResetBy
-from lifelore.agent.external_world.task import GuidanceSettings
+from lifelore.agent.live.life_settings import PriorSettings
 from lifelore.agent.long_lived.curiosity import curious_contexts
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.learning.q_learner import QLearning
@@ -154,7 +154,7 @@ class LongLivedAgent:
                 raise InputError(f"{name} must be a name without '/', got {value!r}")
         self.settings = TaskSettings(
             QLearning(episodes, max_steps, learning_rate, epsilon, 1.0, epsilon),
-            GuidanceSettings(form="support", ties="prior"),
+            PriorSettings(form="support", ties="prior"),
             discount,
             checked_learner(learner),
             signals,
@@ -237,7 +237,7 @@ class LongLivedAgent:
         ----------
         env : gymnasium.Env
         type : str
-            Name of a known type.
+            Name of a known type, or of joined ones.
         episodes : int, optional
             Number of episodes to play, ≥ 1; by default those of a task.
 
@@ -248,13 +248,14 @@ class LongLivedAgent:
         """
         world = self._world(env)
         experience = self._recalled(world.n_actions)
-        if type not in experience.types:
+        name = type.split("+")[0]
+        if name not in experience.types:
             raise NotFoundError(f"type must be one of {', '.join(experience.types)}, got {type!r}")
         learning = self.settings.learning
         settings = replace(self.settings, learning=replace(learning, episodes=episodes or learning.episodes))
         task = OneTask(
             experience, world, self._codes, settings, self.abilities, TaskResult(self._lived, None), 0, self.seed,
-            Event(), type,
+            Event(), name,
         )  # fmt: skip
         task.live("")
         return task.result

@@ -1,6 +1,7 @@
 """Moves of tasks without tables: what followed on an action in a state, as integer codes equal in every process.
 
-A *cause* is a state and an action; an *outcome* is the next state, the reward, and whether the episode ended.
+A move has two causes. That of the next state is the state and the action; that of the reward, and of whether the
+episode ended, is all three. Where moves are noisy, rewards mostly are not: they tell types apart by themselves.
 """
 
 import hashlib
@@ -36,33 +37,40 @@ class Step(NamedTuple):
     ended: bool
 
 
+Pairs = tuple[tuple[int, int], tuple[int, int]]
+"""Cause and outcome of where a move led, and of what it paid. The last bit of a cause's code says which it is."""
+
+
 class MoveCodes:
     """Codes of causes and outcomes, kept once they are made."""
 
     def __init__(self) -> None:
         self.states = ContextCodes()
         self._causes: dict[tuple[int, int], int] = {}
-        self._outcomes: dict[tuple[int, float, bool], int] = {}
+        self._pairs: dict[tuple[int, int, int, float, bool], Pairs] = {}
 
     def state(self, state: Hashable) -> int:
         """The code of a state; InputError for a state without a stable code."""
         return self.states[state]
 
     def cause(self, state: int, action: int) -> int:
-        """The code of an action in a state."""
+        """The code of the cause of the next state."""
         pair = state, action
         code = self._causes.get(pair)
         if code is None:
-            code = self._causes[pair] = _hashed(f"{state} {action}", CAUSE_BITS)
+            code = self._causes[pair] = _hashed(f"{state} {action}", CAUSE_BITS - 1) << 1
         return code
 
-    def outcome(self, step: Step) -> int:
-        """The code of what followed; rewards count to six digits."""
-        found = step.following, round(step.reward, 6), step.ended
-        code = self._outcomes.get(found)
-        if code is None:
-            code = self._outcomes[found] = _hashed("{} {:.6f} {}".format(*found), OUTCOME_BITS)
-        return code
+    def pairs(self, step: Step) -> Pairs:
+        """Codes of the causes of a move and of their outcomes; rewards count to six digits."""
+        move = step.state, step.action, step.following, round(step.reward, 6), step.ended
+        found = self._pairs.get(move)
+        if found is None:
+            paid = _hashed(f"{step.state} {step.action} {step.following}", CAUSE_BITS - 1) << 1 | 1
+            pay = _hashed(f"{move[3]:.6f} {step.ended}", OUTCOME_BITS)
+            arrived = _hashed(f"{step.following}", OUTCOME_BITS)
+            found = self._pairs[move] = ((self.cause(step.state, step.action), arrived), (paid, pay))
+        return found
 
 
 class OutcomeCounts:
@@ -113,7 +121,8 @@ def counted(steps: list[Step], codes: MoveCodes, weight: float = 1.0) -> Outcome
     """Counts of the outcomes of a task's steps; a cause counts `MOST_REPEATS` times at most."""
     counts = OutcomeCounts()
     for step in steps:
-        counts.add(codes.cause(step.state, step.action), codes.outcome(step))
+        for cause, outcome in codes.pairs(step):
+            counts.add(cause, outcome)
     for row in counts.by_cause.values():
         share = weight * min(1.0, MOST_REPEATS / sum(row.values()))
         for outcome in row:

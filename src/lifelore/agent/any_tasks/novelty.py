@@ -2,9 +2,10 @@
 
 A type that is not known answers most causes as known types do, and differs in an unknown share ρ of them:
 
-    log odds = log mean_ρ Π_c ((1 − ρ) + ρ exp(e_c))
+    log odds = Σ_kinds log mean_ρ Π_c ((1 − ρ) + ρ exp(e_c))
 
-where e_c is the evidence of cause c in nats for a law of its own. A single cause must be the more telling the more
+over the causes c of a kind (moves, and rewards), where e_c is the evidence of cause c in nats for a law of its own.
+Where known types differ, another one probably does too; elsewhere a single cause must be the more telling the more
 causes there are, and many causes may each tell a little.
 
 The alarm takes e_c = log p₀(o) − log P(o) of the first outcome o of each cause, with P that of the known types
@@ -23,6 +24,8 @@ Array = NDArray[np.float64]
 SHARES = np.array([0.005, 0.03, 0.2, 0.8])
 """Shares ρ of causes in which another type may differ."""
 logsumexp: Any = _logsumexp
+AGAIN = 0.5
+"""Probability that another type differs where known types differ."""
 N_TASKS = 1000
 """Simulated tasks behind a threshold."""
 MOST_CAUSES = 300
@@ -31,10 +34,24 @@ LEAST = 1e-9
 """Least probability of an outcome."""
 
 
-def log_odds(evidence: Array) -> Any:
-    """Log odds of another type, (...), from the evidence of causes in nats, (..., n_causes)."""
-    terms = np.log1p(SHARES[:, None] * np.expm1(np.clip(evidence, -700, 700))[..., None, :])
-    return logsumexp(terms.sum(axis=-1), axis=-1) - np.log(len(SHARES))
+def shares(apart: Array) -> Array:
+    """Probability that another type differs in each cause, (n_shares, n_causes), from q of the known types."""
+    return SHARES[:, None] + (1 - SHARES[:, None]) * AGAIN * apart
+
+
+def log_odds(evidence: Array, kinds: NDArray[np.int64], apart: Array) -> float:
+    """Log odds of another type from the evidence of causes in nats.
+
+    Parameters
+    ----------
+    evidence, kinds, apart : (n_causes,)
+        Each kind has a share ρ of its own; ``apart`` is q, see `shares`.
+    """
+    terms = np.log1p(shares(apart) * np.expm1(np.clip(evidence, -700, 700)))
+    return sum(
+        float(logsumexp(terms[:, kinds == kind].sum(axis=1)) - np.log(len(SHARES)))
+        for kind in np.unique(kinds).tolist()
+    )
 
 
 class NoveltyAlarm:
@@ -44,8 +61,12 @@ class NoveltyAlarm:
     ----------
     laws : (n_types, n_causes, n_effects) float
         P(effect | cause; type).
-    base : (n_causes, n_effects) float
-        The law p₀ of a cause that a type has for itself.
+    broad : (n_causes, n_effects) float
+        The law p₀ of a cause of which nothing is known.
+    kinds : (n_causes,) int64
+        0 for moves, 1 for rewards.
+    apart : (n_causes,) float
+        Probability that known types differ in a cause.
     prior : (n_types,) float
     frequency : (n_causes,) float
         Number of earlier tasks that showed each cause.
@@ -66,7 +87,9 @@ class NoveltyAlarm:
     def __init__(
         self,
         laws: Array,
-        base: Array,
+        broad: Array,
+        kinds: NDArray[np.int64],
+        apart: Array,
         prior: Array,
         frequency: Array,
         horizon: float,
@@ -74,10 +97,11 @@ class NoveltyAlarm:
         generator: np.random.Generator,
     ) -> None:
         self._log_laws = np.log(np.maximum(laws, LEAST)).transpose(1, 2, 0).copy()
-        self._log_base = np.log(np.maximum(base, LEAST))
-        self.horizon = int(np.clip(round(horizon), 1, min(MOST_CAUSES, len(base))))
+        self._log_broad = np.log(np.maximum(broad, LEAST))
+        self.horizon = int(np.clip(round(horizon), 1, min(MOST_CAUSES, len(broad))))
         self._belief = np.log(np.maximum(prior, LEAST))
-        self._odds = np.zeros(len(SHARES))
+        self._kinds, self._shares = kinds, shares(apart)
+        self._odds = np.zeros((2, len(SHARES)))
         self._judged: set[int] = set()
         self.alarm, self.score = False, 0.0
         highest = self._simulated(laws, prior, frequency, generator)
@@ -90,9 +114,9 @@ class NoveltyAlarm:
         self._judged.add(cause)
         before = logsumexp(self._belief)
         self._belief = self._belief + self._log_laws[cause, effect]
-        evidence = self._log_base[cause, effect] - (logsumexp(self._belief) - before)
-        self._odds += np.log1p(SHARES * np.expm1(evidence))
-        self.score = float(logsumexp(self._odds) - np.log(len(SHARES)))
+        evidence = self._log_broad[cause, effect] - (logsumexp(self._belief) - before)
+        self._odds[self._kinds[cause]] += np.log1p(self._shares[:, cause] * np.expm1(evidence))
+        self.score = float((logsumexp(self._odds, axis=1) - np.log(len(SHARES))).sum())
         self.alarm |= self.score > self.threshold
 
     def _simulated(self, laws: Array, prior: Array, frequency: Array, generator: np.random.Generator) -> Array:
@@ -107,5 +131,9 @@ class NoveltyAlarm:
         joint = np.log(np.maximum(prior, LEAST)) + self._log_laws[order, effects].cumsum(axis=1)
         mixture = logsumexp(joint, axis=2)
         given = np.diff(mixture, axis=1, prepend=0.0)
-        terms = np.log1p(SHARES[:, None, None] * np.expm1(self._log_base[order, effects] - given))
-        return (logsumexp(terms.cumsum(axis=2), axis=0) - np.log(len(SHARES))).max(axis=1)
+        terms = np.log1p(self._shares[:, order] * np.expm1(self._log_broad[order, effects] - given))
+        odds = np.zeros(order.shape)
+        for kind in (0, 1):
+            own = np.where(self._kinds[order] == kind, terms, 0.0).cumsum(axis=2)
+            odds += logsumexp(own, axis=0) - np.log(len(SHARES))
+        return odds.max(axis=1)

@@ -29,8 +29,8 @@ from lifelore.agent.any_tasks.recorded_env import RecordedEnv
 from lifelore.agent.any_tasks.reuse import TaskReuse
 from lifelore.agent.any_tasks.task_result import LEARNER, TaskResult
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
-from lifelore.agent.external_world.task import GuidanceSettings
-from lifelore.agent.live.task_result import Stopped
+from lifelore.agent.life.loop import Stopped
+from lifelore.agent.live.life_settings import PriorSettings
 from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.streams import stream
@@ -86,7 +86,7 @@ class TaskSettings:
     """How a task is lived; the fields as the arguments of `LongLivedAgent`."""
 
     learning: QLearning
-    guidance: GuidanceSettings
+    guidance: PriorSettings
     discount: float
     learner: Any
     signals: str
@@ -145,7 +145,7 @@ class OneTask:
     def live(self, name: str) -> TaskNews | None:
         """Live the task; `name` is that of the new type, if it has one."""
         self.recognise()
-        while len(self.result.returns) < self.settings.learning.episodes:
+        while len(self.result.returns) < self.settings.learning.episode_cap:
             if self.learner is None and self.worth_learning():
                 self.begin_learning()
             self.live_episode()
@@ -168,7 +168,7 @@ class OneTask:
             prior,
             settings.signals,
             settings.false_alarm,
-            settings.learning.episodes,
+            settings.learning.episode_cap,
             self.seed,
         )
         self.result.prior = self.reuse.by_name(prior)
@@ -186,7 +186,7 @@ class OneTask:
         seed = int(stream(self.seed, "task", number, "world", len(self.result.returns)).integers(2**31))
         began = self.reuse.begin_episode() if self.learner is None and self.reuse is not None else LEARNER
         state, reward, steps, ended, whole = self.world.reset(number, seed), 0.0, list[Step](), False, True
-        for count in range(self.settings.learning.max_steps):
+        for count in range(self.settings.learning.step_cap):
             if count % STOP_CHECK == 0 and self.stop.is_set():
                 raise Stopped
             code, context = self.codes.state(state), self.codes.states[self.world.context(state, reward)]
@@ -218,7 +218,7 @@ class OneTask:
         """Learn from a move: its value, the belief in types, and whether any known type fits."""
         self.running.observe(step)
         if self.reuse is not None:
-            self.reuse.observe(self.codes.cause(step.state, step.action), self.codes.outcome(step))
+            self.reuse.observe(self.codes.pairs(step))
             if self.learner is None and self.alarmed and not callable(self.settings.learner):
                 self.begin_learning()
 
@@ -266,7 +266,7 @@ class OneTask:
         if own is None:
             seeded = self.table(self.experience.types[start].policy, None)
             seeded.take_over(self.steps)
-        patience = self.settings.learning.episodes // PATIENCE
+        patience = self.settings.learning.episode_cap // PATIENCE
         self.learner = Contest(seeded, fresh, self.experience.hope, patience)
 
     def player(self, name: str) -> Player:

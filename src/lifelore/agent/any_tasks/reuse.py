@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from lifelore.agent.any_tasks.experience import Experience
 from lifelore.agent.any_tasks.known_returns import known_returns
 from lifelore.agent.any_tasks.known_types import KnownTypes
-from lifelore.agent.any_tasks.moves import OutcomeCounts
+from lifelore.agent.any_tasks.moves import OutcomeCounts, Pairs
 from lifelore.agent.any_tasks.novelty import NoveltyAlarm
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
@@ -88,7 +88,15 @@ class TaskReuse:
             # Twice the usual number of causes: tasks of unknown types try more.
             horizon = 2 * known.frequency.sum() / max(experience.n_tasks, 1)
             self.alarm: Alarm = NoveltyAlarm(
-                known.moves.laws, known.moves.base, prior, known.frequency, horizon, false_alarm, generator
+                known.moves.laws,
+                known.moves.broad,
+                known.moves.kinds,
+                known.moves.known_apart,
+                prior,
+                known.frequency,
+                horizon,
+                false_alarm,
+                generator,
             )
         else:
             n_tasks = max(1000, int(np.ceil(LEAST_ALARMS / false_alarm)))
@@ -127,16 +135,18 @@ class TaskReuse:
 
     # ---- signals -----------------------------------------------------------------------------------
 
-    def observe(self, cause: int, outcome: int) -> None:
+    def observe(self, pairs: Pairs) -> None:
         """Take in a move, by codes; another policy runs from here where another type is believed most."""
-        found = self.known.moves.place(cause, outcome)
-        if not self.by_moves or found is None:
+        if not self.by_moves:
             return
         assert isinstance(self.alarm, NoveltyAlarm), "moves have an alarm of their own"
-        self.alarm.observe(*found)
-        self.agent.observe(self.policy, found)
-        place, effect = found
-        self._own.setdefault(place, np.zeros(self.known.moves.base.shape[1]))[effect] += 1
+        for cause, outcome in pairs:
+            found = self.known.moves.place(cause, outcome)
+            if found is not None:
+                self.alarm.observe(*found)
+                self.agent.observe(self.policy, found)
+                place, effect = found
+                self._own.setdefault(place, np.zeros(self.known.moves.base.shape[1]))[effect] += 1
         if int(self.belief.argmax()) != self._believed:
             self.select()
 

@@ -1,11 +1,9 @@
 """`live_in`: an agent lives in a world of the user, through the `World` protocol only."""
 
-import os
 import time
-import uuid
 import warnings
 from collections.abc import Hashable
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Event
@@ -15,16 +13,17 @@ import numpy as np
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.external_world.context_code import MOST_ACTIONS, ContextCodes
 from lifelore.agent.external_world.stored_prior import recalled_prior
-from lifelore.agent.external_world.task import ExternalLearner, ExternalTask, GuidanceSettings
+from lifelore.agent.external_world.task import ExternalLearner, ExternalTask
+from lifelore.agent.life.loop import LivedTask, opened_memory, run_life
+from lifelore.agent.live.life_settings import PriorSettings
 from lifelore.agent.live.output.long_table import LongTable
 from lifelore.agent.live.summary import plain, third
-from lifelore.agent.live.task_result import Stopped
 from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.metrics import mean_estimate
 from lifelore.core.protocols import Progress, Record, World
 from lifelore.core.streams import stream
-from lifelore.memory import Memory, open_memory
+from lifelore.memory import Memory
 
 AGENTS = ("lore", "scratch")
 MEASURES = ("first_return", "mean_return", "final_return")
@@ -88,7 +87,7 @@ def live_in(
         File for the measures of each task and the return of each episode in long format, see
         `lifelore.agent.live.output.long_table`.
     progress : callable, optional
-        Called as ``progress(done, total, label)`` after each task.
+        Called as ``progress(done, total, label)`` before the first task and after each task.
     stop : threading.Event, optional
         Set it to stop early: the task in progress is dropped, the finished tasks stay.
 
@@ -116,17 +115,19 @@ def live_in(
         Memory cannot store the task, or the CSV file cannot be written; earlier tasks stay stored.
     """
     began = time.perf_counter()
-    _check_whole(tasks=tasks, episodes=episodes, max_steps=max_steps)
+    _check_tasks(tasks)
     _check_world(world)
     learning = QLearning(episodes, max_steps, learning_rate, epsilon, epsilon_decay, epsilon_floor)
     key = _key_of(world, key, needed=memory is not None)
-    settings = _Settings(tasks, robot, key, seed, discount, learning, GuidanceSettings(alpha0, weight, form, ties))
+    settings = _Settings(
+        tasks, robot, key, seed, discount, learning, PriorSettings("observation", alpha0, weight, form, ties)
+    )
     with (
         LongTable(csv, seed) if csv is not None else nullcontext() as table,
-        open_memory(memory) if memory is not None else nullcontext() as opened,
+        opened_memory(memory) as opened,
     ):
         life = _ExternalLife(world, settings, opened, table)
-        life.run(progress, stop or Event())
+        run_life(life, tasks, memory=opened, robot=robot, progress=progress, stop=stop)
         report = life.report(time.perf_counter() - began)
     for sentence in report["warnings"]:
         warnings.warn(sentence, stacklevel=2)
@@ -143,7 +144,7 @@ class _Settings:
     seed: int
     discount: float
     learning: QLearning
-    guidance: GuidanceSettings
+    guidance: PriorSettings
 
     def __post_init__(self) -> None:
         if not 0 <= self.discount <= 1:
@@ -171,10 +172,9 @@ class _Settings:
         }
 
 
-def _check_whole(**settings: int) -> None:
-    for name, value in settings.items():
-        if not isinstance(value, int) or not 1 <= value <= 10**9:
-            raise InputError(f"{name} must be a whole number from 1 to 10^9, got {value}")
+def _check_tasks(tasks: int) -> None:
+    if not isinstance(tasks, int) or not 1 <= tasks <= 10**9:
+        raise InputError(f"tasks must be a whole number from 1 to 10^9, got {tasks}")
 
 
 def _check_world(world: World) -> None:
@@ -208,48 +208,36 @@ class _ExternalLife:
     def __init__(self, world: World, settings: _Settings, memory: Memory | None, table: LongTable | None) -> None:
         self.world, self.settings, self.memory, self.table = world, settings, memory, table
         self.name = str(getattr(world, "name", type(world).__name__))
-        self.prior = recalled_prior(memory, settings.key, world.n_actions, settings.guidance.alpha0)
         self.tasks_before = memory.tasks(settings.robot) if memory else 0
-        self.process = f"{os.getpid()}-{uuid.uuid4().hex[:12]}"
         self.codes, self.states, self.finished = ContextCodes(), set[Hashable](), list[dict]()
 
-    def run(self, progress: Progress | None, stop: Event) -> None:
-        total = self.settings.tasks
-        for done in range(total):
-            try:
-                with self._task_number(done) as index:
-                    self._live_task(index, done, stop)
-            except Stopped:
-                break
-            if progress:
-                progress(done + 1, total, f"task {index}")
+    def recall(self) -> None:
+        """Read the prior of the key; an empty one without a memory."""
+        alpha0 = self.settings.guidance.alpha0
+        self.prior = recalled_prior(self.memory, self.settings.key, self.world.n_actions, alpha0)
 
-    def _task_number(self, done: int) -> AbstractContextManager[int]:
-        """The number of a task that no other process of this robot lives."""
-        if self.memory is None:
-            return nullcontext(done)
-        return self.memory.taken_task(self.settings.robot, process=self.process)
-
-    def _live_task(self, index: int, seq: int, stop: Event) -> None:
-        task = self._task(index, stop)
-        learners = {name: self._learner(name, index) for name in AGENTS}
+    def live(self, number: int, seq: int, stop: Event) -> LivedTask:
+        """Live a task with each agent."""
+        task = self._task(number, stop)
+        learners = {name: self._learner(name, number) for name in AGENTS}
         agents = {name: task.live(learner) for name, learner in learners.items()}
         counts = self._learn(learners["lore"])
-        if self.memory:
-            about = {"index": index, "world": self.name}
-            records = [counts] if len(counts.slots) else []
-            robot, process = self.settings.robot, self.process
-            self.memory.contribute(robot, records, process=process, seq=seq, task=about, taken=index)
+        records = [counts] if len(counts.slots) else []
+        return LivedTask(records, {"index": number, "world": self.name}, (number, agents, learners))
+
+    def finish(self, lived: LivedTask) -> None:
+        """Report a task."""
+        number, agents, learners = lived.result
         for learner in learners.values():
             self.states.update(learner.q)
-        self.finished.append({"index": index, "goal": None, "optimal_return": None, "agents": agents})
+        self.finished.append({"index": number, "goal": None, "optimal_return": None, "agents": agents})
         if self.table:
             returns = {name: {"return": learner.returns.returns} for name, learner in learners.items()}
             self.table.add(self.finished[-1], returns)
 
     def _task(self, index: int, stop: Event) -> ExternalTask:
         learning, discount = self.settings.learning, self.settings.discount
-        drawn = stream(self.settings.seed, "task", index, "world").integers(2**31, size=learning.episodes)
+        drawn = stream(self.settings.seed, "task", index, "world").integers(2**31, size=learning.episode_cap)
         return ExternalTask(self.world, self.codes, learning, discount, index, drawn.tolist(), stop)
 
     def _learner(self, name: str, index: int) -> ExternalLearner:

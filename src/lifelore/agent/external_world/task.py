@@ -13,11 +13,12 @@ from threading import Event
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.action.priors.action_prior import FORMS, ActionPrior
-from lifelore.action.priors.exploration import TIES, TRACE
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.action.priors.exploration import TRACE
 from lifelore.agent.external_world.context_code import ContextCodes
 from lifelore.agent.external_world.useful_actions import EpisodeReturns, useful_actions
-from lifelore.agent.live.task_result import Stopped
+from lifelore.agent.life.loop import Stopped
+from lifelore.agent.live.life_settings import PriorSettings
 from lifelore.core.compiled.random_state import random_state
 from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learner import QLearning
@@ -26,23 +27,6 @@ from lifelore.core.protocols import World
 
 STOP_CHECK = 200
 """Steps between checks of the stop event."""
-
-
-@dataclass(frozen=True)
-class GuidanceSettings:
-    """How counts guide exploration; the fields as in `lifelore.agent.live.life_settings.PriorSettings`."""
-
-    alpha0: float = 0.1
-    weight: float = 1.0
-    form: str = "proportion"
-    ties: str = "uniform"
-
-    def __post_init__(self) -> None:
-        for name, known in {"form": FORMS, "ties": TIES}.items():
-            if getattr(self, name) not in known:
-                raise InputError(f"{name} must be one of {', '.join(known)}, got '{getattr(self, name)}'")
-        # An empty prior checks its own numbers.
-        ActionPrior(1, self.alpha0).update([], np.empty((0, 1)), self.weight)
 
 
 class ExternalLearner:
@@ -54,7 +38,7 @@ class ExternalLearner:
     """
 
     def __init__(
-        self, n_actions: int, prior: ActionPrior | None, guidance: GuidanceSettings, own: np.random.Generator
+        self, n_actions: int, prior: ActionPrior | None, guidance: PriorSettings, own: np.random.Generator
     ):
         self.n_actions, self.prior, self.guidance, self.generator = n_actions, prior, guidance, own
         self.random = random_state(own)
@@ -131,7 +115,7 @@ class ExternalTask:
         state, reward, total, factor = self.world.reset(self.index, seed), 0.0, 0.0, 1.0
         steps: list[tuple[Hashable, int, int]] = []
         terminated = False
-        for step in range(self.learning.max_steps):
+        for step in range(self.learning.step_cap):
             if step % STOP_CHECK == 0 and self.stop.is_set():
                 raise Stopped
             code = self.codes[self.world.context(state, reward)]

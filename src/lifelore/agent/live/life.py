@@ -1,14 +1,13 @@
 """`live`: an agent lives through a stream of tasks and uses what it learnt in the earlier ones."""
 
-import os
 import time
-import uuid
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from threading import Event
 
+from lifelore.agent.life.loop import LivedTask, run_life
 from lifelore.agent.live.baselines import AGENTS, agents_for
 from lifelore.agent.live.buildings.carried_model import carried_model
 from lifelore.agent.live.buildings.map_watch import MapWatch
@@ -23,7 +22,7 @@ from lifelore.agent.live.settings_document import path_text, settings_document
 from lifelore.agent.live.shared_task import SharedTask
 from lifelore.agent.live.sight import sight_lists
 from lifelore.agent.live.summary import summarise
-from lifelore.agent.live.task_result import Stopped, TaskResult
+from lifelore.agent.live.task_result import TaskResult
 from lifelore.agent.live.task_stream import TaskStream
 from lifelore.core.errors import InputError
 from lifelore.core.planning.planning import mean_start_value, optimal_q
@@ -113,12 +112,12 @@ def live(
     """
     stop = stop or Event()
     began = time.perf_counter()
-    agents_for(settings.agent, settings.learning.learner)  # a mistake in the name shows before the map is read
+    agents_for(settings.agent, settings.learner)  # a mistake in the name shows before the map is read
     map_watch = MapWatch(settings.world) if settings.watch else None
     occupancy = map_from_settings(settings.world) if settings.world.domain == "building" else None
     world = world_from_settings(settings.world, occupancy)
     with open_memory(settings.memory.location) as memory:
-        first = agents_for(settings.agent, settings.learning.learner)[0]
+        first = agents_for(settings.agent, settings.learner)[0]
         place = _place(settings, world, occupancy, memory, first)
         names, notice = size_of_life(settings, place.world.n_states)
         if notify and notice:
@@ -128,14 +127,23 @@ def live(
             settings = replace(settings, goals=jobs.unfinished(settings.goals))
             if notify:
                 notify(jobs.notice())
-        life = _RunningLife(settings, place, occupancy, names, memory, map_watch, notify, jobs)
         with ThreadPoolExecutor(settings.jobs) as pool:
-            results = life.run(pool, progress, stop, watch)
+            life = _GridLife(settings, place, occupancy, names, memory, pool, map_watch, jobs, watch, notify)
+            run_life(
+                life,
+                settings.n_tasks,
+                memory=memory,
+                robot=settings.memory.robot,
+                refresh=settings.memory.refresh,
+                progress=progress,
+                stop=stop,
+                notify=notify,
+            )
         report = _report(settings, life, time.perf_counter() - began)
     return Life(
         report,
         life.world,
-        results,
+        life.results,
         life.lores[names[0]],
         stop.is_set(),
         occupancy=life.place.occupancy,
@@ -149,7 +157,7 @@ def _place(
     settings: LifeSettings, world: GridWorld, occupancy: OccupancyMap | None, memory: Memory, agent: str
 ) -> Place:
     """The remembered building of the world, if the agent remembers transitions of buildings."""
-    name, remembers = settings.memory.building, AGENTS[agent].remembers and settings.learning.learner == "model"
+    name, remembers = settings.memory.building, AGENTS[agent].remembers and settings.learner == "model"
     if occupancy is not None and remembers:
         return recognised_place(settings.world, world, occupancy, memory, name)
     if name is not None:
@@ -171,7 +179,7 @@ def _job_progress(settings: LifeSettings, place: Place, memory: Memory) -> JobPr
     return replace(progress, finished=0) if settings.again else progress
 
 
-class _RunningLife:
+class _GridLife:
     """A life in progress: the knowledge of each agent, and the memory that stores the first one's."""
 
     def __init__(
@@ -181,21 +189,20 @@ class _RunningLife:
         given: OccupancyMap | None,
         names: list[str],
         memory: Memory,
+        pool: ThreadPoolExecutor,
         map_watch: MapWatch | None,
-        notify: Callable[[str], None] | None,
         jobs: JobProgress | None,
+        watch: Watcher | None,
+        notify: Callable[[str], None] | None,
     ) -> None:
-        self.jobs = jobs
-        self.settings, self.names, self.memory, self.notify = settings, names, memory, notify
+        self.settings, self.names, self.memory, self.pool = settings, names, memory, pool
+        self.map_watch, self.jobs, self.watch, self.notify = map_watch, jobs, watch, notify
         self.unstored: list[Record] = []
         self._settle(place, given, first=0)
-        # Every agent starts from the same knowledge and then learns by itself; only the first one's is stored.
-        first = self._recalled()
-        self.lores = {name: first.copy() if i else first for i, name in enumerate(names)}
+        self.lores: dict[str, Lore] = {}
         self.tasks_before = memory.tasks(settings.memory.robot)
-        self.process = f"{os.getpid()}-{uuid.uuid4().hex[:12]}"
         self.finished: list[dict] = []
-        self.map_watch = map_watch
+        self.results: list[dict[str, TaskResult]] = []
         self.map_changes: list[dict] = []
 
     def _settle(self, place: Place, given: OccupancyMap | None, first: int) -> None:
@@ -208,6 +215,12 @@ class _RunningLife:
         self.named, self.places, self.stream = names, places, stream
         self.scope = prior_scope(place.world, self.settings.prior.condition)
         self.unstored = self.unstored + place.news
+
+    def recall(self) -> None:
+        """The first agent knows what memory holds; at the start all agents do, and then learn by themselves."""
+        first = self._recalled()
+        self.lores = self.lores or {name: first.copy() for name in self.names}
+        self.lores[self.names[0]] = first
 
     def _recalled(self) -> Lore:
         return Lore.recalled(self.world, self.scope, self.settings.prior.alpha0, self.memory, self.place.grid)
@@ -251,60 +264,24 @@ class _RunningLife:
         self.lores = lores
         return {"used": True, "n_states": world.n_states, "agreement": round(agreement, 4)}
 
-    def run(
-        self, pool: ThreadPoolExecutor, progress: Progress | None, stop: Event, watch: Watcher | None
-    ) -> list[dict[str, TaskResult]]:
-        results = []
-        total = self.settings.n_tasks
-        if progress:
-            progress(0, total, "")
-        for done in range(total):
-            if stop.is_set():
-                break
-            try:
-                with self.memory.taken_task(self.settings.memory.robot, process=self.process) as index:
-                    if self.map_watch and done:
-                        self._look_at_map(index, done)
-                    if self.settings.memory.refresh and done:
-                        self.lores[self.names[0]] = self._recalled()
-                    result = self._live_task(index, done, pool, stop)
-            except Stopped:
-                break
-            if result is not None:
-                results.append(result)
-                if watch:
-                    watch(self.finished[-1], result)
-                if len(results) > TASKS_WITH_POLICY:
-                    for old in results[-1 - TASKS_WITH_POLICY].values():
-                        old.drop_arrays()
-            if progress:
-                progress(done + 1, total, f"task {index}")
-        return results
-
-    def _lost(self, index: int) -> None:
-        """Go on without a task that another process has taken over: it is the other's to store."""
-        self.lores[self.names[0]] = self._recalled()
-        if self.notify:
-            self.notify(
-                f"task {index} took so long that another process took it over; its result here is not used"
-            )
-
-    def _live_task(
-        self, index: int, seq: int, pool: ThreadPoolExecutor, stop: Event
-    ) -> dict[str, TaskResult] | None:
-        """Live one task and store it; None if another process has taken the task over in the meantime."""
+    def live(self, number: int, seq: int, stop: Event) -> LivedTask:
+        """Live a task with each agent; look at the watched map before."""
+        if self.map_watch and seq:
+            self._look_at_map(number, seq)
         own = self.places.goal(seq)
-        task = self.stream.task(index, own and own.state)
+        task = self.stream.task(number, own and own.state)
         tables = task.tables()
         optimal = mean_start_value(tables, optimal_q(tables, task.domain.discount).max(axis=1))
         if optimal <= 0:
             raise InputError(
-                f"discount must leave the goal of task {index} a positive value at its starts, "
+                f"discount must leave the goal of task {number} a positive value at its starts, "
                 f"got {task.domain.discount}; use a larger discount"
             )
-        shared = SharedTask(self.settings, self.world, self.sight, self.stream, task, tables, optimal, index, stop)
+        shared = SharedTask(
+            self.settings, self.world, self.sight, self.stream, task, tables, optimal, number, stop
+        )
         try:
-            futures = {name: pool.submit(shared.live, AGENTS[name], self.lores[name]) for name in self.names}
+            futures = {name: self.pool.submit(shared.live, AGENTS[name], self.lores[name]) for name in self.names}
             results = {name: future.result() for name, future in futures.items()}
         except BaseException:
             stop.set()
@@ -312,26 +289,30 @@ class _RunningLife:
         goal = int(task.goal)  # type: ignore[arg-type]
         records = {name: self._learn(name, results[name], goal) for name in self.names}
         chosen = {} if own is None else own.to_dict()
-        about = {"index": index, "goal": self.world.cells[goal].tolist()}
+        about = {"index": number, "goal": self.world.cells[goal].tolist()}
         agents = {name: result.to_dict() for name, result in results.items()}
-        stored = self.memory.contribute(
-            self.settings.memory.robot,
+        return LivedTask(
             records[self.names[0]] + self.unstored + self._names(own) + self._job_records(seq),
-            process=self.process,
-            seq=seq,
-            task=about | chosen | {"world": self.world.fingerprint, "agents": agents, **self._known()},
-            taken=index,
+            about | chosen | {"world": self.world.fingerprint, "agents": agents, **self._known()},
+            (about | chosen | {"optimal_return": optimal, "agents": agents}, results),
         )
-        if not stored:
-            return self._lost(index)
+
+    def finish(self, lived: LivedTask) -> None:
+        """Report a task; keep the policies of the last tasks alone."""
+        task, results = lived.result
         self.unstored = []
-        self.finished.append(about | chosen | {"optimal_return": optimal, "agents": agents})
-        return results
+        self.finished.append(task)
+        self.results.append(results)
+        if self.watch:
+            self.watch(task, results)
+        if len(self.results) > TASKS_WITH_POLICY:
+            for old in self.results[-1 - TASKS_WITH_POLICY].values():
+                old.drop_arrays()
 
     def _known(self) -> dict[str, int]:
         """Number of places that the first agent knows, if it remembers any."""
         name = self.names[0]
-        if not AGENTS[name].remembers or self.settings.learning.learner != "model":
+        if not AGENTS[name].remembers or self.settings.learner != "model":
             return {}
         return {"places": int((self.lores[name].model.percept >= 0).sum())}
 
@@ -351,14 +332,14 @@ class _RunningLife:
         kind, lore, records = AGENTS[name], self.lores[name], []
         if kind.uses_prior and self.settings.prior.condition != "none":
             records.append(lore.learn_prior(result.best, goal, self.settings.prior.weight))
-        if kind.remembers and self.settings.learning.learner == "model":
+        if kind.remembers and self.settings.learner == "model":
             records.append(lore.model_news())
             if self.settings.destinations and result.reached:
                 records.append(lore.goals.found(goal))
         return [record for record in records if len(record.slots)]
 
 
-def _report(settings: LifeSettings, life: _RunningLife, seconds: float) -> dict:
+def _report(settings: LifeSettings, life: _GridLife, seconds: float) -> dict:
     world, place = life.world, life.place
     report = {
         "domain": settings.world.domain,

@@ -1,12 +1,16 @@
-"""Settings of `live`, in five groups: the world, the learner, the sensor, the action prior and the memory."""
+"""Settings of `live`, with five groups: the world, the learning, the sensor, the action prior and the memory.
+
+The first sentence on a setting stands in ``lifelore live --settings``.
+"""
 
 from dataclasses import dataclass, field
 from math import ceil, isfinite
 
-from lifelore.action.priors.action_prior import FORMS
+from lifelore.action.priors.action_prior import FORMS, MOST_WEIGHT
 from lifelore.action.priors.exploration import TIES
 from lifelore.agent.live.goals.job_list import Job
 from lifelore.core.errors import InputError
+from lifelore.core.learning.q_learner import QLearning
 from lifelore.domains.worlds import WorldSettings
 
 LEARNERS = ("model", "q")
@@ -17,49 +21,11 @@ DEFAULT_RANGE = 5.0
 MOST_LENGTH = 1e3
 """Largest cell side and robot radius, in metres: a larger number is a typing mistake."""
 MOST_REWARD = 1e6
-"""Largest magnitude of rewards and of the prior's weights: a larger number hides the others by rounding."""
+"""Largest magnitude of rewards and of α⁰: a larger number hides the others by rounding."""
 LONGEST_NAME = 200
 
 Place = tuple[float, float] | str
 """In buildings x and y in metres of the map's frame, or a name that memory knows; else row and column."""
-
-
-@dataclass(frozen=True)
-class LearningSettings:
-    """How the agents learn one task; None means the default of the learner.
-
-    Parameters
-    ----------
-    learner : {"model", "q"}
-        Plan on a learnt model of the moves, or learn by Q-learning as in the thesis.
-    episodes, max_steps : int, optional
-        Maximum number of episodes of a task, and of steps of an episode; see `LifeSettings.episode_cap` and
-        `LifeSettings.step_cap` for the defaults.
-    learning_rate, epsilon, epsilon_decay, epsilon_floor : float
-        Q-learning alone: α, and ε = max(epsilon_floor, epsilon · epsilon_decay^episode); each in [0, 1].
-
-    Raises
-    ------
-    InputError
-        A setting is out of its range.
-    """
-
-    learner: str = "model"
-    episodes: int | None = None
-    max_steps: int | None = None
-    learning_rate: float = 0.5
-    epsilon: float = 1.0
-    epsilon_decay: float = 0.98
-    epsilon_floor: float = 0.01
-
-    def __post_init__(self) -> None:
-        _check_choice("learner", self.learner, LEARNERS)
-        _check_whole("episodes", self.episodes, 1, 10**6)
-        _check_whole("max_steps", self.max_steps, 1, 10**9)
-        _check_share("learning_rate", self.learning_rate)
-        _check_share("epsilon", self.epsilon)
-        _check_share("epsilon_decay", self.epsilon_decay)
-        _check_share("epsilon_floor", self.epsilon_floor)
 
 
 @dataclass(frozen=True)
@@ -69,11 +35,11 @@ class SensorSettings:
     Parameters
     ----------
     kind : {"touch", "lidar"}
-        With ``touch``, a move is known once it was made, and the goal once it was entered. With ``lidar``, in
-        buildings alone, all places within `range` in line of sight are perceived from each place: where their
-        moves lead, and whether they are the goal.
+        Whether the agents perceive by touch alone, or in buildings also by a lidar. With ``touch``, a move is
+        known once it was made, and the goal once it was entered. With ``lidar``, all places within `range` in line
+        of sight are perceived from each place: where their moves lead, and whether they are the goal.
     range : float, optional
-        Range of the lidar in metres, > 0; None: `DEFAULT_RANGE`. Does not apply to ``touch``.
+        Range of the lidar in metres, > 0; 5 by default. Does not apply to ``touch``.
 
     Raises
     ------
@@ -105,15 +71,16 @@ class PriorSettings:
     Parameters
     ----------
     condition : {"observation", "state", "none"}
-        The prior is conditioned on what the agent observes in a cell, or on the cell itself; or there is no prior.
+        Whether the prior is conditioned on what the agent observes in a cell, or on the cell, or there is none.
+        Does not apply to external worlds, which have contexts of their own.
     alpha0 : float
-        Pseudo-count α⁰ of every action, > 0.
+        Pseudo-count α⁰ of every action in the prior, > 0.
     weight : float
-        Weight w(π) of each finished task, ≥ 0.
-    form : str
-        Q-learning alone: how counts become probabilities, see `lifelore.action.priors.action_prior.FORMS`.
+        Weight w(π) of each finished task in the prior, ≥ 0.
+    form : {"proportion", "dirichlet", "softmax", "support", "tempered"}
+        How counts become probabilities in Q-learning. See `lifelore.action.priors.action_prior.FORMS`.
     ties : {"uniform", "prior"}
-        Q-learning alone: how the greedy step breaks ties.
+        How the greedy step of Q-learning breaks ties.
 
     Raises
     ------
@@ -131,10 +98,10 @@ class PriorSettings:
         _check_choice("prior", self.condition, CONDITIONS)
         _check_choice("form", self.form, FORMS)
         _check_choice("ties", self.ties, TIES)
-        _check_magnitude("alpha0", self.alpha0, MOST_REWARD)
-        _check_magnitude("weight", self.weight, MOST_REWARD)
-        if self.weight < 0:
-            raise InputError(f"weight must be at least 0, got {self.weight}")
+        if not 0 < self.alpha0 <= MOST_REWARD:
+            raise InputError(f"alpha0 must be positive and at most {MOST_REWARD:g}, got {self.alpha0}")
+        if not 0 <= self.weight <= MOST_WEIGHT:
+            raise InputError(f"weight must lie in [0, {MOST_WEIGHT:g}], got {self.weight}")
 
 
 @dataclass(frozen=True)
@@ -148,10 +115,10 @@ class MemorySettings:
     robot : str
         Name of the robot in memory, 1 to 200 printable characters. Processes of one name take different tasks.
     building : str, optional
-        Name of the building: the map must fit the remembered building of this name, or the building is a new one.
-        None: recognise the building; a new one gets the name of its map.
+        Name of the building, which otherwise is recognised. The map must fit the remembered building of this name,
+        or the building is a new one. A new one without a name gets that of its map.
     refresh : bool
-        Recall before each task, so that the agent uses what other robots and processes have stored since the last.
+        Whether to recall before each task what other robots and processes have stored since the last.
 
     Raises
     ------
@@ -180,7 +147,11 @@ class LifeSettings:
     ----------
     world : WorldSettings
         The world to live in; `world.seed` draws the tasks and the agents' choices too.
-    learning : LearningSettings
+    learner : {"model", "q"}
+        Whether the agents plan on a learnt model of the moves, or learn by Q-learning as in the thesis.
+    learning : QLearning
+        For learner model, only ``episodes`` and ``max_steps`` apply. Their defaults: `LifeSettings.episode_cap`,
+        `LifeSettings.step_cap`.
     prior : PriorSettings
     memory : MemorySettings
     sensor : SensorSettings
@@ -188,25 +159,25 @@ class LifeSettings:
         The agent that lives and whose knowledge is stored, one of `lifelore.agent.live.baselines.AGENTS`;
         ``scratch`` lives the same tasks for comparison. ``all``: `lore` and every baseline.
     compare : bool, optional
-        Whether ``scratch`` lives the same tasks for comparison. None: yes, up to `life_size.BIG` places.
+        Whether ``scratch`` lives the same tasks for comparison; by default up to 100,000 places.
     tasks : int
         Tasks to live through now, ≥ 1; `goals` overrides it, see `n_tasks`.
     destinations : int
-        Number of recurring places that goals are drawn from; 0: every place. Agents that remember transitions then
-        remember where goals were found too, and try those places first (``goals.goal_counts``).
+        Number of recurring places that goals are drawn from and remembered at; 0: every place. Agents that
+        remember transitions then remember where goals were found, and try those first (``goals.goal_counts``).
     start : (x, y) or str, or (row, column), optional
-        Place in which every episode starts; None: any place. In buildings metres of the map's frame, or a name
-        that memory knows; in other worlds a cell.
+        Place in which every episode starts: X,Y in metres or a known name, or ROW,COL; by default any. X and Y are
+        for buildings, in the map's frame; ROW and COL are for other worlds.
     goal : (x, y) or str, or (row, column), optional
         Goal of every task; None: drawn.
     goals : tuple of Job
         Buildings alone: the goals of the tasks in order, one task a job, see ``goals.job_list.read_jobs``.
     again : bool
-        Start an interrupted job list with its first job. Otherwise it goes on with its first unfinished job.
+        Whether to start an interrupted job list with its first job. Otherwise with its first unfinished one.
     watch : bool
-        Read the map again between tasks when its files changed.
+        Whether to read the map again between tasks when its files have changed.
     jobs : int
-        Threads; results do not depend on it.
+        Number of threads, on which results do not depend.
 
     Raises
     ------
@@ -215,13 +186,14 @@ class LifeSettings:
 
     Examples
     --------
-    >>> settings = LifeSettings(WorldSettings("lattice", seed=3), LearningSettings("q"), tasks=5)
+    >>> settings = LifeSettings(WorldSettings("lattice", seed=3), "q", tasks=5)
     >>> settings.seed, settings.step_cap, settings.episode_cap(n_states=342)
     (3, 1000, 1000)
     """
 
     world: WorldSettings = field(default_factory=WorldSettings)
-    learning: LearningSettings = field(default_factory=LearningSettings)
+    learner: str = "model"
+    learning: QLearning = field(default_factory=QLearning)
     prior: PriorSettings = field(default_factory=PriorSettings)
     memory: MemorySettings = field(default_factory=MemorySettings)
     agent: str = "lore"
@@ -237,6 +209,7 @@ class LifeSettings:
     again: bool = False
 
     def __post_init__(self) -> None:
+        _check_choice("learner", self.learner, LEARNERS)
         _check_whole("tasks", self.tasks, 1, 10**6)
         _check_whole("destinations", self.destinations, 0, 10**9)
         _check_whole("jobs", self.jobs, 1, 256)
@@ -256,10 +229,8 @@ class LifeSettings:
                 f"sensor lidar needs a building, whose map has lines of sight, got domain '{self.world.domain}'; "
                 "use sensor touch"
             )
-        if self.sensor.kind == "lidar" and self.learning.learner != "model":
-            raise InputError(
-                f"sensor lidar needs learner model, which plans on places seen, got '{self.learning.learner}'"
-            )
+        if self.sensor.kind == "lidar" and self.learner != "model":
+            raise InputError(f"sensor lidar needs learner model, which plans on places seen, got '{self.learner}'")
         if self.watch and self.world.map is None:
             raise InputError("watch needs the map of a building, got none; give the YAML file of a ROS map")
 
@@ -279,14 +250,16 @@ class LifeSettings:
         The default of learner q is 1,000. The default of learner model is 100, or the number of episodes that
         gives ten steps to each state where that is more.
         """
-        if self.learning.episodes is not None:
-            return self.learning.episodes
-        return max(100, ceil(10 * n_states / self.step_cap)) if self.learning.learner == "model" else 1000
+        if self.learner == "model" and self.learning.episodes is None:
+            return max(100, ceil(10 * n_states / self.step_cap))
+        return self.learning.episode_cap
 
     @property
     def step_cap(self) -> int:
         """Maximum number of steps of an episode; by default 2,000 in buildings, 1,000 in the thesis's worlds."""
-        return self.learning.max_steps or (2000 if self.world.domain == "building" else 1000)
+        if self.world.domain == "building" and self.learning.max_steps is None:
+            return 2000
+        return self.learning.step_cap
 
 
 def _check_world(world: WorldSettings) -> None:
@@ -309,8 +282,8 @@ def _check_choice(name: str, value: str, known: tuple[str, ...]) -> None:
         raise InputError(f"{name} must be one of {', '.join(known)}, got '{value}'")
 
 
-def _check_whole(name: str, value: int | None, least: int, most: int) -> None:
-    if value is not None and not (isinstance(value, int) and least <= value <= most):
+def _check_whole(name: str, value: int, least: int, most: int) -> None:
+    if not (isinstance(value, int) and least <= value <= most):
         raise InputError(f"{name} must be a whole number from {least} to {most:,}, got {value}")
 
 
@@ -319,8 +292,3 @@ def _check_magnitude(name: str, value: float | None, most: float) -> None:
         raise InputError(f"{name} must be a finite number, got {value}")
     if value is not None and abs(value) > most:
         raise InputError(f"{name} must be of magnitude {most:g} at most, got {value}")
-
-
-def _check_share(name: str, value: float) -> None:
-    if not 0 <= value <= 1:
-        raise InputError(f"{name} must lie in [0, 1], got {value}")

@@ -22,7 +22,7 @@ def size_of_life(settings: LifeSettings, places: int) -> tuple[list[str], str | 
     places : int
         Number of states of the world.
     """
-    agent, learner = settings.agent, settings.learning.learner
+    agent, learner = settings.agent, settings.learner
     names = agents_for(agent, learner, places <= BIG if settings.compare is None else settings.compare)
     left_out = settings.compare is None and len(names) < len(agents_for(agent, learner))
     seconds = estimated_seconds(places, len(names), settings.n_tasks) if learner == "model" else 0.0
@@ -32,8 +32,8 @@ def size_of_life(settings: LifeSettings, places: int) -> tuple[list[str], str | 
     if seconds:
         words.append(f"about {_duration(seconds)} for {settings.n_tasks} tasks of {', '.join(names)}")
     if left_out:
-        words.append(f"above {BIG:,} places scratch lives beside {agent} only with --compare")
-    smaller = ["a larger --cell"] if settings.world.domain == "building" else ["fewer tasks"]
+        words.append(f"above {BIG:,} places scratch lives beside {agent} only with --set compare=true")
+    smaller = ["a larger cell (--set cell=METRES)"] if settings.world.domain == "building" else ["fewer tasks"]
     advice = " or ".join(smaller + ["fewer agents"] * (len(names) > 1))
     return names, "; ".join(words) + f"; {advice} takes less"
 

@@ -4,11 +4,11 @@ from threading import Event
 
 import numpy as np
 
+from lifelore.agent.life.loop import Stopped
 from lifelore.agent.live.task_result import (
     CHECK_EVERY,
     CHECK_EVERY_BY_SIGHT,
     THRESHOLD,
-    Stopped,
     TaskResult,
     first_arrival,
 )

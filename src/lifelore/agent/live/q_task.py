@@ -4,7 +4,8 @@ from threading import Event
 
 import numpy as np
 
-from lifelore.agent.live.task_result import CHECK_EVERY, THRESHOLD, Stopped, TaskResult, first_arrival
+from lifelore.agent.life.loop import Stopped
+from lifelore.agent.live.task_result import CHECK_EVERY, THRESHOLD, TaskResult, first_arrival
 from lifelore.core.learning.curve import EPISODE, STEP, first_episodes, new_curve
 from lifelore.core.learning.q_learning import QLearner, Rows, Schedule, learn
 from lifelore.core.mdp import Tables

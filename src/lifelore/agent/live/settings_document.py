@@ -1,5 +1,6 @@
 """The settings of a life as JSON data."""
 
+from dataclasses import asdict
 from pathlib import Path
 
 from lifelore.agent.live.life_settings import LifeSettings
@@ -8,7 +9,7 @@ from lifelore.domains.grids.grid_world import GridWorld
 
 def settings_document(settings: LifeSettings, world: GridWorld, location: str) -> dict:
     """All settings in one flat dictionary, with the defaults of the world and the learner filled in."""
-    learning, prior = settings.learning, settings.prior
+    prior = settings.prior
     document = {
         "domain": settings.world.domain,
         "map": path_text(settings.world.map),
@@ -16,7 +17,7 @@ def settings_document(settings: LifeSettings, world: GridWorld, location: str) -
         "cell": settings.world.cell,
         "robot_radius": settings.world.robot_radius,
         "destinations": settings.destinations,
-        "learner": learning.learner,
+        "learner": settings.learner,
         "prior": prior.condition,
         "sensor": settings.sensor.kind,
         "range": settings.sensor.reach,
@@ -24,6 +25,7 @@ def settings_document(settings: LifeSettings, world: GridWorld, location: str) -
         "robot": settings.memory.robot,
         "start": settings.start,
         "memory": location,
+        **asdict(settings.learning),
         "episodes": settings.episode_cap(world.n_states),
         "max_steps": settings.step_cap,
         "seed": settings.seed,
@@ -36,10 +38,6 @@ def settings_document(settings: LifeSettings, world: GridWorld, location: str) -
         "weight": prior.weight,
         "form": prior.form,
         "ties": prior.ties,
-        "learning_rate": learning.learning_rate,
-        "epsilon": learning.epsilon,
-        "epsilon_decay": learning.epsilon_decay,
-        "epsilon_floor": learning.epsilon_floor,
     }
     optional = {
         "goal": settings.goal,
@@ -47,6 +45,8 @@ def settings_document(settings: LifeSettings, world: GridWorld, location: str) -
         "again": settings.again or None,
         "watch": settings.watch or None,
         "refresh": settings.memory.refresh or None,
+        "compare": settings.compare,
+        "building": settings.memory.building,
         "size": settings.world.size,
         "loops": settings.world.loops,
     }

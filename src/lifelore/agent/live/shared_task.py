@@ -1,6 +1,6 @@
 """One task of a life, which every agent learns on the same random streams: settings become learners."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from threading import Event
 
 import numpy as np
@@ -17,7 +17,6 @@ from lifelore.agent.live.task_result import TaskResult
 from lifelore.agent.live.task_stream import TaskStream
 from lifelore.core.learning.known_world import unknown_world
 from lifelore.core.learning.model_learning import StateInfo, new_model_learner
-from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import new_learner, uniform_rows
 from lifelore.core.learning.sight_search import new_sight_search
 from lifelore.core.mdp import Tables, Task
@@ -49,7 +48,7 @@ class SharedTask:
 
     def live(self, kind: AgentKind, lore: Lore) -> TaskResult:
         """Learn the task with an agent of this kind; changes the model in `lore`."""
-        if self.settings.learning.learner == "q":
+        if self.settings.learner == "q":
             return self._with_q(kind, lore)
         return self._with_model(kind, lore)
 
@@ -99,13 +98,8 @@ class SharedTask:
                 lambda codes: lore.prior.probs(codes, settings.prior.form, generator=drawn),
                 settings.prior.ties,
             )
-        method = QLearning(
-            settings.episode_cap(self.tables.n_states),
-            settings.step_cap,
-            settings.learning.learning_rate,
-            settings.learning.epsilon,
-            settings.learning.epsilon_decay,
-            settings.learning.epsilon_floor,
+        method = replace(
+            settings.learning, episodes=settings.episode_cap(self.tables.n_states), max_steps=settings.step_cap
         )
         learner = new_learner(
             self.tables.n_states, self.tables.n_actions, self.stream.world_stream(self.index), own

@@ -65,7 +65,3 @@ class TaskResult:
 def first_arrival(curve: Curve, cap: int) -> int:
     """Steps until the first episode that reached its goal had ended; `cap` if none did."""
     return int(curve.steps[: curve.reached.argmax() + 1].sum()) if curve.reached.any() else cap
-
-
-class Stopped(Exception):
-    """The user asked to stop; the task in progress is dropped."""

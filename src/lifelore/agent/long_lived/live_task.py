@@ -22,10 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.long_lived.changing_recognition import ChangingRecognition
+from lifelore.agent.long_lived.check_family import checked_plan, checked_step
 from lifelore.agent.long_lived.knowledge import Knowledge, SpanNews, TaskNews
 from lifelore.agent.long_lived.known_types import Effects, KnownTypes
 from lifelore.agent.long_lived.recognition import Belief, Recognition, Span
-from lifelore.agent.long_lived.task_family import Abilities, AgentTask, Plan, ShowsRelations
+from lifelore.agent.long_lived.task_family import Abilities, AgentTask, ShowsRelations
 from lifelore.agent.long_lived.task_log import Decision, TaskLog
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
@@ -42,13 +43,13 @@ class LivingSettings:
     Parameters
     ----------
     n_episodes : int
-        Of a task, at least 1.
+        Number of episodes of a task, at least 1.
     false_alarm : float
         Probability of an alarm in a task of a known type, in (0, 1).
     unknown : float
         Prior probability that no known type fits, in (0, 1).
     change : float
-        Probability that the type changes between two episodes, in [0, 1); with 0 it is taken to stay.
+        Probability that the type changes between two episodes of a task, in [0, 1). With 0 it is taken to stay.
 
     Raises
     ------
@@ -136,7 +137,7 @@ def attempt_task(
         while not ended:
             generator = stream(seed, "long-lived", "episode", drawn.number, episode) if between else None
             decision = decide(knowledge, task, recognition, generator, trying=between and not decisions)
-            step = task.act(decision.act)
+            step = checked_step(knowledge.family, decision.act, task.act(decision.act))
             decision.reward, decision.effects, ended = step.reward, step.effects, step.ended
             decisions.append(decision)
             recognition.observe(step.effects)
@@ -204,7 +205,7 @@ def decide(
     known = recognition.known
     laws = known.laws(recognition.own, generator)
     tried = known.tried(recognition.own)
-    plan: Plan = task.plan(laws, tried, len(laws) - 1, knowledge.shared)
+    plan = checked_plan(known.family, task.plan(laws, tried, len(laws) - 1, knowledge.shared), len(laws))
     belief = recognition.belief
     expected = belief @ plan.values
     behaviour = int(expected.argmax())

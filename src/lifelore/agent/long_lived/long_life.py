@@ -1,189 +1,170 @@
-"""A long life in one family of tasks: recall, live task after task, store each in one transaction."""
+"""`live_long`: a long life in one family of tasks with hidden types, by the loop that all lives share."""
 
-import os
-import uuid
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from threading import Event
 from typing import Any
 
 import numpy as np
 
 from lifelore.action.priors.action_prior import KIND
+from lifelore.agent.life.loop import LivedTask, opened_memory, run_life
+from lifelore.agent.long_lived.check_family import check_constants, checked_best_return, checked_meeting
 from lifelore.agent.long_lived.curiosity import context_to_practise
 from lifelore.agent.long_lived.explanation import episodes_document, task_document
 from lifelore.agent.long_lived.families.by_name import family_named
 from lifelore.agent.long_lived.knowledge import Knowledge
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task
 from lifelore.agent.long_lived.task_family import AGENTS, ChangingFamily, TaskFamily
-from lifelore.agent.long_lived.task_log import TaskLog
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.core.protocols import Progress, Record
+from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream
 from lifelore.memory import Memory, open_memory
 
 
-@dataclass(frozen=True)
-class LongLifeSettings:
-    """Settings of a long life.
-
-    Parameters
-    ----------
-    domain : str
-        A name of `families.by_name.FAMILIES`.
-    agent : str
-        A name of `task_family.AGENTS`; only ``"full"`` stores what it learns.
-    n_tasks : int
-        Tasks to live through now, at least 1.
-    seed : int
-        Draws the world, the tasks and the agent's choices.
-    robot : str
-        Name of the robot in memory.
-    memory : str, optional
-        A file or a ``postgresql://`` URL; default: the user's own memory.
-    living : LivingSettings
-        With its `change` above 0, the hidden type does change within tasks so often (factory-customers alone).
-    labelled : bool
-        tabletop: whether the points of the pictures carry the objects' labels.
-    n_spare : int
-        Tasks of spare time after those, in contexts that the agent is curious about, at least 0.
-    refresh : bool
-        Whether to recall before each task what other robots and processes have stored.
-
-    Raises
-    ------
-    InputError, NotFoundError
-        A setting breaks its rule.
-    """
-
-    domain: str
-    agent: str = "full"
-    n_tasks: int = 20
-    seed: int = 0
-    robot: str = "robot"
-    memory: str | None = None
-    living: LivingSettings = field(default_factory=LivingSettings)
-    labelled: bool = False
-    n_spare: int = 0
-    refresh: bool = False
-
-    def __post_init__(self) -> None:
-        if self.agent not in AGENTS:
-            raise NotFoundError(f"agent must be one of {', '.join(AGENTS)} in {self.domain}, got {self.agent!r}")
-        if self.n_tasks < 1:
-            raise InputError(f"tasks must be at least 1, got {self.n_tasks}")
-        if self.n_spare < 0:
-            raise InputError(f"spare must be at least 0, got {self.n_spare}")
-        if self.n_spare and self.agent != "full":
-            raise InputError(
-                f"spare tasks are chosen by what memory holds; the agent must be full, got {self.agent}"
-            )
-
-    def family(self) -> TaskFamily:
-        """The family of tasks."""
-        return family_named(self.domain, self.seed, labelled=self.labelled, change=self.living.change)
-
-
 def live_long(
-    settings: LongLifeSettings,
+    family: TaskFamily | str,
+    *,
+    tasks: int = 20,
+    agent: str = "full",
+    episodes: int = 8,
+    seed: int = 0,
+    memory: Memory | str | Path | None = None,
+    robot: str = "robot",
+    refresh: bool = False,
+    spare: int = 0,
+    change: float = 0.0,
+    false_alarm: float = 0.05,
     progress: Progress | None = None,
     stop: Event | None = None,
     watch: Callable[[dict[str, Any]], None] | None = None,
-    family: TaskFamily | None = None,
 ) -> dict[str, Any]:
-    """Live through tasks of a family, and store after each what it taught.
+    """Live through tasks of a family with hidden types, and store after each what it taught.
 
     Parameters
     ----------
-    settings : LongLifeSettings
+    family : TaskFamily or str
+        Your own family (`check_family` looks for its mistakes), or ``"tabletop"``, ``"factory-customers"`` or
+        ``"building-days"``.
+    tasks : int
+        Tasks to live through now, at least 1.
+    agent : str
+        ``"full"``, or an agent without some part: ``"no-perception"``, ``"no-prior"``, ``"no-reuse"``,
+        ``"scratch"`` (which begins each task anew). Only ``"full"`` stores what it learns.
+    episodes : int
+        Episodes of a task, at least 1.
+    seed : int
+        Draws the agent's choices, and the world of a family that is given by name.
+    memory : Memory, str or Path, optional
+        SQLite file or ``postgresql://`` URL that holds earlier lives and stores this one, one transaction a task;
+        or a memory that is open. None: start without knowledge and store nothing.
+    robot : str
+        Name of the robot in memory.
+    refresh : bool
+        Whether to recall before each task what other robots and processes have stored.
+    spare : int
+        Tasks of spare time after those, in contexts that the agent is curious about, at least 0.
+    change : float
+        Probability that the hidden type changes between two episodes of a task, in [0, 1); the agent knows it.
+    false_alarm : float
+        Probability of an alarm in a task of a known type, in (0, 1).
     progress : callable, optional
         Called as ``progress(done, total, label)`` before the first task and after each.
     stop : threading.Event, optional
         Set it to stop after the present task.
     watch : callable, optional
         Called with the document of each task after memory has stored it.
-    family : TaskFamily, optional
-        Tasks to live through, in place of those of the settings.
 
     Returns
     -------
     dict
-        JSON data: ``domain``, ``agent``, ``tasks`` (a document for each task), ``summary`` (how far first and last
-        episodes were below the best possible return, over the first and second half of the tasks).
+        JSON data: ``domain``, ``agent``, ``seed``, ``tasks`` (a document for each task), ``summary`` (how far
+        first and last episodes were below the best possible return, over the first and second half of the tasks).
 
     Raises
     ------
     InputError, NotFoundError, MissingExtraError
-        A setting breaks its rule; MuJoCo is missing.
+        A setting breaks its rule; the family is wrong in a way that one task shows; MuJoCo is missing.
     StoreError
         Memory cannot store a task; earlier tasks stay stored.
     """
-    family, abilities = family or settings.family(), AGENTS[settings.agent]
-    process = f"{os.getpid()}-{uuid.uuid4().hex[:12]}"
-    documents: list[dict[str, Any]] = []
-    with open_memory(settings.memory) as memory:
-        knowledge = recalled(family, memory) if settings.agent == "full" else Knowledge.empty(family)
-        n_tasks = settings.n_tasks + settings.n_spare
-        if progress:
-            progress(0, n_tasks, "")
-        for done in range(n_tasks):
-            if stop is not None and stop.is_set():
-                break
-            with memory.taken_task(settings.robot, process=process) as number:
-                if not abilities.memory:
-                    knowledge = Knowledge.empty(family)
-                elif settings.refresh and settings.agent == "full" and done:
-                    knowledge = recalled(family, memory)
-                context = None
-                if done >= settings.n_tasks:
-                    context = context_to_practise(knowledge, stream(settings.seed, "spare time", number))
-                drawn, task = family.meet(number, abilities, context)
-                name = f"{settings.robot}.{number}"
-                lived, records = live_task(knowledge, drawn, task, abilities, settings.living, name, settings.seed)
-                best = family.best_return(number, context)
-                document = task_document(lived, family, best) | {"spare": context is not None}
-                if isinstance(family, ChangingFamily) and settings.living.change:
-                    document |= episodes_document(
-                        lived, family.episodes(number, settings.living.n_episodes, context)
-                    )
-                _store(memory, settings, records, process, done, number, document)
-            documents.append(document)
-            if watch:
-                watch(document)
-            if progress:
-                progress(done + 1, n_tasks, f"task {number}: {_headline(lived, best)}")
+    family = family_named(family, seed, change=change) if isinstance(family, str) else family
+    check_constants(family)
+    _check_settings(family, tasks, agent, spare)
+    living = LivingSettings(episodes, false_alarm, change=change)
+    with opened_memory(memory) as opened:
+        life = _FamilyLife(family, agent, tasks, living, seed, robot, opened, watch)
+        run_life(life, tasks + spare, memory=opened, robot=robot, refresh=refresh, progress=progress, stop=stop)
     return {
-        "domain": settings.domain,
-        "agent": settings.agent,
-        "seed": settings.seed,
-        "tasks": documents,
-        "summary": summary(documents),
+        "domain": family.domain,
+        "agent": agent,
+        "seed": seed,
+        "tasks": life.documents,
+        "summary": summary(life.documents),
     }
 
 
-def _store(
-    memory: Memory,
-    settings: LongLifeSettings,
-    records: list[Record],
-    process: str,
-    seq: int,
-    number: int,
-    document: dict[str, Any],
-) -> None:
-    """Store a task; an ablation stores its documents alone, so that it teaches no other agent."""
-    memory.contribute(
-        settings.robot,
-        records if settings.agent == "full" else [],
-        process=process,
-        seq=seq,
-        task=document | {"domain": settings.domain, "seed": settings.seed},
-        taken=number,
-    )
+def _check_settings(family: TaskFamily, tasks: int, agent: str, spare: int) -> None:
+    if agent not in AGENTS:
+        raise NotFoundError(f"agent must be one of {', '.join(AGENTS)} in {family.domain}, got {agent!r}")
+    if tasks < 1:
+        raise InputError(f"tasks must be at least 1, got {tasks}")
+    if spare < 0:
+        raise InputError(f"spare must be at least 0, got {spare}")
+    if spare and agent != "full":
+        raise InputError(f"spare tasks are chosen by what memory holds; the agent must be full, got {agent}")
 
 
-def _headline(lived: TaskLog, best: float) -> str:
-    new = ", a new type" if lived.alarm else ""
-    return f"{lived.returns[0]:.1f} at first, best {best:.1f}{new}"
+@dataclass(eq=False)
+class _FamilyLife:
+    """A life in progress: the knowledge of one agent; memory stores that of the full one."""
+
+    family: TaskFamily
+    agent: str
+    n_tasks: int
+    living: LivingSettings
+    seed: int
+    robot: str
+    memory: Memory | None
+    watch: Callable[[dict[str, Any]], None] | None
+    documents: list[dict[str, Any]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.knowledge = Knowledge.empty(self.family)
+
+    def recall(self) -> None:
+        """Know what all robots of the memory know; an agent without some part knows what it has learnt itself."""
+        if self.agent == "full" and self.memory is not None:
+            self.knowledge = recalled(self.family, self.memory)
+
+    def live(self, number: int, seq: int, stop: Event) -> LivedTask:
+        """Live a task; the last tasks, of spare time, in a context of the agent's choice."""
+        family, abilities, context = self.family, AGENTS[self.agent], None
+        if not abilities.memory:
+            self.knowledge = Knowledge.empty(family)
+        if seq >= self.n_tasks:
+            context = context_to_practise(self.knowledge, stream(self.seed, "spare time", number))
+        drawn, task = checked_meeting(family, number, family.meet(number, abilities, context))
+        name = f"{self.robot}.{number}"
+        lived, records = live_task(self.knowledge, drawn, task, abilities, self.living, name, self.seed)
+        best = checked_best_return(family, number, family.best_return(number, context))
+        document = task_document(lived, family, best) | {"spare": context is not None}
+        if isinstance(family, ChangingFamily) and self.living.change:
+            document |= episodes_document(lived, family.episodes(number, self.living.n_episodes, context))
+        return LivedTask(
+            # An agent without some part stores its documents alone, so that it teaches no other agent.
+            records if self.agent == "full" else [],
+            document | {"domain": family.domain, "seed": self.seed},
+            document,
+            f"{lived.returns[0]:.1f} at first, best {best:.1f}{', a new type' if lived.alarm else ''}",
+        )
+
+    def finish(self, lived: LivedTask) -> None:
+        """Report a task."""
+        self.documents.append(lived.result)
+        if self.watch:
+            self.watch(lived.result)
 
 
 def recalled(family: TaskFamily, memory: Memory) -> Knowledge:

@@ -5,8 +5,11 @@ with the features that its effect may depend on; an *effect* is a category of wh
 causes is what the agent learns of each type. A *behaviour* acts best if the task is of one type.
 """
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
+from functools import cached_property
+from typing import Any, Protocol, TypeVar, cast, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +19,7 @@ from lifelore.core.protocols import Record
 from lifelore.domains.task_stream import DrawnTask
 
 Array = NDArray[np.float64]
+Value = TypeVar("Value")
 
 SAME_SCENE = 0.5
 """A usual `TaskFamily.constancy`: the same scene mostly answers alike."""
@@ -114,12 +118,12 @@ class SharedKnowledge:
 
 
 class AgentTask(Protocol):
-    """A task as the agent meets it; its type is hidden."""
+    """A task as the agent meets it; its type is hidden. A class that derives from it has the defaults."""
 
     @property
     def context(self) -> int:
-        """Code of the perceived features, for the prior over acts."""
-        ...
+        """Code of the perceived features, for the prior over acts. Default: 0."""
+        return 0
 
     def begin(self) -> None:
         """Begin an episode: look at the scene."""
@@ -141,16 +145,19 @@ class AgentTask(Protocol):
         ...
 
     def best_acts(self, laws: Array, shared: SharedKnowledge) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """Contexts of this task (n,) and their best acts (n, n_acts) under a type's laws (n_causes, n_effects)."""
-        ...
+        """Contexts of this task (n,) and their best acts (n, n_acts) under a type's laws (n_causes, n_effects).
+
+        Default: none, because which act is best depends on the type alone.
+        """
+        return np.zeros(0, np.int64), np.zeros((0, shared.acts.n_actions), np.bool_)
 
     def act(self, act: int) -> Step:
         """Act."""
         ...
 
     def describe(self) -> str:
-        """The perceived scene in a few words."""
-        ...
+        """The perceived scene in a few words, for explanations. Default: none."""
+        return ""
 
 
 @runtime_checkable
@@ -162,78 +169,97 @@ class ShowsRelations(AgentTask, Protocol):
         ...
 
 
-class TaskFamily(Protocol):
-    """Tasks of one kind, by number."""
+def _default(compute: Callable[[Any], Value]) -> Value:
+    """An attribute that is computed once, unless a subclass has an attribute or a property of this name."""
+    return cast(Value, cached_property(compute))
 
-    @property
-    def name(self) -> str:
-        """Name in memory."""
-        ...
 
-    @property
-    def acts(self) -> tuple[str, ...]:
-        """Names of the acts."""
-        ...
+class TaskFamily(ABC):
+    """Tasks of one kind, by number; a family of your own derives from it.
 
-    @property
-    def n_causes(self) -> int: ...
+    A family states its ``name``, ``acts``, ``n_causes`` and ``n_effects``, and has the methods `meet` and
+    `best_return`. All else has a default, which a family replaces by an attribute, a property or a method of that
+    name. `check_family` plays some tasks and names what is wrong.
 
-    @property
-    def n_effects(self) -> int: ...
+    Attributes
+    ----------
+    name : str
+        Name in memory.
+    acts : tuple of str
+        Names of the acts.
+    n_causes, n_effects : int
+        Causes are the integers in [0, n_causes), effects those in [0, n_effects).
+    """
 
-    @property
+    name: str
+    acts: tuple[str, ...]
+    n_causes: int
+    n_effects: int
+
+    @abstractmethod
+    def meet(self, number: int, abilities: Abilities, context: int | None = None) -> tuple[DrawnTask, AgentTask]:
+        """Task `number`, drawn and met; in a given context, if the agent chooses one in its spare time.
+
+        The same number is the same task again: a `TaskStream` draws so.
+        """
+
+    @abstractmethod
+    def best_return(self, number: int, context: int | None = None) -> float:
+        """The best possible return of task `number`, for scoring; the agent never asks."""
+
+    @_default
+    def domain(self) -> str:
+        """Name of the family in reports: by default its `name`."""
+        return self.name
+
+    @_default
     def possible(self) -> Array:
-        """(n_causes, n_effects) P(effect | cause) before anything was seen; rows sum to 1."""
-        ...
+        """(n_causes, n_effects) P(effect | cause) before anything was seen; rows sum to 1. Default: all alike."""
+        return np.full((self.n_causes, self.n_effects), 1 / self.n_effects)
 
-    @property
+    @_default
     def groups(self) -> NDArray[np.int64]:
-        """(n_causes,) causes of one group are alike: what is known of the group stands in for an untried cause."""
-        ...
+        """(n_causes,) causes of one group are alike: what is known of the group stands in for an untried cause.
 
-    @property
+        Default: no cause is like another.
+        """
+        return np.arange(self.n_causes)
+
+    @_default
     def kinds(self) -> NDArray[np.int64]:
-        """(n_causes,) types differ about as much in all causes of a kind; how much is learnt."""
-        ...
+        """(n_causes,) types differ about as much in all causes of a kind; how much is learnt. Default: one."""
+        return np.zeros(self.n_causes, np.int64)
 
-    @property
+    @_default
     def judges(self) -> NDArray[np.bool_]:
-        """(n_causes,) whether a cause tells types apart; the others serve plans alone."""
-        ...
+        """(n_causes,) whether a cause tells types apart; the others serve plans alone. Default: all do."""
+        return np.ones(self.n_causes, np.bool_)
 
-    @property
+    @_default
     def constancy(self) -> Array:
         """(n_causes,) weight of a type's law beside observations of the present task, in observations.
 
         Little where the same task answers the same cause alike, much where a cause is met in several forms.
+        Default: 0.5, the same scene mostly answers alike.
         """
-        ...
-
-    def meet(self, number: int, abilities: Abilities, context: int | None = None) -> tuple[DrawnTask, AgentTask]:
-        """Task `number`, drawn and met; in a given context, if the agent chooses one in its spare time."""
-        ...
-
-    def best_return(self, number: int, context: int | None = None) -> float:
-        """The best possible return of task `number`, for scoring; the agent never asks."""
-        ...
+        return np.full(self.n_causes, SAME_SCENE)
 
     def smoothed(self, counts: Array) -> Array:
-        """Counts (n, n_causes, n_effects) shared among similar effects; unchanged where no effects are similar."""
-        ...
+        """Counts (n, n_causes, n_effects) shared among similar effects. Default: no effects are similar."""
+        return counts
 
     def cause_name(self, cause: int) -> str:
-        """A cause in words."""
-        ...
+        """A cause in words. Default: the act of this number, if there are as many causes as acts."""
+        return self.acts[cause] if self.n_causes == len(self.acts) else f"cause {cause}"
 
     def effect_name(self, cause: int, effect: int) -> str:
-        """An effect in words."""
-        ...
+        """An effect in words. Default: its number."""
+        return f"effect {effect}"
 
 
-@runtime_checkable
-class ChangingFamily(TaskFamily, Protocol):
+class ChangingFamily(TaskFamily):
     """Tasks whose type may change between episodes."""
 
+    @abstractmethod
     def episodes(self, number: int, n_episodes: int, context: int | None = None) -> list[tuple[str, float]]:
         """Hidden type and best possible return of each episode, for scoring; the agent never asks."""
-        ...

@@ -23,6 +23,8 @@ from lifelore.core.usable_cores import usable_cores
 
 CHUNK = 1_000_000
 """Steps between two checks for Ctrl-C and for `watch`: well under 0.2 s."""
+DEFAULT_CAP = 1000
+"""Episodes of a task, and steps of an episode, where `QLearning` does not give them."""
 
 
 @dataclass(frozen=True)
@@ -31,12 +33,23 @@ class QLearning:
 
     Parameters
     ----------
-    episodes, max_steps : int
-        Episodes of a task, and steps of an episode at most; ≥ 1.
+    episodes : int, optional
+        Maximum number of episodes of a task, from 1 to 10⁸; 1,000, or 100 or more where the learner plans.
+    max_steps : int, optional
+        Maximum number of steps of an episode, from 1 to 10⁹; 1,000, in a life in a building 2,000.
     learning_rate : float
-        α in [0, 1], constant.
-    epsilon, epsilon_decay, epsilon_floor : float
-        ε = max(floor, epsilon · decay^episode), all in [0, 1].
+        Learning rate α of Q-learning, in [0, 1].
+    epsilon : float
+        Exploration rate ε of the first episode of Q-learning, in [0, 1].
+    epsilon_decay : float
+        Factor of ε after each episode, in [0, 1].
+    epsilon_floor : float
+        Least exploration rate ε, in [0, 1].
+
+    Raises
+    ------
+    InputError
+        A setting is out of its range.
 
     Examples
     --------
@@ -49,28 +62,38 @@ class QLearning:
     True
     """
 
-    episodes: int = 1000
-    max_steps: int = 1000
+    episodes: int | None = None
+    max_steps: int | None = None
     learning_rate: float = 0.5
     epsilon: float = 1.0
     epsilon_decay: float = 0.98
     epsilon_floor: float = 0.01
 
     def __post_init__(self) -> None:
-        for name in ("episodes", "max_steps"):
-            if getattr(self, name) < 1:
-                raise InputError(f"{name} must be at least 1, got {getattr(self, name)}")
+        for name, value, most in (("episodes", self.episodes, 10**8), ("max_steps", self.max_steps, 10**9)):
+            if value is not None and not (isinstance(value, int | np.integer) and 1 <= value <= most):
+                raise InputError(f"{name} must be a whole number from 1 to {most:,}, got {value}")
         for name in ("learning_rate", "epsilon", "epsilon_decay", "epsilon_floor"):
             if not 0 <= getattr(self, name) <= 1:
                 raise InputError(f"{name} must lie in [0, 1], got {getattr(self, name)}")
 
+    @property
+    def episode_cap(self) -> int:
+        """``episodes``; 1,000 where they are not given."""
+        return DEFAULT_CAP if self.episodes is None else self.episodes
+
+    @property
+    def step_cap(self) -> int:
+        """``max_steps``; 1,000 where they are not given."""
+        return DEFAULT_CAP if self.max_steps is None else self.max_steps
+
     def schedule(self, discount: float) -> Schedule:
         """ε and α of each episode, as the kernel takes them."""
-        decayed = self.epsilon * self.epsilon_decay ** np.arange(self.episodes)
+        decayed = self.epsilon * self.epsilon_decay ** np.arange(self.episode_cap)
         return Schedule(
             np.maximum(self.epsilon_floor, decayed),
-            np.full(self.episodes, float(self.learning_rate)),
-            self.max_steps,
+            np.full(self.episode_cap, float(self.learning_rate)),
+            self.step_cap,
             float(discount),
         )
 
@@ -104,7 +127,7 @@ class QLearning:
         """
         rows = rows or uniform_rows(tables)
         learner = new_learner(int(rows.q_row.max()) + 1, tables.n_actions, world, own)
-        curve, schedule = new_curve(self.episodes), self.schedule(discount)
+        curve, schedule = new_curve(self.episode_cap), self.schedule(discount)
         while learn(tables, rows, schedule, learner, curve, CHUNK):
             if watch and watch(learner, curve):
                 break
@@ -160,12 +183,12 @@ class QLearning:
         chunk = chunk if watch else min(chunk, CHUNK)
         rows, schedule = rows or uniform_rows(tables), self.schedule(discount)
         learners = new_learners(int(rows.q_row.max()) + 1, tables.n_actions, worlds, owns)
-        curves = new_curve((n, self.episodes))
+        curves = new_curve((n, self.episode_cap))
         # Small enough that threads finish together and Ctrl-C is noticed soon.
-        batch = max(1, min(-(-n // (4 * threads)), CHUNK // min(chunk, self.episodes * self.max_steps)))
+        batch = max(1, min(-(-n // (4 * threads)), CHUNK // min(chunk, self.episode_cap * self.step_cap)))
         pool = ThreadPoolExecutor(threads)
         try:
-            while (learners.cursor[:, EPISODE] < self.episodes).any():
+            while (learners.cursor[:, EPISODE] < self.episode_cap).any():
                 futures = [
                     pool.submit(learn_each, tables, rows, schedule, learners, curves, chunk, i, min(i + batch, n))
                     for i in range(0, n, batch)

@@ -126,7 +126,7 @@ def test_a_name_decides(home):
     # Now two buildings fit the third map, and only a name can tell which it is.
     third = turned(OFFICE, 4.0)
     refused = life_on(home, third, "third").report["building"]
-    assert "fit equally; choose with --building" in refused["reason"]
+    assert "fit equally; name the building" in refused["reason"]
     named = life_on(home, turned(OFFICE, 5.0), "fourth", building="first floor").report["building"]
     assert (named["name"], named["recognised"]) == ("first floor", True)
 

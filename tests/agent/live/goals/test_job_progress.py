@@ -73,7 +73,7 @@ def test_a_killed_list_goes_on_and_lives_the_same_tasks_as_an_unbroken_one(folde
     assert names(rest) == NAMES[2:]
     assert lines == [
         "job list: 2 of 4 jobs were finished in an earlier run; this run goes on with job 3, "
-        "--again starts with the first"
+        "--set again=true starts with the first"
     ]
     whole = life("other.db")
     assert names(whole) == NAMES

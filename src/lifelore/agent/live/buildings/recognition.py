@@ -201,7 +201,7 @@ def _registered(
     if second is not None and best.match - second.match < LEAST_MARGIN:
         return _refused(name, f"two poses fit {building.name} equally")
     if len(fits) > 1 and best.match - fits[1][0].match < LEAST_MARGIN:
-        return _refused(name, f"{building.name} and {fits[1][1].name} fit equally; choose with --building")
+        return _refused(name, f"{building.name} and {fits[1][1].name} fit equally; name the building")
     pose = IDENTITY if _near_identity(best.pose) else best.pose
     return _Recognised(building, pose, best.match), None
 

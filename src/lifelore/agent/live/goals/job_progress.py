@@ -60,5 +60,5 @@ class JobProgress:
         """A line for the user of a list that goes on."""
         return (
             f"job list: {self.finished} of {self.n_jobs} jobs were finished in an earlier run; this run goes on "
-            f"with job {self.finished + 1}, --again starts with the first"
+            f"with job {self.finished + 1}, --set again=true starts with the first"
         )

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse import csgraph
 
-from lifelore.agent.long_lived.task_family import SAME_SCENE, Abilities, Plan, SharedKnowledge, Step
+from lifelore.agent.long_lived.task_family import Abilities, AgentTask, Plan, SharedKnowledge, Step, TaskFamily
 from lifelore.domains.buildings import building_days as days
 from lifelore.domains.buildings.building_days import BuildingDays, BuildingWay
 from lifelore.domains.task_stream import DrawnTask
@@ -41,7 +41,7 @@ MOST_BEHAVIOURS = 257
 
 
 @dataclass(eq=False)
-class BuildingFamily:
+class BuildingFamily(TaskFamily):
     """Ways through one building.
 
     Parameters
@@ -70,7 +70,6 @@ class BuildingFamily:
         self.groups = np.concatenate([self.region_of, np.full(n_regions, n_regions)])
         self.judges = np.arange(self.n_causes) >= self.n_cells
         self.kinds = self.judges.astype(np.int64)
-        self.constancy = np.full(self.n_causes, SAME_SCENE)
         start, move = np.nonzero(world.neighbour >= 0)
         end, shape = world.neighbour[start, move], (self.n_cells, self.n_cells)
         self.entries = sparse.csr_matrix((np.ones(len(end)), (end, start)), shape=shape)
@@ -108,7 +107,7 @@ class BuildingFamily:
         return EFFECTS[effect]
 
 
-class WayTask:
+class WayTask(AgentTask):
     """A way as the agent meets it.
 
     Parameters
@@ -117,8 +116,6 @@ class WayTask:
     way : BuildingWay
         Of its day nothing is read.
     """
-
-    context = 0
 
     def __init__(self, family: BuildingFamily, way: BuildingWay) -> None:
         self.family, self.way = family, way
@@ -191,7 +188,3 @@ class WayTask:
             cell = int(following[cell])
             way.append(cell)
         return way
-
-    def best_acts(self, laws: Array, shared: SharedKnowledge) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """None: an act names a behaviour, which no other task has."""
-        return np.zeros(0, np.int64), np.zeros((0, MOST_BEHAVIOURS), np.bool_)

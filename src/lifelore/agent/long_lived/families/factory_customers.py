@@ -21,7 +21,7 @@ from lifelore.agent.long_lived.families.order_planning import (
     OrderTable,
     set_weights,
 )
-from lifelore.agent.long_lived.task_family import SAME_SCENE, Abilities, Plan, SharedKnowledge, Step
+from lifelore.agent.long_lived.task_family import Abilities, AgentTask, ChangingFamily, Plan, SharedKnowledge, Step
 from lifelore.domains.factory.customer_orders import CustomerOrder, FactoryCustomers
 from lifelore.domains.factory.factory import ASSEMBLE, ASSEMBLED, N_COMPONENTS, PROCURE, PROCURED, RAW
 from lifelore.domains.task_stream import DrawnTask, TaskStream
@@ -36,7 +36,7 @@ MOST_TABLES = 32
 
 
 @dataclass(frozen=True)
-class FactoryFamily:
+class FactoryFamily(ChangingFamily):
     """Orders of factory customers; rewards are discounted, so that those of an episode add up to its return.
 
     Parameters
@@ -60,11 +60,7 @@ class FactoryFamily:
     acts = ACTS
     n_causes = len(ACTS)
     n_effects = len(EFFECTS)
-    possible = np.full((len(ACTS), len(EFFECTS)), 1 / len(EFFECTS))
     groups = np.arange(len(ACTS)) // N_COMPONENTS
-    kinds = np.zeros(len(ACTS), np.int64)
-    judges = np.ones(len(ACTS), np.bool_)
-    constancy = np.full(len(ACTS), SAME_SCENE)
 
     def order(self, number: int, context: int | None = None, episode: int = 0) -> tuple[DrawnTask, CustomerOrder]:
         """Order `number` in an episode, drawn and as the world has it."""
@@ -103,20 +99,12 @@ class FactoryFamily:
             found.append((drawn.hidden_type, best[drawn.hidden_type]))
         return found
 
-    def smoothed(self, counts: Array) -> Array:
-        """The counts: being paid and being refused are not similar."""
-        return counts
-
-    def cause_name(self, cause: int) -> str:
-        """A cause in words."""
-        return ACTS[cause]
-
     def effect_name(self, cause: int, effect: int) -> str:
         """An effect in words."""
         return EFFECTS[effect]
 
 
-class OrderTask:
+class OrderTask(AgentTask):
     """An order as the agent meets it.
 
     Parameters
@@ -128,8 +116,6 @@ class OrderTask:
     in_episode : callable, optional
         The order in an episode, by its number, where the customer may change between episodes.
     """
-
-    context = 0
 
     def __init__(
         self, order: CustomerOrder, table: OrderTable, in_episode: Callable[[int], CustomerOrder] | None = None
@@ -228,7 +214,3 @@ class OrderTask:
             found[number] = self.table.returns(now, planned[best : best + 1], order[None], sets)[0]
             acts[number] = self.table.act(now, planned[best], order)
         return Plan(self._discount * weights @ found.T, acts, acts)
-
-    def best_acts(self, laws: Array, shared: SharedKnowledge) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """None: which components are wanted depends on the type, not on the scene."""
-        return np.zeros(0, np.int64), np.zeros((0, len(ACTS)), np.bool_)

@@ -23,7 +23,7 @@ from lifelore.agent.long_lived.families.tray_states import (
     WITH_SPILL,
 )
 from lifelore.agent.long_lived.families.tray_states import cause_name as situated_cause_name
-from lifelore.agent.long_lived.task_family import Abilities
+from lifelore.agent.long_lived.task_family import Abilities, TaskFamily
 from lifelore.domains.tabletop.settings import TabletopSettings
 from lifelore.domains.tabletop_job.best_return import OutcomeTree
 from lifelore.domains.tabletop_job.job_replay import JobReplay
@@ -42,10 +42,30 @@ Features do not tell all of an object: one result says little of the next object
 """
 UNLIKELY = 0.02
 """Weight of a reward of the wrong sign before any was seen: a spill can cost more than the target pays."""
+N_CAUSES = N_SITUATED + len(PAYMENTS)
+
+
+def _groups() -> NDArray[np.int64]:
+    """Picks of one class of load; pushes of loaded objects and of others; every other cause alone."""
+    found = np.arange(N_CAUSES)
+    found[:N_PICKS] -= found[:N_PICKS] % len(ROOM_NAMES)
+    found[N_PICKS : N_PICKS + N_PUSHES] = N_PICKS + np.arange(N_PUSHES) % 2
+    return found
+
+
+def _possible() -> Array:
+    """At first all results are equally likely; handing over the target pays, all else costs."""
+    found = np.zeros((N_CAUSES, N_BINS))
+    found[:N_SITUATED, :N_RESULTS] = 1 / N_RESULTS
+    target = (HANDED, HANDED + 1, HANDED + WITH_SPILL, HANDED + 1 + WITH_SPILL)
+    pays = np.isin(np.arange(len(PAYMENTS)), target)
+    likely = np.where((BIN_MIDDLES > 0) == pays[:, None], 1.0, UNLIKELY)
+    found[N_SITUATED:] = likely / likely.sum(axis=1, keepdims=True)
+    return found
 
 
 @dataclass(frozen=True)
-class TabletopFamily:
+class TabletopFamily(TaskFamily):
     """Tabletop jobs.
 
     Parameters
@@ -69,39 +89,15 @@ class TabletopFamily:
     tray_numbers: tuple[int, ...] | None = None
 
     name = "tabletop jobs"
+    domain = "tabletop"
     acts = ACTS
-    n_causes = N_SITUATED + len(PAYMENTS)
+    n_causes = N_CAUSES
     n_effects = N_BINS
-    judges = np.ones(n_causes, np.bool_)
-
-    @property
-    def groups(self) -> NDArray[np.int64]:
-        """Picks of one class of load; pushes of loaded objects and of others; every other cause alone."""
-        found = np.arange(self.n_causes)
-        found[:N_PICKS] -= found[:N_PICKS] % len(ROOM_NAMES)
-        found[N_PICKS : N_PICKS + N_PUSHES] = N_PICKS + np.arange(N_PUSHES) % 2
-        return found
-
-    @property
-    def kinds(self) -> NDArray[np.int64]:
-        """What picks and pushes result in; putting aside and handing over; rewards."""
-        return np.repeat([0, 1, 2], [N_PICKS + N_PUSHES, N_SITUATED - N_PICKS - N_PUSHES, len(PAYMENTS)])
-
-    @property
-    def possible(self) -> Array:
-        """At first all results are equally likely; handing over the target pays, all else costs."""
-        found = np.zeros((self.n_causes, self.n_effects))
-        found[:N_SITUATED, :N_RESULTS] = 1 / N_RESULTS
-        target = (HANDED, HANDED + 1, HANDED + WITH_SPILL, HANDED + 1 + WITH_SPILL)
-        pays = np.isin(np.arange(len(PAYMENTS)), target)
-        likely = np.where((BIN_MIDDLES > 0) == pays[:, None], 1.0, UNLIKELY)
-        found[N_SITUATED:] = likely / likely.sum(axis=1, keepdims=True)
-        return found
-
-    @property
-    def constancy(self) -> Array:
-        """See `TaskFamily`."""
-        return np.where(np.arange(self.n_causes) < N_SITUATED, FEATURES_TELL, POINTS_TELL)
+    groups = _groups()
+    # What picks and pushes result in; putting aside and handing over; rewards.
+    kinds = np.repeat([0, 1, 2], [N_PICKS + N_PUSHES, N_SITUATED - N_PICKS - N_PUSHES, len(PAYMENTS)])
+    possible = _possible()
+    constancy = np.repeat([FEATURES_TELL, POINTS_TELL], [N_SITUATED, len(PAYMENTS)])
 
     def smoothed(self, counts: Array) -> Array:
         """A reward counts for its own bin and, half, for the two beside it: seconds differ from tray to tray."""
