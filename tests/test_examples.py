@@ -36,9 +36,15 @@ def known_types_do_better(lines: list[str]) -> bool:
     return full < 1 < scratch - 2
 
 
+def lakes_are_told_apart(lines: list[str]) -> bool:
+    full, textbook = (numbers(line) for line in lines[-2:])
+    return full[0] > textbook[0] + 0.3 and full[1] > textbook[1] + 0.2
+
+
 HOLDS = {
     "cloud_to_relations": lambda lines: {"on(3, 2)", "adjacent(2, 4)", "on(2, 1)", "on(4, 1)"} == set(lines),
     "courier_in_an_office": lore_needs_fewer_steps,
+    "long_lived_agent": lakes_are_told_apart,
     "minigrid_partial_view": lambda lines: numbers(lines[0])[0] > 0.1,
     "many_users": choosing_for_each_user_pays,
     "one_user": lambda lines: len(lines) == 4 and "'bold': 0.99" in lines[-1],

@@ -13,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-ROOMS, USER = re.findall(r"```python\n(.*?)```", README, flags=re.S)
+ROOMS, CLIFF, USER = re.findall(r"```python\n(.*?)```", README, flags=re.S)
 
 
 def run(code: str, folder: Path) -> str:
@@ -32,6 +32,15 @@ def test_an_own_gymnasium_world(tmp_path):
     jumpstart = json.loads(run(shorter, tmp_path).replace("'", '"').replace("None", "null"))
     assert jumpstart["n"] == 1
     assert (tmp_path / "rooms.db").is_file()
+
+
+@pytest.mark.slow
+def test_tasks_with_hidden_types(tmp_path):
+    assert len(CLIFF.splitlines()) <= 10
+    text = run(CLIFF, tmp_path)
+    taken = re.findall(r"^taken for (.*)$", text, flags=re.M)
+    assert taken == ["robot.0, a new type", "robot.1, a new type", "robot.0", "robot.1"]
+    assert (tmp_path / "cliff.db").is_file()
 
 
 @pytest.mark.slow
