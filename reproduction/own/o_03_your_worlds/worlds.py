@@ -4,7 +4,8 @@ The contexts were written down once, from the meaning of each world, and not tun
 and in Taxi the direction of the next stop.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import gymnasium
@@ -26,7 +27,7 @@ class YourWorld(NamedTuple):
     make: Callable[[int], GymnasiumWorld]
     episodes: int
     max_steps: int
-    different: dict[str, float] = {}
+    different: Mapping[str, float] = MappingProxyType({})
 
 
 def _drawn(env: Callable[[int], gymnasium.Env], life: int, **settings: Any) -> GymnasiumWorld:
@@ -54,7 +55,9 @@ WORLDS = {
     "Taxi": YourWorld(_taxi, 150, 200),
     "CliffWalking": YourWorld(lambda n: _drawn(cliff, n, **_PARTS), 150, 200),
     "FrozenLake": YourWorld(lambda n: _drawn(lambda t: lake(t, 6, False), n, **_PARTS), 300, 100),
-    "FrozenLake, slippery": YourWorld(lambda n: _drawn(lambda t: lake(t, 4, True), n, **_PARTS), 300, 100, _SLOWLY),
+    "FrozenLake, slippery": YourWorld(
+        lambda n: _drawn(lambda t: lake(t, 4, True), n, **_PARTS), 300, 100, _SLOWLY
+    ),
     "FrozenLake 6 × 6, slippery": YourWorld(
         lambda n: _drawn(lambda t: lake(t, 6, True), n, **_PARTS), 300, 200, _SLOWLY
     ),
