@@ -4,9 +4,9 @@ from collections.abc import Collection, Sequence
 
 from lifelore.agent.live.summary import third
 
-LEAST_TASKS = 3
+LEAST_TASKS = 4
 """Tasks below which new contexts say nothing: each first task has new ones."""
-MOSTLY_NEW = 0.9
+MOSTLY_NEW = 0.95
 """Share of the states of the last tasks whose context no earlier task has, from which a prior cannot help."""
 
 
