@@ -37,7 +37,8 @@ HOLDS = {
     "minigrid_partial_view": lambda lines: numbers(lines[0])[0] > 0.1,
     "many_users": choosing_for_each_user_pays,
     "one_user": lambda lines: len(lines) == 4 and "'bold': 0.99" in lines[-1],
-    "own_gymnasium_world": lambda lines: numbers(lines[0])[0] > 0,
+    "own_agent_beside": lambda lines: numbers(lines[0])[0] > numbers(lines[0])[2],
+    "own_gymnasium_world": lambda lines: [numbers(line)[0] > 0 for line in lines] == [True] * 2,
     "prior_guides_learning": the_prior_starts_better,
 }
 

@@ -315,7 +315,7 @@ class ActionPrior:
         Parameters
         ----------
         labels : mapping, optional
-            Context code to a readable label, such as the features behind it; default: the prior's own `labels`.
+            Context code to a readable label, such as the features behind it; default: the prior's own labels.
 
         Returns
         -------
