@@ -22,7 +22,7 @@ def test_new_contexts_by_hand():
     for codes in ([1, 3], [2, 3, 4, 5], [4, 4], [6]):
         novelty.end_task(codes)
     assert novelty.shares == [0.5, 0.5, 0.0, 1.0]
-    assert novelty.late == 1.0  # the last third of four tasks is one task
+    assert novelty.late == 0.5  # of the last two tasks
     early = ContextNovelty([])
     for codes in ([1], [2], [3]):
         early.end_task(codes)

@@ -2,8 +2,6 @@
 
 from collections.abc import Collection, Sequence
 
-from lifelore.agent.live.summary import third
-
 LEAST_TASKS = 4
 """Tasks below which new contexts say nothing: each first task has new ones."""
 MOSTLY_NEW = 0.95
@@ -25,8 +23,8 @@ class ContextNovelty:
 
     @property
     def late(self) -> float:
-        """Mean share of the last third of the tasks; 0 for fewer than `LEAST_TASKS` tasks."""
-        late = third(self.shares, "last") if len(self.shares) >= LEAST_TASKS else []
+        """Mean share of the second half of the tasks; 0 for fewer than `LEAST_TASKS` tasks."""
+        late = self.shares[len(self.shares) // 2 :] if len(self.shares) >= LEAST_TASKS else []
         return sum(late) / len(late) if late else 0.0
 
 

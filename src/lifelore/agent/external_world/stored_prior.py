@@ -50,8 +50,8 @@ def prior_from_memory(
     Returns
     -------
     ActionPrior
-        Its ``labels`` are the features of the contexts, so that ``to_frame()`` and `plot_prior` show these. Memories
-        of older lives hold none; tables then show the codes.
+        Its ``labels`` are the features of the contexts, so that ``to_frame()`` and `plot_prior` show these.
+        Memories of older lives hold none; tables then show the codes.
 
     Raises
     ------

@@ -14,7 +14,7 @@ def plain(estimate: Estimate) -> dict:
     return {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in data.items()}
 
 
-def third(tasks: list, which: str) -> list:
+def third(tasks: list[dict], which: str) -> list[dict]:
     """The first or last third of the tasks, at least one."""
     size = max(1, len(tasks) // 3)
     return tasks[:size] if which == "first" else tasks[-size:]
