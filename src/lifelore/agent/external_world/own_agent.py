@@ -9,7 +9,7 @@ from lifelore.agent.live.task_result import Stopped
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import World
 
-OwnAgent = Callable[[World, int, Sequence[int], int], Any]
+OwnAgent = Callable[[World, int, list[int], int], Any]
 """``agent(world, task, seeds, max_steps)``: live one task, an episode a seed. What it returns is not used."""
 
 
