@@ -81,6 +81,11 @@ def test_textbook_is_q_learning_with_a_constant_epsilon():
         (lambda world, task, seeds, max_steps: world.reset(task, -1), r"got reset\(0, -1\)"),
         (lambda world, task, seeds, max_steps: world.reset(task + 1, seeds[0]), r"got reset\(1, "),
         (lambda world, task, seeds, max_steps: world.step(1), "must end an episode"),
+        (lambda world, task, seeds, max_steps: world.reset(task, seeds[0]), "got an end 9 steps before"),
+        (
+            lambda world, task, seeds, max_steps: [world.reset(task, seed) for seed in seeds],
+            "must live each episode until it is terminated, truncated or 9 steps long",
+        ),
         (
             lambda world, task, seeds, max_steps: [rightwards(world, task, seeds, max_steps), world.step(1)],
             "must end an episode when it is terminated, truncated or 9 steps long",

@@ -39,6 +39,7 @@ class WatchedWorld:
 
     def reset(self, task: int, seed: int) -> Hashable:
         """Start the next episode; task and seed must be those that the agent was given, in their order."""
+        self.check_ended()
         number = len(self.returns)
         due = self.seeds[number] if number < len(self.seeds) else None
         if task != self.task or seed != due:
@@ -50,6 +51,14 @@ class WatchedWorld:
         self.returns.append(0.0)
         self._steps_left, self._factor = self.max_steps, 1.0
         return self.world.reset(task, seed)
+
+    def check_ended(self) -> None:
+        """InputError if an episode is in progress: one that is given up would escape its costs."""
+        if self._steps_left:
+            raise InputError(
+                f"agent '{self.name}' must live each episode until it is terminated, truncated or {self.max_steps} "
+                f"steps long, got an end {self._steps_left} steps before; step on"
+            )
 
     def step(self, action: int) -> tuple[Hashable, float, bool, bool]:
         """Take an action; the reward counts for the return of the episode."""
@@ -86,6 +95,7 @@ def live_own(agent: OwnAgent, watched: WatchedWorld) -> list[float]:
         The agent did not live all episodes, or broke their order or their length.
     """
     agent(watched, watched.task, list(watched.seeds), watched.max_steps)
+    watched.check_ended()
     if len(watched.returns) != len(watched.seeds):
         raise InputError(
             f"agent '{watched.name}' must live {len(watched.seeds)} episodes, one a seed, got "
