@@ -56,8 +56,8 @@ class WatchedWorld:
         """InputError if an episode is in progress: one that is given up would escape its costs."""
         if self._steps_left:
             raise InputError(
-                f"agent '{self.name}' must live each episode until it is terminated, truncated or {self.max_steps} "
-                f"steps long, got an end {self._steps_left} steps before; step on"
+                f"agent '{self.name}' must live each episode until it is terminated, truncated or "
+                f"{self.max_steps} steps long, got an end {self._steps_left} steps before; step on"
             )
 
     def step(self, action: int) -> tuple[Hashable, float, bool, bool]:
