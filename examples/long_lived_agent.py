@@ -1,8 +1,8 @@
 """An agent lives through tasks on three lakes that look alike, and learns to tell them apart.
 
-For reinforcement-learning researchers. Which lake a task is on stays hidden: the agent sees the weekday, and what
-its moves do. It expects the lake that the day usually has, runs the policy that it knows for it, notices a new lake
-by an alarm, and learns a policy for it then.
+For reinforcement-learning researchers. Which lake a task is on stays hidden: the agent sees the day, and what its
+moves do. It expects the lake that the day usually has, runs the policy that it knows for it, notices a new lake,
+and learns a policy for it then.
 """
 
 import gymnasium as gym

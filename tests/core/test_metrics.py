@@ -70,8 +70,15 @@ def test_ratio_by_hand():
 
 def test_nothing_to_estimate_an_interval_from():
     assert mean_estimate([1.0, 2.0]).ci95 is None
-    assert mean_estimate([2.0] * 9).ci95 is None
+    assert mean_estimate([2.0] * 2).ci95 is None
+    assert difference_estimate([3.0] * 2, [1.0] * 2).ci95 is None
     assert mean_estimate([2.0]).to_dict() == {"value": 2.0, "median": 2.0, "ci95": None, "n": 1}
+
+
+def test_no_spread_is_two_equal_ends():
+    assert mean_estimate([2.0] * 9).ci95 == (2.0, 2.0)
+    assert difference_estimate([3.0, 5.0, 7.0], [1.0, 3.0, 5.0]).to_dict()["ci95"] == [2.0, 2.0]
+    assert ratio_estimate([6.0] * 3, [4.0] * 3).ci95 == (1.5, 1.5)
 
 
 @settings(max_examples=50, deadline=None)
@@ -147,6 +154,6 @@ def test_tasks_that_differ_do_not_widen_the_interval():
 
 def test_an_interquartile_interval_needs_three_runs_and_spread():
     assert interquartile_mean_estimate([[1.0, 2.0], [3.0, 4.0]]).ci95 is None
-    assert interquartile_mean_estimate([[1.0, 2.0]] * 5).ci95 is None
+    assert interquartile_mean_estimate([[1.0, 2.0]] * 5).ci95 == (1.5, 1.5)
     with pytest.raises(InputError, match="values must be at least one number"):
         interquartile_mean_estimate([[np.nan]])

@@ -158,7 +158,7 @@ def share_over_scenes(
     if not n:
         return UNMEASURED
     found = ratio_estimate(right, asked)
-    interval = found.ci95 if 0 < n_right < n else None
+    interval = found.ci95 if found.ci95 and found.ci95[0] < found.ci95[1] else None
     return Estimate(found.value, found.median, interval or (interval_where_all_agree or wilson)(n_right, n), n)
 
 

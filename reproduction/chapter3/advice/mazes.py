@@ -175,9 +175,5 @@ def walks_of(
 
 
 def maze_estimate(values: ArrayLike) -> Estimate:
-    """Mean over mazes; the interval of three or more equal values is the value itself."""
-    values = np.round(np.asarray(values, float), ROUNDING)
-    found = mean_estimate(values)
-    if found.ci95 is None and len(values) >= 3:
-        found = replace(found, ci95=(found.value, found.value))
-    return found
+    """Mean over mazes."""
+    return mean_estimate(np.round(np.asarray(values, float), ROUNDING))

@@ -8,7 +8,6 @@ outcomes, which nothing renormalises. Kinds of worlds are the readings. Thesis: 
 """
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -199,9 +198,8 @@ def _costs(results: Sequence[Mapping], schedule: int) -> dict[str, Estimate]:
 
 
 def worst(ratios: Iterable[Estimate]) -> Estimate:
-    """The ratio whose interval reaches highest; one that is the same in every run is its own interval."""
-    whole = [replace(r, ci95=(r.value, r.value)) if r.ci95 is None and r.n >= 3 else r for r in ratios]
-    return max(whole, key=lambda r: r.ci95[1] if r.ci95 else r.value)
+    """The ratio whose interval reaches highest."""
+    return max(ratios, key=lambda r: r.ci95[1] if r.ci95 else r.value)
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:

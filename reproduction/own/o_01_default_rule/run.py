@@ -6,7 +6,6 @@ with models that are known to be uncertain. All meet the same tasks, luck and li
 """
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import product
 from typing import Any
 
@@ -163,6 +162,4 @@ def _largest_excess(results: Sequence[Mapping], rule: str, kind: str = "rules") 
     shares = {name: own.mean(axis=1) for name, own in stuck.items()}
     world = int((shares[rule] - np.min(list(shares.values()), axis=0)).argmax())
     least = min(shares, key=lambda name: shares[name][world])
-    found = difference_estimate(stuck[rule][world], stuck[least][world])
-    certain = found.ci95 is None and len(stuck[rule][world]) >= 3  # the same in every group
-    return replace(found, ci95=(found.value, found.value)) if certain else found
+    return difference_estimate(stuck[rule][world], stuck[least][world])

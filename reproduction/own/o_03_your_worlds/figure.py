@@ -1,29 +1,41 @@
-"""Mean return of an episode by world, with and without the prior, under two schedules of ε: a dot a life."""
+"""Gains over the textbook learner by world, over whole tasks and their last tenth, with 95 % intervals."""
 
 from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.style import BLUE, GREY, LIGHT, Figure, house_style, new_figure
-from reproduction.own.o_03_your_worlds.run import EPSILONS
+from lifelore.core.metrics import Estimate
+from lifelore.figures.style import BLUE, GREY, INK, Figure, house_style, new_figure
+from reproduction.own.o_03_your_worlds.run import numbers
 
-COLOURS = {"all_lore": BLUE, "all_scratch": GREY}
+SHOWN = {"all_over_textbook": ("over all episodes", BLUE), "last_over_textbook": ("in the last tenth", GREY)}
 
 
 @house_style()
 def draw(result: Mapping) -> Figure:
-    """A panel a world, as their returns have different scales; blue: with the prior, a line at each mean."""
+    """A row a world; gains in units of the deviation of the gain of a life, as returns have different scales."""
     worlds = result["settings"]["worlds"]
-    figure = new_figure(1.8 * len(worlds) + 0.6, 2.7)
-    for axes, world in zip(np.ravel(figure.subplots(1, len(worlds))), worlds, strict=True):
-        for column, epsilon in enumerate(EPSILONS):
-            for shift, (name, colour) in zip((-0.2, 0.2), COLOURS.items(), strict=True):
-                own = [r[name] for r in result["rows"] if (r["world"], r["epsilon"]) == (world, epsilon)]
-                axes.plot([column + shift] * len(own), own, "o", color=colour, alpha=0.5, ms=5, mew=0)
-                axes.plot([column + shift - 0.15, column + shift + 0.15], [np.mean(own)] * 2, color=colour, lw=2)
-        axes.set_xticks(range(len(EPSILONS)), [f"ε = {name}" for name in EPSILONS], fontsize=7)
-        axes.set_title(world, fontsize=8)
-        axes.grid(axis="y", color=LIGHT)
-    figure.axes[0].set_ylabel("mean discounted return")
-    figure.suptitle("blue: with the prior of earlier tasks; grey: without", fontsize=9, x=0.01, ha="left")
+    figure = new_figure(6.4, 0.34 * len(worlds) + 1.1)
+    axes = figure.subplots()
+    for place, world in enumerate(worlds):
+        found = numbers(result["rows"], world)
+        for shift, (name, (_, colour)) in zip((-0.14, 0.14), SHOWN.items(), strict=True):
+            value, low, high = _scaled(result, world, name, found[name])
+            axes.plot([low, high], [place + shift] * 2, color=colour, lw=2)
+            axes.plot([value], [place + shift], "o", color=colour, ms=4)
+    for text, colour in SHOWN.values():
+        axes.plot([], [], "o-", color=colour, label=text)
+    axes.axvline(0, color=INK, lw=0.8)
+    axes.set_yticks(range(len(worlds)), worlds)
+    axes.invert_yaxis()
+    axes.set_xlabel("gain over the textbook learner (deviations between lives)")
+    axes.legend(loc="lower right", fontsize=8)
     return figure
+
+
+def _scaled(result: Mapping, world: str, name: str, gain: Estimate) -> tuple[float, float, float]:
+    key = name.removesuffix("_over_textbook")
+    own = [row for row in result["rows"] if row["world"] == world]
+    deviation = float(np.std([row[f"{key}_lore"] - row[f"{key}_textbook"] for row in own])) or 1.0
+    low, high = gain.ci95 or (gain.value, gain.value)
+    return gain.value / deviation, low / deviation, high / deviation

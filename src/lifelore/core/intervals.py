@@ -35,14 +35,16 @@ def bca_interval(samples: Sequence[Array], statistic: Callable[..., Any]) -> Int
     Returns
     -------
     (low, high) or None
-        None for fewer than `LEAST_VALUES` rows, for rows that are all equal, and where the statistic of the
-        samples is not finite. Two equal ends where all resamples give the same.
+        None for fewer than `LEAST_VALUES` rows, and where the statistic of the samples is not finite. Two equal
+        ends where the rows are all equal, or all resamples give the same: there is no spread.
     """
     from scipy.stats import bootstrap
 
     n, value = len(samples[0]), statistic(*samples, axis=-1)
-    if n < LEAST_VALUES or all((sample == sample[0]).all() for sample in samples) or not np.isfinite(value):
+    if n < LEAST_VALUES or not np.isfinite(value):
         return None
+    if all((sample == sample[0]).all() for sample in samples):
+        return float(value), float(value)
     draws = stream(n, "bootstrap").integers(0, n, size=(RESAMPLES, n))
     resampled = statistic(*(sample[draws] for sample in samples), axis=-1)
     resampled = resampled[np.isfinite(resampled)]

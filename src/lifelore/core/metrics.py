@@ -14,7 +14,8 @@ from lifelore.core.streams import stream
 class Estimate:
     """A measured number: value, median, 95 % interval and number of runs.
 
-    `ci95` is None for fewer than three values and for values without spread.
+    `ci95` is None for fewer than three values, which are too few; its ends are equal for three or more values
+    without spread. An interval without spread says that all runs agree, not that other runs would.
     """
 
     value: float
@@ -48,8 +49,10 @@ def interquartile_mean_estimate(values: ArrayLike) -> Estimate:
     _checked(values)
     n, n_tasks = values.shape
     estimate, median = float(trim_mean(values.ravel(), 0.25)), float(np.median(values))
-    if n < LEAST_VALUES or (values == values[0]).all():
+    if n < LEAST_VALUES:
         return Estimate(estimate, median, None, values.size)
+    if (values == values[0]).all():
+        return Estimate(estimate, median, (estimate, estimate), values.size)
     draws = stream(n, "bootstrap", "strata", n_tasks).integers(0, n, size=(RESAMPLES, n, n_tasks))
     resampled = values[draws, np.arange(n_tasks)].reshape(RESAMPLES, -1)
     return Estimate(estimate, median, percentile_interval(trim_mean(resampled, 0.25, axis=1)), values.size)

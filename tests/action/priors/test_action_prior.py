@@ -418,3 +418,14 @@ def test_repr_gives_the_size_and_the_key():
     prior = prior_of([([(1, [True, False, True]), (2, [True, False, False])], 0.5)])
     assert repr(prior) == "<ActionPrior: 3 actions, 2 contexts, 1.5 counts, alpha0=0.1, key='key'>"
     assert repr(ActionPrior(2)) == "<ActionPrior: 2 actions, 0 contexts, 0 counts, alpha0=0.1>"
+
+
+def test_own_labels_stand_in_tables_and_merge():
+    prior, other = ActionPrior(2), ActionPrior(2)
+    prior.update([7], [[True, False]])
+    assert "label" not in prior.to_columns()
+    other.update([7, 8], [[True, False], [False, True]])
+    prior.labels, other.labels = {7: ("free", 1)}, {7: "seven", 8: ("wall", 0)}
+    prior.merge(other)
+    assert prior.to_columns()["label"].tolist() == ["('free', 1)"] * 2 + ["('wall', 0)"] * 2
+    assert prior.to_columns({8: "eight"})["label"].tolist() == ["7", "7", "eight", "eight"]

@@ -16,9 +16,12 @@ from scipy.stats import binomtest
 from lifelore.action.priors.action_prior import ONE
 from lifelore.agent.external_world.context_code import context_code
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
-from lifelore.agent.external_world.live_in import live_in
+from lifelore.agent.external_world.live_in import AGENTS, live_in
 from lifelore.core.errors import InputError
 from lifelore.memory import open_memory
+
+# Most worlds here are one task again and again, which `live_in` warns of.
+pytestmark = pytest.mark.filterwarnings("ignore:Nothing that was observed")
 
 
 class Doors:
@@ -100,7 +103,6 @@ def test_a_world_whose_returns_are_all_equal_teaches_nothing_and_warns():
     with pytest.warns(UserWarning, match="The action prior is empty after 3 tasks in doors"):
         report = live_in(Dull(), tasks=3, episodes=20)
     assert report["n_contexts"] == 0
-    assert len(report["warnings"]) == 1
     assert numbers_of(report, "lore", "mean_return") == numbers_of(report, "scratch", "mean_return")
     assert not any(numbers_of(report, "lore", "reached"))
 
@@ -113,13 +115,13 @@ def test_a_world_of_costs_teaches_by_the_best_returns():
             return "behind", -1.0 if action == 3 else -10.0, True, False
 
     report = live_in(Costly(), tasks=12, episodes=60)
-    assert (report["n_contexts"], report["warnings"]) == (1, [])
+    assert report["n_contexts"] == 1
     # After t tasks the first choice is right with (t + α⁰) / (t + 8 α⁰), 0.89 on average over the last six tasks:
     # two wrong choices of six, which make the mean -4, have odds below 1 in 7.
     assert np.mean(numbers_of(report, "lore", "first_return")[6:]) > -4
     # Uniform exploration takes door 3 first once in eight tasks: a mean of -8.9.
-    lore, scratch = (np.mean(numbers_of(report, who, "mean_return")) for who in ("lore", "scratch"))
-    assert lore > scratch + 1
+    lore, scratch, textbook = (np.mean(numbers_of(report, who, "mean_return")) for who in AGENTS)
+    assert lore > scratch > textbook
 
 
 @pytest.mark.slow
@@ -136,11 +138,11 @@ def test_first_choice_follows_the_counts():
 
 
 @pytest.mark.filterwarnings("ignore:The action prior is empty")
-def test_both_agents_are_given_the_same_episodes():
+def test_all_agents_are_given_the_same_episodes():
     world = Doors()
     live_in(world, tasks=2, episodes=5)
-    assert world.resets[:5] == world.resets[5:10]
-    assert world.resets[10:15] == world.resets[15:]
+    first, second = world.resets[:5], world.resets[15:20]
+    assert world.resets == first * 3 + second * 3
     assert len(set(world.resets)) == 10
 
 
@@ -275,7 +277,7 @@ def test_report_is_plain_json_of_the_shape_of_live():
     assert (report["domain"], report["map"], report["n_states"]) == ("doors", None, 1)
     task = report["tasks"][2]
     assert (task["index"], task["goal"], task["optimal_return"]) == (2, None, None)
-    assert set(task["agents"]) == {"lore", "scratch"}
+    assert set(task["agents"]) == {"lore", "scratch", "textbook"}
     own = task["agents"]["lore"]
     assert [own[name] for name in ("collisions", "steps_to_80", "episodes_to_80")] == [None] * 3
     assert {"first_return", "reached", "final_return", "mean_return"} < set(own)

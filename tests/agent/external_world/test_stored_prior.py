@@ -8,6 +8,8 @@ from lifelore.agent.external_world.live_in import live_in
 from lifelore.agent.external_world.stored_prior import BatchContexts, prior_from_memory
 from lifelore.core.errors import InputError, NotFoundError
 
+pytestmark = pytest.mark.filterwarnings("ignore:Nothing that was observed")
+
 
 class Lamps:
     """One step an episode: button `lamp` pays 1; the lamp is the context."""

@@ -1,9 +1,17 @@
 """O3: contexts by hand, and measures of made-up lives."""
 
+import warnings
+
+import numpy as np
 import pytest
 
-from reproduction.own.o_03_your_worlds.run import CONSTANT, FALLING, numbers, readings
-from reproduction.own.o_03_your_worlds.worlds import WORLDS, cart_pole, slippery_lake, taxi_context, whole_grid
+from lifelore.agent.external_world.live_in import live_in
+from lifelore.core.metrics import mean_estimate
+from reproduction.own.o_03_your_worlds.control import acrobot, cart_pole
+from reproduction.own.o_03_your_worlds.grids import NineByNine, whole_grid
+from reproduction.own.o_03_your_worlds.run import measure, numbers, readings
+from reproduction.own.o_03_your_worlds.toy_texts import MOVES, cliff, lake, taxi_context
+from reproduction.own.o_03_your_worlds.worlds import WORLDS
 
 
 def test_contexts_of_a_taxi_by_hand():
@@ -15,10 +23,63 @@ def test_contexts_of_a_taxi_by_hand():
 
 
 def test_tasks_differ_and_repeat():
-    lakes = [slippery_lake(number).unwrapped.desc.tobytes() for number in (0, 0, 1)]
+    lakes = [lake(number, 4, True).unwrapped.desc.tobytes() for number in (0, 0, 1)]
     assert lakes[0] == lakes[1] != lakes[2]
     lengths = [cart_pole(number).unwrapped.length for number in (3, 3, 4)]
     assert lengths[0] == lengths[1] != lengths[2]
+    masses = [acrobot(number).unwrapped.LINK_MASS_1 for number in (3, 3, 4)]
+    assert masses[0] == masses[1] != masses[2]
+    grids = [NineByNine(number).walls.tobytes() for number in (3, 3, 4)]
+    assert grids[0] == grids[1] != grids[2]
+
+
+def test_a_cliff_is_where_the_context_says():
+    env = cliff(5)
+    (place, beside), _ = env.reset(seed=0)
+    for action, kind in enumerate(beside):
+        env.reset(seed=0)
+        (there, _), reward, terminated, _, _ = env.step(action)
+        row, column = divmod(place, 12)
+        moved = 12 * (row + MOVES[action][0]) + column + MOVES[action][1]
+        assert (there, reward, terminated) == {
+            0: (moved, -1, False), 1: (place, -100, False), 2: (place, -1, False), 3: (moved, -1, True),
+        }[kind]  # fmt: skip
+
+
+def test_a_grid_of_nine_by_nine_by_hand():
+    env = NineByNine(0)
+    (cell, beside), _ = env.reset(seed=0)
+    assert cell == env.start
+    for action, wall in enumerate(beside):
+        env.reset(seed=0)
+        (there, _), reward, terminated, _, _ = env.step(action)
+        assert (there == cell) == bool(wall)
+        assert (reward, terminated) == ((10.0, True) if there == env.goal else (-0.1, False))
+
+
+def life_of(world, number):
+    """Four tasks of a world at the default of `live_in`."""
+    size = {"tasks": 4, "episodes": world.episodes, "max_steps": world.max_steps}
+    with world.make(number) as own, warnings.catch_warnings():
+        warnings.simplefilter("ignore", UserWarning)
+        return live_in(own, seed=number, **size)
+
+
+@pytest.mark.slow
+def test_the_default_is_not_certainly_below_a_textbook_in_two_worlds():
+    """Six lives each; a loss whose 95 % interval excludes 0 fails. In both worlds the gain is large."""
+    for name in ("grid 9 × 9", "Empty 6 × 6"):
+        own = WORLDS[name]
+        gains = {"mean_return": [], "final_return": []}
+        for life in range(10, 16):
+            for task in life_of(own, life)["tasks"][2:]:
+                for measured, found in gains.items():
+                    found.append(task["agents"]["lore"][measured] - task["agents"]["textbook"][measured])
+        for found in gains.values():
+            interval = mean_estimate(found).ci95
+            assert interval is not None
+            assert interval[1] >= 0
+        assert np.mean(gains["mean_return"]) > 0
 
 
 def test_state_and_context_of_a_grid():
@@ -41,22 +102,20 @@ def around(base):
 
 
 def test_measures_by_hand():
-    def life(world, epsilon, lore, scratch):
-        returns = {
-            f"{key}_{who}": value
-            for key in ("first", "all")
-            for who, value in (("lore", lore), ("scratch", scratch))
+    def life(world, lore, textbook):
+        agents = {"lore": lore, "scratch": 0.2, "textbook": textbook}
+        return {
+            "world": world,
+            **{f"{key}_{who}": value for key in ("first", "all", "last") for who, value in agents.items()},
         }
-        return {"world": world, "epsilon": epsilon, **returns}
 
-    results = [life("Taxi", FALLING, lore, 0.2) for lore in (0.5, 0.7)]
-    results += [life("Taxi", CONSTANT, 0.5, 0.4), life("Taxi", CONSTANT, 0.5, 0.4)]
-    results += [life("FourRooms", FALLING, 0.2, 0.2), life("FourRooms", CONSTANT, 0.2, 0.1)]
-    found = numbers(results, "Taxi", FALLING)
-    assert found["all_gain"].value == pytest.approx(0.4)
-    assert found["first_gain"].value == pytest.approx(0.4)
-    assert found["all_gain_over_constant"].value == pytest.approx(0.2)
-    assert numbers(results, "Taxi", CONSTANT)["all_gain"].value == pytest.approx(0.1)
+    results = [life("Taxi", lore, 0.4) for lore in (0.5, 0.7, 0.9)]
+    results += [life("FourRooms", lore, 0.3) for lore in (0.1, 0.2, 0.25)]
+    found = numbers(results, "Taxi")
+    assert found["all_over_scratch"].value == pytest.approx(0.5)
+    assert found["first_over_textbook"].value == pytest.approx(0.3)
     settings = {"worlds": ["Taxi", "FourRooms"]}
-    assert [cell["world"] for cell, _ in readings(settings, results)] == ["Taxi", "Taxi", "FourRooms", "FourRooms"]
+    assert measure(settings, results)["below_last"].value == 1
+    assert measure({"worlds": ["Taxi"]}, results)["below_all"].value == 0
+    assert [cell["world"] for cell, _ in readings(settings, results)] == ["Taxi", "FourRooms"]
     assert set(settings["worlds"]) <= set(WORLDS)

@@ -48,6 +48,12 @@ class ActionPrior:
         Meaning of the contexts, usually a hash of their definition and the actions. Priors of different keys
         do not merge.
 
+    Attributes
+    ----------
+    labels : mapping of int to features
+        Context code to the features behind it, where they are known. Tables and pictures show them; records and
+        files of the prior do not hold them.
+
     Notes
     -----
     A context is an int64 code of magnitude at most 2**63 / (n_actions + 1). A context without counts has the
@@ -69,6 +75,7 @@ class ActionPrior:
         if not (alpha0 > 0 and np.isfinite(alpha0)):
             raise InputError(f"alpha0 must be positive and finite, got {alpha0}")
         self.n_actions, self.alpha0, self.key = n_actions, float(alpha0), key
+        self.labels: Mapping[int, Any] = {}
         self._index = ContextIndex(np.empty(0, np.int64))
         self._counts = np.empty((0, n_actions), np.int64)
 
@@ -138,13 +145,15 @@ class ActionPrior:
         self.update(contexts, np.eye(self.n_actions, dtype=bool)[actions], weight)
 
     def merge(self, other: "ActionPrior") -> None:
-        """Add another prior's counts; exact in any order and grouping."""
+        """Add another prior's counts, exact in any order and grouping; and its labels of other contexts."""
         if (other.n_actions, other.key) != (self.n_actions, self.key):
             raise InputError(
                 f"priors must agree in actions and key, got {self.n_actions} '{self.key}' "
                 f"and {other.n_actions} '{other.key}'"
             )
         self._add(other._codes, other._counts)
+        if other.labels:
+            self.labels = {**other.labels, **self.labels}
 
     def _add(self, codes: NDArray[np.int64], rows: NDArray, factor: int = 1) -> None:
         """Add `factor` times each row of integers or booleans; no row may be all zero."""
@@ -306,18 +315,19 @@ class ActionPrior:
         Parameters
         ----------
         labels : mapping, optional
-            Context code to a readable label, such as the features behind it; adds the column ``label``.
+            Context code to a readable label, such as the features behind it; default: the prior's own labels.
 
         Returns
         -------
         dict of (n_contexts · n_actions,) arrays
-            ``context`` (code), ``label`` (text, if `labels` are given; the code where they have none), ``action``,
+            ``context`` (code), ``label`` (text, if there are labels; the code where they have none), ``action``,
             ``count`` (Σ w U), ``probability`` (``proportion``, sums to 1 over the actions of a context).
         """
         codes = self._codes
         columns: dict[str, NDArray[Any]] = {"context": np.repeat(codes, self.n_actions)}
-        if labels is not None:
-            named = np.array([str(labels.get(code, code)) for code in codes.tolist()], str)
+        shown = self.labels if labels is None else labels
+        if shown or labels is not None:
+            named = np.array([str(shown.get(code, code)) for code in codes.tolist()], str)
             columns["label"] = np.repeat(named, self.n_actions)
         columns["action"] = np.tile(np.arange(self.n_actions), len(codes))
         columns["count"] = self.counts(codes).ravel()

@@ -4,7 +4,7 @@ A type that is not known answers most causes as known types do, and differs in a
 
     log odds = Σ_kinds log mean_ρ Π_c ((1 − ρ) + ρ exp(e_c))
 
-over the causes c of a kind (moves, and rewards), where e_c is the evidence of cause c in nats for a law of its own.
+over the causes c of a kind (moves, rewards), where e_c is the evidence of cause c in nats for a law of its own.
 Where known types differ, another one probably does too; elsewhere a single cause must be the more telling the more
 causes there are, and many causes may each tell a little.
 

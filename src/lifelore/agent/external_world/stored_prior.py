@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import KIND, VERSION, ActionPrior
+from lifelore.agent.external_world import context_labels
 from lifelore.agent.external_world.context_code import MOST_ACTIONS, ContextCodes
+from lifelore.agent.external_world.context_labels import ContextLabels
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import Memory, open_memory
 
@@ -45,6 +47,12 @@ def prior_from_memory(
     alpha0 : float
         Pseudo-count α⁰ of every action.
 
+    Returns
+    -------
+    ActionPrior
+        Its ``labels`` are the features of the contexts, so that ``to_frame()`` and `plot_prior` show these.
+        Memories of older lives hold none; tables then show the codes.
+
     Raises
     ------
     NotFoundError
@@ -66,7 +74,11 @@ def prior_from_memory(
         if len(fits) > 1:
             raise InputError(f"key and n_actions must select one prior in {location}; it has {_listed(fits)}")
         meaning, n = fits[0]
-        return recalled_prior(memory, meaning, n, alpha0)
+        prior = recalled_prior(memory, meaning, n, alpha0)
+        labels = memory.recall(context_labels.KIND, prior.key, context_labels.VERSION)
+        if labels is not None:
+            prior.labels = ContextLabels(labels)
+        return prior
 
 
 def _stored(memory: Memory) -> list[tuple[str, int]]:

@@ -6,7 +6,7 @@ not computed.
 
 import math
 from collections import defaultdict
-from collections.abc import Hashable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
 from threading import Event
 
@@ -76,7 +76,10 @@ class ExternalLearner:
 
 @dataclass(frozen=True)
 class ExternalTask:
-    """One task that both agents learn; `seeds` holds the seed of each episode, the same for both."""
+    """One task that several agents learn; `seeds` holds the seed of each episode, the same for all.
+
+    watch : called with each transition (state, action, next state, reward, terminated)
+    """
 
     world: World
     codes: ContextCodes
@@ -85,9 +88,10 @@ class ExternalTask:
     index: int
     seeds: list[int]
     stop: Event
+    watch: Callable[[Hashable, int, Hashable, float, bool], None] | None = None
 
     def live(self, learner: ExternalLearner) -> dict:
-        """Learn the task; return the result as JSON data.
+        """Learn the task; return the result as JSON data, see `task_measures`.
 
         Raises
         ------
@@ -97,21 +101,13 @@ class ExternalTask:
             The stop event is set.
         """
         epsilons = self.learning.schedule(self.discount).epsilon.tolist()
-        episodes = [
+        reached = [
             self._episode(learner, seed, epsilon) for seed, epsilon in zip(self.seeds, epsilons, strict=True)
         ]
-        returns = [value for value, _ in episodes]
-        last = returns[-max(1, len(returns) // 10) :]
-        return {
-            "first_return": returns[0],
-            "reached": any(reached for _, reached in episodes),
-            "final_return": sum(last) / len(last),
-            "mean_return": sum(returns) / len(returns),
-            **dict.fromkeys(("collisions", "steps_to_80", "episodes_to_80")),
-        }
+        return task_measures(learner.returns.returns[-len(reached) :], any(reached))
 
-    def _episode(self, learner: ExternalLearner, seed: int, epsilon: float) -> tuple[float, bool]:
-        """One episode: its discounted return, and whether it was terminated with a positive reward."""
+    def _episode(self, learner: ExternalLearner, seed: int, epsilon: float) -> bool:
+        """One episode; whether it was terminated with a positive reward."""
         state, reward, total, factor = self.world.reset(self.index, seed), 0.0, 0.0, 1.0
         steps: list[tuple[Hashable, int, int]] = []
         terminated = False
@@ -126,11 +122,13 @@ class ExternalTask:
             q = learner.q[state]
             q[0, action] += self.learning.learning_rate * (reward + future - q[0, action])
             steps.append((state, code, action))
+            if self.watch is not None:
+                self.watch(state, action, following, reward, terminated)
             total, factor, state = total + factor * reward, factor * self.discount, following
             if terminated or truncated:
                 break
         learner.returns.add(steps, total, terminated)
-        return total, terminated and reward > 0
+        return terminated and reward > 0
 
     def _check_reward(self, reward: float, action: int) -> None:
         if not math.isfinite(reward):
@@ -138,3 +136,23 @@ class ExternalTask:
                 f"reward must be a finite number, got {reward} for action {action} in task {self.index}; "
                 "correct the world's step"
             )
+
+
+def task_measures(returns: Sequence[float], reached: bool) -> dict:
+    """The measures of an agent in a task as JSON data.
+
+    Parameters
+    ----------
+    returns : sequence of float
+        Discounted return of each episode, at least one.
+    reached : bool
+        Whether an episode was terminated with a positive reward.
+    """
+    last = returns[-max(1, len(returns) // 10) :]
+    return {
+        "first_return": returns[0],
+        "reached": reached,
+        "final_return": sum(last) / len(last),
+        "mean_return": sum(returns) / len(returns),
+        **dict.fromkeys(("collisions", "steps_to_80", "episodes_to_80")),
+    }

@@ -34,7 +34,7 @@ def plot_prior(
     ----------
     prior : ActionPrior
     labels : mapping, optional
-        Context code to a readable label; default: the code.
+        Context code to a readable label; default: the prior's own labels, and the code where it has none.
     actions : sequence of str, optional
         Names of the actions, in order; default: their numbers.
     most : int
@@ -54,10 +54,11 @@ def plot_prior(
         raise InputError(f"most must be at least 1, got {most}")
     if not len(prior):
         raise InputError("prior must have counts to be drawn, got an empty prior; live through tasks first")
+    named = prior.labels if labels is None else labels
     counted = prior.counts(prior.contexts).sum(axis=1)
     order = np.argsort(-counted, kind="stable")[:most]
     codes, counted = prior.contexts[order], counted[order]
-    rows = [_row_name(code, n, labels or {}) for code, n in zip(codes.tolist(), counted.tolist(), strict=True)]
+    rows = [_row_name(code, n, named) for code, n in zip(codes.tolist(), counted.tolist(), strict=True)]
     probs, uniform = prior.probs(codes), 1 / prior.n_actions
     with house_style():
         figure = new_figure(2.6 + 0.07 * max(map(len, rows)) + 0.55 * len(names), 1.0 + 0.24 * len(rows))

@@ -50,7 +50,7 @@ def test_a_life_in_an_own_world(tmp_path):
             assert sum(returns) / 30 == measures["mean_return"]
             assert numbers[task["index"], agent, "", "final_return"] == measures["final_return"]
             assert numbers[task["index"], agent, "", "reached"] == measures["reached"]
-    assert len(numbers) == 3 * 2 * (30 + 4)
+    assert len(numbers) == 3 * 3 * (30 + 4)
 
 
 def test_a_life_of_live(tmp_path):

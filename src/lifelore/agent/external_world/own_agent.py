@@ -1,0 +1,117 @@
+"""Lets an agent of the user live the tasks of `live_in`, and measures it from outside."""
+
+import math
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from threading import Event
+from typing import Any
+
+from lifelore.agent.life.loop import Stopped
+from lifelore.core.errors import InputError
+from lifelore.core.protocols import World
+
+OwnAgent = Callable[[World, int, list[int], int], Any]
+"""``agent(world, task, seeds, max_steps)``: live one task, an episode a seed. What it returns is not used."""
+
+
+class WatchedWorld:
+    """The world of one task as an agent of the user meets it; observes the returns of the agent's episodes.
+
+    returns : discounted return of each episode that was begun
+    reached : whether an episode was terminated with a positive reward
+    """
+
+    def __init__(
+        self,
+        name: str,
+        world: World,
+        task: int,
+        seeds: Sequence[int],
+        max_steps: int,
+        discount: float,
+        stop: Event,
+    ) -> None:
+        self.name, self.world, self.task, self.seeds = name, world, task, seeds
+        self.max_steps, self.discount, self.stop = max_steps, discount, stop
+        self.n_actions = world.n_actions
+        self.returns: list[float] = []
+        self.reached = False
+        self._steps_left, self._factor = 0, 1.0
+
+    def reset(self, task: int, seed: int) -> Hashable:
+        """Start the next episode; task and seed must be those that the agent was given, in their order."""
+        self.check_ended()
+        number = len(self.returns)
+        due = self.seeds[number] if number < len(self.seeds) else None
+        if task != self.task or seed != due:
+            wanted = f"reset({self.task}, {due})" if due is not None else "no further reset"
+            raise InputError(
+                f"agent '{self.name}' must reset the world once for each of its seeds, in their order: {wanted} "
+                f"was due, got reset({task}, {seed})"
+            )
+        self.returns.append(0.0)
+        self._steps_left, self._factor = self.max_steps, 1.0
+        return self.world.reset(task, seed)
+
+    def check_ended(self) -> None:
+        """InputError if an episode is in progress: one that is given up would escape its costs."""
+        if self._steps_left:
+            raise InputError(
+                f"agent '{self.name}' must live each episode until it is terminated, truncated or "
+                f"{self.max_steps} steps long, got an end {self._steps_left} steps before; step on"
+            )
+
+    def step(self, action: int) -> tuple[Hashable, float, bool, bool]:
+        """Take an action; the reward counts for the return of the episode."""
+        if self.stop.is_set():
+            raise Stopped
+        if not self._steps_left:
+            raise InputError(
+                f"agent '{self.name}' must end an episode when it is terminated, truncated or {self.max_steps} "
+                "steps long, got a further step; reset the world with the next seed"
+            )
+        state, reward, terminated, truncated = self.world.step(action)
+        if not math.isfinite(reward):
+            raise InputError(
+                f"reward must be a finite number, got {reward} for action {action} in task {self.task}; "
+                "correct the world's step"
+            )
+        self.returns[-1] += self._factor * reward
+        self._factor *= self.discount
+        self._steps_left = 0 if terminated or truncated else self._steps_left - 1
+        self.reached = self.reached or (terminated and reward > 0)
+        return state, reward, terminated, truncated
+
+    def context(self, state: Hashable, last_reward: float) -> Hashable:
+        """The context of the current state."""
+        return self.world.context(state, last_reward)
+
+
+def live_own(agent: OwnAgent, watched: WatchedWorld) -> list[float]:
+    """Let an agent live its task; the discounted return of each episode.
+
+    Raises
+    ------
+    InputError
+        The agent did not live all episodes, or broke their order or their length.
+    """
+    agent(watched, watched.task, list(watched.seeds), watched.max_steps)
+    watched.check_ended()
+    if len(watched.returns) != len(watched.seeds):
+        raise InputError(
+            f"agent '{watched.name}' must live {len(watched.seeds)} episodes, one a seed, got "
+            f"{len(watched.returns)} in task {watched.task}; call world.reset(task, seed) for each seed"
+        )
+    return watched.returns
+
+
+def check_own_agents(agents: Mapping[str, OwnAgent], taken: Sequence[str]) -> dict[str, OwnAgent]:
+    """The agents of the user, checked: names that are free, and callables."""
+    for name, agent in agents.items():
+        if not isinstance(name, str) or not name.strip() or name in taken:
+            raise InputError(f"agents must have names other than {', '.join(taken)}, got {name!r}; rename it")
+        if not callable(agent):
+            raise InputError(
+                "agents must be functions of (world, task, seeds, max_steps), got "
+                f"{type(agent).__name__} for '{name}'"
+            )
+    return dict(agents)

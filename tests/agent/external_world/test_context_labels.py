@@ -1,0 +1,91 @@
+"""Features of contexts as text in a record: read back, merged across robots, shown by tables and pictures."""
+
+import numpy as np
+import pytest
+
+from lifelore.agent.external_world.context_code import context_code
+from lifelore.agent.external_world.context_labels import MOST_BYTES, SLOTS, ContextLabels, labels_record
+from lifelore.agent.external_world.live_in import live_in
+from lifelore.agent.external_world.stored_prior import prior_from_memory
+from lifelore.core.errors import InputError
+from lifelore.core.protocols import Record
+from lifelore.figures.lives.prior_table import plot_prior
+from lifelore.memory import open_memory
+
+
+class Lamps:
+    """One step an episode: button `lamp` pays 1; the lamp is the context."""
+
+    name, n_actions = "lamps", 2
+
+    def __init__(self, spoken=("lamp", "on")):
+        self.spoken = spoken
+
+    def reset(self, task, seed):
+        self.lamp = seed % 2
+        return self.lamp
+
+    def step(self, action):
+        return "over", float(action == self.lamp), True, False
+
+    def context(self, state, last_reward):
+        return (*self.spoken, state)
+
+
+def text_by_hand(record, code):
+    """The naive twin of `ContextLabels`: a loop over all slots, a byte at a time."""
+    cells = {
+        int(s) % SLOTS: int(v) for s, v in zip(record.slots, record.values, strict=True) if s // SLOTS == code
+    }
+    raw = b"".join(cells[place].to_bytes(8, "little", signed=True) for place in sorted(cells) if place)
+    return raw[: cells[0]].decode()
+
+
+@pytest.mark.parametrize("context", [3, None, "däche", ("free", 2.5, (True, None)), b"\x00\xff", ("a",) * 15])
+def test_features_are_read_back_as_they_were(context):
+    code = context_code(context)
+    record = labels_record("k", {5: "before", code: context, 2**47 - 1: "behind"}, {})
+    labels = ContextLabels(record)
+    assert labels[code] == context
+    assert text_by_hand(record, code) == repr(context)
+    assert (len(labels), set(labels)) == (3, {5, code, 2**47 - 1})
+    assert labels.get(6) is None
+
+
+def test_long_features_are_cut_and_others_are_text():
+    record = labels_record("k", {1: ("x" * 500,), 2: frozenset({4}), 3: (np.int64(7), np.float64(0.5))}, {})
+    labels = ContextLabels(record)
+    assert labels[1] == "('" + "x" * (MOST_BYTES - 2)
+    assert (labels[2], labels[3]) == ("frozenset({4})", (7, 0.5))
+    assert (record.slots // SLOTS == 1).sum() == SLOTS
+    assert len(ContextLabels(labels_record("k", {}, {}))) == 0
+
+
+def test_the_newest_text_wins_whole(tmp_path):
+    """A short text over a long one: the rest of the long one must not show."""
+    with open_memory(tmp_path / "m.db") as memory:
+        for seq, text in enumerate(("a very long text of many words", "short")):
+            memory.contribute("r", [labels_record("k", {9: text}, {})], process="p", seq=seq, task={})
+        record = memory.recall("context_labels", "k", 1)
+    assert record is not None
+    assert dict(ContextLabels(record)) == {9: "short"}
+
+
+def test_another_record_is_refused():
+    with pytest.raises(InputError, match="record must be context_labels version 1, got action_prior 1"):
+        ContextLabels(Record("action_prior", "k", 1, "add", np.array([1]), np.array([1])))
+
+
+@pytest.mark.filterwarnings("ignore:Nothing that was observed")
+def test_priors_of_merged_robots_show_tuples(tmp_path):
+    for robot in ("a", "b"):
+        world = Lamps(("lamp", robot))
+        live_in(world, tasks=2, episodes=60, memory=tmp_path / f"{robot}.db", key="lamp", robot=robot)
+    with open_memory(tmp_path / "a.db") as memory:
+        memory.merge_from(tmp_path / "b.db")
+    prior = prior_from_memory(tmp_path / "a.db")
+    wanted = {("lamp", robot, lamp) for robot in "ab" for lamp in (0, 1)}
+    assert {prior.labels[code] for code in prior.contexts.tolist()} == wanted
+    assert set(prior.to_columns()["label"]) == {str(context) for context in wanted}
+    rows = [text.get_text() for text in plot_prior(prior).axes[0].get_yticklabels()]
+    assert sum("('lamp', 'a', 0)" in row for row in rows) == 1
