@@ -115,6 +115,11 @@ def test_a_life_goes_on_in_another_agent(tmp_path):
             wind = WINDS[context if random.random() < 0.8 else 1 - context]
             found.append(agent.live(WindyGrid(wind), context=("day", context)))
     assert [result.number for result in found] == [0, 1, 2, 3]
+    with LongLivedAgent(**SETTINGS, memory=tmp_path / "life.db") as agent:
+        for summary in agent.types.values():
+            assert set(summary.contexts) <= {("day", 0), ("day", 1)}
+        assert {("day", 0), ("day", 1)} >= {one.context for one in agent.curiosity()}
+        assert set(agent.prior.to_columns()["label"].tolist()) <= {"-1", "0", "1"}
     assert [result.type for result in found] == [result.type for _, result in one]
     for before, after in zip(one, found, strict=True):
         assert after.returns == pytest.approx(before[1].returns)

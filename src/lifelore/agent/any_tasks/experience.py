@@ -4,7 +4,7 @@ Counts add up and the newest value of a policy's cell wins, so that robots can m
 that nothing tells apart are joined when experience is read, never in memory.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -15,6 +15,9 @@ from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
 from lifelore.action.priors.action_prior import VERSION, ActionPrior
 from lifelore.agent.any_tasks.moves import ONE, OutcomeCounts
 from lifelore.agent.any_tasks.policies import QTable, StoredPolicy, StoresItself, stored
+from lifelore.agent.external_world.context_labels import KIND as LABELS
+from lifelore.agent.external_world.context_labels import VERSION as LABELS_VERSION
+from lifelore.agent.external_world.context_labels import ContextLabels, labels_record
 from lifelore.core.protocols import Record
 from lifelore.memory import Memory
 
@@ -54,7 +57,8 @@ class TaskNews(NamedTuple):
 
     belief : how much each type, by name, learns from the task
     returns : of each policy, by name, that ran
-    prior : counts of useful actions
+    prior : counts of useful actions; its labels are the features behind their contexts
+    label : the task's context as it was given
     learner, policy : the type whose policy was learnt, by name, and the policy; None where none was
     idle : tasks in a row in which exploring this policy brought no gain
     fresh : last returns of a learner that began with nothing
@@ -66,6 +70,7 @@ class TaskNews(NamedTuple):
     moves: OutcomeCounts
     returns: Mapping[str, list[float]]
     prior: ActionPrior
+    label: Hashable = None
     learner: str | None = None
     policy: Any = None
     idle: int = 0
@@ -89,6 +94,7 @@ class Experience:
         self.types: dict[str, TypeExperience] = {}
         self.prior = ActionPrior(n_actions, alpha0, f"{key}/prior")
         self.causes = OutcomeCounts()
+        self.labels: dict[int, Any] = {}  # contexts of tasks as they were given, by code
         self.n_tasks = 0
         self.fresh = np.zeros(2)  # number and sum of last returns of learners that began with nothing
 
@@ -146,8 +152,13 @@ class Experience:
         for cause in news.moves.by_cause:
             shown.add(cause, 0)
         yield shown.to_record(KIND, f"{self.key}/causes")
-        yield Record(KIND, f"{self.key}/tasks", 1, "add", np.zeros(1, np.int64), np.ones(1, np.int64))
+        one, about = np.ones(1, np.int64), {"n_actions": self.n_actions}
+        yield Record(KIND, f"{self.key}/tasks", 1, "add", 0 * one, one, about)
         yield news.prior.to_record({"prior": "tasks", "means": self.key})
+        features = {code: one for code, one in news.prior.labels.items() if code not in self.prior.labels}
+        contexts = {} if news.context in self.labels else {news.context: news.label}
+        yield labels_record(f"{self.key}/features", features, {})
+        yield labels_record(f"{self.key}/contexts", contexts, {})
 
     def _policy_records(self, name: str, policy: Any) -> Iterable[Record]:
         if isinstance(policy, QTable):
@@ -163,6 +174,10 @@ class Experience:
             part, _, rest = record.key.removeprefix(f"{self.key}/").partition("/")
             if record.kind == PRIOR_KIND and record.key == self.prior.key:
                 self.prior.merge(ActionPrior.from_record(record, self.n_actions, self.prior.alpha0))
+            elif record.kind == LABELS and record.key == f"{self.key}/features":
+                self.prior.labels = {**self.prior.labels, **ContextLabels(record)}
+            elif record.kind == LABELS and record.key == f"{self.key}/contexts":
+                self.labels |= ContextLabels(record)
             elif record.kind == KIND and record.key.startswith(f"{self.key}/"):
                 self._add(part, rest, record)
 
@@ -199,10 +214,14 @@ class Experience:
         return self.types.setdefault(name, TypeExperience())
 
     @classmethod
-    def recalled(cls, key: str, n_actions: int, memory: Memory, alpha0: float = 0.1) -> "Experience":
-        """What a memory holds under this key."""
-        made = cls(key, n_actions, alpha0)
-        keys = [(KIND, name, version) for name, version, _ in memory.keys(KIND) if name.startswith(f"{key}/")]
+    def recalled(cls, key: str, memory: Memory, alpha0: float = 0.1) -> "Experience | None":
+        """What a memory holds under this key; None where it holds nothing."""
+        about = {name: about for name, _, about in memory.keys(KIND) if name.startswith(f"{key}/")}
+        if f"{key}/tasks" not in about:
+            return None
+        made = cls(key, int(about[f"{key}/tasks"]["n_actions"]), alpha0)
+        keys = [(KIND, name, 1) for name in about]
+        keys += [(LABELS, f"{key}/{part}", LABELS_VERSION) for part in ("features", "contexts")]
         found = (memory.recall(*name) for name in [*keys, (PRIOR_KIND, made.prior.key, VERSION)])
         made.add([record for record in found if record is not None])
         return made

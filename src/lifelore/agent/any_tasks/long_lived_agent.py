@@ -36,7 +36,7 @@ class TypeSummary(NamedTuple):
     """A known type.
 
     tasks : number of tasks behind it, by belief
-    contexts : number of tasks by context, the most frequent first; a context of another process is its code
+    contexts : number of tasks by context, the most frequent first; as it was given
     returns : mean return of each policy that ran in its tasks, by name
     """
 
@@ -105,7 +105,7 @@ class LongLivedAgent:
     Attributes
     ----------
     prior : ActionPrior
-        Useful actions by features.
+        Useful actions by features; ``prior.to_frame()`` is a table.
 
     Raises
     ------
@@ -168,6 +168,7 @@ class LongLivedAgent:
         self._memory = None if memory is None else open_memory(memory)
         self._revision = ""
         self._process, self._lived = f"{os.getpid()}-{uuid.uuid4().hex[:12]}", 0
+        self._recall()
 
     def __enter__(self) -> Self:
         return self
@@ -280,11 +281,15 @@ class LongLivedAgent:
         with self._memory.taken_task(self.robot, process=self._process) as number:
             yield number
 
-    def _recalled(self, n_actions: int) -> Experience:
-        """What is known, read again where another process has changed the memory."""
+    def _recall(self) -> None:
+        """Read what is known again where another process has changed the memory."""
         if self._memory is not None and (self._experience is None or self._memory.revision() != self._revision):
-            self._experience = Experience.recalled(self.key, n_actions, self._memory)
+            self._experience = Experience.recalled(self.key, self._memory)
             self._revision = self._memory.revision()
+
+    def _recalled(self, n_actions: int) -> Experience:
+        """What is known for environments of so many actions."""
+        self._recall()
         if self._experience is None:
             self._experience = Experience(self.key, n_actions)
         if self._experience.n_actions != n_actions:
@@ -347,4 +352,5 @@ class LongLivedAgent:
         return TypeSummary(sum(contexts.values()), often, means)
 
     def _label(self, code: int) -> Any:
-        return self._contexts.get(code, code)
+        known = {} if self._experience is None else self._experience.labels
+        return self._contexts.get(code, known.get(code, code))

@@ -338,7 +338,9 @@ class OneTask:
         prior = ActionPrior(experience.n_actions, experience.prior.alpha0, experience.prior.key)
         if self.learner is not None:
             prior.update(*self.learner.best(), self.settings.guidance.weight)
-        news = TaskNews(result.number, self.context, belief, moves, dict(self.ran), prior)
+        features = self.codes.states.contexts
+        prior.labels = {code: features[code] for code in prior.contexts.tolist()}
+        news = TaskNews(result.number, self.context, belief, moves, dict(self.ran), prior, result.context)
         own = result.type if result.new or self.reuse is None else self.reuse.own_policy()
         if not belief or own is None:
             return news
