@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lifelore.action.features.learnt_contexts import LearntContexts as LearntContexts
     from lifelore.action.priors.action_prior import ActionPrior as ActionPrior
+    from lifelore.agent.any_tasks.comparison import compare_agents as compare_agents
     from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent as LongLivedAgent
     from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld as GymnasiumWorld
     from lifelore.agent.external_world.live_in import live_in as live_in
@@ -87,6 +88,7 @@ _HOME = {
     "UserBeliefs": "lifelore.interaction.reuse.user_beliefs",
     "World": "lifelore.core.protocols",
     "check_family": "lifelore.agent.long_lived.check_family",
+    "compare_agents": "lifelore.agent.any_tasks.comparison",
     "live": "lifelore.agent.live.life",
     "live_in": "lifelore.agent.external_world.live_in",
     "live_long": "lifelore.agent.long_lived.long_life",

@@ -183,7 +183,7 @@ class OneTask:
     def live_episode(self) -> None:
         """Play an episode by the learner, or by the policy that is worth most; take in each move."""
         number = self.result.number
-        seed = int(stream(self.seed, "task", number, "world", len(self.result.returns)).integers(2**31))
+        seed = episode_seed(self.seed, number, len(self.result.returns))
         began = self.reuse.begin_episode() if self.learner is None and self.reuse is not None else LEARNER
         state, reward, steps, ended, whole = self.world.reset(number, seed), 0.0, list[Step](), False, True
         for count in range(self.settings.learning.step_cap):
@@ -235,6 +235,7 @@ class OneTask:
             result.alarm, result.alarm_episode = True, len(result.returns)
         result.returns.append(earned)
         result.policies.append(began)
+        result.reached = result.reached or (steps[-1].ended and steps[-1].reward > 0)
 
     # ---- learn -------------------------------------------------------------------------------------
 
@@ -376,6 +377,11 @@ class OneTask:
             return self.reuse.by_member()
         self.result.type, self.result.new = name, True
         return {name: 1.0}
+
+
+def episode_seed(seed: int, task: int, episode: int) -> int:
+    """With what an environment is reset; the same for all agents of a seed."""
+    return int(stream(seed, "task", task, "world", episode).integers(2**31))
 
 
 def gained(late: Sequence[float], before: Any) -> bool:

@@ -24,6 +24,8 @@ class TaskResult:
         Discounted return of each episode.
     policies : list of str
         With which policy each episode began: that of a type, by its name, or ``"learner"``.
+    reached : bool
+        Whether an episode was terminated with a positive reward.
     type : str
         Name of the type that the task was taken for at its end; empty where the agent keeps no types.
     new : bool
@@ -42,6 +44,7 @@ class TaskResult:
     context: Any
     returns: list[float] = field(default_factory=list)
     policies: list[str] = field(default_factory=list)
+    reached: bool = False
     type: str = ""
     new: bool = False
     alarm: bool = False

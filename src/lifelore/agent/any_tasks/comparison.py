@@ -1,0 +1,98 @@
+"""`compare_agents`: the agent beside its ablations, a textbook's learner and the user's own, on the same tasks."""
+
+from collections.abc import Callable, Hashable, Mapping, Sequence
+from contextlib import closing
+from threading import Event
+from typing import Any
+
+import gymnasium
+
+from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent
+from lifelore.agent.any_tasks.one_task import AGENTS, episode_seed
+from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
+from lifelore.agent.external_world.life_summary import summarise_life
+from lifelore.agent.external_world.own_agent import OwnAgent, WatchedWorld, check_own_agents, live_own
+from lifelore.agent.external_world.task import task_measures
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.protocols import Progress
+
+
+def compare_agents(
+    make: Callable[[int], gymnasium.Env],
+    contexts: Sequence[Hashable],
+    agents: Sequence[str] | Mapping[str, OwnAgent | None] = ("full", "scratch", "textbook"),
+    *,
+    progress: Progress | None = None,
+    stop: Event | None = None,
+    **settings: Any,
+) -> dict:
+    """Live the same tasks with several agents, each with what it learnt in its own earlier tasks.
+
+    Parameters
+    ----------
+    make : callable
+        Task number to its environment; called once for each agent, and closed after the task.
+    contexts : sequence of hashable
+        The context of each task.
+    agents : sequence of str, or mapping
+        Names of `lifelore.agent.any_tasks.one_task.AGENTS`; in a mapping also agents of your own by name, called
+        as for `live_in`: ``mine(world, task, seeds, max_steps)``. The first is compared with the others.
+    progress : callable, optional
+        Called as ``progress(done, total, label)`` after each task.
+    stop : threading.Event, optional
+        Set it to drop the task in progress: `Stopped`.
+    **settings
+        Of `LongLivedAgent`; nothing is stored.
+
+    Returns
+    -------
+    dict
+        ``tasks``: for each task its ``index``, ``context`` and by agent ``first_return``, ``mean_return`` and
+        ``final_return`` (of the last tenth of the episodes). ``summary``: the first agent less each other over the
+        last third of the tasks with 95 % intervals, for instance ``full_vs_textbook``, and each agent's means.
+
+    Raises
+    ------
+    InputError, NotFoundError
+        A setting or an agent breaks its rule.
+    """
+    given = dict(agents) if isinstance(agents, Mapping) else dict.fromkeys(agents)
+    own = check_own_agents({name: one for name, one in given.items() if one is not None}, tuple(AGENTS))
+    for name in given.keys() - own.keys():
+        if name not in AGENTS:
+            raise NotFoundError(f"agents must be of {', '.join(AGENTS)}, or functions, got {name!r}")
+    if not given or not len(contexts):
+        raise InputError("compare_agents needs an agent and the context of a task; give at least one")
+    if settings.pop("memory", None) is not None:
+        raise InputError("compare_agents stores nothing; leave out memory, or use LongLivedAgent.live")
+    settings.pop("agent", None)
+    resets = {"reset_by": settings.get("reset_by", "episode")}
+    lived = {name: LongLivedAgent(agent=name, **settings) for name in given if name not in own}
+    known = LongLivedAgent(**settings)
+    tasks: list[dict] = []
+    for number, context in enumerate(contexts):
+        found = {}
+        for name in given:
+            with closing(make(number)) as env:
+                if name in lived:
+                    result = lived[name].live(env, context, stop=stop)
+                    found[name] = task_measures(result.returns, result.reached)
+                else:
+                    world = GymnasiumWorld(
+                        env, settings.get("features"), settings.get("state"), seed=known.seed, **resets
+                    )
+                    found[name] = _own(name, own[name], known, world, number, stop or Event())
+        tasks.append({"index": number, "context": context, "agents": found})
+        if progress:
+            progress(number + 1, len(contexts), f"task {number}")
+    return {"tasks": tasks, "summary": summarise_life(tasks, list(given))}
+
+
+def _own(
+    name: str, agent: OwnAgent, known: LongLivedAgent, world: GymnasiumWorld, number: int, stop: Event
+) -> dict:
+    """The measures of an agent of the user in one task, with the episodes that the others have."""
+    learning = known.settings.learning
+    seeds = [episode_seed(known.seed, number, episode) for episode in range(learning.episode_cap)]
+    watched = WatchedWorld(name, world, number, seeds, learning.step_cap, known.settings.discount, stop)
+    return task_measures(live_own(agent, watched), watched.reached)
