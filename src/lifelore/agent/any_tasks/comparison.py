@@ -40,7 +40,7 @@ def compare_agents(
     progress : callable, optional
         Called as ``progress(done, total, label)`` after each task.
     stop : threading.Event, optional
-        Set it to drop the task in progress: `Stopped`.
+        Set it to drop the task in progress: ``lifelore.agent.life.loop.Stopped``.
     **settings
         Of `LongLivedAgent`; nothing is stored.
 

@@ -195,7 +195,7 @@ class LongLivedAgent:
         context : hashable, optional
             What is seen of the task beforehand, such as a place, a day, or a customer's name.
         stop : threading.Event, optional
-            Set it to drop the task.
+            Set it to drop the task: ``lifelore.agent.life.loop.Stopped``, and nothing of the task is kept.
 
         Raises
         ------
@@ -203,8 +203,6 @@ class LongLivedAgent:
             The environment has other actions, a state is not hashable, or a reward is not finite.
         StoreError
             Memory cannot store the task, or another process has taken it over.
-        Stopped
-            The stop event was set; nothing of the task is kept.
         """
         world = self._world(env)
         code = self._context_code(context)
