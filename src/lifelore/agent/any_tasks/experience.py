@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
-from lifelore.action.priors.action_prior import VERSION, ActionPrior
+from lifelore.action.priors.action_prior import VERSION as PRIOR_VERSION
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.any_tasks.moves import ONE, OutcomeCounts
 from lifelore.agent.any_tasks.policies import QTable, StoredPolicy, StoresItself, stored
 from lifelore.agent.external_world.context_labels import KIND as LABELS
@@ -21,7 +22,7 @@ from lifelore.agent.external_world.context_labels import ContextLabels, labels_r
 from lifelore.core.protocols import Record
 from lifelore.memory import Memory
 
-KIND = "life in tasks"
+COUNTS, POLICIES, VERSION = "task_counts", "task_policies", 1
 HOPELESS = 0.1
 """Share of the range of mean returns above the least one up to which a policy counts as worthless."""
 DATE_BITS = 32
@@ -134,26 +135,28 @@ class Experience:
 
     def _records(self, news: TaskNews) -> Iterable[Record]:
         for name, belief in news.belief.items():
-            yield _scaled(news.moves, belief).to_record(KIND, f"{self.key}/moves/{name}")
+            yield _scaled(news.moves, belief).to_record(COUNTS, f"{self.key}/moves/{name}")
             date = np.array([news.date << DATE_BITS | news.context], np.int64)
-            yield Record(KIND, f"{self.key}/sightings/{name}", 1, "add", date, _fixed([belief]))
+            yield Record(COUNTS, f"{self.key}/sightings/{name}", VERSION, "add", date, _fixed([belief]))
             for policy, values in news.returns.items():
                 sums = belief * np.array([len(values), np.sum(values), np.square(values).sum()])
                 key = f"{self.key}/returns/{name}/{policy}"
-                yield Record(KIND, key, 1, "add", np.arange(3), _fixed(sums))
+                yield Record(COUNTS, key, VERSION, "add", np.arange(3), _fixed(sums))
         if news.learner is not None:
             idle = np.array([news.idle], np.int64)
-            yield Record(KIND, f"{self.key}/idle/{news.learner}", 1, "newest", np.zeros(1, np.int64), idle)
+            yield Record(
+                POLICIES, f"{self.key}/idle/{news.learner}", VERSION, "newest", np.zeros(1, np.int64), idle
+            )
             yield from self._policy_records(news.learner, news.policy)
         if len(news.fresh):
             sums = _fixed([len(news.fresh), np.sum(news.fresh)])
-            yield Record(KIND, f"{self.key}/fresh", 1, "add", np.arange(2), sums)
+            yield Record(COUNTS, f"{self.key}/fresh", VERSION, "add", np.arange(2), sums)
         shown = OutcomeCounts()
         for cause in news.moves.by_cause:
             shown.add(cause, 0)
-        yield shown.to_record(KIND, f"{self.key}/causes")
+        yield shown.to_record(COUNTS, f"{self.key}/causes")
         one, about = np.ones(1, np.int64), {"n_actions": self.n_actions}
-        yield Record(KIND, f"{self.key}/tasks", 1, "add", 0 * one, one, about)
+        yield Record(COUNTS, f"{self.key}/tasks", VERSION, "add", 0 * one, one, about)
         yield news.prior.to_record({"prior": "tasks", "means": self.key})
         features = {code: one for code, one in news.prior.labels.items() if code not in self.prior.labels}
         contexts = {} if news.context in self.labels else {news.context: news.label}
@@ -164,9 +167,9 @@ class Experience:
         if isinstance(policy, QTable):
             before = self.types[name].policy if name in self.types else None
             known = before if isinstance(before, QTable) else None
-            yield from policy.to_records(KIND, f"{self.key}/table/{name}", known)
+            yield from policy.to_records(POLICIES, f"{self.key}/table/{name}", known)
         elif isinstance(policy, StoresItself):
-            yield stored(policy, KIND, f"{self.key}/bytes/{name}")
+            yield stored(policy, POLICIES, f"{self.key}/bytes/{name}")
 
     def add(self, records: Iterable[Record]) -> None:
         """Add records of this key; others are left out."""
@@ -178,7 +181,7 @@ class Experience:
                 self.prior.labels = {**self.prior.labels, **ContextLabels(record)}
             elif record.kind == LABELS and record.key == f"{self.key}/contexts":
                 self.labels |= ContextLabels(record)
-            elif record.kind == KIND and record.key.startswith(f"{self.key}/"):
+            elif record.kind in (COUNTS, POLICIES) and record.key.startswith(f"{self.key}/"):
                 self._add(part, rest, record)
 
     def _add(self, part: str, rest: str, record: Record) -> None:
@@ -216,13 +219,19 @@ class Experience:
     @classmethod
     def recalled(cls, key: str, memory: Memory, alpha0: float = 0.1) -> "Experience | None":
         """What a memory holds under this key; None where it holds nothing."""
-        about = {name: about for name, _, about in memory.keys(KIND) if name.startswith(f"{key}/")}
-        if f"{key}/tasks" not in about:
+        about = {
+            (kind, name, version): about
+            for kind in (COUNTS, POLICIES)
+            for name, version, about in memory.keys(kind)
+            if name.startswith(f"{key}/") and version == VERSION
+        }
+        tasks = about.get((COUNTS, f"{key}/tasks", VERSION))
+        if tasks is None:
             return None
-        made = cls(key, int(about[f"{key}/tasks"]["n_actions"]), alpha0)
-        keys = [(KIND, name, 1) for name in about]
+        made = cls(key, int(tasks["n_actions"]), alpha0)
+        keys = list(about)
         keys += [(LABELS, f"{key}/{part}", LABELS_VERSION) for part in ("features", "contexts")]
-        found = (memory.recall(*name) for name in [*keys, (PRIOR_KIND, made.prior.key, VERSION)])
+        found = (memory.recall(*name) for name in [*keys, (PRIOR_KIND, made.prior.key, PRIOR_VERSION)])
         made.add([record for record in found if record is not None])
         return made
 
