@@ -30,7 +30,7 @@ def test_measures_by_hand():
 
 
 def test_a_ratio_has_the_interval_of_its_players():
-    assert size_ratio([0, 20, 0, 0, 0, 0], 5).ci95 is None
+    assert size_ratio([0, 20, 0, 0, 0, 0], 5).ci95 == (1.0, 1.0)
     assert size_ratio([5, 15, 0, 0, 0, 0], 5).ci95[0] > 0.4
 
 

@@ -73,8 +73,8 @@ def test_late_regret_is_of_the_last_ten():
 def test_groups_make_the_interval():
     values = np.array([[0.0, 10.0], [0.0, 10.0], [0.0, 10.0]])
     found = grouped_mean(values)
-    # Within groups all differs and between them nothing: no spread to estimate from.
-    assert (found.value, found.median, found.ci95, found.n) == (5.0, 5.0, None, 6)
+    # Between groups nothing differs: an interval without spread.
+    assert (found.value, found.median, found.ci95, found.n) == (5.0, 5.0, (5.0, 5.0), 6)
     shifted = grouped_mean(values + np.array([[0.0], [1.0], [2.0]]))
     assert shifted.ci95 is not None
     assert shifted.ci95[0] >= 5
