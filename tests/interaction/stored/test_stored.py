@@ -31,7 +31,7 @@ def assert_same(found: Any, told: Any, where: str, moved: tuple[str, ...] = ()) 
             # Values without spread had no interval; now both of its ends are equal.
             ends = found[key] if key == "ci95" and told[key] is None else None
             if key not in moved and not (ends and ends[0] == ends[1]):
-            assert_same(found[key], told[key], f"{where}: {key}", moved)
+                assert_same(found[key], told[key], f"{where}: {key}", moved)
     elif isinstance(told, list):
         assert len(found) == len(told), where
         for number, (own, then) in enumerate(zip(found, told, strict=True)):
