@@ -26,7 +26,7 @@ def draw(result: Mapping) -> Figure:
     below.axhline(0, color=INK, linewidth=1)
     below.set_ylabel("mean return that a part adds\nin units of the spread")
     below.set_xticks(places, names)
-    below.legend(loc="upper right")
+    below.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(PARTS))
     for axes in (above, below):
         axes.grid(axis="y", color=LIGHT)
         axes.set_axisbelow(True)

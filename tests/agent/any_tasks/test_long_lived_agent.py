@@ -5,13 +5,15 @@ import subprocess
 import sys
 import textwrap
 from pathlib import Path
+from threading import Event
 
 import gymnasium
 import numpy as np
 import pytest
 
 from lifelore import LongLivedAgent, open_memory
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.agent.life.loop import Stopped
+from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.streams import stream
 from tests.agent.any_tasks.windy_grid import SETTINGS, WINDS, WindyGrid
 
@@ -170,6 +172,45 @@ def test_a_killed_task_is_lived_again(tmp_path):
         assert result.type == "robot.0"
 
 
+def test_what_memory_refuses_was_not_learnt(tmp_path, monkeypatch):
+    with LongLivedAgent(**SETTINGS, memory=tmp_path / "life.db") as agent:
+        with monkeypatch.context() as patched:
+            patched.setattr(type(agent._memory), "contribute", lambda *_, **__: raised(StoreError("disk full")))
+            with pytest.raises(StoreError, match="disk full"):
+                agent.live(WindyGrid(-1))
+            assert not agent.types
+            patched.setattr(type(agent._memory), "contribute", lambda *_, **__: False)
+            with pytest.raises(
+                StoreError, match="another process took it over; its result here is not used; live"
+            ):
+                agent.live(WindyGrid(-1))
+            assert not agent.types
+        result = agent.live(WindyGrid(-1))
+        assert result.new
+        assert agent.types[result.type].tasks == 1
+
+
+def raised(error):
+    raise error
+
+
+def test_a_stopped_task_teaches_nothing(tmp_path):
+    stop = Event()
+
+    class Stops(WindyGrid):
+        def reset(self, *, seed=None, options=None):
+            stop.set()
+            return super().reset(seed=seed)
+
+    for memory in (None, tmp_path / "life.db"):
+        with LongLivedAgent(**SETTINGS, memory=memory) as agent:
+            stop.clear()
+            with pytest.raises(Stopped):
+                agent.live(Stops(-1), stop=stop)
+            assert not agent.types
+            assert agent.live(WindyGrid(-1)).number == 0
+
+
 # ---- learners of the user --------------------------------------------------------------------------------
 
 
@@ -290,6 +331,13 @@ def test_a_wrong_environment_is_named():
 
     with pytest.raises(InputError, match="reward must be a finite number, got nan"):
         agent.live(Nan(0))
+
+    def unfinished(env, prior, start):
+        env.reset()
+        env.step(0)
+
+    with pytest.raises(InputError, match="reward must be a finite number, got nan"):
+        LongLivedAgent(**SETTINGS, learner=unfinished).live(Nan(0))
     agent.live(WindyGrid(0))
     with pytest.raises(InputError, match="env must have the 4 actions"):
         agent.live(gymnasium.make("CartPole-v1"))

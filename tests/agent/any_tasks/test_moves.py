@@ -52,7 +52,7 @@ def test_a_task_counts_a_cause_so_often_at_most():
     codes = MoveCodes()
     step = Step(codes.state(0), 0, 1, 0.0, codes.state(1), False)
     other = step._replace(reward=1.0)
-    counts = counted([step] * (3 * MOST_REPEATS) + [other] * MOST_REPEATS, codes, weight=0.5)
+    counts = counted([step] * (3 * MOST_REPEATS) + [other] * MOST_REPEATS, codes).scaled(0.5)
     moved, paid = codes.pairs(step)
     assert counts.by_cause[moved[0]] == {moved[1]: pytest.approx(0.5 * MOST_REPEATS)}
     assert counts.total(paid[0]) == pytest.approx(0.5 * MOST_REPEATS)

@@ -9,7 +9,6 @@ import gymnasium
 
 from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent
 from lifelore.agent.any_tasks.one_task import AGENTS, episode_seed
-from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
 from lifelore.agent.external_world.life_summary import summarise_life
 from lifelore.agent.external_world.own_agent import OwnAgent, WatchedWorld, check_own_agents, live_own
 from lifelore.agent.external_world.task import task_measures
@@ -66,7 +65,6 @@ def compare_agents(
     if settings.pop("memory", None) is not None:
         raise InputError("compare_agents stores nothing; leave out memory, or use LongLivedAgent.live")
     settings.pop("agent", None)
-    resets = {"reset_by": settings.get("reset_by", "episode")}
     lived = {name: LongLivedAgent(agent=name, **settings) for name in given if name not in own}
     known = LongLivedAgent(**settings)
     tasks: list[dict] = []
@@ -78,21 +76,16 @@ def compare_agents(
                     result = lived[name].live(env, context, stop=stop)
                     found[name] = task_measures(result.returns, result.reached)
                 else:
-                    world = GymnasiumWorld(
-                        env, settings.get("features"), settings.get("state"), seed=known.seed, **resets
-                    )
-                    found[name] = _own(name, own[name], known, world, number, stop or Event())
+                    found[name] = _own(name, own[name], known, env, number, stop or Event())
         tasks.append({"index": number, "context": context, "agents": found})
         if progress:
             progress(number + 1, len(contexts), f"task {number}")
     return {"tasks": tasks, "summary": summarise_life(tasks, list(given))}
 
 
-def _own(
-    name: str, agent: OwnAgent, known: LongLivedAgent, world: GymnasiumWorld, number: int, stop: Event
-) -> dict:
+def _own(name: str, agent: OwnAgent, known: LongLivedAgent, env: gymnasium.Env, number: int, stop: Event) -> dict:
     """The measures of an agent of the user in one task, with the episodes that the others have."""
     learning = known.settings.learning
     seeds = [episode_seed(known.seed, number, episode) for episode in range(learning.episode_cap)]
-    watched = WatchedWorld(name, world, number, seeds, learning.step_cap, known.settings.discount, stop)
+    watched = WatchedWorld(name, known.world(env), number, seeds, learning.step_cap, known.settings.discount, stop)
     return task_measures(live_own(agent, watched), watched.reached)

@@ -64,10 +64,19 @@ class Contest:
 
     def better(self) -> int:
         """The one of the larger recent return; the second is hoped for as long as patience lasts."""
-        seeded, fresh = (float(np.mean(one[-RECENT:])) if one else -np.inf for one in self.returns)
+        seeded, fresh = self._recent
         if len(self.returns[1]) < self.patience:
             fresh = max(fresh, self.hope)
         return int(fresh > seeded)
+
+    def winner(self) -> int:
+        """The one that has reached more, whatever was hoped for."""
+        seeded, fresh = self._recent
+        return int(fresh > seeded)
+
+    @property
+    def _recent(self) -> list[float]:
+        return [float(np.mean(one[-RECENT:])) if one else -np.inf for one in self.returns]
 
     def policy(self) -> Any:
         """What the better one has learnt."""
@@ -76,8 +85,3 @@ class Contest:
     def best(self) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """Contexts of visited states and useful actions, of the better one."""
         return self.players[self.winner()].best()
-
-    def winner(self) -> int:
-        """The one that has reached more, whatever was hoped for."""
-        seeded, fresh = (float(np.mean(one[-RECENT:])) if one else -np.inf for one in self.returns)
-        return int(fresh > seeded)

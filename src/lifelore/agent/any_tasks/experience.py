@@ -102,9 +102,9 @@ class Experience:
     # ---- reading -----------------------------------------------------------------------------------
 
     @property
-    def contexts(self) -> list[int]:
-        """Codes of the contexts of tasks, sorted."""
-        return sorted({context for one in self.types.values() for _, context in one.sightings})
+    def policies(self) -> tuple[str, ...]:
+        """Names of the types that have a policy, sorted."""
+        return tuple(name for name in sorted(self.types) if self.types[name].policy is not None)
 
     def is_hopeless(self, name: str) -> bool:
         """Whether the policy of a type earns about the least that this life has seen: nothing can be lost."""
@@ -135,7 +135,7 @@ class Experience:
 
     def _records(self, news: TaskNews) -> Iterable[Record]:
         for name, belief in news.belief.items():
-            yield _scaled(news.moves, belief).to_record(COUNTS, f"{self.key}/moves/{name}")
+            yield news.moves.scaled(belief).to_record(COUNTS, f"{self.key}/moves/{name}")
             date = np.array([news.date << DATE_BITS | news.context], np.int64)
             yield Record(COUNTS, f"{self.key}/sightings/{name}", VERSION, "add", date, _fixed([belief]))
             for policy, values in news.returns.items():
@@ -234,13 +234,6 @@ class Experience:
         found = (memory.recall(*name) for name in [*keys, (PRIOR_KIND, made.prior.key, PRIOR_VERSION)])
         made.add([record for record in found if record is not None])
         return made
-
-
-def _scaled(moves: OutcomeCounts, weight: float) -> OutcomeCounts:
-    scaled = OutcomeCounts()
-    for cause, outcome, count in moves.items():
-        scaled.add(cause, outcome, weight * count)
-    return scaled
 
 
 def _fixed(values: Any) -> NDArray[np.int64]:

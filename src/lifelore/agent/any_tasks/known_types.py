@@ -1,7 +1,6 @@
 """The known types of a life as recognition reads them: alike ones joined, with what they have shown and where."""
 
 from collections.abc import Sequence
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -49,17 +48,16 @@ class KnownTypes:
     def __init__(self, experience: Experience) -> None:
         self.experience = experience
         names = sorted(experience.types)
-        groups = KnownMoves([experience.types[name].moves for name in names]).joined()
-        self.types = [JoinedType(tuple(names[number] for number in group)) for group in groups]
-        self.moves = KnownMoves([self._moves(one.members) for one in self.types])
+        apart = KnownMoves([experience.types[name].moves for name in names])
+        self.types = [JoinedType(tuple(names[number] for number in group)) for group in apart.joined()]
+        some_joined = len(self.types) < len(names)
+        self.moves = KnownMoves([self._moves(one.members) for one in self.types]) if some_joined else apart
         self.frequency = np.array([experience.causes.total(code) for code in self.moves.codes])
 
     def __len__(self) -> int:
         return len(self.types)
 
     def _moves(self, members: Sequence[str]) -> OutcomeCounts:
-        if len(members) == 1:
-            return self.experience.types[members[0]].moves
         joined = OutcomeCounts()
         for name in members:
             joined.merge(self.experience.types[name].moves)
@@ -74,10 +72,6 @@ class KnownTypes:
 
     def sighted(self) -> dict[tuple[int, int], Array]:
         """Belief in each type at the end of tasks, (n_types,), by date and context in their order."""
-        return self._sighted
-
-    @cached_property
-    def _sighted(self) -> dict[tuple[int, int], Array]:
         rows: dict[tuple[int, int], Array] = {}
         for number, one in enumerate(self.types):
             for name in one.members:

@@ -1,10 +1,7 @@
 """`LongLivedAgent`: an agent that lives in tasks of anyone's Gymnasium environments and becomes good at them."""
 
-import os
-import uuid
-from collections.abc import Callable, Hashable, Iterator
-from contextlib import contextmanager
-from dataclasses import replace
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass, replace
 from pathlib import Path
 from threading import Event
 from types import TracebackType
@@ -22,6 +19,7 @@ from lifelore.agent.any_tasks.reuse import SIGNALS
 from lifelore.agent.any_tasks.task_result import TaskResult
 from lifelore.agent.external_world.context_code import context_code
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld, ResetBy
+from lifelore.agent.life.loop import LivedTask, Stopped, run_life
 from lifelore.agent.live.life_settings import PriorSettings
 from lifelore.agent.long_lived.curiosity import curious_contexts
 from lifelore.core.errors import InputError, NotFoundError, StoreError
@@ -167,7 +165,7 @@ class LongLivedAgent:
         self._experience: Experience | None = None
         self._memory = None if memory is None else open_memory(memory)
         self._revision = ""
-        self._process, self._lived = f"{os.getpid()}-{uuid.uuid4().hex[:12]}", 0
+        self._lived = 0
         self._recall()
 
     def __enter__(self) -> Self:
@@ -204,29 +202,10 @@ class LongLivedAgent:
         StoreError
             Memory cannot store the task, or another process has taken it over.
         """
-        world = self._world(env)
-        code = self._context_code(context)
-        with self._task_number() as number:
-            experience = self._recalled(world.n_actions)
-            task = OneTask(
-                experience, world, self._codes, self.settings, self.abilities, TaskResult(number, context), code,
-                self.seed, stop or Event(),
-            )  # fmt: skip
-            news = task.live(f"{self.robot}.{number}")
-            records = [] if news is None else experience.learn(news)
-            if self._memory is not None and not self._memory.contribute(
-                self.robot,
-                records,
-                process=self._process,
-                seq=self._lived,
-                task=self._document(task),
-                taken=number,
-            ):
-                self._experience = None
-                raise StoreError(f"task {number} took so long that another process took it over; live it again")
-        if self._memory is not None:
-            self._revision = self._memory.revision()
-        self._lived += 1
+        task, lost = _NextTask(self, self.world(env), context), list[str]()
+        run_life(task, 1, memory=self._memory, robot=self.robot, stop=stop, notify=lost.append)
+        if task.result is None:
+            raise StoreError(f"{lost[0]}; live it again") if lost else Stopped
         return task.result
 
     def informed(self, env: gymnasium.Env, type: str, *, episodes: int | None = None) -> TaskResult:
@@ -245,7 +224,7 @@ class LongLivedAgent:
         NotFoundError
             No known type has this name.
         """
-        world = self._world(env)
+        world = self.world(env)
         experience = self._recalled(world.n_actions)
         name = type.split("+")[0]
         if name not in experience.types:
@@ -259,7 +238,8 @@ class LongLivedAgent:
         task.live("")
         return task.result
 
-    def _world(self, env: gymnasium.Env) -> GymnasiumWorld:
+    def world(self, env: gymnasium.Env) -> GymnasiumWorld:
+        """An environment with the states, features and resets of this agent."""
         if not isinstance(env, gymnasium.Env):
             raise InputError(f"env must be a gymnasium.Env, got {type(env).__name__}; pass gymnasium.make(...)")
         return GymnasiumWorld(env, self._features, self._state, seed=self.seed, reset_by=self._reset_by)
@@ -269,15 +249,6 @@ class LongLivedAgent:
         if self._contexts.setdefault(code, context) != context:
             raise InputError(f"contexts {self._contexts[code]!r} and {context!r} share a code; rename one")
         return code
-
-    @contextmanager
-    def _task_number(self) -> Iterator[int]:
-        """The number of a task that no other process of this robot lives."""
-        if self._memory is None:
-            yield self._lived
-            return
-        with self._memory.taken_task(self.robot, process=self._process) as number:
-            yield number
 
     def _recall(self) -> None:
         """Read what is known again where another process has changed the memory."""
@@ -296,9 +267,6 @@ class LongLivedAgent:
             )
         return self._experience
 
-    def _document(self, task: OneTask) -> dict[str, Any]:
-        return {"key": self.key, "world": task.world.name, **task.result.to_dict()}
-
     # ---- what is known -----------------------------------------------------------------------------
 
     @property
@@ -315,8 +283,7 @@ class LongLivedAgent:
     @property
     def policies(self) -> tuple[str, ...]:
         """Names of the known policies: each has the name of the type that it was learnt for."""
-        types = {} if self._experience is None else self._experience.types
-        return tuple(name for name in sorted(types) if types[name].policy is not None)
+        return () if self._experience is None else self._experience.policies
 
     @property
     def prior(self) -> ActionPrior:
@@ -352,3 +319,40 @@ class LongLivedAgent:
     def _label(self, code: int) -> Any:
         known = {} if self._experience is None else self._experience.labels
         return self._contexts.get(code, known.get(code, code))
+
+
+@dataclass
+class _NextTask:
+    """The next task of an agent, as the loop of lives takes it."""
+
+    agent: LongLivedAgent
+    world: GymnasiumWorld
+    context: Hashable
+    result: TaskResult | None = None
+
+    def recall(self) -> None:
+        """Know what other processes have stored."""
+        self.agent._recall()
+
+    def live(self, number: int, seq: int, stop: Event) -> LivedTask:
+        """Live the task and learn from it."""
+        agent = self.agent
+        number = number if agent._memory is not None else agent._lived
+        experience, result = agent._recalled(self.world.n_actions), TaskResult(number, self.context)
+        task = OneTask(
+            experience, self.world, agent._codes, agent.settings, agent.abilities, result,
+            agent._context_code(self.context), agent.seed, stop,
+        )  # fmt: skip
+        news = task.live(f"{agent.robot}.{number}")
+        records = [] if news is None else experience.learn(news)
+        # What memory refuses was not learnt: the agent knows it from `finish` on.
+        agent._experience = None
+        document = {"key": agent.key, "world": self.world.name, **result.to_dict()}
+        return LivedTask(records, document, (result, experience))
+
+    def finish(self, lived: LivedTask) -> None:
+        """Keep what was learnt, which memory has stored."""
+        self.result, self.agent._experience = lived.result
+        self.agent._lived += 1
+        if self.agent._memory is not None:
+            self.agent._revision = self.agent._memory.revision()

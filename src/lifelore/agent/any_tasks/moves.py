@@ -5,7 +5,7 @@ episode ended, is all three. Where moves are noisy, rewards mostly are not: they
 """
 
 import hashlib
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -79,9 +79,6 @@ class OutcomeCounts:
     def __init__(self) -> None:
         self.by_cause: dict[int, dict[int, float]] = {}
 
-    def __len__(self) -> int:
-        return len(self.by_cause)
-
     def add(self, cause: int, outcome: int, weight: float = 1.0) -> None:
         """Count an outcome."""
         row = self.by_cause.setdefault(cause, {})
@@ -102,6 +99,13 @@ class OutcomeCounts:
             for outcome, count in row.items():
                 yield cause, outcome, count
 
+    def scaled(self, weight: float) -> "OutcomeCounts":
+        """The counts times a weight."""
+        scaled = OutcomeCounts()
+        for cause, outcome, count in self.items():
+            scaled.add(cause, outcome, weight * count)
+        return scaled
+
     def to_record(self, kind: str, key: str) -> Record:
         """The counts as a record that memory adds."""
         cells = [(cause << OUTCOME_BITS | outcome, round(count * ONE)) for cause, outcome, count in self.items()]
@@ -117,14 +121,19 @@ class OutcomeCounts:
         return counts
 
 
-def counted(steps: list[Step], codes: MoveCodes, weight: float = 1.0) -> OutcomeCounts:
+def discounted(steps: Sequence[Step], discount: float) -> float:
+    """The return of an episode."""
+    return sum(discount**place * step.reward for place, step in enumerate(steps))
+
+
+def counted(steps: list[Step], codes: MoveCodes) -> OutcomeCounts:
     """Counts of the outcomes of a task's steps; a cause counts `MOST_REPEATS` times at most."""
     counts = OutcomeCounts()
     for step in steps:
         for cause, outcome in codes.pairs(step):
             counts.add(cause, outcome)
     for row in counts.by_cause.values():
-        share = weight * min(1.0, MOST_REPEATS / sum(row.values()))
+        share = min(1.0, MOST_REPEATS / sum(row.values()))
         for outcome in row:
             row[outcome] *= share
     return counts

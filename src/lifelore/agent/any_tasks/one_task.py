@@ -10,7 +10,6 @@ for each episode:
 count moves, returns, useful actions, and the belief in this context                   remember
 """
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from threading import Event
@@ -23,12 +22,13 @@ from lifelore.agent.any_tasks.contest import Contest
 from lifelore.agent.any_tasks.experience import Experience, TaskNews
 from lifelore.agent.any_tasks.known_types import KnownTypes
 from lifelore.agent.any_tasks.learners import FixedPolicy, Player, TableLearner
-from lifelore.agent.any_tasks.moves import MoveCodes, OutcomeCounts, Step, counted
+from lifelore.agent.any_tasks.moves import MoveCodes, OutcomeCounts, Step, counted, discounted
 from lifelore.agent.any_tasks.policies import QTable, StoredPolicy
 from lifelore.agent.any_tasks.recorded_env import RecordedEnv
 from lifelore.agent.any_tasks.reuse import TaskReuse
 from lifelore.agent.any_tasks.task_result import LEARNER, TaskResult
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
+from lifelore.agent.external_world.task import STOP_CHECK, check_reward
 from lifelore.agent.life.loop import Stopped
 from lifelore.agent.live.life_settings import PriorSettings
 from lifelore.core.errors import InputError
@@ -37,8 +37,6 @@ from lifelore.core.streams import stream
 
 NOWHERE = -1
 """A context that no task has."""
-STOP_CHECK = 200
-"""Steps between checks of the stop event."""
 SURE = 0.9
 """Least belief in a type whose policy a task goes on to learn."""
 PATIENCE = 3
@@ -133,9 +131,7 @@ class OneTask:
         self.stop, self.given = stop, given
         self.generator = stream(seed, "task", result.number, "own")
         self.reuse: TaskReuse | None = None
-        self.players: dict[
-            str, Player
-        ] = {}  # policies that ran, by name; each learns from the moves that it makes
+        self.players: dict[str, Player] = {}  # policies that ran; each learns from the moves that it makes
         self.learner: Player | None = None  # explores, once the task is worth learning
         self.goes_on_with: str | None = None  # whose policy the learner goes on with
         self.steps: list[Step] = []
@@ -156,7 +152,7 @@ class OneTask:
     def recognise(self) -> None:
         """Which types does this context usually have?"""
         experience, settings = self.experience, self.settings
-        if not self.abilities.reuse or not any(one.policy is not None for one in experience.types.values()):
+        if not self.abilities.reuse or not experience.policies:
             return
         known = KnownTypes(experience)
         prior = known.type_prior().prior(self.context if self.abilities.context else NOWHERE, self.result.number)
@@ -193,14 +189,13 @@ class OneTask:
             self.strange += not self.running.knows(code)
             action = self.running.act(code, context, explore=self.learner is not None)
             state, reward, ended, truncated = self.world.step(action)
-            if not math.isfinite(reward):
-                raise InputError(f"reward must be a finite number, got {reward} for action {action}; correct step")
+            check_reward(reward, action, number)
             steps.append(Step(code, context, action, reward, self.codes.state(state), ended))
             self.take_in(steps[-1])
             whole = whole and (began == LEARNER or (self.learner is None and self.policy == began))
             if ended or truncated:
                 break
-        earned = sum(self.settings.discount**place * step.reward for place, step in enumerate(steps))
+        earned = discounted(steps, self.settings.discount)
         self.running.end_episode(steps, earned, ended)
         self.end_episode(steps, earned, began, whole)
 
@@ -274,10 +269,10 @@ class OneTask:
         """The policy of a name, which learns in this task from the moves that it makes."""
         if name not in self.players:
             known = self.experience.types[name]
-            is_table = isinstance(known.policy, QTable)
-            self.players[name] = (
-                self.table(known.policy, known.moves) if is_table else self.fixed(self.known_policy(name))
-            )
+            if isinstance(known.policy, QTable):
+                self.players[name] = self.table(known.policy, known.moves)
+            else:
+                self.players[name] = self.fixed(self.known_policy(name))
         return self.players[name]
 
     def table(self, start: QTable | None, moves: OutcomeCounts | None) -> TableLearner:
@@ -301,7 +296,7 @@ class OneTask:
             played.append((steps, earned, ended))
             self.end_episode(steps, earned, LEARNER, whole=False)
 
-        env = RecordedEnv(self.world, self.codes, self.settings.discount, record)
+        env = RecordedEnv(self.world, self.codes, self.result.number, self.settings.discount, record)
         made = self.fixed(learner(env, self.experience.prior, start))
         for steps, earned, ended in played:
             made.end_episode(steps, earned, ended)

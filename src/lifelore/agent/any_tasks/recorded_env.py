@@ -5,8 +5,9 @@ from typing import Any
 
 import gymnasium
 
-from lifelore.agent.any_tasks.moves import MoveCodes, Step
+from lifelore.agent.any_tasks.moves import MoveCodes, Step, discounted
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
+from lifelore.agent.external_world.task import check_reward
 
 
 class RecordedEnv(gymnasium.Wrapper):
@@ -17,6 +18,7 @@ class RecordedEnv(gymnasium.Wrapper):
     world : GymnasiumWorld
         Over the environment.
     codes : MoveCodes
+    task : int
     discount : float
     record : callable
         Called as ``record(steps, earned, ended)`` after each episode.
@@ -26,11 +28,12 @@ class RecordedEnv(gymnasium.Wrapper):
         self,
         world: GymnasiumWorld,
         codes: MoveCodes,
+        task: int,
         discount: float,
         record: Callable[[list[Step], float, bool], None],
     ) -> None:
         super().__init__(world.env)
-        self.world, self.codes, self.discount, self.record = world, codes, discount, record
+        self.world, self.codes, self.task, self.discount, self.record = world, codes, task, discount, record
         self._steps: list[Step] = []
 
     def reset(self, **options: Any) -> tuple[Any, dict]:
@@ -42,13 +45,12 @@ class RecordedEnv(gymnasium.Wrapper):
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict]:
         """Take a step, and record it."""
-        state, context = (
-            self.codes.state(self._state),
-            self.codes.states[self.world.context(self._state, self._reward)],
-        )
+        state = self.codes.state(self._state)
+        context = self.codes.states[self.world.context(self._state, self._reward)]
         observation, reward, terminated, truncated, info = self.env.step(action)
         self._state, self._reward = self.world.see(observation), float(reward)
         number = int(action) - self.world.first_action
+        check_reward(self._reward, number, self.task)
         step = Step(state, context, number, self._reward, self.codes.state(self._state), bool(terminated))
         self._steps.append(step)
         if terminated or truncated:
@@ -57,6 +59,5 @@ class RecordedEnv(gymnasium.Wrapper):
 
     def _finish(self, ended: bool) -> None:
         if self._steps:
-            earned = sum(self.discount**place * step.reward for place, step in enumerate(self._steps))
-            self.record(self._steps, earned, ended)
+            self.record(self._steps, discounted(self._steps, self.discount), ended)
             self._steps = []

@@ -7,7 +7,6 @@ alarm  ← what is seen fits no known type, at a stated rate of false alarms
 """
 
 import math
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,13 +32,6 @@ MOST_AGAINST = 1.0, 3.0
 """Most nats by which the return of one episode speaks for or against another type."""
 SIGNALS = ("moves", "returns")
 """What recognition goes by."""
-
-
-class Alarm(Protocol):
-    """An alarm that no known type fits."""
-
-    @property
-    def alarm(self) -> bool: ...
 
 
 class TaskReuse:
@@ -70,7 +62,7 @@ class TaskReuse:
         seed: int,
     ) -> None:
         self.known = known
-        self.policies = tuple(name for name in sorted(experience.types) if experience.types[name].policy)
+        self.policies = experience.policies
         self.names = tuple(one.name for one in known.types)
         self.by_moves = signals == "moves"
         likelihood = LikelihoodSignal(self._log_likelihood, len(known), len(self.policies))
@@ -83,26 +75,21 @@ class TaskReuse:
             prior,
         )
         static, generator = TypeDynamics.static(), stream(seed, "any tasks", "alarm", experience.n_tasks)
-        self.detector: NoveltyDetector | None = None
+        self.alarm: NoveltyAlarm | NoveltyDetector
         if self.by_moves:
             # Twice the usual number of causes: tasks of unknown types try more.
             horizon = 2 * known.frequency.sum() / max(experience.n_tasks, 1)
-            self.alarm: Alarm = NoveltyAlarm(
-                known.moves.laws,
-                known.moves.broad,
-                known.moves.kinds,
-                known.moves.known_apart,
-                prior,
-                known.frequency,
-                horizon,
-                false_alarm,
+            moves, frequency = known.moves, known.frequency
+            self.alarm = NoveltyAlarm(
+                moves.laws, moves.broad, moves.kinds, moves.known_apart, prior, frequency, horizon, false_alarm,
                 generator,
-            )
+            )  # fmt: skip
         else:
             n_tasks = max(1000, int(np.ceil(LEAST_ALARMS / false_alarm)))
             settings = {"horizon": n_episodes, "n_tasks": n_tasks, "seed": generator, "dynamics": static}
-            self.alarm = self.detector = NoveltyDetector.calibrate(library, false_alarm=false_alarm, **settings)
-        self.agent = BayesianPolicyReuse(library, dynamics=static, seed=seed, novelty=self.detector)
+            self.alarm = NoveltyDetector.calibrate(library, false_alarm=false_alarm, **settings)
+        detector = self.alarm if isinstance(self.alarm, NoveltyDetector) else None
+        self.agent = BayesianPolicyReuse(library, dynamics=static, seed=seed, novelty=detector)
         self._own: dict[int, Array] = {}  # outcomes of this task by cause
         self._short: list[float] = []
         self._ran: list[tuple[int, float]] = []
@@ -137,9 +124,8 @@ class TaskReuse:
 
     def observe(self, pairs: Pairs) -> None:
         """Take in a move, by codes; another policy runs from here where another type is believed most."""
-        if not self.by_moves:
+        if not isinstance(self.alarm, NoveltyAlarm):
             return
-        assert isinstance(self.alarm, NoveltyAlarm), "moves have an alarm of their own"
         for cause, outcome in pairs:
             found = self.known.moves.place(cause, outcome)
             if found is not None:

@@ -1,10 +1,10 @@
 """Lets an agent of the user live the tasks of `live_in`, and measures it from outside."""
 
-import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from threading import Event
 from typing import Any
 
+from lifelore.agent.external_world.task import check_reward
 from lifelore.agent.life.loop import Stopped
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import World
@@ -70,11 +70,7 @@ class WatchedWorld:
                 "steps long, got a further step; reset the world with the next seed"
             )
         state, reward, terminated, truncated = self.world.step(action)
-        if not math.isfinite(reward):
-            raise InputError(
-                f"reward must be a finite number, got {reward} for action {action} in task {self.task}; "
-                "correct the world's step"
-            )
+        check_reward(reward, action, self.task)
         self.returns[-1] += self._factor * reward
         self._factor *= self.discount
         self._steps_left = 0 if terminated or truncated else self._steps_left - 1

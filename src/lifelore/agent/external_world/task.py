@@ -117,7 +117,7 @@ class ExternalTask:
             code = self.codes[self.world.context(state, reward)]
             action = learner.act(state, code, epsilon)
             following, reward, terminated, truncated = self.world.step(action)
-            self._check_reward(reward, action)
+            check_reward(reward, action, self.index)
             future = 0.0 if terminated else self.discount * learner.value(following)
             q = learner.q[state]
             q[0, action] += self.learning.learning_rate * (reward + future - q[0, action])
@@ -130,12 +130,14 @@ class ExternalTask:
         learner.returns.add(steps, total, terminated)
         return terminated and reward > 0
 
-    def _check_reward(self, reward: float, action: int) -> None:
-        if not math.isfinite(reward):
-            raise InputError(
-                f"reward must be a finite number, got {reward} for action {action} in task {self.index}; "
-                "correct the world's step"
-            )
+
+def check_reward(reward: float, action: int, task: int) -> None:
+    """InputError if a reward is not finite."""
+    if not math.isfinite(reward):
+        raise InputError(
+            f"reward must be a finite number, got {reward} for action {action} in task {task}; "
+            "correct the world's step"
+        )
 
 
 def task_measures(returns: Sequence[float], reached: bool) -> dict:
