@@ -237,14 +237,15 @@ class _ExternalLife:
         self.name = str(getattr(world, "name", type(world).__name__))
         self.tasks_before = memory.tasks(settings.robot) if memory else 0
         self.codes, self.states, self.finished = ContextCodes(), set[Hashable](), list[dict]()
-        self.recall()
-        self.novelty, self.differences = ContextNovelty(self.prior.contexts.tolist()), TaskDifferences()
+        self.differences = TaskDifferences()
         self.labelled = set[int]()  # contexts whose features this life has stored
 
     def recall(self) -> None:
         """Read the prior of the key; an empty one without a memory."""
         alpha0 = self.settings.guidance.alpha0
         self.prior = recalled_prior(self.memory, self.settings.key, self.world.n_actions, alpha0)
+        if not self.finished:
+            self.novelty = ContextNovelty(self.prior.contexts.tolist())
 
     def live(self, number: int, seq: int, stop: Event) -> LivedTask:
         """Live a task with each agent."""
