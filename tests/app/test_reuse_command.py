@@ -8,9 +8,9 @@ import sys
 import numpy as np
 import pytest
 
-from lifelore.agent.reuse.fit import fit
-from lifelore.agent.reuse.one_user import choose, update
-from lifelore.agent.reuse.study import open_study
+from lifelore.agent.personalise.fit.fit import fit
+from lifelore.agent.personalise.decisions import choose, update
+from lifelore.agent.personalise.study import open_study
 from lifelore.memory import open_memory
 
 
@@ -289,8 +289,8 @@ print(status, *sorted(sys.modules), file=sys.stderr)
 
 HEAVY = {
     "numba", "scipy", "sklearn", "matplotlib", "networkx", "pandas", "gymnasium", "sqlalchemy", "psycopg",
-    "joblib", "rich.console", "lifelore.agent.live", "lifelore.agent.reuse.fit", "lifelore.agent.reuse.log",
-    "lifelore.agent.reuse.report", "lifelore.domains", "reproduction.engine", "lifelore.figures",
+    "joblib", "rich.console", "lifelore.agent.live", "lifelore.agent.personalise.fit.fit", "lifelore.agent.personalise.log.log",
+    "lifelore.agent.personalise.report", "lifelore.domains", "reproduction.engine", "lifelore.figures",
     "lifelore.interaction.selection.tie_kernels", "lifelore.perception",
 }  # fmt: skip
 """Modules that cost a start time and that a choice does not need."""
@@ -305,5 +305,5 @@ def test_choosing_and_updating_import_nothing_heavy(reuse, log, tmp_path, model)
         done = subprocess.run(command, capture_output=True, text=True, check=True)
         status, *imported = done.stderr.split()
         assert status == "0"
-        assert {"numpy", "sqlite3", "lifelore.agent.reuse.one_user"} < set(imported)
+        assert {"numpy", "sqlite3", "lifelore.agent.personalise.decisions"} < set(imported)
         assert HEAVY & set(imported) == set()

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from lifelore.agent.reuse.log_format import LogFormat
-    from lifelore.agent.reuse.study import Study
+    from lifelore.agent.personalise.log.log_format import LogFormat
+    from lifelore.agent.personalise.study import Study
     from lifelore.memory import Memory
 
 reuse = typer.Typer(
@@ -103,8 +103,8 @@ def fit(
 
     Use it first, and again when there are more outcomes.
     """
-    from lifelore.agent.reuse.fit import FitSettings
-    from lifelore.agent.reuse.fit import fit as fitted
+    from lifelore.agent.personalise.fit.fit import FitSettings
+    from lifelore.agent.personalise.fit.fit import fit as fitted
     from lifelore.app.console import print_json
     from lifelore.interaction.selection import DEFAULT_RULE
     from lifelore.memory import open_memory
@@ -140,7 +140,7 @@ def warm(
     The library stays as it is. Use it so that users of another system do not start as strangers. The same log
     again changes nothing.
     """
-    from lifelore.agent.reuse.warm import warm as warmed
+    from lifelore.agent.personalise.past import warm as warmed
     from lifelore.app.console import print_json
 
     form = log_format(
@@ -173,8 +173,8 @@ def choose(
 ) -> None:
     """Choose a policy for a user, and store the decision."""
     from lifelore.agent.reuse.availability import listed_policies
-    from lifelore.agent.reuse.log_format import parse_features
-    from lifelore.agent.reuse.one_user import choose as chosen
+    from lifelore.agent.personalise.log.log_format import parse_features
+    from lifelore.agent.personalise.decisions import choose as chosen
 
     numbers = parse_features(features) if features else None
     with _opened(name, where) as (memory, study):
@@ -204,8 +204,8 @@ def update(
     as_json: AsJson = False,
 ) -> None:
     """Store the outcome of a decision, once, at any later time."""
-    from lifelore.agent.reuse.log_columns import read_outcome
-    from lifelore.agent.reuse.one_user import update as updated
+    from lifelore.agent.personalise.log.log_columns import read_outcome
+    from lifelore.agent.personalise.decisions import update as updated
 
     value = read_outcome(outcome)
     with _opened(name, where) as (memory, study):
@@ -242,7 +242,7 @@ def report(
 
     It compares with the control group, with the best single policy and with the incumbent.
     """
-    from lifelore.agent.reuse.report import report as reported
+    from lifelore.agent.personalise.report import report as reported
     from lifelore.app.console import print_json
 
     with _opened(name, where) as (memory, study):
@@ -267,7 +267,7 @@ def retire(
     as_json: AsJson = False,
 ) -> None:
     """Stop choosing a policy."""
-    from lifelore.agent.reuse.one_user import retire as retired
+    from lifelore.agent.personalise.decisions import retire as retired
 
     with _opened(name, where) as (memory, study):
         study = retired(memory, study, policy)
@@ -285,7 +285,7 @@ def add(
 
     A new policy is first given to the control group only.
     """
-    from lifelore.agent.reuse.one_user import add as added
+    from lifelore.agent.personalise.decisions import add as added
 
     with _opened(name, where) as (memory, study):
         study = added(memory, study, policy)
@@ -302,7 +302,7 @@ def forget(
     as_json: AsJson = False,
 ) -> None:
     """Delete the decisions, outcomes and belief of a user for ever."""
-    from lifelore.agent.reuse.one_user import forget as forgot
+    from lifelore.agent.personalise.decisions import forget as forgot
 
     with _opened(name, where) as (memory, study):
         count = forgot(memory, study, user)
@@ -311,7 +311,7 @@ def forget(
 
 @contextmanager
 def _opened(name: str, where: str | None) -> "Iterator[tuple[Memory, Study]]":
-    from lifelore.agent.reuse.study import open_study
+    from lifelore.agent.personalise.study import open_study
     from lifelore.memory import open_memory
 
     with open_memory(where, durable=True, create=False) as memory:
@@ -328,7 +328,7 @@ def log_format(
     missing_policy: str,
     features: list[str] | None,
 ) -> "LogFormat":
-    from lifelore.agent.reuse.log_format import LogFormat, parse_columns
+    from lifelore.agent.personalise.log.log_format import LogFormat, parse_columns
 
     names = parse_columns(columns or [])
     columns_of_numbers = tuple(name.strip() for word in features or () for name in word.split(","))

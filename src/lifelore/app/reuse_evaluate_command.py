@@ -90,9 +90,9 @@ def evaluate(
     """
     from contextlib import nullcontext
 
-    from lifelore.agent.reuse.evaluate import EvaluateSettings
-    from lifelore.agent.reuse.evaluate import evaluate as evaluated
-    from lifelore.agent.reuse.target_estimates import ESTIMATORS
+    from lifelore.agent.personalise.evaluate.evaluate import EvaluateSettings
+    from lifelore.agent.personalise.evaluate.evaluate import evaluate as evaluated
+    from lifelore.agent.personalise.evaluate.target_estimates import ESTIMATORS
     from lifelore.app.console import print_json
     from lifelore.core.errors import NotFoundError
     from lifelore.memory import open_memory

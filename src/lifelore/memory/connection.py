@@ -10,6 +10,8 @@ from functools import cache
 from typing import Any
 
 Parameters = Mapping[str, Any] | Sequence[Any]
+MANY = 10_000
+"""Values in a list of a statement, and rows in a part of a stream: more need more main memory."""
 
 
 class Connection:
@@ -54,6 +56,40 @@ class Connection:
         else:
             with self._driver.cursor() as cursor:
                 cursor.executemany(_for_psycopg(sql), rows)
+
+    def matching(self, sql: str, values: Sequence[Any], parameters: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
+        """All rows of a statement whose ``{many}``, behind its other parameters, stands for a list of values."""
+        rows: list[tuple[Any, ...]] = []
+        for at in range(0, len(values), MANY):
+            part = values[at : at + MANY]
+            text = sql.replace("{many}", ", ".join("?" * len(part)))
+            rows += self.execute(text, [*parameters, *part]).fetchall()
+        return rows
+
+    def insert(self, table: str, columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
+        """Insert new rows; PostgreSQL copies them."""
+        if self.is_sqlite:
+            places = ", ".join("?" * len(columns))
+            self.execute_many(f"INSERT INTO {table} ({', '.join(columns)}) VALUES ({places})", rows)
+            return
+        self.statements += 1
+        with self._driver.cursor().copy(f"COPY {table} ({', '.join(columns)}) FROM STDIN") as copy:
+            for row in rows:
+                copy.write_row(row)
+
+    def stream(self, sql: str, parameters: Sequence[Any] = ()) -> Iterator[list[tuple[Any, ...]]]:
+        """The rows of a statement in parts of bounded size, inside a transaction."""
+        if self.is_sqlite:
+            cursor = self.execute(sql, parameters)
+        else:
+            self.statements += 1
+            cursor = self._driver.cursor(name="lifelore_stream")
+            cursor.execute(_for_psycopg(sql), parameters)
+        try:
+            while rows := cursor.fetchmany(MANY):
+                yield rows
+        finally:
+            cursor.close()
 
     def first(self, sql: str, parameters: Parameters = ()) -> tuple[Any, ...] | None:
         """The first row; None where there is none."""

@@ -17,6 +17,7 @@ from lifelore.memory.export import export
 from lifelore.memory.folding import LoreKey, lift
 from lifelore.memory.location import Server, locate
 from lifelore.memory.record_rules import check_name, check_whole
+from lifelore.memory.studies import Studies
 from lifelore.memory.store import Store, check_source, open_existing, open_file, open_postgresql, open_source
 
 NAMED = 10
@@ -96,6 +97,11 @@ class Memory:
     def close(self) -> None:
         """Close the file or connection; a second call does nothing."""
         self._store.close()
+
+    @property
+    def studies(self) -> Studies:
+        """The studies of personalisation, which are tables of their own."""
+        return Studies(self._store)
 
     @property
     def location(self) -> str:
@@ -208,18 +214,23 @@ class Memory:
                 self.give_back_task(robot, number, process=process)
             raise
 
-    def together(self) -> AbstractContextManager[None]:
+    def together(self, *, rows: bool = False) -> AbstractContextManager[None]:
         """A block in which all that this thread reads and stores is one transaction, stored when the block ends.
 
         Many small contributions then wait for the disk once. A contribution that fails inside the block leaves
         the others as they are. An error that leaves the block undoes all of them.
+
+        Parameters
+        ----------
+        rows : bool
+            Whether the block changes rows of studies alone. On a PostgreSQL server such blocks run side by side.
 
         Raises
         ------
         StoreError
             The end of the block: the disk refuses; nothing of the block was stored.
         """
-        return self._store.together()
+        return self._store.together(rows=rows)
 
     def recall(self, kind: str, key: str, version: int, *, slots: tuple[int, int] = EVERY_SLOT) -> Record | None:
         """The merged record of all robots, slots ascending, with the newest ``about``; None if there is none.
@@ -377,16 +388,21 @@ class Memory:
             The robot is forgotten, but another process reads the file, so that the log still holds the bytes.
         """
         with self._store.writing() as conn:
-            forgotten = ledger.entries(conn, robot)
-            if not forgotten:
+            if not ledger.entries(conn, robot):
                 known = [entry["robot"] for entry in overview.robots(conn)]
                 named = ", ".join(known[:NAMED]) or "none"
                 more = f" and {len(known) - NAMED:,} more" if len(known) > NAMED else ""
                 raise NotFoundError(f"robot {robot!r} has contributed nothing here; known robots: {named}{more}")
+        return self.forget_all([robot])
+
+    def forget_all(self, robots: Sequence[str]) -> int:
+        """`forget` several robots in one transaction; those that have contributed nothing are passed over."""
+        with self._store.writing() as conn:
+            forgotten = [entry for robot in robots for entry in ledger.entries(conn, robot)]
             ledger.add_tombstones(conn, [entry.identity for entry in forgotten])
-            leases.forget(conn, robot)
-            stale = merging.delete(conn, [entry.number for entry in forgotten])
-            cache.rebuild(conn, stale)
+            for robot in robots:
+                leases.forget(conn, robot)
+            cache.rebuild(conn, merging.delete(conn, [entry.number for entry in forgotten]))
         self._store.empty_log()
         return len(forgotten)
 

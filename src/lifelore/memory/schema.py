@@ -69,6 +69,33 @@ _STAMPS = """
 CREATE INDEX lifelore_forgotten_records_stamp ON lifelore_forgotten_records (stamp)
 """
 
+_STUDIES = """
+CREATE TABLE lifelore_studies (
+    number {serial}, name {text} NOT NULL UNIQUE, state {text} NOT NULL, version {int} NOT NULL,
+    revision {int} NOT NULL);
+CREATE TABLE lifelore_study_versions (
+    study {int} NOT NULL, version {int} NOT NULL, created {int} NOT NULL, about {text} NOT NULL, content {blob} NOT NULL,
+    PRIMARY KEY (study, version));
+CREATE TABLE lifelore_study_users (
+    number {serial}, study {int} NOT NULL, name {text} NOT NULL, context {text}, features {text}, type {text},
+    fitted {int} NOT NULL, version {int} NOT NULL, state {blob},
+    personal {int} NOT NULL, personal_sum {real} NOT NULL, control {int} NOT NULL, control_sum {real} NOT NULL,
+    UNIQUE (study, name));
+CREATE TABLE lifelore_study_past (
+    study {int} NOT NULL, id {blob} NOT NULL, person {int} NOT NULL, policy {text} NOT NULL, outcome {real} NOT NULL,
+    time {int} NOT NULL, fitted {int} NOT NULL, PRIMARY KEY (study, id)){clustered};
+CREATE INDEX lifelore_study_past_person ON lifelore_study_past (study, person);
+CREATE TABLE lifelore_decisions (
+    study {int} NOT NULL, id {blob} NOT NULL, person {int} NOT NULL, policy {text} NOT NULL,
+    probability {real} NOT NULL, control {int} NOT NULL, version {int} NOT NULL, context {text}, available {text},
+    request {text}, time {int} NOT NULL, outcome {real}, ended {int},
+    PRIMARY KEY (study, id)){clustered};
+CREATE INDEX lifelore_decisions_person ON lifelore_decisions (study, person);
+CREATE UNIQUE INDEX lifelore_decisions_request ON lifelore_decisions (study, person, request)
+    WHERE request IS NOT NULL;
+CREATE INDEX lifelore_decisions_control ON lifelore_decisions (study, policy, person, outcome) WHERE control = 1
+"""
+
 MIGRATIONS = {
     1: ("contributions, tombstones and cache", _FIRST),
     2: ("forgotten records", _SECOND),
@@ -76,6 +103,7 @@ MIGRATIONS = {
     4: ("states beside the cells, and the only key of a contribution beside it", _TOGETHER),
     5: ("leases of tasks", _LEASES),
     6: ("the last stamp of forgotten records without a look at all of them", _STAMPS),
+    7: ("studies: library versions, users, their past, decisions with outcomes", _STUDIES),
 }
 LATEST = max(MIGRATIONS)
 FORGOTTEN_RECORDS = 2
@@ -95,11 +123,11 @@ _HAS_NOTES = {
 # PostgreSQL must compare names byte by byte, as SQLite and Python do, so that the order is the same.
 _WORDS = {
     "sqlite": {
-        "int": "INTEGER", "text": "TEXT", "blob": "BLOB", "serial": "INTEGER PRIMARY KEY AUTOINCREMENT",
+        "int": "INTEGER", "text": "TEXT", "blob": "BLOB", "real": "REAL", "serial": "INTEGER PRIMARY KEY AUTOINCREMENT",
         "whole": " CHECK (typeof(value) = 'integer')", "clustered": " WITHOUT ROWID",
     },
     "postgresql": {
-        "int": "BIGINT", "text": 'TEXT COLLATE "C"', "blob": "BYTEA",
+        "int": "BIGINT", "text": 'TEXT COLLATE "C"', "blob": "BYTEA", "real": "DOUBLE PRECISION",
         "serial": "BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY", "whole": "", "clustered": "",
     },
 }  # fmt: skip

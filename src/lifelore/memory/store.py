@@ -70,8 +70,15 @@ class Store:
             yield conn
 
     @contextmanager
-    def writing(self) -> Iterator[Connection]:
-        """The only writing transaction; it is committed completely, or after an error not at all."""
+    def writing(self, *, rows: bool = False) -> Iterator[Connection]:
+        """A writing transaction; it is committed completely, or after an error not at all.
+
+        Parameters
+        ----------
+        rows : bool
+            Whether it locks the rows that it changes by itself. On PostgreSQL several such transactions run at the
+            same time; every other one is the only one. SQLite has one writer at a time.
+        """
         if (joint := self._joint) is not None:
             with one_line_refusals(self.location):
                 joint.control("SAVEPOINT lifelore_part")
@@ -87,7 +94,8 @@ class Store:
                 conn.control("BEGIN IMMEDIATE")
             else:
                 wait = f"SET LOCAL lock_timeout = '{BUSY_SECONDS}s'"
-                conn.control(f"BEGIN; {wait}; SELECT pg_advisory_xact_lock({_WRITERS_LOCK})")
+                alone = "" if rows else f"; SELECT pg_advisory_xact_lock({_WRITERS_LOCK})"
+                conn.control(f"BEGIN; {wait}{alone}")
             yield conn
             conn.control("COMMIT")
 
@@ -115,9 +123,9 @@ class Store:
                 )
 
     @contextmanager
-    def together(self) -> Iterator[None]:
-        """A single writing transaction for all that this thread reads and writes inside the block."""
-        with self.writing() as conn:
+    def together(self, *, rows: bool = False) -> Iterator[None]:
+        """A single transaction, as `writing`, for all that this thread reads and writes inside the block."""
+        with self.writing(rows=rows) as conn:
             self._own.joint = conn
             try:
                 yield

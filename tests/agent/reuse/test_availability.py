@@ -8,9 +8,9 @@ import pytest
 
 from lifelore.agent.reuse.availability import KIND, listed_policies
 from lifelore.agent.reuse.history import histories, open_history, user_key
-from lifelore.agent.reuse.one_user import add, choose, forget, retire, update
-from lifelore.agent.reuse.report import report
-from lifelore.agent.reuse.study import Study
+from lifelore.agent.personalise.decisions import add, choose, forget, retire, update
+from lifelore.agent.personalise.report import report
+from lifelore.agent.personalise.study import Study
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import RULES, rule_named

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.agent.reuse import log_lines
-from lifelore.agent.reuse.log import read_log, read_outcome
-from lifelore.agent.reuse.log_format import LogFormat, parse_columns
+from lifelore.agent.personalise.log.log import read_log, read_outcome
+from lifelore.agent.personalise.log.log_format import LogFormat, parse_columns
 from lifelore.core.errors import InputError, NotFoundError
 
 HEAD = "user,policy,outcome\n"

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lifelore.agent.reuse.fit import FitSettings, fit
-from lifelore.agent.reuse.held_out import COUNTED, LEAST, MOST_SHOWN, HeldOut
-from lifelore.agent.reuse.log import read_log
+from lifelore.agent.personalise.fit.fit import FitSettings, fit
+from lifelore.agent.personalise.fit.held_out import COUNTED, LEAST, MOST_SHOWN, HeldOut
+from lifelore.agent.personalise.log.log import read_log
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes

@@ -9,11 +9,11 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from lifelore.agent.reuse.fit import FitSettings, fit
+from lifelore.agent.personalise.fit.fit import FitSettings, fit
 from lifelore.agent.reuse.history import histories, user_key
-from lifelore.agent.reuse.log import read_log
-from lifelore.agent.reuse.one_user import add, choose, forget, retire, update
-from lifelore.agent.reuse.study import Study, open_study
+from lifelore.agent.personalise.log.log import read_log
+from lifelore.agent.personalise.decisions import add, choose, forget, retire, update
+from lifelore.agent.personalise.study import Study, open_study
 from lifelore.agent.reuse.user_belief import open_belief
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
@@ -268,8 +268,8 @@ def test_many_at_once_for_one_user_get_a_decision_each(memory):
 
 KILLED = """
 import sys
-from lifelore.agent.reuse.one_user import choose, update
-from lifelore.agent.reuse.study import open_study
+from lifelore.agent.personalise.decisions import choose, update
+from lifelore.agent.personalise.study import open_study
 from lifelore.memory import open_memory
 with open_memory(sys.argv[1], durable=True) as memory:
     study = open_study(memory, "s")
@@ -431,7 +431,7 @@ def test_users_have_names(user, memory):
 
 def test_the_log_of_the_fit_can_be_read_by_it(memory, tmp_path):
     """What `report` writes is a log."""
-    from lifelore.agent.reuse.report import report
+    from lifelore.agent.personalise.report import report
 
     study = study_of()
     for user in ("ann", "bo"):

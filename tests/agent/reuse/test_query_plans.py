@@ -4,8 +4,8 @@ import re
 
 import pytest
 
-from lifelore.agent.reuse.one_user import choose, forget, update
-from lifelore.agent.reuse.study import Study
+from lifelore.agent.personalise.decisions import choose, forget, update
+from lifelore.agent.personalise.study import Study
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.memory import open_memory
 from lifelore.memory.connection import Connection

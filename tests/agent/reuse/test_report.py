@@ -8,11 +8,11 @@ import pytest
 from scipy import stats
 
 from lifelore.agent.reuse import report as reuse_report
-from lifelore.agent.reuse.fit import FitSettings, fit
+from lifelore.agent.personalise.fit.fit import FitSettings, fit
 from lifelore.agent.reuse.history import histories
-from lifelore.agent.reuse.one_user import choose, forget, update
-from lifelore.agent.reuse.report import COLUMNS, report
-from lifelore.agent.reuse.study import Study, open_study
+from lifelore.agent.personalise.decisions import choose, forget, update
+from lifelore.agent.personalise.report import COLUMNS, report
+from lifelore.agent.personalise.study import Study, open_study
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.figures.reuse_report import draw_reuse_report
 from lifelore.interaction.library.policy_library import PolicyLibrary

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from lifelore.agent.reuse.one_user import choose, update
-from lifelore.agent.reuse.study import Study
+from lifelore.agent.personalise.decisions import choose, update
+from lifelore.agent.personalise.study import Study
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.memory import open_memory
 

@@ -17,7 +17,7 @@ import pytest
 
 from lifelore.agent.personalise.panel import Panel
 from lifelore.agent.reuse.history import open_history, parse_identifier
-from lifelore.agent.reuse.study import open_study
+from lifelore.agent.personalise.study import open_study
 from lifelore.memory import open_memory
 
 SOAK_KILLS = int(os.environ.get("LIFELORE_SOAK_KILLS", "50"))

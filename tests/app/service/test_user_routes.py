@@ -2,8 +2,8 @@
 
 import math
 
-from lifelore.agent.reuse.one_user import choose
-from lifelore.agent.reuse.study import open_study
+from lifelore.agent.personalise.decisions import choose
+from lifelore.agent.personalise.study import open_study
 from lifelore.interaction.beliefs.learnt_dynamics import HAZARD_WEIGHTS, HAZARDS
 from lifelore.memory import open_memory
 

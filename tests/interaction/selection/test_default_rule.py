@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.agent.reuse.fit import FitSettings
-from lifelore.agent.reuse.study import Study
+from lifelore.agent.personalise.fit.fit import FitSettings
+from lifelore.agent.personalise.study import Study
 from lifelore.app import reuse_command
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse

@@ -4,9 +4,9 @@ import shutil
 
 import pytest
 
-from lifelore.agent.reuse.one_user import choose, update
-from lifelore.agent.reuse.report import report
-from lifelore.agent.reuse.study import open_study
+from lifelore.agent.personalise.decisions import choose, update
+from lifelore.agent.personalise.report import report
+from lifelore.agent.personalise.study import open_study
 from lifelore.memory import open_memory
 
 from .test_stored import assert_same, expected

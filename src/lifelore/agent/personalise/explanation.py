@@ -1,17 +1,20 @@
 """The evidence behind the belief about a user of a study: why the next policy is likely to be chosen."""
 
+from collections import deque
 from typing import Any
 
 import numpy as np
 
-from lifelore.agent.reuse.history import read_decisions, user_key
-from lifelore.agent.reuse.log_columns import check_word
-from lifelore.agent.reuse.one_user import policy_odds
-from lifelore.agent.reuse.study import Study
-from lifelore.agent.reuse.user_belief import belief_anew, open_belief
+from lifelore.agent.personalise.beliefs import start_at_priors
+from lifelore.agent.personalise.decisions import identifier
+from lifelore.agent.personalise.log.log_columns import check_word
+from lifelore.agent.personalise.study import Study, known_users
 from lifelore.core.errors import NotFoundError
-from lifelore.interaction.reuse.explanation import relative_evidence
+from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, Evidence, relative_evidence
+from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
+from lifelore.interaction.selection.choice import available_mask
 from lifelore.memory import Memory
+from lifelore.memory.study_rows import DecisionRow, UserRow
 
 LAST_DECISIONS = 16
 """Number of last decisions in an explanation."""
@@ -25,7 +28,8 @@ def explain(memory: Memory, study: Study, user: str) -> dict[str, Any]:
     dict
         ``user``, ``study``; ``decisions`` so far, ``open`` ones without an outcome; ``control``; ``context`` and
         ``features`` as stored; ``belief`` by type, most likely first; ``expected`` outcome and ``probabilities``
-        of the next choice by policy in use (of the control group: None); ``surprise`` in nats; ``evidence``: for
+        of the next choice by policy in use (of the control group: None); ``surprise`` of the outcomes in nats (the
+        sum of −log evidence; it depends on the noise, and is no sign of a new type); ``evidence``: for
         each of the last outcomes its ``policy``, ``log_evidence``, and by type the log likelihood less that of the
         best type (None: impossible); ``last``: the last decisions with their logged probability and outcome.
 
@@ -34,49 +38,81 @@ def explain(memory: Memory, study: Study, user: str) -> dict[str, Any]:
     NotFoundError
         Nothing is stored of the user.
     """
-    check_word("user", user)
-    key = user_key(study.name, user)
-    known = open_belief(memory, study, key, user)
-    now = belief_anew(memory, study, known)
-    last = list(now.evidence)
-    number = known.state.head.number
-    if number == 0 and not last:
-        raise NotFoundError(f"nothing is stored of user '{user}' in study '{study.name}'")
-    odds = None if study.holds_out(user) else policy_odds(study, now)
-    recent = read_decisions(memory, study, key, max(0, number - LAST_DECISIONS))
-    relative = relative_evidence(last, study.library.n_types)
+    known, decisions, shown = _read(memory, study, user)
+    algorithm = study.algorithm.new_rows(1)
+    start_at_priors(algorithm, study, [known])
+    evidence: deque[Evidence] = deque(maxlen=MAX_EVIDENCE)
+    surprise = 0.0
+    for policy, outcome in shown:
+        if policy in study.library.policies:
+            number = study.library.index_of_policy(policy)
+            found = algorithm.observe(0, number, outcome)
+            evidence.append(Evidence(number, found.log_likelihood, float(found.log_evidence)))
+            surprise += evidence[-1].surprise
+        algorithm.end_episode(0)
+    mask = available_mask(study.active, study.library.policies)
+    odds = study.explored(algorithm.propensities(0, study.selection, mask)[mask])
+    belief = algorithm.belief(0)
+    expected = algorithm.known(0).performance.expected(belief)[study.active_numbers]
+    relative = relative_evidence(list(evidence), study.library.n_types)
     return {
         "study": study.name,
         "user": user,
-        "decisions": number,
-        "open": sum(one.outcome is None for one in read_decisions(memory, study, key, known.state.first_open)),
+        "decisions": len(decisions),
+        "open": sum(one.outcome is None for one in decisions),
         "control": study.holds_out(user),
         "context": known.context,
         "features": known.features,
-        "belief": _by_name(study.library.types, now.belief),
-        "expected": _by_name(tuple(study.active), now.expected[study.active_numbers]),
-        "probabilities": None if odds is None else _by_name(tuple(odds.policies), odds.probs),
-        "surprise": known.state.head.surprise,
+        "belief": _by_name(study.library.types, belief),
+        "expected": _by_name(tuple(study.active), expected),
+        "probabilities": None if study.holds_out(user) else _by_name(tuple(study.active), odds),
+        "surprise": surprise,
         "evidence": [
             {
                 "policy": study.library.policies[one.policy],
                 "log_evidence": _finite(one.log_evidence),
                 "types": {name: _finite(value) for name, value in zip(study.library.types, row, strict=True)},
             }
-            for one, row in zip(last, relative.tolist(), strict=True)
+            for one, row in zip(evidence, relative.tolist(), strict=True)
         ],
-        "last": [
-            {
-                "decision": known.history.identifier(one),
-                "policy": one.policy,
-                "probability": one.probability,
-                "control": one.control,
-                "outcome": one.outcome,
-                "chosen": one.chosen,
-                "available": None if one.available is None else list(one.available),
-            }
-            for one in recent
-        ],
+        "last": [_described(one) for one in decisions[-LAST_DECISIONS:]],
+    }
+
+
+def novelty_of(memory: Memory, study: Study, user: str) -> float:
+    """The probability that no type of the library fits a user; InputError where no broad law is known."""
+    known, _, shown = _read(memory, study, user)
+    prior = study.prior_of(known.context, known.features, known.type)
+    models: Any = study.models
+    detector = NoveltyDetector(study.library, prior=prior, dynamics=study.dynamics, models=models)
+    for policy, outcome in shown:
+        if policy in study.library.policies:
+            detector.observe(study.library.index_of_policy(policy), outcome)
+        detector.end_episode()
+    return detector.probability
+
+
+def _read(memory: Memory, study: Study, user: str) -> tuple[UserRow, list[DecisionRow], list[tuple[str, float]]]:
+    """A user, the decisions, and (policy, outcome) of all that the belief follows from."""
+    check_word("user", user)
+    with memory.studies.reading(study.number) as rows:
+        known = known_users(rows, study, [user]).get(user)
+        if known is None:
+            raise NotFoundError(f"nothing is stored of user '{user}' in study '{study.name}'")
+        evidence = rows.evidence([known.number])
+        decisions = rows.decisions_of([known.number]).get(known.number, [])
+    return known, decisions, [(policy, outcome) for _, policy, outcome in evidence]
+
+
+def _described(decision: DecisionRow) -> dict[str, Any]:
+    return {
+        "decision": identifier(decision.id),
+        "policy": decision.policy,
+        "probability": decision.probability,
+        "control": decision.control,
+        "outcome": decision.outcome,
+        "chosen": decision.time / 1000,
+        "available": None if decision.available is None else list(decision.available),
     }
 
 

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 from typing import NamedTuple
 
-from lifelore.agent.reuse.study import KIND, VERSION, Study, open_study
+from lifelore.agent.personalise.study import Study, open_study
 from lifelore.memory import Memory
 
 FRESH = 1.0
@@ -13,7 +13,7 @@ FRESH = 1.0
 
 class _Open(NamedTuple):
     study: Study
-    token: int | None
+    revision: int | None
     looked: float
 
 
@@ -36,11 +36,10 @@ class OpenStudies:
         known, now = self._open.get(name), self._clock()
         if known is not None and now - known.looked < FRESH:
             return known.study
-        stored = self._memory.recall_state(KIND, name, VERSION)
-        token = None if stored is None else stored.token
-        if known is None or token != known.token:
+        revision = self._memory.studies.revision(name)
+        if known is None or revision != known.revision:
             self._open.pop(name, None)
-            known = _Open(open_study(self._memory, name), token, now)
+            known = _Open(open_study(self._memory, name), revision, now)
         self._open[name] = known._replace(looked=now)
         return known.study
 

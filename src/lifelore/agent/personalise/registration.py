@@ -5,14 +5,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from lifelore.agent.personalise.library_document import described
-from lifelore.agent.reuse.log_columns import check_word
-from lifelore.agent.reuse.study import (
+from lifelore.agent.personalise.log.log_columns import check_word
+from lifelore.agent.personalise.study import (
     ACTIVE,
-    KIND,
     LEARNT,
     PILOT,
     RETIRED,
-    VERSION,
     Change,
     Study,
     check_study_name,
@@ -55,7 +53,7 @@ def register(memory: Memory, name: str, library: PolicyLibrary, settings: StudyS
             "library of a study must have the outcome as its signal; register a library with other signals for "
             "adaptation"
         )
-    earlier = memory.recall_state(KIND, name, VERSION)
+    earlier = memory.studies.newest(name)
     states = dict(earlier.about["states"]) if earlier else {}
     known = {policy: RETIRED if states.get(policy) == RETIRED else ACTIVE for policy in library.policies}
     if ACTIVE not in known.values():
@@ -69,8 +67,7 @@ def register(memory: Memory, name: str, library: PolicyLibrary, settings: StudyS
     getattr(library.performance, "spread", None)
     fitted = {"rows": 0, "users": 0, "found": False, "time": int(time.time())}
     study = Study(name, library, known | gone, fitted=fitted, **vars(settings or StudySettings()))
-    study.keep(memory)
-    return study
+    return study.keep(memory)
 
 
 def study_document(study: Study) -> dict[str, Any]:

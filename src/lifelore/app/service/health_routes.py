@@ -6,7 +6,7 @@ from fastapi import APIRouter, Response
 from pydantic import BaseModel
 
 from lifelore import __version__
-from lifelore.agent.reuse.study import study_names
+from lifelore.agent.personalise.study import study_names
 from lifelore.app.service.service_state import Service
 from lifelore.app.service.telemetry import CONTENT_TYPE_LATEST
 

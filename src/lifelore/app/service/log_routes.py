@@ -7,10 +7,10 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Query
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
-from lifelore.agent.reuse.evaluate import EvaluateSettings, evaluate
-from lifelore.agent.reuse.fit import FitSettings, fit
-from lifelore.agent.reuse.log_format import LogFormat
-from lifelore.agent.reuse.report import report
+from lifelore.agent.personalise.evaluate.evaluate import EvaluateSettings, evaluate
+from lifelore.agent.personalise.fit.fit import FitSettings, fit
+from lifelore.agent.personalise.log.log_format import LogFormat
+from lifelore.agent.personalise.report import report
 from lifelore.app.service.service_state import Service
 from lifelore.app.service.study_routes import Name
 

@@ -7,8 +7,8 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from lifelore.agent.personalise.library_document import library_of
 from lifelore.agent.personalise.registration import StudySettings, register, study_document
-from lifelore.agent.reuse.one_user import add, retire
-from lifelore.agent.reuse.study import study_names
+from lifelore.agent.personalise.decisions import add, retire
+from lifelore.agent.personalise.study import study_names
 from lifelore.app.service.service_state import Service
 
 Name = Annotated[str, Path(description="Name of the study.", min_length=1, max_length=60, examples=["playlists"])]

@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from lifelore.agent.personalise.explanation import explain
 from lifelore.agent.reuse.availability import checked_available
-from lifelore.agent.reuse.one_user import choose, forget, update
+from lifelore.agent.personalise.decisions import choose, forget, update
 from lifelore.app.service.error_documents import KINDS, status_of, without_places
 from lifelore.app.service.service_state import Service
 from lifelore.app.service.study_routes import Name

@@ -267,6 +267,10 @@ class LearntRows:
         """Memory in bytes."""
         return sum(getattr(owner, name).nbytes for owner, name in self._arrays())
 
+    def arrays(self) -> list[Array]:
+        """Every array with a row for each user."""
+        return [getattr(owner, name) for owner, name in self._arrays()]
+
     def _arrays(self) -> list[tuple[Any, str]]:
         """Every array with a row for each user: its owner and its name."""
         of_tables = [(table, part) for table in self.tables.values() for part in PARTS]

@@ -215,6 +215,9 @@ class FixedRows:
 
     def grow(self, n_users: int) -> None: ...
 
+    def arrays(self) -> list[Array]:
+        return []
+
     def state(self, user: int) -> dict[str, Array]:
         return {}
 

@@ -292,6 +292,41 @@ class ReuseAlgorithm:
         self.changes.restore(user, named_part(state, "changes."))
         self.log_belief[user], self._begun[user] = row, bool(state.get("begun", True))
 
+    def packed(self, users: Numbers) -> Array:
+        """All that is known of distinct `users` (k,), a row each, (k, width) float64; `unpack` restores it.
+
+        Between episodes only. The width depends on the library, the dynamics and the models.
+        """
+        rows = np.atleast_1d(users)
+        return np.concatenate(
+            [array[rows].reshape(len(rows), -1).astype(np.float64) for array in self._user_arrays()], axis=1
+        )
+
+    def unpack(self, users: Numbers, rows: ArrayLike) -> None:
+        """Take over `packed` rows (k, width) for distinct `users` (k,).
+
+        Raises
+        ------
+        InputError
+            The rows are of another library, other dynamics or other models.
+        """
+        rows, at = np.asarray(rows, np.float64), 0
+        arrays = self._user_arrays()
+        if (width := sum(array[0].size for array in arrays)) != rows.shape[-1]:
+            raise InputError(f"rows must have {width} numbers for this library, got {rows.shape[-1]}")
+        for array in arrays:
+            size = array[0].size
+            array[users] = rows[:, at : at + size].reshape(-1, *array.shape[1:])
+            at += size
+        self._begun[users] = True
+
+    def _user_arrays(self) -> list[Array]:
+        """Every array with a row for each user, but for whether an episode has begun."""
+        learning = [model for model in self._models.values() if model.law.learns]
+        shown = [array for model in learning for array in model.shown.arrays.values()]
+        weights = [model.log_weights for model in learning]
+        return [array for array in (self.log_belief, *shown, *weights, *self.changes.arrays()) if array[0].size]
+
     @property
     def nbytes(self) -> int:
         """Memory of all rows in bytes."""

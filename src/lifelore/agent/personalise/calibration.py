@@ -1,0 +1,83 @@
+"""How well a study's predictions fit its decisions: quantiles of outcomes, and probabilities of types.
+
+Outcomes are predicted by the belief before each, in the order in which they came. Types are known of users whom
+a log names; the name itself and the outcomes of the log are left out, so that only decisions speak for a type.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.personalise.beliefs import learn, learn_turn, start_at_priors, turns
+from lifelore.agent.personalise.histories import History
+from lifelore.agent.personalise.study import Study
+from lifelore.interaction.reuse.calibration import outcome_calibration, type_calibration
+from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
+
+Array = NDArray[np.float64]
+
+
+def calibration(study: Study, histories: Sequence[History]) -> dict[str, Any]:
+    """Calibration on the decisions of users.
+
+    Returns
+    -------
+    dict
+        ``outcomes`` and ``types``, each as `Calibration.to_dict` with users as groups; None without an outcome, or
+        without a user whose type is known and who has an outcome.
+    """
+    return {"outcomes": _of_outcomes(study, histories), "types": _of_types(study, histories)}
+
+
+def after_past(study: Study, histories: Sequence[History]) -> ReuseAlgorithm:
+    """A row for each user with the belief after the past."""
+    algorithm = study.algorithm.new_rows(len(histories))
+    start_at_priors(algorithm, study, [one.user for one in histories])
+    learn(algorithm, study, [(row, *pair) for row, one in enumerate(histories) for pair in one.past])
+    return algorithm
+
+
+def outcomes_of(histories: Sequence[History]) -> list[tuple[int, str, float]]:
+    """(row, policy, outcome) of the decisions of users in the order in which outcomes came."""
+    return [(row, one.policy, one.outcome or 0.0) for row, own in enumerate(histories) for one in own.ended]
+
+
+def _of_outcomes(study: Study, histories: Sequence[History]) -> dict[str, Any] | None:
+    if not histories:
+        return None
+    algorithm, levels, users = after_past(study, histories), [], []
+    for rows, policies, outcomes in turns(study, outcomes_of(histories)):
+        known = policies >= 0
+        if known.any():
+            levels.append(_levels(algorithm, rows[known], policies[known], outcomes[known]))
+            users.append(rows[known])
+        learn_turn(algorithm, rows, policies, outcomes)
+    return outcome_calibration(np.concatenate(levels), np.concatenate(users)).to_dict() if users else None
+
+
+def _levels(algorithm: ReuseAlgorithm, rows: NDArray[np.int64], policies: NDArray[np.int64], values: Array) -> Array:
+    """P(U < u) and P(U ≤ u) of an outcome of each user under the belief before it, (n, 2)."""
+    performance, belief = algorithm.known(rows).performance, algorithm.belief(rows)
+    every, levels = np.arange(len(rows)), []
+    for ends in (np.nextafter(values, -np.inf), values):
+        above = performance.exceedance(ends)[every, :, policies]
+        levels.append(1 - (belief * above).sum(axis=1))
+    return np.clip(np.stack(levels, axis=1), 0.0, 1.0)
+
+
+def _of_types(study: Study, histories: Sequence[History]) -> dict[str, Any] | None:
+    known = [one for one in histories if one.user.type in study.library.types and one.ended]
+    if not known:
+        return None
+    algorithm = study.algorithm.new_rows(len(known))
+    start_at_priors(algorithm, study, [one.user._replace(type=None) for one in known])
+    of_user = np.array([study.library.index_of_type(one.user.type or "") for one in known])
+    beliefs, users = [], []
+    for rows, policies, outcomes in turns(study, outcomes_of(known)):
+        learn_turn(algorithm, rows, policies, outcomes)
+        beliefs.append(algorithm.belief(rows))
+        users.append(rows)
+    rows = np.concatenate(users)
+    return type_calibration(np.concatenate(beliefs), of_user[rows], rows).to_dict()

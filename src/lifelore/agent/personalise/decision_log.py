@@ -1,0 +1,132 @@
+"""The log of a study's decisions as a stream: CSV or a JSON document a line, in order of time, a part at a time.
+
+A part that was read ends at a decision, whose identifier is the cursor of the next part. Decisions have the order
+of their times; with several programs that serve a study, read up to a minute ago to miss none.
+"""
+
+import csv
+import io
+import json
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, Literal
+
+from lifelore.agent.personalise.decisions import identifier, parse_identifier
+from lifelore.agent.personalise.log.log_columns import escaped
+from lifelore.agent.personalise.study import Study
+from lifelore.core.atomic_write import atomic_write
+from lifelore.core.errors import InputError, StoreError
+from lifelore.memory import Memory
+from lifelore.memory.study_totals import first_id
+
+COLUMNS = (
+    "user", "policy", "outcome", "context", "time", "probability", "group", "decision", "version", "rule",
+    "outcome_time", "available", "request",
+)  # fmt: skip
+"""Of the log of decisions, which `reuse fit` reads again."""
+_READ = (
+    "u.name", "d.policy", "d.outcome", "d.context", "d.time", "d.probability", "d.control", "d.id", "d.version",
+    "d.ended", "d.available", "d.request",
+)  # fmt: skip
+GROUPS = ("personal", "control")
+Format = Literal["csv", "ndjson"]
+
+
+def log_parts(
+    memory: Memory,
+    study: Study,
+    form: Format = "csv",
+    *,
+    since: float | None = None,
+    until: float | None = None,
+    cursor: str | None = None,
+    limit: int | None = None,
+) -> Iterator[bytes]:
+    """All decisions as text in UTF-8.
+
+    Parameters
+    ----------
+    form : {"csv", "ndjson"}
+        CSV as in RFC 4180, with `COLUMNS` and the features of the study, so that a new fit can read it: outcomes
+        not yet known are empty, times are seconds since 1970, ``available`` is a JSON list of the policies that were
+        available, empty where all were. A word that a spreadsheet would take for a formula begins with ``'``.
+    since, until : float, optional
+        Seconds since 1970: decisions from the first on, and before the second.
+    cursor : str, optional
+        A decision: only later ones.
+    limit : int, optional
+        Largest number of decisions.
+
+    Raises
+    ------
+    InputError
+        There is no such format, or the cursor is no decision.
+    """
+    if form not in ("csv", "ndjson"):
+        raise InputError(f"format must be csv or ndjson, got '{form}'")
+    after = b"" if since is None else first_id(int(1000 * since))
+    if cursor is not None:
+        after = max(after, parse_identifier(cursor))
+    before = None if until is None else first_id(int(1000 * until))
+    return _parts(memory, study, form, after, before, limit)
+
+
+def write_log(memory: Memory, study: Study, path: Path) -> None:
+    """Write the log as CSV into a file, the whole or nothing; StoreError where the disk refuses."""
+    try:
+        with atomic_write(path) as file:
+            for part in log_parts(memory, study):
+                file.write(part)
+    except OSError as error:
+        if isinstance(error, StoreError):
+            raise
+        raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None
+
+
+def _parts(
+    memory: Memory, study: Study, form: Format, after: bytes, before: bytes | None, limit: int | None
+) -> Iterator[bytes]:
+    rules = {version: about["rule"] for version, about in memory.studies.settings(study.number).items()}
+    names = () if study.feature_prior is None else study.feature_prior.names
+    features = [name for name in names if name.strip().lower() not in COLUMNS]
+    columns = (*_READ, "u.features") if features else _READ
+    written: Callable[[Iterable[Sequence[Any]]], bytes] = _csv if form == "csv" else _ndjson([*COLUMNS, *features])
+    if form == "csv":
+        yield _csv([[*COLUMNS, *features]])
+    with memory.studies.totals(study.number) as totals:
+        for rows in totals.log(columns, after, before, limit):
+            yield written(_line(row, rules, features) for row in rows)
+
+
+def _line(row: Sequence[Any], rules: dict[int, str], features: Sequence[str]) -> list[Any]:
+    user, policy, outcome, context, time, probability, control, id_, version, ended, available, request, *known = row
+    line = [
+        user, policy, outcome, context, time / 1000, probability, GROUPS[control], identifier(id_), version,
+        rules.get(version), None if ended is None else ended / 1000, available, request,
+    ]  # fmt: skip
+    if features:
+        own = json.loads(known[0] or "{}")
+        line += [own.get(name) for name in features]
+    return line
+
+
+def _csv(lines: Iterable[Sequence[Any]]) -> bytes:
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\r\n").writerows(
+        [escaped(word) if isinstance(word, str) else word for word in line] for line in lines
+    )
+    return text.getvalue().encode()
+
+
+def _ndjson(names: Sequence[str]) -> Callable[[Iterable[Sequence[Any]]], bytes]:
+    available = COLUMNS.index("available")
+
+    def written(lines: Iterable[Sequence[Any]]) -> bytes:
+        found = []
+        for line in lines:
+            document = dict(zip(names, line, strict=True))
+            document["available"] = None if line[available] is None else json.loads(line[available])
+            found.append(json.dumps(document, ensure_ascii=False))
+        return "".join(f"{one}\n" for one in found).encode()
+
+    return written

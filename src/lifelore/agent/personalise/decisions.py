@@ -1,0 +1,497 @@
+"""Decisions for users of a study and their outcomes: `decide` and `observe`, for one user or many in a transaction.
+
+    decide    belief of each user → probabilities of policies → a policy drawn, stored with its probability
+    observe   outcome of a decision, stored once → the user's belief learns → stored with it
+
+After a crash at any moment a decision or an outcome is there as a whole or not at all. Users are locked while their
+beliefs change, so that several programs may serve a study.
+"""
+
+import hashlib
+import os
+import re
+import time
+import uuid
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.personalise.beliefs import Beliefs, learn, open_beliefs, stored_beliefs
+from lifelore.agent.personalise.log.log_columns import check_word
+from lifelore.agent.personalise.policy_states import checked_available
+from lifelore.agent.personalise.study import Study, known_users, share_of
+from lifelore.core.errors import InputError, LifeloreError, NotFoundError
+from lifelore.interaction.outcomes.outcome_model import LARGEST
+from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
+from lifelore.memory import Memory
+from lifelore.memory.study_rows import DecisionRow, StudyRows, UserRow
+
+Answer = dict[str, Any]
+LARGEST_BLOCK = 1 << 22
+"""Numbers of the largest temporary array of a rule; more need more memory and are hardly faster."""
+EARLIER_IDENTIFIER = re.compile(r"[0-9a-f]{16}(-\d{1,9}(\.\d{1,9})?|\.\d+/\d+)")
+BINS = 50
+"""Signals of a policy that a rule may tell apart."""
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """A user who needs a policy now.
+
+    Parameters
+    ----------
+    user : str
+    context : str, optional
+        What is known of the user beforehand; kept, the newest one counts.
+    features : mapping of str to float, optional
+        Numbers known of the user beforehand: all features of the study; kept, the newest ones count. They come
+        before the context. Without them, and in a study without features, the prior is that of the context.
+    available : sequence of str, optional
+        The policies that the user can get now; all by default. Retired ones are left out. Where the incumbent is
+        not available, the control group gets each available policy with equal probability.
+    request : str, optional
+        Identifier of the request, unique for the user. The same request again gets the decision that it got
+        before, and nothing is stored.
+    """
+
+    user: str
+    context: str | None = None
+    features: Mapping[str, float] | None = None
+    available: Sequence[str] | None = None
+    request: str | None = None
+
+    def checked(self, study: Study) -> "Request":
+        """The request with checked names; `InputError` or `NotFoundError` where one breaks its rule."""
+        check_word("user", self.user)
+        for name in ("context", "request"):
+            if (word := getattr(self, name)) is not None:
+                check_word(name, word)
+        features, available = self.features, self.available
+        if features is not None:
+            if study.feature_prior is None:
+                raise InputError(f"features must be left out: study '{study.name}' was fitted without --features")
+            features = study.feature_prior.checked(features)
+        if available is not None:
+            available = checked_available(study, available)
+            if not set(available) & set(study.active) and not study.holds_out(self.user):
+                raise InputError(
+                    f"available must name a policy in use, got {', '.join(available)}, which the control group "
+                    f"alone gets; in use are {', '.join(study.active)}"
+                )
+        return Request(self.user, self.context, features, available, self.request)
+
+
+def choose(memory: Memory, study: Study, user: str, *, seed: int = 0, novelty: bool = False, **known: Any) -> Answer:
+    """Choose a policy for a user's next time and remember that it was chosen.
+
+    Parameters
+    ----------
+    user : str
+    seed : int
+        The draw depends on the seed, the study, the user and the number of the user's decisions alone.
+    novelty : bool
+        Whether to compute the probability that no type of the library fits the user. The time grows with the
+        number of the user's outcomes.
+    **known
+        Fields of `Request`: context, features, available, request.
+
+    Returns
+    -------
+    dict
+        ``user``, ``policy``, ``decision`` (to give the outcome by), ``probability`` of the policy at this moment,
+        ``control``; ``available`` policies (None: all); ``features`` whose prior counts, else ``context`` whose
+        prior counts (both None: everybody's); ``belief`` by type; ``expected`` outcome and ``probabilities`` by
+        active policy; ``repeated``: whether the request was answered before; ``novelty``: the probability that no
+        type of the library fits the user, as far as it was asked for, else None.
+
+    Raises
+    ------
+    InputError
+        A name that is no printable text, no available policy is in use, a feature is missing, the study is
+        archived, or the request was made before with other available policies.
+    NotFoundError
+        There is no such policy or feature.
+    """
+    (answer,) = decide(memory, study, [Request(user, **known)], seed=seed)
+    if isinstance(answer, LifeloreError):
+        raise answer
+    from lifelore.agent.personalise.explanation import novelty_of
+
+    return answer | {"novelty": novelty_of(memory, study, user) if novelty else None}
+
+
+def decide(
+    memory: Memory, study: Study, requests: Sequence[Request], *, seed: int = 0, brief: bool = False
+) -> list[Answer | LifeloreError]:
+    """Choose a policy for each of several users, in one transaction.
+
+    A user who comes twice gets two decisions by the same belief.
+
+    Parameters
+    ----------
+    seed : int
+        As for `choose`.
+    brief : bool
+        Leave out what only describes the belief, as for very many users.
+
+    Returns
+    -------
+    list
+        For each request the document of `choose`, or the error of this request alone.
+    """
+    if study.archived:
+        raise InputError(f"study '{study.name}' is archived; make it active again first")
+    answers: list[Any] = [_or_error(request.checked, study) for request in requests]
+    good = [place for place, one in enumerate(answers) if isinstance(one, Request)]
+    checked: list[Request] = [answers[place] for place in good]
+    with memory.studies.writing(study.number) as rows:
+        users = _users(rows, study, checked)
+        own = [users[request.user] for request in checked]
+        made = _made(rows, own, checked)
+        beliefs = open_beliefs(rows, study, list(users.values()))
+        if beliefs.replayed:
+            rows.keep_beliefs(stored_beliefs(beliefs, beliefs.replayed), study.version)
+        row = np.array([beliefs.row[user.number] for user in own], np.int64)
+        probs = probabilities(study, beliefs.algorithm, row, checked)
+        drawn = _drawn(study, own, checked, probs, seed)
+        decisions, repeated = [], []
+        for user, request, one in zip(own, checked, drawn, strict=True):
+            key = user.number, request.request
+            repeated.append(request.request is not None and key in made)
+            decisions.append(made.setdefault(key, one) if request.request is not None else one)
+        rows.add_decisions([one for one, old in zip(decisions, repeated, strict=True) if not old])
+    described = [{}] * len(good) if brief else _described(study, own, beliefs.algorithm, row, probs)
+    for place, request, one, old, about in zip(good, checked, decisions, repeated, described, strict=True):
+        answers[place] = _or_error(_answer, request, one, old, about)
+    return answers
+
+
+def _users(rows: StudyRows, study: Study, requests: Sequence[Request]) -> dict[str, UserRow]:
+    """The users of requests by name; new ones are added, and what requests tell of them is kept."""
+    names = list({request.user: None for request in requests})
+    users = known_users(rows, study, names, lock=True, count=True)
+    told = {request.user: request for request in requests if request.context or request.features}
+    if len(users) < len(names):
+        new = [name for name in names if name not in users]
+        rows.add_users([(name, *_told(told.get(name))) for name in new], study.version)
+        users |= rows.users(new, lock=True)
+    changed = [
+        (user, context, features)
+        for name, request in told.items()
+        if (user := users[name])
+        and (context := request.context or user.context, features := request.features or user.features)
+        != (user.context, user.features)
+    ]
+    if changed:
+        rows.describe((user.number, context, features, user.type) for user, context, features in changed)
+        for user, context, features in changed:
+            users[user.name] = user._replace(context=context, features=dict(features or {}) or None, version=0)
+    return users
+
+
+def _told(request: Request | None) -> tuple[str | None, Mapping[str, float] | None]:
+    return (None, None) if request is None else (request.context, request.features)
+
+
+def _made(
+    rows: StudyRows, users: Sequence[UserRow], requests: Sequence[Request]
+) -> dict[tuple[int, str | None], DecisionRow]:
+    """The decisions that were made for the same requests before."""
+    pairs = [
+        (user.number, request.request)
+        for user, request in zip(users, requests, strict=True)
+        if request.request is not None
+    ]
+    return rows.requested(pairs) if pairs else {}
+
+
+def probabilities(
+    study: Study, algorithm: ReuseAlgorithm, rows: NDArray[np.int64], requests: Sequence[Request]
+) -> NDArray[np.float64]:
+    """Probabilities of the policies in use, (n, n_active), with the share of exploration mixed in; rows sum to 1.
+
+    Of users who can get no policy in use, those of all policies.
+    """
+    active, library = study.active_numbers, study.library
+    may = np.ones((len(rows), len(active)), bool)
+    for row, request in enumerate(requests):
+        if request.available is not None:
+            may[row] = [policy in request.available for policy in study.active]
+    may[~may.any(axis=1)] = True
+    mask = np.zeros((len(rows), library.n_policies), bool)
+    mask[:, active] = may
+    probs = np.empty(may.shape)
+    size = max(1, LARGEST_BLOCK // (library.n_types * library.n_policies * BINS))
+    for at in range(0, len(rows), size):
+        part = slice(at, at + size)
+        probs[part] = algorithm.propensities(rows[part], study.selection, mask[part])[:, active]
+    probs = (1 - study.explore) * probs + study.explore * may / may.sum(axis=1, keepdims=True)
+    return probs / probs.sum(axis=1, keepdims=True)
+
+
+def _drawn(
+    study: Study, users: Sequence[UserRow], requests: Sequence[Request], probs: NDArray[np.float64], seed: int
+) -> list[DecisionRow]:
+    """A new decision for each user: the policy that a number in [0, 1) falls on, none of probability 0."""
+    counted = Counter({user.number: user.n_decisions for user in users})
+    draws = np.empty(len(users))
+    for place, user in enumerate(users):
+        draws[place] = share_of(seed, study.name, user.name, counted[user.number])
+        counted[user.number] += 1
+    ends = probs.cumsum(axis=1)
+    last = probs.shape[1] - 1 - (probs[:, ::-1] > 0).argmax(axis=1)
+    chosen = np.minimum((ends <= draws[:, None] * ends[:, -1:]).sum(axis=1), last)
+    probability = probs[np.arange(len(chosen)), chosen].tolist()
+    now, active, found = time.time_ns() // 10**6, study.active, []
+    for user, request, id_, place, own, draw in zip(
+        users, requests, new_ids(now, len(users)), chosen.tolist(), probability, draws.tolist(), strict=True
+    ):
+        policy, control = active[place], study.holds_out(user.name)
+        if control:
+            policies = _for_control(study, request.available)
+            policy, own = policies[int(draw * len(policies))], 1 / len(policies)
+        available = None if request.available is None else tuple(request.available)
+        found.append(
+            DecisionRow(
+                id_, user.number, policy, own, control, study.version, user.context, available, request.request,
+                now, None, None,
+            )  # fmt: skip
+        )
+    return found
+
+
+def _for_control(study: Study, available: Sequence[str] | None) -> list[str]:
+    """What the control group gets, each alike: the incumbent, or every policy in use, pilots too."""
+    every = [*study.active, *study.pilots]
+    policies = [study.incumbent] if study.incumbent is not None else every
+    if available is None:
+        return policies
+    return [one for one in policies if one in available] or [one for one in every if one in available]
+
+
+def new_ids(now: int, n: int) -> list[bytes]:
+    """Version 7 UUIDs of a time in milliseconds: identifiers are in the order of their times."""
+    head, drawn = now.to_bytes(6, "big"), np.frombuffer(os.urandom(10 * n), np.uint8).reshape(n, 10).copy()
+    drawn[:, 0] = 0x70 | drawn[:, 0] & 0x0F
+    drawn[:, 2] = 0x80 | drawn[:, 2] & 0x3F
+    return sorted(head + row.tobytes() for row in drawn)
+
+
+def _described(
+    study: Study,
+    users: Sequence[UserRow],
+    algorithm: ReuseAlgorithm,
+    rows: NDArray[np.int64],
+    probs: NDArray[np.float64],
+) -> list[Answer]:
+    """What answers say of the beliefs before the decisions."""
+    belief = algorithm.belief(rows)
+    expected = algorithm.known(rows).performance.expected(belief)[:, study.active_numbers]
+    learnt = set() if study.feature_prior is None else set(study.feature_prior.names)
+    found = []
+    for user, *numbers in zip(users, belief.tolist(), expected.tolist(), probs.tolist(), strict=True):
+        by_features = bool(learnt) and set(user.features or ()) == learnt
+        found.append({
+            "user": user.name,
+            "context": user.context if user.context in study.contexts and not by_features else None,
+            "features": user.features if by_features else None,
+            "belief": dict(zip(study.library.types, numbers[0], strict=True)),
+            "expected": dict(zip(study.active, numbers[1], strict=True)),
+            "probabilities": dict(zip(study.active, numbers[2], strict=True)),
+        })  # fmt: skip
+    return found
+
+
+def _answer(request: Request, decision: DecisionRow, repeated: bool, about: Answer) -> Answer:
+    available = None if request.available is None else tuple(request.available)
+    if repeated and available != decision.available:
+        raise InputError(
+            f"request '{request.request}' of this user was made with other available policies; give this one "
+            "another identifier"
+        )
+    answer = {
+        "decision": identifier(decision.id),
+        "policy": decision.policy,
+        "probability": decision.probability,
+        "control": decision.control,
+        "repeated": repeated,
+    }
+    return answer | {"available": None if available is None else list(available)} | about if about else answer
+
+
+def identifier(id_: bytes) -> str:
+    """The text by which an outcome is given later."""
+    text = id_.hex()
+    return f"{text[:8]}-{text[8:12]}-{text[12:16]}-{text[16:20]}-{text[20:]}"
+
+
+def parse_identifier(text: str) -> bytes:
+    """The 16 bytes of a decision's identifier, also of one of an earlier Lifelore; InputError where it is none."""
+    if EARLIER_IDENTIFIER.fullmatch(str(text)):
+        return bytes(6) + hashlib.sha256(text.encode()).digest()[:10]
+    try:
+        return uuid.UUID(text).bytes
+    except (ValueError, AttributeError, TypeError):
+        raise InputError(f"decision must be the identifier that a choice gave, got {str(text)[:60]!r}") from None
+
+
+def update(memory: Memory, study: Study, decision: str, outcome: float) -> Answer:
+    """Take in how a decision ended, once, however late.
+
+    Returns
+    -------
+    dict
+        ``decision``, ``user``, ``policy``, ``outcome``; ``taken``: False where the same outcome was there already
+        and nothing changed; ``belief`` by type after it.
+
+    Raises
+    ------
+    NotFoundError
+        No such decision: never made here, or forgotten.
+    InputError
+        The outcome is no finite number, none of the values a categorical library knows, or another one was taken.
+    """
+    (answer,) = observe(memory, study, [(decision, outcome)])
+    if isinstance(answer, LifeloreError):
+        raise answer
+    return answer
+
+
+def observe(
+    memory: Memory, study: Study, outcomes: Sequence[tuple[str, float]], *, brief: bool = False
+) -> list[Answer | LifeloreError]:
+    """Take in how decisions ended, each once, in one transaction; beliefs learn in the order given.
+
+    Parameters
+    ----------
+    outcomes : sequence of (identifier of a decision, outcome)
+    brief : bool
+        As for `decide`.
+
+    Returns
+    -------
+    list
+        For each outcome the document of `update`, or its error.
+    """
+    answers: list[Any] = [_or_error(_checked_outcome, *pair) for pair in outcomes]
+    good = [place for place, one in enumerate(answers) if isinstance(one, tuple)]
+    with memory.studies.writing(study.number) as rows:
+        ids = list({answers[place][0]: None for place in good})
+        found, users = rows.locked_decisions(ids)
+        beliefs = open_beliefs(rows, study, list(users.values()))
+        taken: dict[bytes, float] = {}
+        for place in good:
+            id_, outcome = answers[place]
+            answers[place] = _or_error(_taken, study, found.get(id_), taken, id_, outcome)
+        rows.end_decisions(taken.items(), time.time_ns() // 10**6)
+        evidence = [
+            (beliefs.row[found[id_].person], found[id_].policy, outcome) for id_, outcome in taken.items()
+        ]
+        learn(beliefs.algorithm, study, evidence)
+        rows.learn(_learnt(beliefs, found, taken), study.version)
+    for place in good:
+        if not isinstance(answers[place], LifeloreError):
+            answers[place] = _outcome_answer(study, users, beliefs, *answers[place], brief=brief)
+    return answers
+
+
+def _checked_outcome(decision: str, outcome: Any) -> tuple[bytes, float]:
+    if isinstance(outcome, bool) or not isinstance(outcome, int | float | np.number) or not abs(outcome) <= LARGEST:
+        raise InputError(f"outcome must be a finite number of at most {LARGEST:g} in size, got {outcome!r:.60}")
+    return parse_identifier(decision), float(outcome)
+
+
+def _taken(
+    study: Study, decision: DecisionRow | None, taken: dict[bytes, float], id_: bytes, outcome: float
+) -> tuple[DecisionRow, float, bool]:
+    """The decision, its outcome and whether it is new; new ones are added to `taken`."""
+    if decision is None:
+        raise NotFoundError(
+            f"no decision {identifier(id_)} in study '{study.name}': never made here, or forgotten"
+        )
+    before = taken.get(id_, decision.outcome)
+    if before is not None and before != outcome:
+        raise InputError(
+            f"decision {identifier(id_)} ended with {before:g} already, got {outcome:g}; nothing changed"
+        )
+    if before is None:
+        _check_value(study, decision.policy, outcome)
+        taken[id_] = outcome
+    return decision, outcome, before is None
+
+
+def _check_value(study: Study, policy: str, outcome: float) -> None:
+    """Raise InputError for an outcome that no type can have."""
+    performance: Any = study.library.performance
+    if policy not in study.library.policies or performance.kind != "categorical":
+        return
+    column = study.library.index_of_policy(policy)
+    if np.isneginf(performance.log_density(column, outcome)).all():
+        values = ", ".join(f"{value:g}" for value in performance.values)
+        raise InputError(f"outcome must be one of {values}, got {outcome:g}; fit again from a log that has it")
+
+
+def _learnt(
+    beliefs: Beliefs, found: Mapping[bytes, DecisionRow], taken: Mapping[bytes, float]
+) -> list[tuple[int, bytes, int, float, int, float]]:
+    """What memory adds to each user: the belief, and numbers and sums of outcomes by group."""
+    sums: dict[int, list[Any]] = {number: [0, 0.0, 0, 0.0] for number in beliefs.replayed}
+    for id_, outcome in taken.items():
+        own, place = sums.setdefault(found[id_].person, [0, 0.0, 0, 0.0]), 2 * found[id_].control
+        own[place] += 1
+        own[place + 1] += outcome
+    return [(number, state, *sums[number]) for number, state in stored_beliefs(beliefs, sums)]  # pyright: ignore
+
+
+def _outcome_answer(
+    study: Study,
+    users: Mapping[int, UserRow],
+    beliefs: Beliefs,
+    decision: DecisionRow,
+    outcome: float,
+    taken: bool,
+    *,
+    brief: bool,
+) -> Answer:
+    if brief:
+        return {"taken": taken}
+    belief = beliefs.algorithm.belief(beliefs.row[decision.person])
+    return {
+        "decision": identifier(decision.id),
+        "user": users[decision.person].name,
+        "policy": decision.policy,
+        "outcome": outcome,
+        "taken": taken,
+        "belief": dict(zip(study.library.types, belief.tolist(), strict=True)),
+    }
+
+
+def forget(memory: Memory, study: Study, user: str) -> int:
+    """Forget a user's past, decisions, outcomes and belief for ever; the number of rows removed.
+
+    The library still follows from the user's lines in the log: remove them and fit again.
+
+    Raises
+    ------
+    NotFoundError
+        Nothing is known of the user.
+    """
+    with memory.studies.writing(study.number) as rows:
+        known = known_users(rows, study, [user], lock=True).get(user)
+        if known is None:
+            raise NotFoundError(f"nothing is stored of user '{user}' in study '{study.name}'")
+        rows.numbered([known.number], lock=True)
+        count = rows.forget(known.number)
+    memory.studies.forgotten()
+    return count
+
+
+def _or_error(function: Any, *arguments: Any) -> Any:
+    try:
+        return function(*arguments)
+    except LifeloreError as error:
+        return error

@@ -1,0 +1,218 @@
+"""The verb `reuse evaluate`: what other policies would have achieved, estimated from a log with probabilities.
+
+Off-policy evaluation weights each logged decision by how much more probable it is under the target policy. It is
+sound where the log gave every policy that the target chooses a probability above 0, and where the logged
+probabilities are right. `warnings` of a target name the conditions that the log does not meet.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lifelore.agent.personalise.evaluate.cross_fitted import (
+    choices_of_rule,
+    expected_by_library,
+    expected_by_means,
+    studies_of_others,
+)
+from lifelore.agent.reuse.history import histories, user_key
+from lifelore.agent.personalise.log.log_format import LogFormat
+from lifelore.agent.personalise.evaluate.logged_decisions import CERTAIN, LoggedDecisions, read_decisions
+from lifelore.agent.reuse.past import read_past
+from lifelore.agent.personalise.evaluate.replayed_choices import replayed_choices
+from lifelore.agent.personalise.result_folder import write_result
+from lifelore.agent.personalise.study import Study, open_study
+from lifelore.agent.personalise.evaluate.target_estimates import target_estimates
+from lifelore.agent.personalise.evaluate.target_policies import TargetPolicy, replayed_policy, single_policy, table_policy
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.streams import stream
+from lifelore.interaction.evaluation.estimators import logged_value
+from lifelore.interaction.evaluation.importance_weights import decision_numbers
+from lifelore.interaction.evaluation.reward_models import RewardModel, user_folds
+from lifelore.interaction.selection import rule_named
+from lifelore.memory import Memory
+
+MODELS = ("means", "library")
+
+
+@dataclass(frozen=True)
+class EvaluateSettings:
+    """What to evaluate, and how.
+
+    Parameters
+    ----------
+    policies : tuple of str
+        Single policies of the log to evaluate.
+    tables : tuple of paths
+        CSV files with the probabilities of a target's choices; see `target_policies.table_policy`.
+    rules : tuple of str
+        Selection rules, each with libraries learnt from the log without the users whose choices it makes.
+    study : str, optional
+        A study in memory to replay: its library, rule and exploration.
+    first : int, optional
+        Evaluate the first so many decisions of each user. Rules and the study then make all of them; without it,
+        they make each decision after the outcomes that the log has until then.
+    model : {"means", "library"}
+        Outcomes that the doubly robust estimate expects: each policy's mean, or those of a library under the
+        user's belief; both learnt without the user.
+    types : int, optional
+        Number of types of those libraries; default: selected by the outcomes.
+    explore : float
+        Share of exploration of `rules`.
+    group : str, optional
+        See `logged_decisions.read_decisions`.
+    seed : int
+        For the parts of the users and for types.
+    """
+
+    policies: tuple[str, ...] = ()
+    tables: tuple[str | Path, ...] = ()
+    rules: tuple[str, ...] = ()
+    study: str | None = None
+    first: int | None = None
+    model: str = "means"
+    types: int | None = None
+    explore: float = 0.0
+    group: str | None = None
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        if self.model not in MODELS:
+            raise NotFoundError(f"model must be one of {', '.join(MODELS)}, got '{self.model}'")
+        if self.first is not None and self.first < 1:
+            raise InputError(f"first must be at least 1, got {self.first}")
+        if not 0 <= self.explore <= 1:
+            raise InputError(f"explore must lie between 0 and 1, got {self.explore}")
+        for rule in self.rules:
+            rule_named(rule)
+
+
+def evaluate(
+    paths: Sequence[str | Path],
+    settings: EvaluateSettings | None = None,
+    form: LogFormat | None = None,
+    memory: Memory | None = None,
+    *,
+    out: str | Path | None = None,
+) -> dict[str, Any]:
+    """Estimate the mean outcome of target policies from logs of other choices.
+
+    Parameters
+    ----------
+    paths : sequence of paths
+        Logs with the columns user, policy, outcome and probability; a user's lines in order of time.
+    settings : EvaluateSettings, optional
+        By default every single policy of the log is a target.
+    form : LogFormat, optional
+        How the logs are written.
+    memory : Memory, optional
+        Holds the study, where the settings name one.
+    out : folder, optional
+        Gets ``evaluation.json`` and ``evaluation.png``.
+
+    Returns
+    -------
+    dict
+        ``decisions``, ``users``, ``group`` (None: all); ``left_out``: lines by the reason; ``certain``: share of
+        decisions with probability 1; ``logged``: mean outcome of the log; ``model``, ``first``, ``seed``;
+        ``targets``, each with ``name``, ``kind``, ``decision`` ("next" or "all"), ``estimates`` by estimator
+        ({"value", "standard_error", "ci95", "n", "gain"}, where the gain is over the log; None where the log
+        cannot tell), ``support`` (share of its choices that the log could have made), ``weights``
+        (`WeightSummary`) and ``warnings``.
+
+    Raises
+    ------
+    InputError, NotFoundError
+        A log, target or setting breaks its rule; messages name file and line.
+    StoreError
+        The disk refuses.
+    """
+    settings = settings or EvaluateSettings()
+    decisions = read_decisions(paths, form, settings.group)
+    study, known = None, 0
+    if settings.study is not None:
+        if memory is None:
+            raise InputError(f"study '{settings.study}' needs the memory that holds it")
+        study = open_study(memory, settings.study)
+        decisions, known = _of_strangers(decisions, memory, study)
+    n_before = len(decisions.log)
+    if settings.first is not None:
+        decisions = decisions.take(np.flatnonzero(decision_numbers(decisions.log.user.codes) < settings.first))
+    log, users = decisions.log, decisions.log.user.codes
+    logged = logged_value(log.outcomes, users)
+    targets, model = _targets(decisions, settings, study)
+    document = {
+        "decisions": len(log),
+        "users": len(log.user.names),
+        "group": decisions.group,
+        "left_out": {
+            "pending": log.pending,
+            "without_policy": log.without_policy,
+            "other_groups": decisions.left_out,
+            "known_to_the_study": known,
+            "later_decisions": n_before - len(log),
+        },
+        "certain": float((decisions.probability >= CERTAIN).mean()),
+        "logged": logged.to_dict(),
+        "model": settings.model,
+        "first": settings.first,
+        "seed": settings.seed,
+        "targets": [
+            target_estimates(target, decisions, model, logged, settings.first is not None) for target in targets
+        ],
+    }
+    if out is not None:
+        from lifelore.figures.off_policy_estimates import draw_off_policy_estimates
+
+        write_result(Path(out), "evaluation", document, draw_off_policy_estimates)
+    return document
+
+
+def _of_strangers(decisions: LoggedDecisions, memory: Memory, study: Study) -> tuple[LoggedDecisions, int]:
+    """The decisions for users whom the study does not know, and the number of the others.
+
+    The library has learnt from the outcomes of the users of the fit, so they cannot judge it; a user with a past
+    does not start as a stranger. Users with a decision before the fit may have been in its logs.
+    """
+    fitted_at = study.fitted.get("time", np.inf)
+    earlier = {
+        history.key
+        for history in histories(memory, study)
+        if any(decision.chosen < fitted_at for decision in history.decisions)
+    }
+    known = earlier | set(read_past(memory, study.name).users)
+    new = np.array([user_key(study.name, user) not in known for user in decisions.log.user.names])
+    rows = np.flatnonzero(new[decisions.log.user.codes])
+    if not rows.size:
+        raise InputError(
+            f"study '{study.name}' was fitted to all users of the log or knows their past, so the log cannot "
+            "judge it; give a log of other users, or --rule, which learns without the users that it is judged on"
+        )
+    return decisions.take(rows), len(decisions.log) - len(rows)
+
+
+def _targets(
+    decisions: LoggedDecisions, settings: EvaluateSettings, study: Study | None
+) -> tuple[list[TargetPolicy], RewardModel]:
+    log = decisions.log
+    folds = user_folds(log.user.codes, stream(settings.seed, "reuse evaluate", "folds"))
+    model = expected_by_means(log, folds)
+    studies = []
+    if settings.rules or settings.model == "library":
+        studies = studies_of_others(log, folds, settings.types, settings.seed)
+    if settings.model == "library":
+        model = expected_by_library(log, folds, studies, model)
+    named = settings.policies or settings.tables or settings.rules or study
+    singles = settings.policies if named else log.policy.names
+    targets = [single_policy(log, name, model) for name in singles]
+    targets += [table_policy(log, path, model) for path in settings.tables]
+    for rule in settings.rules:
+        choices = choices_of_rule(log, folds, studies, rule, settings.explore)
+        targets.append(replayed_policy(log, rule, "rule", choices, model))
+    if study is not None:
+        choices = replayed_choices(study, log, np.arange(len(log)))
+        targets.append(replayed_policy(log, f"study {study.name}", "study", choices, model))
+    return targets, model

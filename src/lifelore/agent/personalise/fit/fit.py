@@ -1,0 +1,273 @@
+"""The verb `reuse fit`: a log becomes a policy library, its types named in the log or found from outcomes."""
+
+import time
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.personalise.fit.fit_notes import fit_notes, personalised_by
+from lifelore.agent.personalise.fit.library_from_log import TypedRows, library_of
+from lifelore.agent.personalise.log.log import ReuseLog, read_log
+from lifelore.agent.personalise.log.log_format import LogFormat
+from lifelore.agent.personalise.fit.model_choice import chosen_model
+from lifelore.agent.personalise.earlier_studies import take_earlier
+from lifelore.agent.personalise.study import (
+    ACTIVE,
+    LEARNT,
+    PILOT,
+    RETIRED,
+    Change,
+    Study,
+    check_study_name,
+)
+from lifelore.agent.personalise.fit.types_of_users import typed_rows
+from lifelore.agent.personalise.past import keep_fitted_past
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.streams import stream
+from lifelore.interaction.beliefs.feature_prior import FeaturePrior
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.selection import DEFAULT_RULE
+from lifelore.memory import Memory
+
+MODELS = ("auto", "gaussian", "student-t", "categorical", "joint-normal")
+KEPT_SETTINGS = ("control", "incumbent", "rule", "explore", "change", "models")
+"""Settings of a study that a new fit sets anew; where one is another than before, the fit says so."""
+CONTEXT_USERS = 5.0
+"""Users of everybody's prior that are mixed into each context's."""
+
+
+@dataclass(frozen=True)
+class FitSettings:
+    """How a log becomes a study.
+
+    Parameters
+    ----------
+    name : str
+        Of the study.
+    model : {"auto", "gaussian", "student-t", "categorical", "joint-normal"}
+        Of outcomes; ``auto``: the one that serves users best who are held out, see `model_choice`.
+    types : int, optional
+        How many types to look for where the log names none; by default the number that serves held-out users
+        best, 1 where there are too few users for that.
+    control, incumbent, rule, explore, change, models
+        As in `Study`.
+    seed : int
+        For finding types.
+    """
+
+    name: str = "default"
+    model: str = "auto"
+    types: int | None = None
+    control: float = 0.1
+    incumbent: str | None = None
+    rule: str = DEFAULT_RULE
+    explore: float = 0.0
+    change: Change = LEARNT
+    models: str = "uncertain"
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        check_study_name(self.name)
+        if self.model not in MODELS:
+            raise NotFoundError(f"model must be one of {', '.join(MODELS)}, got '{self.model}'")
+        if self.types is not None and self.types < 1:
+            raise InputError(f"types must be at least 1, got {self.types}")
+
+
+def fit(
+    sources: Any,
+    memory: Memory,
+    settings: FitSettings | None = None,
+    form: LogFormat | None = None,
+) -> dict[str, Any]:
+    """Learn a study from logs and keep it in memory in place of an earlier one of its name.
+
+    Users' decisions in memory stay; beliefs follow the new library. Policies retired stay so, and those that the
+    logs no longer know are retired; a pilot that the logs know becomes active.
+
+    Parameters
+    ----------
+    sources : sequence of paths or tables, or a table
+        Files of CSV, or tables of pandas, polars or Arrow; see `read_log`.
+    form : LogFormat, optional
+        How the logs are written.
+
+    Returns
+    -------
+    dict
+        Plain data: ``study``; ``rows`` learnt from, ``guessed`` and ``left_out`` (of users whose type the log
+        does not name: their outcomes showed it, or did not); ``pending`` (lines left out without an outcome),
+        ``filled_outcomes``, ``filled_policies``, ``without_policy`` (see `ReuseLog`); ``users``; ``model``;
+        ``types_found``, ``held_out``: how models
+        were compared on users held out (None where they were not): number of ``users`` and mean ``value`` of the
+        chosen model's choices, its difference and 95 % interval to the best single policy (``over_single``) and
+        to counting a user's own outcomes with a prior worth two (``over_counting``), and all ``candidates``;
+        ``personalised_by``: "types", "items" (what a policy shows tells of others), both, or nothing; ``notes``:
+        sentences for the reader; ``types`` (name, users, prior, best policy);
+        ``policies`` (name, state, mean); ``means`` and ``outcomes`` by type and policy; ``borrowed`` (pairs
+        without an outcome, which got the policy's outcomes on all types); ``contexts``; ``features`` (None
+        without them): their ``names``, ``users`` who have all, chosen ``strength`` and held-out ``gain`` in nats
+        a user, see `FeaturePrior`; ``control``,
+        ``incumbent``, ``rule``, ``explore``, ``change``; ``changed``: settings that are not what they were in an
+        earlier fit, by name what they were; ``kept`` (None for a new study): ``users`` and ``decisions`` of the
+        study in memory, ``pending`` ones without an outcome, and those that are lines of the log (``in_log``).
+        They all stay, and beliefs follow the new library.
+
+    Raises
+    ------
+    InputError, NotFoundError
+        A log or setting breaks its rule; memory is as it was.
+    """
+    settings = settings or FitSettings()
+    log = read_log(sources, form)
+    earlier = _earlier(memory, settings.name)
+    study, typed, counts, held_out = study_of_log(log, settings, dict(earlier.get("states", {})))
+    study = study.keep(memory)
+    past = keep_fitted_past(memory, study, log)
+    document = _document(study, log, typed, counts) | {"changed": _changed(study, earlier), "held_out": held_out}
+    document["kept"] = _kept(memory, study, past) if earlier else None
+    return document | {"personalised_by": personalised_by(study), "notes": fit_notes(study, document)}
+
+
+def study_of_log(
+    log: ReuseLog, settings: FitSettings, earlier: dict[str, str] | None = None
+) -> tuple[Study, TypedRows, NDArray[np.float64], dict[str, Any] | None]:
+    """The study that a log gives, its typed rows, the number of outcomes of each type and policy, and `held_out`.
+
+    Parameters
+    ----------
+    log : ReuseLog
+    settings : FitSettings
+    earlier : dict of str to str, optional
+        What each policy is in an earlier study of the name.
+    """
+    generator = stream(settings.seed, "reuse types", settings.name)
+
+    def library_of_part(part: ReuseLog, model: str, types: int | None) -> PolicyLibrary:
+        return library_of(part, typed_rows(part, model, types, generator), model)[0]
+
+    choice = chosen_model(log, settings.model, settings.types, library_of_part, generator)
+    typed = typed_rows(log, choice.model, choice.types, generator)
+    library, counts = library_of(log, typed, choice.model)
+    # Computed once and stored with the library.
+    library.performance.spread  # noqa: B018  # pyright: ignore
+    return _study(log, library, typed, settings, earlier or {}), typed, counts, choice.held_out
+
+
+def _study(
+    log: ReuseLog, library: PolicyLibrary, typed: TypedRows, settings: FitSettings, earlier: dict[str, str]
+) -> Study:
+    known = {policy: RETIRED if earlier.get(policy) == RETIRED else ACTIVE for policy in library.policies}
+    # What the logs do not know cannot be chosen; it goes, unless it still waits for its first outcomes.
+    gone = {policy: state for policy, state in earlier.items() if policy not in known}
+    states = known | {policy: PILOT if state == PILOT else RETIRED for policy, state in gone.items()}
+    if ACTIVE not in states.values():
+        raise InputError("the logs must hold a policy that is not retired, got none")
+    fitted = {"rows": len(typed.rows), "users": len(typed.users(log)[0]), "found": typed.found}
+    fitted["time"] = int(time.time())
+    return Study(
+        settings.name, library, states, _contexts(log, typed, library.prior), settings.control,
+        settings.incumbent, settings.rule, settings.explore, settings.change, settings.models, fitted,
+        feature_prior=_feature_prior(log, typed, library.prior, settings.seed),
+    )  # fmt: skip
+
+
+def _contexts(log: ReuseLog, typed: TypedRows, prior: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """Prior over types in each context, from its users and a few of everybody's."""
+    counts: dict[str, NDArray[np.float64]] = {}
+    for user, type_ in zip(*typed.users(log), strict=True):
+        if log.context_of_user[user] >= 0:
+            counts.setdefault(log.context.names[log.context_of_user[user]], CONTEXT_USERS * prior)[type_] += 1
+    return {context: count / count.sum() for context, count in sorted(counts.items())}
+
+
+def _feature_prior(log: ReuseLog, typed: TypedRows, prior: NDArray[np.float64], seed: int) -> FeaturePrior | None:
+    """Prior over types from the log's features, by its users with all of them; None without features."""
+    if not log.feature_names:
+        return None
+    users, types = typed.users(log)
+    rows = log.features_of_user[users]
+    whole = ~np.isnan(rows).any(axis=1)
+    if not whole.any():
+        raise InputError(
+            f"features must all be known of a user, no user has all of {', '.join(log.feature_names)}"
+        )
+    return FeaturePrior.fit(rows[whole], types[whole], prior, log.feature_names, seed=seed)
+
+
+def _earlier(memory: Memory, name: str) -> Mapping[str, Any]:
+    """What the study was until now, empty where it is new; its library need not be readable."""
+    found = memory.studies.newest(name)
+    if found is None and take_earlier(memory, name):
+        found = memory.studies.newest(name)
+    return found.about if found else {}
+
+
+def _kept(memory: Memory, study: Study, past: Mapping[str, int]) -> dict[str, int]:
+    """What was there of the study before this fit, and stays."""
+    with memory.studies.totals(study.number) as totals:
+        decisions, pending = totals.n_decisions()
+        users = totals.n_users()
+    return {"users": users, "decisions": decisions, "pending": pending, "in_log": past["decisions"]}
+
+
+def _changed(study: Study, earlier: Mapping[str, Any]) -> dict[str, Any]:
+    """Settings that are another than before, and what they were."""
+    names = [name for name in KEPT_SETTINGS if name in earlier]
+    return {name: earlier[name] for name in names if earlier[name] != getattr(study, name)}
+
+
+def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.float64]) -> dict[str, Any]:
+    library = study.library
+    mean = library.performance.mean
+    members = Counter(typed.users(log)[1].tolist())
+    active = study.active_numbers
+    return {
+        "study": study.name,
+        "rows": len(typed.rows),
+        "pending": log.pending,
+        "filled_outcomes": log.filled_outcomes,
+        "filled_policies": log.filled_policies,
+        "without_policy": log.without_policy,
+        "guessed": typed.guessed,
+        "left_out": len(log) - len(typed.rows),
+        "users": len(log.user.names),
+        "model": library.performance.kind,  # type: ignore[attr-defined]
+        "types_found": typed.found,
+        "types": [
+            {
+                "name": name,
+                "users": members[number],
+                "prior": float(library.prior[number]),
+                "best": library.policies[active[int(mean[number, active].argmax())]],
+            }
+            for number, name in enumerate(library.types)
+        ],
+        "policies": [
+            {"name": policy, "state": state, "mean": study.expected(policy)}
+            for policy, state in sorted(study.states.items())
+        ],
+        "means": mean.tolist(),
+        "outcomes": counts.astype(int).tolist(),
+        "borrowed": int((counts == 0).sum()),
+        "contexts": sorted(study.contexts),
+        "features": _features(study, log),
+        "control": study.control,
+        "incumbent": study.incumbent,
+        "rule": study.rule,
+        "explore": study.explore,
+        "change": study.change,
+        "models": study.models,
+    }
+
+
+def _features(study: Study, log: ReuseLog) -> dict[str, Any] | None:
+    found = study.feature_prior
+    if found is None:
+        return None
+    users = int((~np.isnan(log.features_of_user).any(axis=1)).sum())
+    return {"names": list(found.names), "users": users, "strength": found.strength, "gain": found.gain}

@@ -1,0 +1,102 @@
+"""A policy library from the rows of a log whose users' types are known, found or guessed."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.personalise.log.log import ReuseLog
+from lifelore.core.errors import InputError
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.joint_normal_fit import joint_normal_fit
+from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes
+from lifelore.interaction.outcomes.outcome_model import OutcomeRows
+from lifelore.interaction.outcomes.spread import spread_between
+
+FITTED_NUMBERS = 4_000_000
+"""Largest number of users times squared policies that a covariance is fitted to, else to a sample of users."""
+
+
+class TypedRows(NamedTuple):
+    """Rows of a log with the type of each row's user.
+
+    rows : (n,) int64 places in the log
+    types : (n,) int64, places in `names`
+    names : of the types
+    guessed : how many rows' types were guessed from outcomes
+    found : whether the types themselves were found
+    """
+
+    rows: NDArray[np.int64]
+    types: NDArray[np.int64]
+    names: tuple[str, ...]
+    guessed: int = 0
+    found: bool = False
+
+    def users(self, log: ReuseLog) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Users of the rows, as places in ``log.user.names``, and the type of each."""
+        users, first = np.unique(log.user.codes[self.rows], return_index=True)
+        return users, self.types[first]
+
+
+def library_of(log: ReuseLog, typed: TypedRows, model: str) -> tuple[PolicyLibrary, NDArray[np.float64]]:
+    """The library, and the number of outcomes of each pair, (n_types, n_policies).
+
+    Rows of weight 0 are left out. Weights count in the outcomes of each pair, not in the prior over types.
+
+    Raises
+    ------
+    InputError
+        All weights are 0.
+    """
+    used = np.ones(len(typed.rows), bool) if log.weights is None else log.weights[typed.rows] > 0
+    if not used.any():
+        raise InputError("weight must be above 0 on at least one line, got 0 on all")
+    places = typed.rows[used]
+    policies, of_policy = np.unique(log.policy.codes[places], return_inverse=True)
+    rows = OutcomeRows(typed.types[used], of_policy, log.outcomes[places], (len(typed.names), len(policies)))
+    lent, weights = _lent(rows, np.ones(len(places)) if log.weights is None else log.weights[places])
+    prior = np.ones(len(typed.names)) + np.bincount(typed.users(log)[1], minlength=len(typed.names))
+    names = [log.policy.names[code] for code in policies]
+    if model == JointNormalOutcomes.kind:
+        return _joint_normal(log, typed, places, of_policy, names), rows.sums()
+    library = PolicyLibrary.from_rows(
+        lent, typed.names, names, model, prior=prior / prior.sum(),
+        weights=None if log.weights is None else weights,
+    )  # fmt: skip
+    # Users are the tasks: those of one type may differ.
+    spread = spread_between(rows.pair, log.user.codes[places], rows.values)
+    if spread is not None:
+        library.performance.spread = spread  # pyright: ignore[reportAttributeAccessIssue]
+    return library, rows.sums()
+
+
+def _joint_normal(
+    log: ReuseLog, typed: TypedRows, places: NDArray[np.int64], of_policy: NDArray[np.int64], names: list[str]
+) -> PolicyLibrary:
+    """The library of users whose outcomes are jointly normal, fitted from the users' types on."""
+    if log.weights is not None:
+        raise InputError("model must be gaussian, student-t or categorical where lines have weights")
+    users, of_user = np.unique(log.user.codes[places], return_inverse=True)
+    most = min(len(users), max(1, FITTED_NUMBERS // len(names) ** 2))
+    some = np.isin(of_user, np.linspace(0, len(users) - 1, most).astype(np.int64))
+    # Every policy needs a row.
+    some |= np.isin(np.arange(len(places)), np.unique(of_policy, return_index=True)[1])
+    fitted, of_fitted = np.unique(of_user[some], return_inverse=True)
+    rows = OutcomeRows(of_fitted, of_policy[some], log.outcomes[places][some], (len(fitted), len(names)))
+    types = dict(zip(*typed.users(log), strict=True))
+    near = np.eye(len(typed.names))[[types[user] for user in users[fitted].tolist()]]
+    found = joint_normal_fit(rows, 0.9 * near + 0.1 / len(typed.names))
+    prior = 1 + len(users) * found.weights
+    return PolicyLibrary(found.model, None, typed.names, tuple(names), prior / prior.sum())  # pyright: ignore
+
+
+def _lent(rows: OutcomeRows, weights: NDArray[np.float64]) -> tuple[OutcomeRows, NDArray[np.float64]]:
+    """The rows, and for each pair without one the policy's rows on all types: expected is what everybody gets."""
+    parts = [(rows.types, rows.policies, rows.values, weights)]
+    for type_, policy in np.argwhere(rows.sums() == 0):
+        own = rows.policies == policy
+        n = int(own.sum())
+        parts.append((np.full(n, type_), np.full(n, policy), rows.values[own], weights[own]))
+    types, policies, values, weights = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return OutcomeRows(types, policies, values, rows.shape), weights

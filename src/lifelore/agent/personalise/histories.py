@@ -1,0 +1,54 @@
+"""Users of a study with all that happened to them, or a random sample of so many that a report takes seconds."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from lifelore.agent.personalise.study import Study
+from lifelore.memory import Memory
+from lifelore.memory.study_rows import DecisionRow, UserRow
+
+SAMPLE = 2000
+"""Largest number of users in a sample; more cost time and make curves and calibration less noisy."""
+
+
+class History(NamedTuple):
+    """A user.
+
+    past : (policy, outcome) of the outcomes elsewhere
+    decisions : in order of time, those that count
+    learnt : the same decisions with an outcome, in the order in which outcomes came, each as (policy, outcome)
+    """
+
+    user: UserRow
+    past: list[tuple[str, float]]
+    decisions: list[DecisionRow]
+
+    @property
+    def ended(self) -> list[DecisionRow]:
+        """The decisions with an outcome in the order in which outcomes came."""
+        return sorted((one for one in self.decisions if one.outcome is not None), key=lambda one: (one.ended, one.id))
+
+
+def sampled_histories(memory: Memory, study: Study, *, strangers: bool = False, since: int = 0) -> list[History]:
+    """At most `SAMPLE` users drawn from all, sorted by name; the same sample for the same users.
+
+    Parameters
+    ----------
+    strangers : bool
+        Whether only users count whom the newest fit did not know.
+    since : int
+        Decisions before this time are left out, in milliseconds.
+    """
+    with memory.studies.totals(study.number) as totals:
+        people = totals.people(strangers=strangers)
+    if len(people) > SAMPLE:
+        people = np.sort(np.random.default_rng(0).choice(people, SAMPLE, replace=False))
+    numbers = people.tolist()
+    with memory.studies.reading(study.number) as rows:
+        users, past, decisions = rows.numbered(numbers), rows.past_of(numbers), rows.decisions_of(numbers)
+    found = [
+        History(user, past.get(number, []), [one for one in decisions.get(number, []) if one.time >= since])
+        for number, user in users.items()
+    ]
+    return sorted((one for one in found if one.decisions), key=lambda one: one.user.name)

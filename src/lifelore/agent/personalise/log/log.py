@@ -1,0 +1,300 @@
+"""Logs of choices and their outcomes: CSV with a header and one choice a line.
+
+    user      who it was for; any text policy    what was chosen: a configuration, a variant, a behaviour outcome
+    how well it went, a number, larger is better; empty: not yet known, the line is left out and counted type
+    optional: what kind of user it is, if known; may be empty on some lines, and is the same on all others
+    context   optional: what is known of a user before the first choice (device, country, shop) decision
+    optional: the identifier of the line, such as what `reuse choose` printed time      optional: when it was, as
+    seconds since 1970 or an ISO date
+
+Commas, semicolons or tabs lie between columns, as the header has them; capitals in column names do not matter.
+Other columns are ignored. Several logs are read as one. `LogFormat` reads logs that are written otherwise.
+"""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.personalise.log.log_columns import COUNTED, WORDS, Lines, check_word, read_outcome
+from lifelore.agent.personalise.log.log_format import WEIGHT, LogFormat
+from lifelore.agent.personalise.log.log_frame import NAME, frame_content, frame_format
+from lifelore.agent.personalise.log.log_lines import read_lines
+from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.interaction.outcomes.frame_columns import is_frame
+
+__all__ = ["Column", "ReadFile", "ReuseLog", "check_word", "read_log", "read_outcome"]
+
+MANY_POLICIES = 20
+"""Number of policies up to which a log may have few lines of each; beyond, it looks like the wrong column."""
+
+
+@dataclass(frozen=True, eq=False)
+class Column:
+    """A column of words: each different word once, and its place for each row.
+
+    names : sorted
+    codes : (n,) int64, places in `names`
+    """
+
+    names: tuple[str, ...]
+    codes: NDArray[np.int64]
+
+    @property
+    def words(self) -> list[str]:
+        """The word of each row."""
+        return [self.names[code] for code in self.codes.tolist()]
+
+    def take(self, rows: NDArray[np.int64]) -> "Column":
+        """The column of the rows at some places, and the names that they have."""
+        used, codes = np.unique(self.codes[rows], return_inverse=True)
+        return Column(tuple(self.names[code] for code in used.tolist()), codes.astype(np.int64))
+
+
+NOTHING = Column(("",), np.zeros(0, np.int64))
+"""A column of a log without rows."""
+
+
+@dataclass(frozen=True)
+class ReadFile:
+    """A log that was read.
+
+    path : str; of a table in memory, a name made of its digest
+    size, digest : bytes, and their SHA-256
+    last_line : number of the last line with a choice
+    content : of a table in memory, as CSV; None for a file
+    """
+
+    path: str
+    size: int
+    digest: str
+    last_line: int
+    content: bytes | None = field(default=None, repr=False)
+
+
+@dataclass(frozen=True, eq=False)
+class ReuseLog:
+    """Choices whose outcome is known, one a row.
+
+    Parameters
+    ----------
+    user, policy, type, context, decision, time : Column
+        The last four are "" where the log says nothing.
+    outcomes : (n,) float64
+        Finite.
+    file, line : (n,) int64
+        Number of each row's file in `files`, and of its line there.
+    files : tuple of ReadFile
+    pending : int
+        Lines left out because their outcome is missing.
+    filled_outcomes, filled_policies : int
+        Lines whose missing outcome or policy got what the format says.
+    without_policy : int
+        Lines left out because their policy is missing.
+    probability, group : Column
+        "" where the log says nothing, and where the format does not read them.
+    weights : (n,) float64, optional
+        At least 0; None where the format names no column of weights.
+    feature_names : tuple of str
+        As the format gives them.
+    features : (n, n_features) float64
+        NaN where missing.
+    """
+
+    user: Column
+    policy: Column
+    type: Column
+    context: Column
+    decision: Column
+    time: Column
+    outcomes: NDArray[np.float64]
+    file: NDArray[np.int64]
+    line: NDArray[np.int64]
+    files: tuple[ReadFile, ...]
+    pending: int
+    filled_outcomes: int = 0
+    filled_policies: int = 0
+    without_policy: int = 0
+    probability: Column = NOTHING
+    group: Column = NOTHING
+    weights: NDArray[np.float64] | None = None
+    feature_names: tuple[str, ...] = ()
+    features: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)))
+
+    def __len__(self) -> int:
+        return len(self.outcomes)
+
+    @property
+    def users(self) -> list[str]:
+        """The user of each row."""
+        return self.user.words
+
+    @property
+    def policies(self) -> list[str]:
+        """The policy of each row."""
+        return self.policy.words
+
+    @property
+    def says_types(self) -> bool:
+        """Whether any row names a type."""
+        return any(self.type.names)
+
+    def take(self, rows: NDArray[np.int64]) -> "ReuseLog":
+        """The log with the rows at some places alone, and the names that they have."""
+        columns = {name: getattr(self, name).take(rows) for name in WORDS}
+        own = {name: getattr(self, name)[rows] for name in ("outcomes", "file", "line")}
+        weights = None if self.weights is None else self.weights[rows]
+        return replace(self, **columns, **own, weights=weights, features=self.features[rows])
+
+    @cached_property
+    def type_of_user(self) -> NDArray[np.int64]:
+        """Place of each user's type in `type.names`, −1 where no row names it, (n_users,)."""
+        return self._last_of_user(self.type)
+
+    @cached_property
+    def context_of_user(self) -> NDArray[np.int64]:
+        """Place of each user's last context in `context.names`, −1 where no row names it, (n_users,)."""
+        return self._last_of_user(self.context)
+
+    @cached_property
+    def features_of_user(self) -> NDArray[np.float64]:
+        """Each user's last value of each feature, NaN where no row has it, (n_users, n_features)."""
+        found = np.full((len(self.user.names), len(self.feature_names)), np.nan)
+        for place, column in enumerate(self.features.T):
+            known = ~np.isnan(column)
+            found[self.user.codes[known], place] = column[known]
+        return found
+
+    def _last_of_user(self, column: Column) -> NDArray[np.int64]:
+        found = np.full(len(self.user.names), -1)
+        said = np.array([bool(name) for name in column.names])[column.codes]
+        found[self.user.codes[said]] = column.codes[said]
+        return found
+
+
+def read_log(sources: Any, form: LogFormat | None = None) -> ReuseLog:
+    """Read logs as one.
+
+    Parameters
+    ----------
+    sources : sequence of paths or tables, or a table
+        Files of CSV, or tables in memory: of pandas, polars or Arrow, or mappings of columns.
+
+    Raises
+    ------
+    NotFoundError
+        There is no such file.
+    InputError
+        A column is missing, a line breaks its rule (the message says which), a user has two types, the policies
+        are nearly as many as the lines, no outcome is known, or a log is given twice.
+    StoreError
+        The disk refuses.
+    """
+    form = form or LogFormat()
+    sources = [sources] if is_frame(sources) else list(sources)
+    read = [_table(source, form) if is_frame(source) else _file(Path(source), form) for source in sources]
+    lines, files = [one for one, _ in read], [file for _, file in read]
+    paths = [
+        NAME if file.content is not None else str(source) for source, file in zip(sources, files, strict=True)
+    ]
+    for number, file in enumerate(files):
+        if file.path in (other.path for other in files[:number]):
+            raise InputError(f"log '{paths[number]}' is given twice; its lines would count twice, leave one out")
+    for number, one in enumerate(files):
+        for other in range(number):
+            if files[other].digest == one.digest:
+                raise InputError(
+                    f"logs '{paths[other]}' and '{paths[number]}' are equal; lines would count twice, "
+                    "leave one out"
+                )
+    log = _joined(lines, files, form)
+    if not len(log):
+        raise InputError(f"{', '.join(map(str, paths))} must hold at least one line with an outcome, got none")
+    _check_types(lines, paths)
+    _check_policies(log, paths)
+    return log
+
+
+def _table(frame: Any, form: LogFormat) -> tuple[Lines, ReadFile]:
+    content = frame_content(frame, form)
+    lines = read_lines(content, NAME, frame_format(form))
+    digest = hashlib.sha256(content).hexdigest()
+    return lines, ReadFile(f"frame {digest[:16]}", len(content), digest, lines.last_line, content)
+
+
+def _file(path: Path, form: LogFormat) -> tuple[Lines, ReadFile]:
+    if not path.is_file():
+        what = "is no file" if path.exists() else "does not exist"
+        raise NotFoundError(f"log '{path}' {what}; give a CSV file")
+    try:
+        content = path.read_bytes()
+    except OSError as error:
+        raise StoreError(f"cannot read {path}: {error.strerror}") from None
+    lines = read_lines(content, str(path), form)
+    digest = hashlib.sha256(content).hexdigest()
+    return lines, ReadFile(str(path.resolve()), len(content), digest, lines.last_line)
+
+
+def _joined(lines: Sequence[Lines], files: Sequence[ReadFile], form: LogFormat) -> ReuseLog:
+    user, policy, type_, context, decision, time, probability, group = (
+        _column([part.names[place] for part in lines], [part.codes[place] for part in lines])
+        for place in range(len(WORDS))
+    )
+    counts = {name: sum(part.counts[name] for part in lines) for name in COUNTED}
+    numbers = [np.concatenate(column) for column in zip(*(part.numbers for part in lines), strict=True)]
+    weights = numbers.pop(0) if WEIGHT in form.columns else None
+    n_rows = sum(len(part.outcomes) for part in lines)
+    return ReuseLog(
+        user=user, policy=policy, type=type_, context=context, decision=decision, time=time,
+        probability=probability, group=group,
+        outcomes=np.concatenate([part.outcomes for part in lines]),
+        file=np.repeat(np.arange(len(lines)), [len(part.outcomes) for part in lines]),
+        line=np.concatenate([part.line for part in lines]),
+        files=tuple(files),
+        **counts, weights=weights, feature_names=tuple(name.strip() for name in form.features),
+        features=np.stack(numbers, axis=1) if numbers else np.empty((n_rows, 0)),
+    )  # fmt: skip
+
+
+def _column(names: Sequence[tuple[str, ...]], codes: Sequence[NDArray[np.int64]]) -> Column:
+    """One column of several files', its names sorted."""
+    used = [(own, np.unique(code, return_inverse=True)) for own, code in zip(names, codes, strict=True)]
+    every: list[str] = sorted({own[code] for own, (seen, _) in used for code in seen.tolist()})
+    place = {name: number for number, name in enumerate(every)}
+    moved = [np.array([place[own[code]] for code in seen.tolist()], np.int64)[rows] for own, (seen, rows) in used]
+    return Column(tuple(every), np.concatenate(moved))
+
+
+def _check_types(lines: Sequence[Lines], paths: Sequence[str | Path]) -> None:
+    """Refuse a user with two types, and name the lines."""
+    first: dict[str, tuple[str, str]] = {}
+    for part, path in zip(lines, paths, strict=True):
+        users, types = part.names[0], part.names[2]
+        said = np.flatnonzero(np.array([bool(name) for name in types], bool)[part.codes[2]])
+        if not said.size:
+            continue
+        pair = part.codes[0][said] * len(types) + part.codes[2][said]
+        _, at = np.unique(pair, return_index=True)
+        for row in np.sort(said[at]).tolist():
+            user, type_ = users[part.codes[0][row]], types[part.codes[2][row]]
+            where = f"{path} line {part.line[row]}"
+            earlier = first.setdefault(user, (type_, where))
+            if earlier[0] != type_:
+                raise InputError(
+                    f"{where}: a user must have one type, got '{type_}' for '{user}', who is '{earlier[0]}' in "
+                    f"{earlier[1]}; leave the type empty, or make two users of them"
+                )
+
+
+def _check_policies(log: ReuseLog, paths: Sequence[str | Path]) -> None:
+    n_policies, n_lines = len(np.unique(log.policy.codes)), len(log)
+    if n_policies > MANY_POLICIES and 2 * n_policies > n_lines:
+        raise InputError(
+            f"{', '.join(map(str, paths))}: policy must name a configuration that recurs; {n_policies:,} policies "
+            f"in {n_lines:,} lines looks like the wrong column, give the right one with --columns policy=NAME"
+        )

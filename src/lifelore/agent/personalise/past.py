@@ -1,0 +1,197 @@
+"""The past of users: outcomes in logs of other systems, each line once, before memory's own decisions for them.
+
+A line is known by the identifier that it gives, else by its user, policy and time; a log without times knows lines
+by user, policy and outcome, and equal lines by their number. So a log counts once in any order and in any window. A
+fit takes its logs' lines in place of those of the fit before; `warm` adds lines.
+"""
+
+import hashlib
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from datetime import UTC, datetime
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from lifelore.agent.personalise.decisions import parse_identifier
+from lifelore.agent.personalise.log.log import ReuseLog, read_log
+from lifelore.agent.personalise.log.log_format import LogFormat
+from lifelore.agent.personalise.study import Study, known_users, user_key
+from lifelore.core.errors import InputError
+from lifelore.memory import Memory
+from lifelore.memory.study_rows import PastRow, StudyRows
+
+LARGEST_SECONDS = 1e11
+"""Numbers above are milliseconds: as seconds they would lie after the year 5000."""
+
+
+class Line(NamedTuple):
+    """An outcome that a user had elsewhere.
+
+    time : milliseconds since 1970; 0: not known, the line then comes after the lines before it
+    given : its identifier, "" where it has none
+    """
+
+    user: str
+    policy: str
+    outcome: float
+    time: int = 0
+    given: str = ""
+    context: str | None = None
+    features: dict[str, float] | None = None
+    type: str | None = None
+
+
+def warm(sources: Any, memory: Memory, study: Study, form: LogFormat | None = None) -> dict[str, Any]:
+    """Add the lines of logs to the past of their users; the library stays as it is.
+
+    Parameters
+    ----------
+    sources : sequence of paths or tables, or a table
+        As `read_log` takes them.
+
+    Returns
+    -------
+    dict
+        ``study``; ``rows`` added, of ``users``; ``known``: rows that are in the past already; ``decisions``:
+        rows left out because memory has them as decisions; ``unknown_policies``: rows whose policy the
+        library does not know, which give no evidence; ``unknown_types``: types of users that it does not know;
+        ``by_time``: whether lines were told apart by their times or identifiers; ``pending``,
+        ``filled_outcomes``, ``filled_policies``, ``without_policy`` (see `ReuseLog`).
+
+    Raises
+    ------
+    InputError, NotFoundError
+        A log breaks a rule; memory is as it was.
+    """
+    log = read_log(sources, form)
+    return add_lines(memory, study, lines_of(log)) | {
+        name: getattr(log, name) for name in ("pending", "filled_outcomes", "filled_policies", "without_policy")
+    }
+
+
+def add_lines(memory: Memory, study: Study, lines: Sequence[Line]) -> dict[str, Any]:
+    """Add lines to the past of their users; the document of `warm` without what tells of a log."""
+    with memory.studies.writing(study.number) as rows:
+        counts = _stored(rows, study, lines, fitted=False)
+    policies, types = study.library.policies, study.library.types
+    return {
+        "study": study.name,
+        **counts,
+        "unknown_policies": sum(line.policy not in policies for line in lines),
+        "unknown_types": sorted({line.type for line in lines if line.type} - set(types)),
+        "by_time": all(line.time or line.given for line in lines),
+    }
+
+
+def keep_fitted_past(memory: Memory, study: Study, log: ReuseLog) -> dict[str, int]:
+    """Make the past that of the fit's logs, and of those lines of `warm` that are not among them."""
+    with memory.studies.writing(study.number) as rows:
+        rows.begin_fit()
+        return _stored(rows, study, lines_of(log), fitted=True)
+
+
+def _stored(rows: StudyRows, study: Study, lines: Sequence[Line], *, fitted: bool) -> dict[str, int]:
+    """Store lines; numbers of new ``rows`` and their ``users``, of ``known`` ones, and of memory's ``decisions``."""
+    names = list({line.user: None for line in lines})
+    users = known_users(rows, study, names, lock=True)
+    if new := [name for name in names if name not in users]:
+        rows.add_users([(name, None, None) for name in new], 0)
+        users |= rows.users(new, lock=True)
+    told = [(users[name], _told(own, users[name])) for name, own in _told_by_user(lines).items()]
+    rows.describe((user.number, *own) for user, own in told if own != (user.context, user.features, user.type))
+    if fitted:
+        rows.mark_fitted(user.number for user in users.values())
+    ids = identities(study.name, lines)
+    own, there = rows.decisions(ids).keys(), rows.known_past(ids)
+    new = {
+        id_: PastRow(id_, users[line.user].number, line.policy, line.outcome, line.time or place, fitted)
+        for place, (id_, line) in enumerate(zip(ids, lines, strict=True))
+        if id_ not in own and id_ not in there
+    }
+    rows.add_past(new.values())
+    changed = {row.person for row in new.values()}
+    rows.keep_beliefs(((number, None) for number in changed), 0)
+    decisions = sum(id_ in own for id_ in ids)
+    known = len(lines) - len(new) - decisions
+    return {"rows": len(new), "users": len(changed), "known": known, "decisions": decisions}
+
+
+def _told_by_user(lines: Iterable[Line]) -> dict[str, Line]:
+    """Of each user the last context, features and type that a line names."""
+    told: dict[str, Line] = {}
+    for line in lines:
+        if line.context or line.features or line.type:
+            before = told.get(line.user, line)
+            told[line.user] = line._replace(
+                context=line.context or before.context,
+                features=line.features or before.features,
+                type=line.type or before.type,
+            )
+    return told
+
+
+def _told(line: Line, user: Any) -> tuple[str | None, dict[str, float] | None, str | None]:
+    return line.context or user.context, line.features or user.features, line.type or user.type
+
+
+def identities(study: str, lines: Sequence[Line]) -> list[bytes]:
+    """The identity of each line, 16 bytes, in the order of the lines' times."""
+    seen: Counter[tuple[str, str, str]] = Counter()
+    keys = {user: user_key(study, user) for user in {line.user for line in lines}}
+    found = []
+    for line in lines:
+        if line.given:
+            found.append(_given(line.given))
+            continue
+        which = str(line.time) if line.time else repr(line.outcome)
+        key = keys[line.user], line.policy, which
+        seen[key] += 1
+        text = "\x1f".join((*key, str(seen[key])))
+        digest = bytearray(hashlib.sha256(text.encode()).digest()[:10])
+        digest[0] = 0x80 | digest[0] & 0x0F
+        digest[2] = 0x80 | digest[2] & 0x3F
+        found.append(max(0, line.time).to_bytes(6, "big") + bytes(digest))
+    return found
+
+
+def _given(identifier: str) -> bytes:
+    """A UUID as it is, any other identifier by its hash."""
+    try:
+        return parse_identifier(identifier)
+    except InputError:
+        return hashlib.sha256(identifier.encode()).digest()[:16]
+
+
+def lines_of(log: ReuseLog) -> list[Line]:
+    """The rows of a log as lines."""
+    users, policies = log.user.words, log.policy.words
+    given, times, contexts, types = log.decision.words, log.time.words, log.context.words, log.type.words
+    at = {word: parse_time(word) for word in log.time.names}
+    names = log.feature_names
+    whole = ~np.isnan(log.features).any(axis=1)
+    lines = []
+    for row, outcome in enumerate(log.outcomes.tolist()):
+        time, identifier = at[times[row]], given[row]
+        if time is None:  # not a time that we can read, but it tells lines apart
+            time, identifier = 0, identifier or "\x1f".join((users[row], policies[row], times[row]))
+        features = dict(zip(names, log.features[row].tolist(), strict=True)) if names and whole[row] else None
+        context, type_ = contexts[row] or None, types[row] or None
+        lines.append(Line(users[row], policies[row], outcome, time, identifier, context, features, type_))
+    return lines
+
+
+def parse_time(word: str) -> int | None:
+    """Milliseconds since 1970 of a date, of seconds or of milliseconds; 0 for no word, None for another word."""
+    if not word:
+        return 0
+    try:
+        number = float(word)
+        return int(number if abs(number) > LARGEST_SECONDS else 1000 * number)
+    except (ValueError, OverflowError):
+        pass
+    try:
+        moment = datetime.fromisoformat(word)
+    except ValueError:
+        return None
+    return int(1000 * (moment if moment.tzinfo else moment.replace(tzinfo=UTC)).timestamp())

@@ -1,0 +1,205 @@
+"""The verb `reuse report`: the gain from choosing by belief over the control group, as numbers and pictures.
+
+The unit is the user: outcomes of one user hang together, so each user counts once, by the mean of their outcomes.
+Intervals are 95 %: Welch's for the difference of the two groups, bias-corrected bootstrap for means (Student's
+from more than `MANY` users on). Means and uplifts are of all users; the curve by decision, regret and calibration
+are of a random sample of at most `histories.SAMPLE` users.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.personalise.calibration import after_past, calibration, outcomes_of
+from lifelore.agent.personalise.beliefs import learn
+from lifelore.agent.personalise.decision_log import write_log
+from lifelore.agent.personalise.histories import SAMPLE, History, sampled_histories
+from lifelore.agent.personalise.result_folder import write_picture, write_result
+from lifelore.agent.personalise.study import Study
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.intervals import LEAST_VALUES, t_interval, welch_interval
+from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.memory import Memory
+from lifelore.memory.study_totals import Sums
+
+Array = NDArray[np.float64]
+SPLITS = ("user", "time", "both")
+LONGEST_CURVE = 60
+MANY = 1000
+"""Users up to which means are resampled; of more Student's interval says the same, and memory stays small."""
+
+
+def report(
+    memory: Memory,
+    study: Study,
+    out: str | Path | None = None,
+    log: str | Path | None = None,
+    *,
+    incumbent: str | None = None,
+    split: str | None = None,
+) -> dict[str, Any]:
+    """Compare those chosen for by belief with the control group, with the best single policy, and the incumbent.
+
+    The best single policy is chosen by the users of the fit. Its outcome, and that of the incumbent, is measured
+    on the control group, so neither is chosen and measured on the same outcomes. `split` makes sure of it where
+    users of the fit come back.
+
+    Parameters
+    ----------
+    out : folder, optional
+        Gets ``report.json`` and ``report.png``, and ``calibration.png`` where there is an outcome.
+    log : file, optional
+        Gets every decision as CSV: `COLUMNS`, outcomes not yet known left empty; ``available`` is a JSON list
+        of the policies that were available, empty where all were. Features of the study follow, so that a new
+        fit can read them.
+    incumbent : str, optional
+        The policy in place until now; default: the study's incumbent, if it has one.
+    split : {"user", "time", "both"}, optional
+        Count only users whom the fit did not know, decisions after the fit, or both; default: all. The log has
+        all.
+
+    Returns
+    -------
+    dict
+        ``study``; ``decisions``, ``pending``; ``personal`` and ``control``: users and mean outcome (None without
+        a user) each as {"value", "median", "ci95", "n"}; ``uplift``: {"value", "ci95", "n"}, personal less
+        control; ``best_single`` and ``incumbent``: ``name``, ``outcome`` in the control group and ``uplift``,
+        personal less it (None where the control group never got it); ``incumbent`` is None without one;
+        ``split``; ``policies``: in the control group each policy's mean outcome over users, fair where it draws
+        at random; ``regret``: what the policy of the largest expectation under the user's last belief would have
+        brought more, for each group, by the library and not measured; ``by_decision``: both groups' mean outcome
+        at each decision; ``calibration``, see `calibration.calibration`.
+
+    Raises
+    ------
+    InputError, NotFoundError
+        There is no such split or policy, or the study does not know when it was fitted.
+    StoreError
+        The disk refuses.
+    """
+    incumbent = incumbent or study.incumbent
+    if incumbent is not None and incumbent not in study.states:
+        raise NotFoundError(f"incumbent must be a policy of the study, got '{incumbent}'")
+    document = _document(memory, study, incumbent, split)
+    if log is not None:
+        write_log(memory, study, Path(log))
+    if out is not None:
+        from lifelore.figures.reuse_calibration import draw_calibration
+        from lifelore.figures.reuse_report import draw_reuse_report
+
+        write_result(Path(out), "report", document, draw_reuse_report)
+        if any(document["calibration"].values()):
+            write_picture(Path(out) / "calibration.png", document["calibration"], draw_calibration)
+    return document
+
+
+def _counting(study: Study, split: str | None) -> dict[str, Any]:
+    """Which users and decisions count: those that the fit has not seen."""
+    if split not in (None, *SPLITS):
+        raise InputError(f"split must be one of {', '.join(SPLITS)}, got '{split}'")
+    since = 0
+    if split in ("time", "both"):
+        if study.fitted.get("time") is None:
+            raise InputError("split by time needs a study that knows when it was fitted; fit it anew")
+        since = 1000 * int(study.fitted["time"])
+    return {"strangers": split in ("user", "both"), "since": since}
+
+
+def _document(memory: Memory, study: Study, incumbent: str | None, split: str | None) -> dict[str, Any]:
+    counting = _counting(study, split)
+    with memory.studies.totals(study.number) as totals:
+        decisions, pending = totals.n_decisions(**counting)
+        personal, control = map(_means, totals.by_user(**counting))
+        by_policy = {policy: _means(sums) for policy, sums in totals.control_by_policy(**counting).items()}
+    histories = sampled_histories(memory, study, **counting)
+    nobody = np.empty(0)
+    return {
+        "study": study.name,
+        "decisions": decisions,
+        "pending": pending,
+        "personal": _estimate(personal),
+        "control": _estimate(control),
+        "control_gets": study.incumbent or "each policy alike",
+        "uplift": _difference(personal, control),
+        "best_single": _beside(study.best_single, personal, by_policy),
+        "incumbent": None if incumbent is None else _beside(incumbent, personal, by_policy),
+        "policies": [
+            {"name": policy, "state": state, "outcome": _estimate(by_policy.get(policy, nobody))}
+            for policy, state in sorted(study.states.items())
+        ],
+        "regret": _regret(study, histories),
+        "by_decision": _by_decision(histories),
+        "calibration": calibration(study, histories),
+        "sample": len(histories),
+        "split": split,
+    }
+
+
+def _means(sums: Sums) -> Array:
+    """Mean outcome of each user, sorted, so that sums of them do not depend on the order of rows."""
+    return np.sort(sums.total / np.maximum(sums.number, 1))
+
+
+def _estimate(values: Sequence[float] | Array) -> dict[str, Any] | None:
+    if not len(values):
+        return None
+    if len(values) <= MANY:
+        return mean_estimate(values).to_dict()
+    mean, error = float(np.mean(values)), float(np.std(values, ddof=1)) / len(values) ** 0.5
+    low, high = map(float, t_interval(mean, error, len(values) - 1))
+    return Estimate(mean, float(np.median(values)), (low, high) if error > 0 else None, len(values)).to_dict()
+
+
+def _difference(first: Array, second: Array) -> dict[str, Any] | None:
+    """Difference of means with Welch's interval, if there are users and spread enough for one."""
+    if not len(first) or not len(second):
+        return None
+    ci95 = welch_interval(first, second)
+    return {
+        "value": float(np.mean(first) - np.mean(second)),
+        "ci95": list(ci95) if ci95 else None,
+        "n": [len(first), len(second)],
+    }
+
+
+def _beside(policy: str, personal: Array, by_policy: dict[str, Array]) -> dict[str, Any]:
+    """A single policy's outcome in the control group, and what those chosen for by belief have more."""
+    means = by_policy.get(policy, np.empty(0))
+    return {"name": policy, "outcome": _estimate(means), "uplift": _difference(personal, means)}
+
+
+def _regret(study: Study, histories: Sequence[History]) -> dict[str, Any]:
+    """For each group the mean over decisions of what the best policy under the last belief is expected to bring more."""
+    lost: dict[str, list[float]] = {"personal": [], "control": []}
+    if histories:
+        algorithm = after_past(study, histories)
+        learn(algorithm, study, outcomes_of(histories))
+        every = np.arange(len(histories))
+        expected = algorithm.known(every).performance.expected(algorithm.belief(every))
+        best = expected[:, study.active_numbers].max(axis=1)
+        number_of = {policy: number for number, policy in enumerate(study.library.policies)}
+        for row, history in enumerate(histories):
+            for name, control in (("personal", False), ("control", True)):
+                own = [one for one in history.ended if one.control == control]
+                known = [number_of[one.policy] for one in own if one.policy in number_of]
+                if own:
+                    lost[name].append(float(np.mean(best[row] - expected[row, known])) if known else 0.0)
+    return {name: _estimate(values) for name, values in lost.items()}
+
+
+def _by_decision(histories: Sequence[History]) -> list[dict[str, Any]]:
+    """Both groups' mean outcome at each decision."""
+    points = []
+    for number in range(LONGEST_CURVE):
+        own = [one.decisions[number] for one in histories if len(one.decisions) > number]
+        ended = [one for one in own if one.outcome is not None]
+        point: dict[str, Any] = {"decision": number + 1}
+        for name, control in (("personal", False), ("control", True)):
+            values = np.array([one.outcome for one in ended if one.control == control], np.float64)
+            point[name] = _estimate(values) if len(values) >= LEAST_VALUES else None
+        if point["personal"] or point["control"]:
+            points.append(point)
+    return points

@@ -1,0 +1,291 @@
+"""What a transaction does with the users, past and decisions of a study."""
+
+import json
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
+
+from lifelore.memory.connection import Connection
+
+DECISION = (
+    "study", "id", "person", "policy", "probability", "control", "version", "context", "available", "request", "time",
+)  # fmt: skip
+"""Columns of a decision without its outcome."""
+_USER = "number, name, context, features, type, fitted, version, state"
+_COUNT = ", (SELECT COUNT(*) FROM lifelore_decisions d WHERE d.study = u.study AND d.person = u.number)"
+_DECISION = "id, person, policy, probability, control, version, context, available, request, time, outcome, ended"
+
+
+class UserRow(NamedTuple):
+    """A user of a study.
+
+    number : in the tables
+    context, features, type : str, dict and str, as last named; None where nobody named them
+    fitted : whether the newest fit knew the user
+    version : of the study that the belief is of
+    state : bytes, the belief; None: before the first outcome
+    n_decisions : as far as it was asked for
+    """
+
+    number: int
+    name: str
+    context: str | None
+    features: dict[str, float] | None
+    type: str | None
+    fitted: bool
+    version: int
+    state: bytes | None
+    n_decisions: int = 0
+
+
+class DecisionRow(NamedTuple):
+    """A stored decision.
+
+    id : 16 bytes
+    person : number of its user
+    time, ended : milliseconds since 1970; `ended` is None while the outcome is not known
+    control : whether the user was held out
+    available : the policies that were available; None: all
+    """
+
+    id: bytes
+    person: int
+    policy: str
+    probability: float
+    control: bool
+    version: int
+    context: str | None
+    available: tuple[str, ...] | None
+    request: str | None
+    time: int
+    outcome: float | None
+    ended: int | None
+
+
+class PastRow(NamedTuple):
+    """An outcome that a user had elsewhere.
+
+    id : 16 bytes, the identity of its line
+    time : milliseconds since 1970; 0: not known
+    fitted : whether a fit read it
+    """
+
+    id: bytes
+    person: int
+    policy: str
+    outcome: float
+    time: int
+    fitted: bool
+
+
+class StudyRows:
+    """The rows of a study inside a transaction.
+
+    Parameters
+    ----------
+    conn : Connection
+    number : int
+        Of the study.
+    """
+
+    def __init__(self, conn: Connection, number: int) -> None:
+        self._conn, self._study = conn, number
+
+    # ---- users -------------------------------------------------------------------------------------------
+
+    def users(self, names: Sequence[str], *, lock: bool = False, count: bool = False) -> dict[str, UserRow]:
+        """The known users among `names`.
+
+        With `lock` nobody deletes them before the transaction ends; with `count` their decisions are counted.
+        """
+        query = (
+            f"SELECT {_USER}{_COUNT if count else ''} FROM lifelore_study_users u"
+            " WHERE study = ? AND name IN ({many})"
+        )
+        found = self._conn.matching(query + self._locked(lock, "KEY SHARE"), names, (self._study,))
+        return {row[1]: _user(row) for row in found}
+
+    def numbered(self, numbers: Iterable[int], *, lock: bool = False) -> dict[int, UserRow]:
+        """Users by number; with `lock` no other transaction changes them before this one ends."""
+        query = f"SELECT {_USER} FROM lifelore_study_users WHERE study = ? AND number IN ({{many}}) ORDER BY number"
+        found = self._conn.matching(query + self._locked(lock, "UPDATE"), sorted(set(numbers)), (self._study,))
+        return {row[0]: _user(row) for row in found}
+
+    def add_users(self, users: Sequence[tuple[str, str | None, Mapping[str, float] | None]], version: int) -> None:
+        """Add users (name, context, features) before their first outcome; those that exist stay as they are."""
+        statement = (
+            "INSERT INTO lifelore_study_users (study, name, context, features, fitted, version, personal,"
+            " personal_sum, control, control_sum) VALUES (?, ?, ?, ?, 0, ?, 0, 0, 0, 0) ON CONFLICT (study, name) DO NOTHING"
+        )
+        rows = [(self._study, name, context, _json(features), version) for name, context, features in users]
+        self._conn.execute_many(statement, rows)
+
+    def rename(self, names: Mapping[int, str]) -> None:
+        """Give users other names, by their numbers."""
+        statement = "UPDATE lifelore_study_users SET name = ? WHERE study = ? AND number = ?"
+        self._conn.execute_many(statement, [(name, self._study, number) for number, name in names.items()])
+
+    def describe(self, users: Iterable[tuple[int, str | None, Mapping[str, float] | None, str | None]]) -> None:
+        """Set (number, context, features, type) of users, whose beliefs must then be computed again."""
+        statement = (
+            "UPDATE lifelore_study_users SET context = ?, features = ?, type = ?, version = 0"
+            " WHERE study = ? AND number = ?"
+        )
+        rows = [(context, _json(features), type_, self._study, number) for number, context, features, type_ in users]
+        self._conn.execute_many(statement, rows)
+
+    def keep_beliefs(self, beliefs: Iterable[tuple[int, bytes | None]], version: int) -> None:
+        """Store the beliefs about users by number."""
+        statement = "UPDATE lifelore_study_users SET state = ?, version = ? WHERE study = ? AND number = ?"
+        self._conn.execute_many(statement, [(state, version, self._study, number) for number, state in beliefs])
+
+    def learn(self, learnt: Iterable[tuple[int, bytes | None, int, float, int, float]], version: int) -> None:
+        """Store beliefs, and add outcomes to users' sums.
+
+        Parameters
+        ----------
+        learnt : (number, belief, number and sum of outcomes chosen by belief, and of the control group)
+        """
+        statement = (
+            "UPDATE lifelore_study_users SET state = ?, version = ?, personal = personal + ?,"
+            " personal_sum = personal_sum + ?, control = control + ?, control_sum = control_sum + ?"
+            " WHERE study = ? AND number = ?"
+        )
+        self._conn.execute_many(
+            statement, [(state, version, *sums, self._study, number) for number, state, *sums in learnt]
+        )
+
+    def forget(self, number: int) -> int:
+        """Delete a user with everything stored; the number of decisions and lines of the past deleted."""
+        own = (self._study, number)
+        count = 0
+        for table in ("lifelore_decisions", "lifelore_study_past"):
+            count += int(self._conn.value(f"SELECT COUNT(*) FROM {table} WHERE study = ? AND person = ?", own))
+            self._conn.execute(f"DELETE FROM {table} WHERE study = ? AND person = ?", own)
+        self._conn.execute("DELETE FROM lifelore_study_users WHERE study = ? AND number = ?", own)
+        return count
+
+    def _locked(self, lock: bool, how: str) -> str:
+        return f" FOR {how}" if lock and not self._conn.is_sqlite else ""
+
+    # ---- decisions -----------------------------------------------------------------------------------------
+
+    def add_decisions(self, decisions: Iterable[DecisionRow]) -> None:
+        """Store new decisions, without their outcomes."""
+        rows = [
+            (self._study, *one[:4], int(one.control), *one[5:7], _json(one.available), *one[8:10])
+            for one in decisions
+        ]
+        self._conn.insert("lifelore_decisions", DECISION, rows)
+
+    def locked_decisions(self, ids: Sequence[bytes]) -> tuple[dict[bytes, DecisionRow], dict[int, UserRow]]:
+        """Decisions by identifier and their users by number, whom no other transaction changes before the end."""
+        found = self.decisions(ids)
+        users = self.numbered((one.person for one in found.values()), lock=True)
+        if not self._conn.is_sqlite:  # another program may have taken an outcome before the users were locked
+            found = self.decisions(ids)
+        return {id_: one for id_, one in found.items() if one.person in users}, users
+
+    def decisions(self, ids: Sequence[bytes]) -> dict[bytes, DecisionRow]:
+        """The decisions with some of these identifiers."""
+        query = f"SELECT {_DECISION} FROM lifelore_decisions WHERE study = ? AND id IN ({{many}})"
+        return {row.id: row for row in map(_decision, self._conn.matching(query, ids, (self._study,)))}
+
+    def decisions_of(self, numbers: Sequence[int]) -> dict[int, list[DecisionRow]]:
+        """All decisions for users by their number, in order of time."""
+        query = f"SELECT {_DECISION} FROM lifelore_decisions WHERE study = ? AND person IN ({{many}})"
+        found: dict[int, list[DecisionRow]] = {}
+        for row in sorted(map(_decision, self._conn.matching(query, numbers, (self._study,)))):
+            found.setdefault(row.person, []).append(row)
+        return found
+
+    def requested(self, pairs: Sequence[tuple[int, str]]) -> dict[tuple[int, str], DecisionRow]:
+        """The decisions that were made for (user, request)."""
+        query = (
+            f"SELECT {_DECISION} FROM lifelore_decisions WHERE study = ? AND request IS NOT NULL"
+            " AND person IN ({many})"
+        )
+        if len(pairs) == 1:
+            query = query.replace("request IS NOT NULL", "request = ?")
+            parameters: tuple[Any, ...] = (self._study, pairs[0][1])
+        else:
+            parameters = (self._study,)
+        people = sorted({person for person, _ in pairs})
+        found = map(_decision, self._conn.matching(query, people, parameters))
+        wanted = set(pairs)
+        return {pair: row for row in found if (pair := (row.person, row.request or "")) in wanted}
+
+    def end_decisions(self, outcomes: Iterable[tuple[bytes, float]], ended: int) -> None:
+        """Store the outcomes of decisions that have none."""
+        statement = (
+            "UPDATE lifelore_decisions SET outcome = ?, ended = ? WHERE study = ? AND id = ? AND outcome IS NULL"
+        )
+        self._conn.execute_many(statement, [(outcome, ended, self._study, id_) for id_, outcome in outcomes])
+
+    # ---- evidence ------------------------------------------------------------------------------------------
+
+    def evidence(self, numbers: Sequence[int]) -> list[tuple[int, str, float]]:
+        """(user, policy, outcome) of all that users' beliefs follow from: the past, then outcomes as they came."""
+        past = [(number, *pair) for number, own in self.past_of(numbers).items() for pair in own]
+        query = (
+            "SELECT person, policy, outcome, ended, id FROM lifelore_decisions"
+            " WHERE study = ? AND outcome IS NOT NULL AND person IN ({many})"
+        )
+        found = self._conn.matching(query, numbers, (self._study,))
+        return past + [row[:3] for row in sorted(found, key=lambda row: row[3:])]
+
+    def past_of(self, numbers: Sequence[int]) -> dict[int, list[tuple[str, float]]]:
+        """(policy, outcome) of the past of users by their number, in order of time."""
+        query = (
+            "SELECT person, policy, outcome, time, id FROM lifelore_study_past WHERE study = ? AND person IN ({many})"
+        )
+        found: dict[int, list[tuple[str, float]]] = {}
+        for person, policy, outcome, *_ in sorted(
+            self._conn.matching(query, numbers, (self._study,)), key=lambda row: row[3:]
+        ):
+            found.setdefault(person, []).append((policy, outcome))
+        return found
+
+    def add_past(self, lines: Iterable[PastRow]) -> int:
+        """Store lines of the past, each identity once; the number of new lines."""
+        statement = (
+            "INSERT INTO lifelore_study_past (study, id, person, policy, outcome, time, fitted)"
+            " VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (study, id) DO NOTHING"
+        )
+        before = self.n_past()
+        self._conn.execute_many(statement, [(self._study, *line[:5], int(line.fitted)) for line in sorted(lines)])
+        return self.n_past() - before
+
+    def n_past(self) -> int:
+        """Number of lines of the past."""
+        return int(self._conn.value("SELECT COUNT(*) FROM lifelore_study_past WHERE study = ?", (self._study,)))
+
+    def known_past(self, ids: Sequence[bytes]) -> set[bytes]:
+        """Which of these identities are in the past."""
+        query = "SELECT id FROM lifelore_study_past WHERE study = ? AND id IN ({many})"
+        return {row[0] for row in self._conn.matching(query, ids, (self._study,))}
+
+    def begin_fit(self) -> None:
+        """Delete the lines that an earlier fit read, and mark no user as known to a fit."""
+        own = (self._study,)
+        self._conn.execute("DELETE FROM lifelore_study_past WHERE study = ? AND fitted = 1", own)
+        self._conn.execute("UPDATE lifelore_study_users SET fitted = 0, version = 0 WHERE study = ?", own)
+
+    def mark_fitted(self, numbers: Iterable[int]) -> None:
+        """Mark users as known to the newest fit."""
+        statement = "UPDATE lifelore_study_users SET fitted = 1 WHERE study = ? AND number = ?"
+        self._conn.execute_many(statement, [(self._study, number) for number in numbers])
+
+
+def _user(row: Sequence[Any]) -> UserRow:
+    user = UserRow(*row)
+    return user if user.features is None else user._replace(features=json.loads(row[3]))
+
+
+def _decision(row: Sequence[Any]) -> DecisionRow:
+    id_, person, policy, probability, control, version, context, available, *rest = row
+    listed = None if available is None else tuple(json.loads(available))
+    return DecisionRow(id_, person, policy, probability, bool(control), version, context, listed, *rest)
+
+
+def _json(content: Any) -> str | None:
+    return json.dumps(content) if content else None

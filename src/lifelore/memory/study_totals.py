@@ -1,0 +1,148 @@
+"""Sums over the rows of a study, and its log as a stream, for reports at any size."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.memory.connection import Connection
+
+Array = NDArray[Any]
+
+
+class Sums(NamedTuple):
+    """Outcomes by user of a group.
+
+    number, total : (n_users,) int64 and float64, of users with an outcome
+    """
+
+    number: Array
+    total: Array
+
+
+class StudyTotals:
+    """Sums over the rows of a study on a snapshot.
+
+    Parameters
+    ----------
+    conn : Connection
+    number : int
+        Of the study.
+    """
+
+    def __init__(self, conn: Connection, number: int) -> None:
+        self._conn, self._study = conn, number
+
+    def n_decisions(self, *, strangers: bool = False, since: int = 0) -> tuple[int, int]:
+        """Number of decisions, and of those without an outcome; parameters as for `by_user`."""
+        if strangers or since:
+            query = "SELECT COUNT(*), COUNT(outcome) FROM lifelore_decisions WHERE study = ? AND time >= ?"
+            n, ended = self._conn.execute(query + self._who(strangers), (self._study, since)).fetchall()[0]
+            return int(n), int(n) - int(ended)
+        count = "SELECT COUNT(*) FROM lifelore_decisions WHERE study = ?"
+        ended = "SELECT COALESCE(SUM(personal + control), 0) FROM lifelore_study_users WHERE study = ?"
+        n = int(self._conn.value(count, (self._study,)))
+        return n, n - int(self._conn.value(ended, (self._study,)))
+
+    def by_user(self, *, strangers: bool = False, since: int = 0) -> tuple[Sums, Sums]:
+        """Outcomes of users chosen for by belief, and of the control group.
+
+        Parameters
+        ----------
+        strangers : bool
+            Whether only users count whom the newest fit did not know.
+        since : int
+            Only decisions from this time on count, in milliseconds.
+        """
+        return self._sums("personal", 0, strangers, since), self._sums("control", 1, strangers, since)
+
+    def _sums(self, group: str, control: int, strangers: bool, since: int) -> Sums:
+        if since == 0:
+            query = (
+                f"SELECT {group}, {group}_sum FROM lifelore_study_users WHERE study = ? AND {group} > 0"
+                + " AND fitted = 0" * strangers
+            )
+            return Sums(*_columns(self._conn.stream(query, (self._study,)), 2))
+        query = (
+            "SELECT COUNT(outcome), SUM(outcome) FROM lifelore_decisions WHERE study = ? AND control = ?"
+            f" AND time >= ?{self._who(strangers)} AND outcome IS NOT NULL GROUP BY person"
+        )
+        return Sums(*_columns(self._conn.stream(query, (self._study, control, since)), 2))
+
+    def control_by_policy(self, *, strangers: bool = False, since: int = 0) -> dict[str, Sums]:
+        """Outcomes of the control group by policy and user."""
+        timed = " AND time >= ?" if since else ""
+        query = (
+            "SELECT policy, COUNT(outcome), SUM(outcome) FROM lifelore_decisions WHERE study = ? AND control = 1"
+            f"{timed}{self._who(strangers)} AND outcome IS NOT NULL GROUP BY policy, person"
+        )
+        found: dict[str, list[tuple[int, float]]] = {}
+        for rows in self._conn.stream(query, (self._study, since) if since else (self._study,)):
+            for policy, number, total in rows:
+                found.setdefault(policy, []).append((number, total))
+        return {policy: Sums(*np.array(rows, np.float64).T) for policy, rows in found.items()}
+
+    def _who(self, strangers: bool) -> str:
+        only = " AND person IN (SELECT number FROM lifelore_study_users WHERE study = {} AND fitted = 0)"
+        return only.format(int(self._study)) if strangers else ""
+
+    def n_users(self) -> int:
+        """Number of users, also of those whom a log alone names."""
+        return int(self._conn.value("SELECT COUNT(*) FROM lifelore_study_users WHERE study = ?", (self._study,)))
+
+    def people(self, *, strangers: bool = False) -> Array:
+        """Numbers of all users with an outcome of a decision, or of those whom no fit knew, ascending."""
+        query = "SELECT number FROM lifelore_study_users WHERE study = ? AND personal + control > 0"
+        found = _columns(self._conn.stream(query + " AND fitted = 0" * strangers, (self._study,)), 1)[0]
+        return np.sort(found.astype(np.int64))
+
+    def by_version(self) -> dict[int, int]:
+        """Number of decisions by version of the study."""
+        query = "SELECT version, COUNT(*) FROM lifelore_decisions WHERE study = ? GROUP BY version"
+        return dict(self._conn.execute(query, (self._study,)).fetchall())
+
+    def recent(self, since: int) -> list[tuple[str, int, int, int, float]]:
+        """(policy, control, decisions, outcomes, sum of outcomes) of decisions from a time on, in milliseconds."""
+        query = (
+            "SELECT policy, control, COUNT(*), COUNT(outcome), COALESCE(SUM(outcome), 0) FROM lifelore_decisions"
+            " WHERE study = ? AND id >= ? GROUP BY policy, control"
+        )
+        return self._conn.execute(query, (self._study, first_id(since))).fetchall()
+
+    def log(
+        self, columns: Sequence[str], since: bytes = b"", until: bytes | None = None, limit: int | None = None
+    ) -> Iterator[list[tuple[Any, ...]]]:
+        """Decisions in order of their identifiers, in parts of bounded size.
+
+        Parameters
+        ----------
+        columns : sequence of str
+            ``d.`` columns of decisions and ``u.`` columns of users.
+        since, until : bytes
+            Identifiers above `since` and below `until` are given.
+        """
+        parameters: list[Any] = [self._study, since]
+        query = (
+            f"SELECT {', '.join(columns)} FROM lifelore_decisions d JOIN lifelore_study_users u"
+            " ON u.number = d.person WHERE d.study = ? AND d.id > ?"
+        )
+        if until is not None:
+            query, parameters = query + " AND d.id < ?", [*parameters, until]
+        query += " ORDER BY d.id"
+        if limit is not None:
+            query += f" LIMIT {int(limit)}"
+        return self._conn.stream(query, parameters)
+
+
+def first_id(time: int) -> bytes:
+    """The least identifier of a decision at a time, in milliseconds since 1970."""
+    return max(0, time).to_bytes(6, "big") + bytes(10)
+
+
+def _columns(parts: Iterator[list[tuple[Any, ...]]], n: int) -> tuple[Array, ...]:
+    """Columns of numbers from parts of rows."""
+    found = [np.array(rows, np.float64).reshape(-1, n) for rows in parts]
+    joined = np.concatenate(found) if found else np.empty((0, n))
+    return tuple(joined.T)
+
