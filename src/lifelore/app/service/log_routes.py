@@ -11,6 +11,7 @@ from lifelore.agent.reuse.evaluate import EvaluateSettings, evaluate
 from lifelore.agent.reuse.fit import FitSettings, fit
 from lifelore.agent.reuse.log_format import LogFormat
 from lifelore.agent.reuse.report import report
+from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service
 from lifelore.app.service.study_routes import Name
 
@@ -61,7 +62,7 @@ class EvaluateRequest(BaseModel):
 
 def router(service: Service) -> APIRouter:
     """The routes over logs."""
-    routes = APIRouter(prefix="/v1", tags=["personalise"])
+    routes = APIRouter(prefix="/v1", tags=["personalise"], route_class=JsonRoute)
     memory, studies = service.memory, service.studies
 
     @routes.post("/studies/{study}/fit", summary="Learn types of users and outcomes of policies from a log")
