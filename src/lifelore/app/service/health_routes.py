@@ -12,7 +12,7 @@ from starlette.concurrency import run_in_threadpool
 from lifelore import __version__
 from lifelore.app.service.service_state import Service
 from lifelore.app.service.telemetry import CONTENT_TYPE_LATEST
-from lifelore.core.errors import LifeloreError, StoreError
+from lifelore.core.errors import StoreError
 from lifelore.memory import Memory
 
 EVERY = 5.0
@@ -52,7 +52,7 @@ class StoreTrial:
         stored = True
         try:
             await run_in_threadpool(store_nothing, self._memory)
-        except LifeloreError as error:
+        except Exception as error:
             stored = False
             if self._stores:
                 _log.error("health", extra={"fields": {"error": str(error)}})
