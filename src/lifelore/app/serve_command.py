@@ -16,7 +16,13 @@ def serve(
         "127.0.0.1"
     ),
     port: Annotated[int, Option(help="Port; 0: any free port.")] = 8321,
-    where: Annotated[str | None, Option("--memory", metavar="FILE|URL", help="Memory; default: your own.")] = None,
+    where: Annotated[
+        str | None,
+        Option("--memory", metavar="FILE|URL", envvar="LIFELORE_MEMORY", help="Memory; default: your own."),
+    ] = None,
+    memory_file: Annotated[
+        str | None, Option(metavar="FILE", help="File with the URL of the memory, so that no password is in ps.")
+    ] = None,
     token_file: Annotated[
         str | None, Option(metavar="FILE", help="Hashed tokens; with it every request needs a token.")
     ] = None,
@@ -24,7 +30,13 @@ def serve(
         str | None,
         Option(metavar="NAME", help="Add a token to --token-file, print it once, and do not serve."),
     ] = None,
-    scopes: Annotated[str, Option(help="Scopes of the new token: read, write, or read,write.")] = "read,write",
+    scopes: Annotated[str, Option(help="Scopes of the new token: some of read,write,admin.")] = "read,write",
+    study: Annotated[
+        list[str] | None, Option(metavar="NAME", help="Only study of the new token; may be repeated.")
+    ] = None,
+    only: Annotated[
+        str, Option(metavar="GROUPS", help="Routes to serve: some of personalise,perceive,advise,memory,pages.")
+    ] = "personalise,perceive,advise,memory,pages",
     body: Annotated[float, Option(help="Size of the largest request in MiB.")] = 64.0,
     rate: Annotated[float, Option(help="Requests per second of a client; 0: no limit.")] = 1000.0,
     seconds: Annotated[float, Option(help="Longest time that a request may take.")] = 60.0,
@@ -35,6 +47,9 @@ def serve(
     until_eof: Annotated[
         bool,
         Option("--until-eof", help="Stop at the end of standard input too: when the program that opened it dies."),
+    ] = False,
+    access_log: Annotated[
+        bool, Option("--access-log", help="Log answered requests too, not errors alone.")
     ] = False,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
@@ -52,11 +67,12 @@ def serve(
 
         if token_file is None:
             raise InputError("add-token needs the file to add it to; give --token-file FILE")
-        token = added(token_file, add_token, scopes.split(","))
+        token = added(token_file, add_token, scopes.split(","), study or ())
         print(json.dumps({"name": add_token, "token": token}) if as_json else token)
         return
     try:
         import fastapi  # noqa: F401
+        import httptools  # noqa: F401
         import prometheus_client  # noqa: F401
         import uvicorn  # noqa: F401
         import websockets  # noqa: F401
@@ -74,9 +90,24 @@ def serve(
         maps[name] = file
         if not name or not Path(file).is_file():
             raise InputError(f"map must be NAME=YAML with a file that exists, got '{part}'")
-    settings = ServiceSettings(where, token_file, seed, int(body * (1 << 20)), rate, seconds, maps)
+    settings = ServiceSettings(
+        where if memory_file is None else _location_in(memory_file),
+        token_file, seed, int(body * (1 << 20)), rate, seconds, maps, only.split(","), access_log,
+    )  # fmt: skip
 
     def ready(url: str) -> None:
         print_json_line({"url": url}) if as_json else print(f"serving at {url} (Ctrl-C stops)", flush=True)
 
     served(settings, host, port, ready, app_with_pages, until=STDIN if until_eof else None)
+
+
+def _location_in(file: str) -> str:
+    from lifelore.core.errors import InputError
+
+    try:
+        location = Path(file).read_text(encoding="utf-8").strip()
+    except (OSError, UnicodeDecodeError):
+        raise InputError(f"memory-file '{file}' must be a text file that can be read") from None
+    if not location or "\n" in location:
+        raise InputError(f"memory-file '{file}' must have one line, the file or URL of the memory")
+    return location

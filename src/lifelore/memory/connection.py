@@ -4,12 +4,15 @@ The drivers are used directly: a library above them would need most of the time 
 """
 
 import re
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache
 from typing import Any
 
 Parameters = Mapping[str, Any] | Sequence[Any]
+IDLE = 1.0
+"""Seconds after which a connection to a server is tried before its next use; fewer cost a statement more often."""
 MANY = 10_000
 """Values in a list of a statement, and rows in a part of a stream: more need more main memory."""
 
@@ -33,6 +36,7 @@ class Connection:
         self._driver = driver
         self.is_sqlite = is_sqlite
         self.statements = 0
+        self.used = time.monotonic()
 
     def control(self, sql: str) -> None:
         """Begin or end a transaction."""
@@ -101,6 +105,16 @@ class Connection:
         """The first column of the first row, which there must be."""
         return self.execute(sql, parameters).fetchall()[0][0]
 
+    def answers(self) -> bool:
+        """Whether the server still answers; a server may have been started again since the last use."""
+        if self.is_sqlite or time.monotonic() - self.used < IDLE:
+            return True
+        try:
+            self.control("SELECT 1")
+        except Exception:
+            return False
+        return True
+
     def close(self) -> None:
         """Close the connection; what is not committed is lost."""
         self._driver.close()
@@ -134,16 +148,25 @@ class Pool:
     @contextmanager
     def connection(self) -> Iterator[Connection]:
         """A connection that no other thread uses in the meantime."""
-        try:
-            conn = self._waiting.pop()
-        except IndexError:
-            conn = self._connect()
+        conn = self._taken()
         try:
             yield conn
         except BaseException:
             self._end(conn)
             raise
+        conn.used = time.monotonic()
         self._waiting.append(conn)
+
+    def _taken(self) -> Connection:
+        """A waiting connection that answers, or a new one."""
+        while True:
+            try:
+                conn = self._waiting.pop()
+            except IndexError:
+                return self._connect()
+            if conn.answers():
+                return conn
+            self._end(conn)
 
     def close(self) -> None:
         """Close the waiting connections."""

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.memory.connection import Connection
+from lifelore.memory.connection import MANY, Connection
 
 Array = NDArray[Any]
 
@@ -111,28 +111,24 @@ class StudyTotals:
         return self._conn.execute(query, (self._study, first_id(since))).fetchall()
 
     def log(
-        self, columns: Sequence[str], since: bytes = b"", until: bytes | None = None, limit: int | None = None
-    ) -> Iterator[list[tuple[Any, ...]]]:
-        """Decisions in order of their identifiers, in parts of bounded size.
+        self, columns: Sequence[str], after: bytes = b"", before: bytes | None = None, limit: int = MANY
+    ) -> list[tuple[Any, ...]]:
+        """The first decisions in order of their identifiers.
 
         Parameters
         ----------
         columns : sequence of str
             ``d.`` columns of decisions and ``u.`` columns of users.
-        since, until : bytes
-            Identifiers above `since` and below `until` are given.
+        after, before : bytes
+            Identifiers between the two are given.
         """
-        parameters: list[Any] = [self._study, since]
         query = (
             f"SELECT {', '.join(columns)} FROM lifelore_decisions d JOIN lifelore_study_users u"
-            " ON u.number = d.person WHERE d.study = ? AND d.id > ?"
+            f" ON u.number = d.person WHERE d.study = ? AND d.id > ?{'' if before is None else ' AND d.id < ?'}"
+            " ORDER BY d.id LIMIT ?"
         )
-        if until is not None:
-            query, parameters = query + " AND d.id < ?", [*parameters, until]
-        query += " ORDER BY d.id"
-        if limit is not None:
-            query += f" LIMIT {int(limit)}"
-        return self._conn.stream(query, parameters)
+        bounds = [after] if before is None else [after, before]
+        return self._conn.execute(query, [self._study, *bounds, limit]).fetchall()
 
 
 def first_id(time: int) -> bytes:

@@ -23,7 +23,7 @@ EXAMPLES = 15
 def token_file(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, str]:
     """A file of tokens, and a token in it."""
     file = str(tmp_path_factory.mktemp("tokens") / "tokens")
-    return file, add_token(file, "schemathesis", ["read", "write"])
+    return file, add_token(file, "schemathesis", ["admin"])
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])

@@ -61,7 +61,7 @@ def started(start, tmp_path):
 def test_it_serves_and_stops_by_a_signal(started, study, tmp_path):
     memory = tmp_path / "lifelore.db"
     for number, stop, status in ((0, signal.SIGTERM, 0), (1, signal.SIGINT, 130)):
-        child, url = started(memory)
+        child, url = started(memory, "--access-log")
         with Client(url) as client:
             client.ask("PUT", "/v1/studies/s", study)
             made = client.ask("POST", "/v1/studies/s/decisions", {"user": "ada"})

@@ -3,12 +3,9 @@
 import base64
 import io
 import json
-import os
 import random
-import signal
 import sqlite3
 import struct
-import time
 
 import numpy as np
 import pytest
@@ -17,11 +14,11 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from lifelore.agent.perceive.perceive import perceive
-from lifelore.app.service.worker_process import WorkerProcess
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.memory import open_memory
 
+FILE = {"Content-Type": "application/octet-stream"}
 SQUARE = np.stack(np.meshgrid(np.arange(40), np.arange(40)), -1).reshape(-1, 2)
 
 
@@ -51,7 +48,7 @@ def cloud():
 def ask(client, content, **options):
     return client.post(
         "/v1/perceive/cloud", content=content, params={"up": "z", **options},
-        headers={"Content-Type": "application/octet-stream"},
+        headers=FILE,
     )  # fmt: skip
 
 
@@ -151,29 +148,6 @@ def test_no_parameter_names_a_file(serve, cloud, name, value):
     assert "root:" not in answer.text
 
 
-def test_a_worker_that_hangs_or_dies_is_replaced():
-    worker = WorkerProcess()
-    try:
-        assert worker.call(max, (2, 3), 60) == 3
-        began = time.monotonic()
-        with pytest.raises(InputError, match=r"longer than 0\.5 s"):
-            worker.call(time.sleep, (60,), 0.5)
-        assert time.monotonic() - began < 20
-        with pytest.raises(InputError, match="crashed"):
-            worker.call(os._exit, (3,), 60)
-        with pytest.raises(InputError, match="crashed"):
-            worker.call(os.kill, (worker_pid(worker), signal.SIGSEGV), 60)
-        with pytest.raises(RuntimeError, match="ZeroDivisionError"):
-            worker.call(divmod, (1, 0), 60)
-        assert worker.call(max, (2, 3), 60) == 3
-    finally:
-        worker.stop()
-
-
-def worker_pid(worker):
-    return worker.call(os.getpid, (), 60)
-
-
 def contribute(memory, robot):
     record = Record("action_prior", "k", 1, "add", slots=np.array([1]), values=np.array([2]))
     memory.contribute(robot, [record], process="p", seq=0, task={})
@@ -185,7 +159,7 @@ def test_memories_travel_as_exports(serve, where, tmp_path):
     first, second = serve(where), serve()
     exported = first.get("/v1/memory/export")
     assert exported.headers["content-type"] == "application/vnd.sqlite3"
-    assert second.post("/v1/memory/merge", content=exported.content).json() == {
+    assert second.post("/v1/memory/merge", content=exported.content, headers=FILE).json() == {
         "added": 1, "already_there": 0, "forgotten": 0,
     }  # fmt: skip
     shown = second.get("/v1/memory").json()
@@ -193,7 +167,7 @@ def test_memories_travel_as_exports(serve, where, tmp_path):
     assert "location" not in shown
     assert second.delete("/v1/memory/robots", params={"robot": "rosie"}).json()["forgotten"] == 1
     assert second.delete("/v1/memory/robots", params={"robot": "rosie"}).status_code == 404
-    assert second.post("/v1/memory/merge", content=exported.content).json()["forgotten"] == 1
+    assert second.post("/v1/memory/merge", content=exported.content, headers=FILE).json()["forgotten"] == 1
     assert first.delete("/v1/memory/buildings", params={"building": "nowhere"}).status_code == 404
 
 
@@ -212,11 +186,11 @@ def test_uploads_that_are_no_exports_change_nothing(serve, tmp_path):
     draw = random.Random(11)
     damaged = [good[: draw.randrange(len(good))] for _ in range(10)]
     for content in (b"", b"SQLite format 3\0", b"x" * 5000, hostile, *damaged):
-        answer = client.post("/v1/memory/merge", content=content)
+        answer = client.post("/v1/memory/merge", content=content, headers=FILE)
         assert answer.status_code == 422, answer.text
         assert "/tmp" not in answer.text
     assert client.get("/v1/memory").json()["robots"] == []
-    assert client.post("/v1/memory/merge", content=good).json()["added"] == 1
+    assert client.post("/v1/memory/merge", content=good, headers=FILE).json()["added"] == 1
 
 
 @settings(max_examples=30)

@@ -28,6 +28,8 @@ _READ = (
     "u.name", "d.policy", "d.outcome", "d.context", "d.time", "d.probability", "d.control", "d.id", "d.version",
     "d.ended", "d.available", "d.request",
 )  # fmt: skip
+ROWS = 10_000
+"""Decisions of a part; more need more main memory."""
 GROUPS = ("personal", "control")
 Format = Literal["csv", "ndjson"]
 
@@ -93,9 +95,17 @@ def _parts(
     written: Callable[[Iterable[Sequence[Any]]], bytes] = _csv if form == "csv" else _ndjson([*COLUMNS, *features])
     if form == "csv":
         yield _csv([[*COLUMNS, *features]])
-    with memory.studies.totals(study.number) as totals:
-        for rows in totals.log(columns, after, before, limit):
+    left = limit
+    while left is None or left > 0:
+        size = ROWS if left is None else min(left, ROWS)
+        with memory.studies.totals(study.number) as totals:
+            rows = totals.log(columns, after, before, size)
+        if rows:
             yield written(_line(row, rules, features) for row in rows)
+            after = rows[-1][_READ.index("d.id")]
+        if len(rows) < size:
+            return
+        left = None if left is None else left - len(rows)
 
 
 def _line(row: Sequence[Any], rules: dict[int, str], features: Sequence[str]) -> list[Any]:

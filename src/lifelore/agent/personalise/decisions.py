@@ -345,7 +345,7 @@ def update(memory: Memory, study: Study, decision: str, outcome: float) -> Answe
     Returns
     -------
     dict
-        ``decision``, ``user``, ``policy``, ``outcome``; ``taken``: False where the same outcome was there already
+        ``decision``, ``user``, ``policy``, ``control``, ``outcome``; ``taken``: False where the same outcome was there already
         and nothing changed; ``belief`` by type after it.
 
     Raises
@@ -458,12 +458,13 @@ def _outcome_answer(
     brief: bool,
 ) -> Answer:
     if brief:
-        return {"taken": taken}
+        return {"taken": taken, "policy": decision.policy, "control": decision.control}
     belief = beliefs.algorithm.belief(beliefs.row[decision.person])
     return {
         "decision": identifier(decision.id),
         "user": users[decision.person].name,
         "policy": decision.policy,
+        "control": decision.control,
         "outcome": outcome,
         "taken": taken,
         "belief": dict(zip(study.library.types, belief.tolist(), strict=True)),

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from lifelore.agent.personalise.beliefs import start_at_priors
-from lifelore.agent.personalise.decisions import identifier
+from lifelore.agent.personalise.decisions import Request, identifier, probabilities
 from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.study import Study, known_users
 from lifelore.core.errors import NotFoundError
@@ -77,6 +77,25 @@ def explain(memory: Memory, study: Study, user: str) -> dict[str, Any]:
         ],
         "last": [_described(one) for one in decisions[-LAST_DECISIONS:]],
     }
+
+
+def stranger_table(study: Study) -> dict[str, Any]:
+    """Probabilities of the policies in use for users of whom nothing but the context is known.
+
+    Returns
+    -------
+    dict
+        ``study``, ``version``; ``default``, of users without a known context, and ``contexts``, each by policy.
+    """
+    contexts = [None, *study.contexts]
+    algorithm = study.algorithm.new_rows(len(contexts))
+    strangers = [UserRow(0, "", context, None, None, False, study.version, None) for context in contexts]
+    start_at_priors(algorithm, study, strangers)
+    rows = np.arange(len(contexts))
+    found = probabilities(study, algorithm, rows, [Request("stranger")] * len(contexts)).tolist()
+    tables = [dict(zip(study.active, row, strict=True)) for row in found]
+    by_context = dict(zip(study.contexts, tables[1:], strict=True))
+    return {"study": study.name, "version": study.version, "default": tables[0], "contexts": by_context}
 
 
 def novelty_of(memory: Memory, study: Study, user: str) -> float:

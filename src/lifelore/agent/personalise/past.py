@@ -15,6 +15,7 @@ import numpy as np
 
 from lifelore.agent.personalise.decisions import parse_identifier
 from lifelore.agent.personalise.log.log import ReuseLog, read_log
+from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.study import Study, known_users, user_key
 from lifelore.core.errors import InputError
@@ -71,7 +72,16 @@ def warm(sources: Any, memory: Memory, study: Study, form: LogFormat | None = No
 
 
 def add_lines(memory: Memory, study: Study, lines: Sequence[Line]) -> dict[str, Any]:
-    """Add lines to the past of their users; the document of `warm` without what tells of a log."""
+    """Add lines to the past of their users; the document of `warm` without what tells of a log.
+
+    Raises
+    ------
+    InputError
+        A name is no printable text.
+    """
+    for name in ("user", "policy", "context"):
+        for word in {getattr(line, name) for line in lines} - {None}:
+            check_word(name, word)
     with memory.studies.writing(study.number) as rows:
         counts = _stored(rows, study, lines, fitted=False)
     policies, types = study.library.policies, study.library.types

@@ -20,7 +20,12 @@ HEADERS = {
 
 
 def app_with_pages(settings: ServiceSettings) -> FastAPI:
-    """The application of the service with all pages; their documents need no token, for they hold no data."""
+    """The application of the service with all pages, if its settings want pages.
+
+    The documents of pages need no token, for they hold no data.
+    """
+    if "pages" not in settings.only:
+        return create_app(settings)
     app = create_app(settings, open_paths={HOME.path, *(page.path for page in PAGES)})
     for page in (HOME, *PAGES):
         _mount_document(app, page)

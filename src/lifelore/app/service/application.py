@@ -10,8 +10,11 @@ from typing import Any
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
+from starlette.routing import Match
 
 from lifelore import __version__
+from lifelore.app.service.decision_routes import hot_routes, starlette_route
+from lifelore.app.service.documentation import document_api
 from lifelore.app.service.error_documents import (
     ErrorDocument,
     error_body,
@@ -22,7 +25,7 @@ from lifelore.app.service.error_documents import (
 from lifelore.app.service.gate import Gate
 from lifelore.app.service.service_state import Service
 from lifelore.app.service.settings import ServiceSettings
-from lifelore.app.service.tokens import TokenFile, read_tokens
+from lifelore.app.service.tokens import TokenFile
 from lifelore.core.errors import LifeloreError
 from lifelore.memory import open_memory
 
@@ -49,13 +52,12 @@ def create_app(settings: ServiceSettings, open_paths: Collection[str] = ()) -> F
         health_routes,
         log_routes,
         memory_routes,
-        panel_routes,
         perceive_routes,
         study_routes,
         user_routes,
     )
 
-    tokens: TokenFile | None = None if settings.token_file is None else read_tokens(settings.token_file)
+    tokens: TokenFile | None = None if settings.token_file is None else TokenFile(settings.token_file)
     service = Service(settings, open_memory(settings.memory, durable=True))
 
     @asynccontextmanager
@@ -72,18 +74,21 @@ def create_app(settings: ServiceSettings, open_paths: Collection[str] = ()) -> F
     app.state.service = service
     _answer_errors(app, service)
     # A request is compared with the routes in this order; those that are asked most come first.
-    for routes in (
-        user_routes,
-        panel_routes,
-        health_routes,
-        study_routes,
-        adaptation_routes,
-        log_routes,
-        perceive_routes,
-        advice_routes,
-        memory_routes,
+    hot = hot_routes(service) if "personalise" in settings.only else []
+    app.router.routes[:0] = map(starlette_route, hot)
+    for group, routes in (
+        ("personalise", user_routes),
+        (None, health_routes),
+        ("personalise", study_routes),
+        ("personalise", adaptation_routes),
+        ("personalise", log_routes),
+        ("perceive", perceive_routes),
+        ("advise", advice_routes),
+        ("memory", memory_routes),
     ):
-        app.include_router(routes.router(service))
+        if group is None or group in settings.only:
+            app.include_router(routes.router(service))
+    document_api(app, tokens is not None, hot)
     app.add_middleware(Gate, settings=settings, tokens=tokens, metrics=service.metrics, open_paths=open_paths)
     return app
 
@@ -107,6 +112,16 @@ def _answer_errors(app: FastAPI, service: Service) -> None:
             404: "there is no such address; /openapi.json lists all",
             405: "the address does not take this method; /openapi.json lists all",
         }
-        return answer(
-            request, error.status_code, messages.get(error.status_code, str(error.detail)), error.headers
-        )
+        headers = {"allow": _allowed(app, request)} if error.status_code == 405 else error.headers
+        return answer(request, error.status_code, messages.get(error.status_code, str(error.detail)), headers)
+
+
+def _allowed(app: FastAPI, request: Request) -> str:
+    """The methods that the address of a request takes; each of its routes knows its own alone."""
+    methods = ("GET", "HEAD", "POST", "PUT", "PATCH", "DELETE")
+    scopes = {method: {**request.scope, "method": method} for method in methods}
+    return ", ".join(
+        method
+        for method, scope in scopes.items()
+        if any(route.matches(scope)[0] == Match.FULL for route in app.router.routes)
+    )

@@ -50,8 +50,9 @@ def error_body(status: int, message: str, request: str) -> bytes:
 
 
 def without_places(message: str, location: str) -> str:
-    """A message without the location of the memory and without temporary folders."""
+    """A message without the location of the memory or its server, and without temporary folders."""
     message = message.replace(location, "the memory")
+    message = re.sub(r'server at "[^"]*"(?: \([^)]*\))?, port \d+', "the server", message)
     return re.sub(re.escape(tempfile.gettempdir()) + r"/[^/\s'\"]+/?", "", message)
 
 
@@ -59,6 +60,13 @@ def validation_message(errors: Any) -> str:
     """One line from the first error of a request that does not fit its schema."""
     first = errors[0]
     place = ".".join(str(part) for part in first["loc"][1:]) or str(first["loc"][0])
-    got = "" if first["type"] in ("missing", "json_invalid") else f", got {ascii(first.get('input'))[:60]}"
+    got = "" if first["type"] in ("missing", "json_invalid") else f", got {_short(first.get('input'))}"
     more = f"; {len(errors) - 1} more errors" if len(errors) > 1 else ""
     return f"{place}: {first['msg'][:1].lower()}{first['msg'][1:]}{got}{more}"
+
+
+def _short(value: Any) -> str:
+    """A value in some 60 characters; a large one is never written as a whole."""
+    if isinstance(value, list | dict):
+        return f"{len(value)} items" if len(value) > 5 else ascii(value)[:60]
+    return ascii(value[:60] if isinstance(value, str) else value)[:60]

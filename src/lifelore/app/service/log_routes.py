@@ -1,19 +1,26 @@
 """Routes over logs: learn a study from a log, report what a study achieved, evaluate other policies off-policy."""
 
+from dataclasses import fields
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Query
+from fastapi import APIRouter, Query, Request
+from fastapi.responses import StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
+from lifelore.agent.personalise.decision_log import log_parts
 from lifelore.agent.personalise.evaluate.evaluate import EvaluateSettings, evaluate
 from lifelore.agent.personalise.fit.fit import FitSettings, fit
 from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.report import report
+from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service
 from lifelore.app.service.study_routes import Name
+from lifelore.memory import open_memory
 
+KINDS = {"csv": "text/csv; charset=utf-8", "ndjson": "application/x-ndjson"}
+"""Media types of logs."""
 EXAMPLE = "user,policy,outcome\nada,slow,8\nada,fast,2\nben,slow,3\nben,fast,9\n"
 LOGGED = "user,policy,outcome,probability\nada,slow,8,0.5\nada,fast,2,0.5\nben,slow,3,0.5\nben,fast,9,0.5\n"
 
@@ -40,6 +47,18 @@ class FitRequest(BaseModel):
         "uncertain", description="Whether models of few runs learn too."
     )
     features: list[str] = Field([], description="Columns of numbers that are known of a user beforehand.")
+    columns: dict[str, str] = Field({}, description="The log's own names of columns, by ours.")
+    missing: list[str] = Field([], description="Words that mean a missing value, beside the empty field.")
+    missing_outcome: str = Field("leave-out", description="leave-out, refuse, or the number that it means.")
+    missing_policy: str = Field("refuse", description="refuse, leave-out, or the policy that it means.")
+
+    @property
+    def form(self) -> LogFormat:
+        """How the log is written."""
+        return LogFormat(
+            self.columns, missing=tuple(self.missing), missing_outcome=self.missing_outcome,
+            missing_policy=self.missing_policy, features=tuple(self.features),
+        )  # fmt: skip
 
 
 class EvaluateRequest(BaseModel):
@@ -61,17 +80,16 @@ class EvaluateRequest(BaseModel):
 
 def router(service: Service) -> APIRouter:
     """The routes over logs."""
-    routes = APIRouter(prefix="/v1", tags=["personalise"])
+    routes = APIRouter(prefix="/v1", tags=["personalise"], route_class=JsonRoute)
     memory, studies = service.memory, service.studies
 
     @routes.post("/studies/{study}/fit", summary="Learn types of users and outcomes of policies from a log")
-    def fit_study(study: Name, document: FitRequest) -> dict[str, Any]:
-        options = document.model_dump(exclude={"log", "features"})
+    async def fit_study(request: Request, study: Name, document: FitRequest) -> dict[str, Any]:
+        options = document.model_dump(include={one.name for one in fields(FitSettings)} - {"name", "seed"})
         settings = FitSettings(study, seed=service.settings.seed, **options)
-        with TemporaryDirectory() as folder:
-            fitted = fit(
-                [_written(folder, document.log)], memory, settings, LogFormat(features=tuple(document.features))
-            )
+        fitted = await service.worker.run(
+            request, fit_in_process, service.settings.memory, document.log, settings, document.form
+        )
         studies.drop(study)
         return fitted
 
@@ -82,24 +100,47 @@ def router(service: Service) -> APIRouter:
         return report(memory, studies.get(study), split=split)
 
     @routes.post("/evaluate", summary="What other policies would have achieved, from a log with probabilities")
-    def evaluate_log(document: EvaluateRequest) -> dict[str, Any]:
+    async def evaluate_log(request: Request, document: EvaluateRequest) -> dict[str, Any]:
         options = document.model_dump(exclude={"log", "policies", "rules"})
         settings = EvaluateSettings(
             tuple(document.policies), rules=tuple(document.rules), seed=service.settings.seed, **options
         )
-        with TemporaryDirectory() as folder:
-            return evaluate([_written(folder, document.log)], settings, memory=memory)
+        return await service.worker.run(
+            request, evaluate_in_process, service.settings.memory, document.log, settings
+        )
 
     @routes.get(
-        "/studies/{study}/log", summary="All decisions of a study with their probabilities, as CSV in a field"
+        "/studies/{study}/log",
+        summary="All decisions of a study with their probabilities, as a stream",
+        response_class=StreamingResponse,
+        responses={200: {"content": {kind: {"schema": {"type": "string"}} for kind in KINDS.values()}}},
     )
-    def log(study: Name) -> dict[str, str]:
-        with TemporaryDirectory() as folder:
-            path = Path(folder) / "log.csv"
-            report(memory, studies.get(study), log=path)
-            return {"log": path.read_text(encoding="utf-8")}
+    def log(
+        study: Name,
+        since: Annotated[float | None, Query(description="Seconds since 1970: decisions from then on.")] = None,
+        until: Annotated[float | None, Query(description="Seconds since 1970: decisions before.")] = None,
+        cursor: Annotated[str | None, Query(description="A decision: only later ones.")] = None,
+        limit: Annotated[int | None, Query(ge=1, description="Largest number of decisions.")] = None,
+        form: Annotated[Literal["csv", "ndjson"], Query(alias="format")] = "csv",
+    ) -> StreamingResponse:
+        parts = log_parts(
+            memory, studies.get(study), form, since=since, until=until, cursor=cursor, limit=limit
+        )
+        return StreamingResponse(parts, media_type=KINDS[form])
 
     return routes
+
+
+def fit_in_process(where: str | None, log: str, settings: FitSettings, form: LogFormat) -> dict[str, Any]:
+    """`fit` of a log's text, in a process of its own, which opens the memory."""
+    with TemporaryDirectory() as folder, open_memory(where, durable=True) as memory:
+        return fit([_written(folder, log)], memory, settings, form)
+
+
+def evaluate_in_process(where: str | None, log: str, settings: EvaluateSettings) -> dict[str, Any]:
+    """`evaluate` of a log's text, in a process of its own, which opens the memory."""
+    with TemporaryDirectory() as folder, open_memory(where, durable=True) as memory:
+        return evaluate([_written(folder, log)], settings, memory=memory)
 
 
 def _written(folder: str, log: str) -> Path:

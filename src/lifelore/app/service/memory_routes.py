@@ -8,14 +8,13 @@ from fastapi import APIRouter, Query, Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from lifelore.agent.live.buildings.building_memory import buildings_in, forget_building
-from lifelore.app.service.perceive_routes import BODY
+from lifelore.app.service.bodies import BYTES, SQLITE, body_of, file_of
 from lifelore.app.service.service_state import Service
 from lifelore.core.errors import InputError, StoreError
 
 Text = Annotated[str, Query(min_length=1, max_length=200)]
-FILE = "application/vnd.sqlite3"
 _FILE: dict[int | str, dict[str, Any]] = {
-    200: {"content": {FILE: {"schema": {"type": "string", "format": "binary"}}}}
+    200: {"content": {SQLITE: {"schema": {"type": "string", "format": "binary"}}}}
 }
 
 
@@ -36,7 +35,7 @@ def router(service: Service) -> APIRouter:
         with TemporaryDirectory() as folder:
             path = Path(folder) / "export.db"
             memory.export_to(path)
-            return Response(path.read_bytes(), media_type=FILE)
+            return Response(path.read_bytes(), media_type=SQLITE)
 
     def merged(content: bytes) -> dict[str, int]:
         with TemporaryDirectory() as folder:
@@ -49,9 +48,9 @@ def router(service: Service) -> APIRouter:
                     raise
                 raise InputError(str(error).replace(f"memory {path}", "the upload")) from None
 
-    @routes.post("/merge", summary="Add an exported file, all or none", openapi_extra=BODY)
+    @routes.post("/merge", summary="Add an exported file, all or none", openapi_extra=body_of(BYTES, SQLITE))
     async def merge(request: Request) -> dict[str, int]:
-        counts = await run_in_threadpool(merged, await request.body())
+        counts = await run_in_threadpool(merged, await file_of(request, BYTES, SQLITE))
         service.read_again()
         return counts
 

@@ -11,21 +11,14 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 from starlette.concurrency import run_in_threadpool
 
 from lifelore.agent.perceive.perceive_upload import perceive_upload, perceive_upload_with_points
+from lifelore.app.service.bodies import BYTES, JsonRoute, body_of, file_of
 from lifelore.app.service.service_state import Service
 from lifelore.core.errors import InputError
 
-SHARE = 0.9
-"""Share of the time limit of a request that perception may take."""
 LONGEST_CAMERA = 20_000
 """Characters of the file of a camera; files of ROS have some hundred."""
-BODY = {
-    "requestBody": {
-        "required": True,
-        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
-    }
-}
-"""OpenAPI of a request whose body is a file."""
-BYTES = "application/octet-stream"
+BODY = body_of(BYTES)
+"""OpenAPI of a request whose body is a cloud."""
 _POINTS: dict[int | str, dict[str, Any]] = {
     200: {"content": {BYTES: {"schema": {"type": "string", "format": "binary"}}}}
 }
@@ -83,15 +76,12 @@ class DepthImage(SceneOptions):
 
 def router(service: Service) -> APIRouter:
     """The routes of perception."""
-    routes = APIRouter(prefix="/v1/perceive", tags=["perceive"])
-
-    def called(function: Callable[..., Any], *arguments: Any) -> Any:
-        return service.worker.call(function, arguments, SHARE * service.settings.seconds)
+    routes = APIRouter(prefix="/v1/perceive", tags=["perceive"], route_class=JsonRoute)
 
     async def of_cloud(function: Callable[..., Any], request: Request, options: CloudOptions) -> Any:
-        content = await request.body()
+        content = await file_of(request)
         given = options.model_dump(exclude={"format"}, exclude_none=True)
-        return await run_in_threadpool(called, function, options.format, {"cloud": content}, given)
+        return await service.worker.run(request, function, options.format, {"cloud": content}, given)
 
     @routes.post("/cloud", summary="Perceive the scene of a point cloud", openapi_extra=BODY)
     async def cloud(request: Request, options: Annotated[CloudOptions, Query()]) -> dict[str, Any]:
@@ -104,29 +94,34 @@ def router(service: Service) -> APIRouter:
     async def points(request: Request, options: Annotated[CloudOptions, Query()]) -> Response:
         return Response(await of_cloud(perceive_upload_with_points, request, options), media_type=BYTES)
 
-    def of_depth(function: Callable[..., Any], document: DepthImage) -> Any:
-        camera = document.intrinsics
-        text = camera if isinstance(camera, str) else json.dumps(camera.model_dump())
-        parts = {"depth": _decoded("depth", document.depth), "intrinsics": text.encode("utf-8", "replace")}
-        for name in ("colour", "masks"):
-            image = getattr(document, name)
-            if image is not None:
-                parts[name] = _decoded(name, image)
+    async def of_depth(function: Callable[..., Any], request: Request, document: DepthImage) -> Any:
+        parts = await run_in_threadpool(_parts, document)
         given = document.model_dump(include=set(SceneOptions.model_fields), exclude_none=True)
-        return called(function, "depth", parts, given, document.depth_scale)
+        return await service.worker.run(request, function, "depth", parts, given, document.depth_scale)
 
     @routes.post("/depth", summary="Perceive the scene of a depth image")
-    def depth(document: DepthImage) -> dict[str, Any]:
-        return of_depth(perceive_upload, document)
+    async def depth(request: Request, document: DepthImage) -> dict[str, Any]:
+        return await of_depth(perceive_upload, request, document)
 
     @routes.post(
         "/depth/points", summary="As /depth, with the points of the scene before the document, as bytes",
         response_class=Response, responses=_POINTS,
     )  # fmt: skip
-    def depth_points(document: DepthImage) -> Response:
-        return Response(of_depth(perceive_upload_with_points, document), media_type=BYTES)
+    async def depth_points(request: Request, document: DepthImage) -> Response:
+        return Response(await of_depth(perceive_upload_with_points, request, document), media_type=BYTES)
 
     return routes
+
+
+def _parts(document: DepthImage) -> dict[str, bytes]:
+    camera = document.intrinsics
+    text = camera if isinstance(camera, str) else json.dumps(camera.model_dump())
+    parts = {"depth": _decoded("depth", document.depth), "intrinsics": text.encode("utf-8", "replace")}
+    for name in ("colour", "masks"):
+        image = getattr(document, name)
+        if image is not None:
+            parts[name] = _decoded(name, image)
+    return parts
 
 
 def _decoded(name: str, text: str) -> bytes:

@@ -1,21 +1,27 @@
 """Runs the application with uvicorn until a signal stops it; requests in progress are answered first."""
 
+import multiprocessing
 import os
 import signal
 import socket
 import threading
+import time
 from collections.abc import Callable
 from typing import Any
 
+import uvicorn
 from fastapi import FastAPI
 
 from lifelore.app.service.application import create_app
+from lifelore.app.service.connections import PatientProtocol
 from lifelore.app.service.settings import ServiceSettings, is_loopback
 from lifelore.app.service.telemetry import log_to_stderr
 from lifelore.core.errors import InputError, StoreError
 
-GRACE = 10
-"""Seconds for requests in progress after a signal."""
+GRACE = 5
+"""Seconds for requests in progress after a signal; those that take longer are refused."""
+LONGEST_STOP = 9.0
+"""Seconds after a signal at which the process ends, also where a thread still works on an abandoned request."""
 
 
 def serve(
@@ -26,7 +32,7 @@ def serve(
     create: Callable[[ServiceSettings], FastAPI] = create_app,
     until: int | None = None,
 ) -> None:
-    """Serve until SIGINT or SIGTERM.
+    """Serve until SIGINT or SIGTERM, with httptools, and with uvloop where it is installed.
 
     Parameters
     ----------
@@ -47,8 +53,6 @@ def serve(
     StoreError
         The port is taken, or the memory cannot be opened.
     """
-    import uvicorn
-
     if settings.token_file is None and not is_loopback(host):
         raise InputError(
             f"host must be 127.0.0.1 without tokens, got '{host}'; add a token: --add-token NAME --token-file FILE"
@@ -59,6 +63,7 @@ def serve(
     log_to_stderr()
     config = uvicorn.Config(
         app,
+        http=PatientProtocol,
         log_config=None,
         access_log=False,
         server_header=False,
@@ -69,14 +74,38 @@ def serve(
     # background of a shell inherits an ignored SIGINT; the status of a stopped service is the same there.
     signal.signal(signal.SIGTERM, lambda number, frame: None)
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    # The file of tokens is read again by itself; other programs send SIGHUP to have that done.
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)
     ready(f"http://{name}:{listening.getsockname()[1]}")
-    server = uvicorn.Server(config)
+    server = _Server(config)
     if until is not None:
         threading.Thread(target=_stop_at_end, args=(until, server), daemon=True).start()
     server.run(sockets=[listening])
 
 
-def _stop_at_end(file: int, server: Any) -> None:
+class _Server(uvicorn.Server):
+    """A server that stops within `LONGEST_STOP` seconds of a signal, whatever runs, and at once at the second."""
+
+    def handle_exit(self, sig: int, frame: Any) -> None:
+        if self.should_exit:
+            _end(sig)
+        threading.Thread(target=_end_later, args=(sig,), daemon=True).start()
+        super().handle_exit(sig, frame)
+
+
+def _end_later(sig: int) -> None:
+    time.sleep(LONGEST_STOP)
+    _end(sig)
+
+
+def _end(sig: int) -> None:
+    """End this process without waiting for its threads; what was answered is stored."""
+    for child in multiprocessing.active_children():
+        child.kill()
+    os._exit(128 + sig if sig == signal.SIGINT else 0)
+
+
+def _stop_at_end(file: int, server: uvicorn.Server) -> None:
     try:
         while os.read(file, 1024):
             pass

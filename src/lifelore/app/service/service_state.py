@@ -3,7 +3,6 @@
 from dataclasses import dataclass, field
 
 from lifelore.agent.advise.advice_desk import AdviceDesk
-from lifelore.agent.personalise.open_panels import OpenPanels
 from lifelore.agent.personalise.open_studies import OpenStudies
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.telemetry import Metrics
@@ -29,16 +28,13 @@ class Service:
     worker: WorkerProcess = field(default_factory=WorkerProcess)
     writer: Writer = field(init=False)
     studies: OpenStudies = field(init=False)
-    panels: OpenPanels = field(init=False)
 
     def __post_init__(self) -> None:
         self.desks: dict[str, AdviceDesk] = {}
         self.studies = OpenStudies(self.memory)
-        self.panels = OpenPanels(self.memory, self.studies, self.settings.seed)
-        self.writer = Writer(self.memory, self.read_again)
+        self.writer = Writer(self.memory, self.studies, self.metrics, self.read_again, self.settings.seed)
 
     def read_again(self) -> None:
-        """Read studies, panels and desks again at their next use."""
+        """Read studies and desks again at their next use."""
         self.studies.drop_all()
-        self.panels.drop_all()
         self.desks.clear()

@@ -1,13 +1,15 @@
 """Settings of the service: its memory, tokens and limits."""
 
 import ipaddress
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 
 from lifelore.core.errors import InputError
 
 LOOPBACK_NAMES = ("localhost", "127.0.0.1", "[::1]", "::1")
 MEBIBYTE = 1 << 20
+GROUPS = ("personalise", "perceive", "advise", "memory", "pages")
+"""Groups of routes that can be served alone."""
 
 
 @dataclass(frozen=True)
@@ -30,6 +32,10 @@ class ServiceSettings:
         Longest time that a request may take.
     maps : mapping of str to str
         Files of ROS maps by the name that advice desks give them.
+    only : collection of str
+        Groups of routes that the service has, some of `GROUPS`; health, metrics and ``/docs`` are always there.
+    access_log : bool
+        Whether answered requests are logged too; errors always are.
     """
 
     memory: str | None = None
@@ -39,6 +45,8 @@ class ServiceSettings:
     rate: float = 1000.0
     seconds: float = 60.0
     maps: Mapping[str, str] = field(default_factory=dict)
+    only: Collection[str] = GROUPS
+    access_log: bool = False
 
     def __post_init__(self) -> None:
         if self.largest_body < 1:
@@ -47,6 +55,9 @@ class ServiceSettings:
             raise InputError(f"rate must be at least 0 requests per second, got {self.rate}")
         if not 0 < self.seconds < float("inf"):
             raise InputError(f"seconds must be above 0, got {self.seconds}")
+        for group in self.only:
+            if group not in GROUPS:
+                raise InputError(f"only must be some of {', '.join(GROUPS)}, got '{group}'")
 
 
 def is_loopback(host: str) -> bool:

@@ -5,11 +5,14 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Path
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
+from lifelore.agent.personalise.explanation import stranger_table
 from lifelore.agent.personalise.library_document import library_of
 from lifelore.agent.personalise.registration import StudySettings, register, study_document
-from lifelore.agent.personalise.decisions import add, retire
-from lifelore.agent.personalise.study import study_names
+from lifelore.agent.personalise.policy_states import add, retire
+from lifelore.agent.personalise.study import study_states
+from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service
+from lifelore.memory.studies import ACTIVE, ARCHIVED
 
 Name = Annotated[str, Path(description="Name of the study.", min_length=1, max_length=60, examples=["playlists"])]
 Rows = list[list[FiniteFloat]]
@@ -65,18 +68,50 @@ class StudyRequest(BaseModel):
 class PolicyState(BaseModel):
     """Whether a policy is in use."""
 
-    model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"state": "retired"}})
+    model_config = ConfigDict(
+        extra="forbid", json_schema_extra={"example": {"policy": "slow", "state": "retired"}}
+    )
+    policy: str = Field(description="Name of the policy.", min_length=1, max_length=200)
     state: Literal["active", "retired"]
+
+
+class ChangedPolicy(BaseModel):
+    """The state of a policy: a new one is a pilot until a fit knows it."""
+
+    study: str
+    policy: str
+    state: Literal["active", "pilot", "retired"]
+
+
+class StudyState(BaseModel):
+    """Whether a study takes decisions."""
+
+    model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"state": "archived"}})
+    state: Literal["active", "archived"]
+
+
+class StudyEntry(BaseModel):
+    """A study in the list of all."""
+
+    name: str
+    state: Literal["active", "archived"]
+
+
+class StudyList(BaseModel):
+    """All studies in memory."""
+
+    studies: list[StudyEntry]
 
 
 def router(service: Service) -> APIRouter:
     """The routes of studies."""
-    routes = APIRouter(prefix="/v1/studies", tags=["personalise"])
+    routes = APIRouter(prefix="/v1/studies", tags=["personalise"], route_class=JsonRoute)
     memory, studies = service.memory, service.studies
 
-    @routes.get("", summary="Names of the studies in memory")
-    def names() -> dict[str, list[str]]:
-        return {"studies": study_names(memory)}
+    @routes.get("", summary="The studies in memory")
+    def listed() -> StudyList:
+        entries = sorted(study_states(memory).items())
+        return StudyList(studies=[StudyEntry(name=name, state=state) for name, state in entries])  # pyright: ignore
 
     @routes.get("/{study}", summary="A study: its library, states of policies and settings")
     def show(study: Name) -> dict[str, Any]:
@@ -90,11 +125,30 @@ def router(service: Service) -> APIRouter:
         studies.drop(study)
         return study_document(registered)
 
-    @routes.put("/{study}/policies/{policy}", summary="Retire a policy, or bring it in")
-    def state(study: Name, policy: str, document: PolicyState) -> dict[str, Any]:
-        change = retire if document.state == "retired" else add
-        changed = change(memory, studies.get(study), policy)
+    @routes.delete("/{study}", summary="Delete a study with its users, decisions and outcomes, for ever")
+    def delete(study: Name) -> StudyEntry:
+        state = ARCHIVED if studies.get(study).archived else ACTIVE
+        memory.studies.delete(study)
         studies.drop(study)
-        return {"study": study, "policy": policy, "state": changed.states[policy]}
+        return StudyEntry(name=study, state=state)
+
+    @routes.put("/{study}/state", summary="Archive a study, so that it takes no more decisions, or make it active")
+    def archive(study: Name, document: StudyState) -> StudyEntry:
+        studies.get(study)
+        memory.studies.set_state(study, document.state)
+        studies.drop(study)
+        return StudyEntry(name=study, state=document.state)
+
+    @routes.put("/{study}/policies", summary="Retire a policy, or bring it in")
+    def state(study: Name, document: PolicyState) -> ChangedPolicy:
+        change = retire if document.state == "retired" else add
+        changed = change(memory, studies.get(study), document.policy)
+        studies.drop(study)
+        found: Any = changed.states[document.policy]
+        return ChangedPolicy(study=study, policy=document.policy, state=found)
+
+    @routes.get("/{study}/table", summary="What users get of whom nothing but the context is known")
+    def table(study: Name) -> dict[str, Any]:
+        return stranger_table(studies.get(study))
 
     return routes

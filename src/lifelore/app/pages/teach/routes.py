@@ -3,9 +3,10 @@
 from threading import Lock
 from typing import Any
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Request
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
+from starlette.concurrency import run_in_threadpool
 
 from lifelore.agent.factory_lesson.lesson import FactoryLesson
 from lifelore.agent.factory_lesson.lesson_learners import EPISODES, lesson_curves
@@ -89,10 +90,10 @@ def router(service: Service) -> APIRouter:
         return view(opened)
 
     @routes.post("/lessons/{name}/curves", summary="Learning curves with and without the prior of the lesson")
-    def curves(name: Name, document: Learning) -> dict[str, Any]:
-        opened = lessons.of(name)
+    async def curves(request: Request, name: Name, document: Learning) -> dict[str, Any]:
+        opened = await run_in_threadpool(lessons.of, name)
         arguments = (opened.name, opened.components, opened.seed, list(opened.shown), document.episodes)
-        return service.worker.call(lesson_curves, arguments, service.settings.seconds)
+        return await service.worker.run(request, lesson_curves, *arguments)
 
     exports = {"": (JsonLinesResponse, export_lesson)}
     add_record_routes(routes, service, "lesson", lessons, exports, forget_lesson)

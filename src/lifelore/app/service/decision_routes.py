@@ -1,0 +1,233 @@
+"""The routes of decisions and outcomes, and their batches: Starlette functions that read and write JSON by msgspec.
+
+These four take nearly all requests. What they take and give is declared once, as msgspec types, which check requests
+and describe the routes in the OpenAPI document.
+"""
+
+from collections.abc import Awaitable, Callable
+from typing import Annotated, Any, NamedTuple
+
+import msgspec
+from msgspec import Meta
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request as HttpRequest
+from starlette.responses import Response
+from starlette.routing import Route
+
+from lifelore.agent.personalise.decisions import Request
+from lifelore.agent.personalise.explanation import novelty_of
+from lifelore.app.service.bodies import parsed
+from lifelore.app.service.error_documents import KINDS, status_of, without_places
+from lifelore.app.service.service_state import Service
+from lifelore.core.errors import InputError, LifeloreError
+
+LARGEST_BATCH = 100_000
+PREFIX = "/v1/studies/{study}"
+Text = Annotated[str, Meta(min_length=1, max_length=200)]
+Policy = Annotated[str, Meta(description="Name of the policy.")]
+
+
+class DecisionRequest(msgspec.Struct, forbid_unknown_fields=True):
+    """A user who needs a policy now."""
+
+    user: Annotated[str, Meta(description="Name of the user.", examples=["ada"])]
+    request: Annotated[
+        str | None,
+        Meta(description="Identifier, unique for the user: the same request again gets the same decision."),
+    ] = None
+    context: Annotated[str | None, Meta(description="Context of the user, as in the logs of the fit.")] = None
+    features: Annotated[dict[str, float] | None, Meta(description="Numbers known of the user beforehand.")] = None
+    available: Annotated[
+        list[str] | None, Meta(description="Policies that the user can get now; left out: all.")
+    ] = None
+    novelty: Annotated[bool, Meta(description="Also compute the probability that no known type fits.")] = False
+
+    def row(self) -> Request:
+        """The request as `decide` takes it."""
+        return Request(self.user, self.context, self.features, self.available, self.request)
+
+
+class OutcomeRequest(msgspec.Struct, forbid_unknown_fields=True):
+    """How a decision ended."""
+
+    decision: Annotated[str, Meta(description="Identifier of the decision.")]
+    outcome: Annotated[float, Meta(description="Outcome; larger is better.", examples=[7.5])]
+
+
+class Decisions(msgspec.Struct, forbid_unknown_fields=True):
+    """Users who each need a policy now."""
+
+    items: Annotated[list[DecisionRequest], Meta(max_length=LARGEST_BATCH)]
+
+
+class Outcomes(msgspec.Struct, forbid_unknown_fields=True):
+    """How decisions ended."""
+
+    items: Annotated[list[OutcomeRequest], Meta(max_length=LARGEST_BATCH)]
+
+
+class ItemError(msgspec.Struct):
+    """Why an item of a batch was refused."""
+
+    kind: str
+    message: str
+
+
+class Decision(msgspec.Struct):
+    """A stored decision."""
+
+    decision: Annotated[str, Meta(description="Identifier, by which the outcome is given later: a UUID.")]
+    policy: Policy
+    probability: Annotated[float, Meta(description="Of the policy at this moment.")]
+    control: Annotated[bool, Meta(description="Whether the user is of the control group.")]
+    repeated: Annotated[bool, Meta(description="Whether the request was answered before.")]
+    error: ItemError | None = None
+
+
+class FullDecision(Decision):
+    """A stored decision and the belief before it."""
+
+    user: str = ""
+    available: list[str] | None = None
+    context: str | None = None
+    features: dict[str, float] | None = None
+    belief: dict[str, float] = {}
+    expected: dict[str, float] = {}
+    probabilities: dict[str, float] = {}
+    novelty: float | None = None
+
+
+class Taken(msgspec.Struct):
+    """Whether an outcome of a batch is new."""
+
+    taken: bool
+    policy: Policy
+    control: bool
+    error: ItemError | None = None
+
+
+class FullOutcome(msgspec.Struct):
+    """A stored outcome and the belief after it."""
+
+    decision: str
+    user: str
+    policy: Policy
+    control: bool
+    outcome: float
+    taken: Annotated[bool, Meta(description="False: the same outcome was there already.")]
+    belief: dict[str, float]
+
+
+class DecisionItems(msgspec.Struct):
+    """Answers in the order of the items."""
+
+    items: list[Decision]
+
+
+class OutcomeItems(msgspec.Struct):
+    """Answers in the order of the items."""
+
+    items: list[Taken]
+
+
+class HotRoute(NamedTuple):
+    """A route with the types of its body and answer."""
+
+    path: str
+    summary: str
+    body: type
+    answer: type
+    handle: Callable[[str, Any], Awaitable[Any]]
+
+
+def hot_routes(service: Service) -> list[HotRoute]:
+    """The routes of decisions and outcomes."""
+    writer = service.writer
+
+    async def decide(study: str, document: DecisionRequest) -> Any:
+        (answer,) = await writer.decide(study, [document.row()])
+        if isinstance(answer, LifeloreError):
+            raise answer
+        answer["novelty"] = None
+        if document.novelty:
+            opened = service.studies.get(study)
+            answer["novelty"] = await run_in_threadpool(novelty_of, service.memory, opened, document.user)
+        return answer
+
+    async def observe(study: str, document: OutcomeRequest) -> Any:
+        (answer,) = await writer.observe(study, [(document.decision, document.outcome)])
+        if isinstance(answer, LifeloreError):
+            raise answer
+        return answer
+
+    async def decide_many(study: str, document: Decisions) -> Any:
+        return items(await writer.decide(study, [item.row() for item in document.items], brief=True))
+
+    async def observe_many(study: str, document: Outcomes) -> Any:
+        rows = [(item.decision, item.outcome) for item in document.items]
+        return items(await writer.observe(study, rows, brief=True))
+
+    def items(answers: list[Any]) -> dict[str, Any]:
+        return {"items": [refused(one) if isinstance(one, LifeloreError) else one for one in answers]}
+
+    def refused(error: LifeloreError) -> dict[str, Any]:
+        message = without_places(str(error), service.memory.location)
+        return {"error": {"kind": KINDS[status_of(error)], "message": message}}
+
+    return [
+        HotRoute("/decisions", "Choose a policy for a user, and store it", DecisionRequest, FullDecision, decide),
+        HotRoute("/outcomes", "Store the outcome of a decision, once", OutcomeRequest, FullOutcome, observe),
+        HotRoute("/decisions/batch", "Choose for each of many users", Decisions, DecisionItems, decide_many),
+        HotRoute("/outcomes/batch", "Store outcomes of many decisions", Outcomes, OutcomeItems, observe_many),
+    ]
+
+
+def starlette_route(route: HotRoute) -> Route:
+    """The route as the application takes it."""
+    decode = msgspec.json.Decoder(route.body).decode
+    encode = msgspec.json.Encoder().encode
+
+    async def endpoint(request: HttpRequest) -> Response:
+        try:
+            document = await parsed(await request.body(), decode)
+        except (msgspec.ValidationError, msgspec.DecodeError, UnicodeDecodeError) as error:
+            raise InputError(_plain(str(error))) from None
+        answer = await route.handle(request.path_params["study"], document)
+        return Response(encode(answer), media_type="application/json")
+
+    return Route(PREFIX + route.path, endpoint, methods=["POST"])
+
+
+def _plain(message: str) -> str:
+    """A message of msgspec with its place first, as the other routes have it."""
+    text, _, place = message.partition(" - at `$")
+    where = place.rstrip("`").lstrip(".") or "body"
+    return f"{where}: {text[:1].lower()}{text[1:]}"
+
+
+def describe(document: dict[str, Any], routes: list[HotRoute]) -> None:
+    """Add the routes to an OpenAPI document."""
+    types = [kind for route in routes for kind in (route.body, route.answer)]
+    schemas, components = msgspec.json.schema_components(types, ref_template="#/components/schemas/{name}")
+    document.setdefault("components", {}).setdefault("schemas", {}).update(components)
+    study = {
+        "name": "study", "in": "path", "required": True, "description": "Name of the study.",
+        "schema": {"type": "string", "minLength": 1, "maxLength": 60},
+    }  # fmt: skip
+    failed = {"content": {"application/json": {"schema": {"$ref": "#/components/schemas/ErrorDocument"}}}}
+    for number, route in enumerate(routes):
+        body, answer = schemas[2 * number], schemas[2 * number + 1]
+        document["paths"][PREFIX + route.path] = {
+            "post": {
+                "tags": ["personalise"],
+                "summary": route.summary,
+                "operationId": route.path.strip("/").replace("/", "_"),
+                "parameters": [study],
+                "requestBody": {"required": True, "content": {"application/json": {"schema": body}}},
+                "responses": {
+                    "200": {"description": "Done.", "content": {"application/json": {"schema": answer}}},
+                    "4XX": failed | {"description": "The request breaks a rule."},
+                    "5XX": failed | {"description": "The service cannot answer now."},
+                },
+            }
+        }
