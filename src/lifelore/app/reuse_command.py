@@ -172,9 +172,9 @@ def choose(
     as_json: AsJson = False,
 ) -> None:
     """Choose a policy for a user, and store the decision."""
-    from lifelore.agent.reuse.availability import listed_policies
-    from lifelore.agent.personalise.log.log_format import parse_features
     from lifelore.agent.personalise.decisions import choose as chosen
+    from lifelore.agent.personalise.log.log_format import parse_features
+    from lifelore.agent.personalise.policy_states import listed_policies
 
     numbers = parse_features(features) if features else None
     with _opened(name, where) as (memory, study):
@@ -204,8 +204,8 @@ def update(
     as_json: AsJson = False,
 ) -> None:
     """Store the outcome of a decision, once, at any later time."""
-    from lifelore.agent.personalise.log.log_columns import read_outcome
     from lifelore.agent.personalise.decisions import update as updated
+    from lifelore.agent.personalise.log.log_columns import read_outcome
 
     value = read_outcome(outcome)
     with _opened(name, where) as (memory, study):

@@ -14,7 +14,7 @@ COLOURS = {"ips": GREY, "self-normalised": ORANGE, "doubly-robust": BLUE}
 
 
 def draw_off_policy_estimates(document: Mapping) -> "Figure":
-    """The picture from what `agent.reuse.evaluate.evaluate` returns."""
+    """The picture from what `agent.personalise.evaluate.evaluate` returns."""
     known = [one for one in document["targets"] if one["estimates"]["doubly-robust"]]
     known = sorted(known, key=lambda one: -one["estimates"]["doubly-robust"]["value"])[:MOST_TARGETS]
     with house_style():

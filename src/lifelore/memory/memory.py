@@ -17,8 +17,8 @@ from lifelore.memory.export import export
 from lifelore.memory.folding import LoreKey, lift
 from lifelore.memory.location import Server, locate
 from lifelore.memory.record_rules import check_name, check_whole
-from lifelore.memory.studies import Studies
 from lifelore.memory.store import Store, check_source, open_existing, open_file, open_postgresql, open_source
+from lifelore.memory.studies import Studies
 
 NAMED = 10
 """Maximum number of robots that an error message lists."""

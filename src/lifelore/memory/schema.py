@@ -74,16 +74,16 @@ CREATE TABLE lifelore_studies (
     number {serial}, name {text} NOT NULL UNIQUE, state {text} NOT NULL, version {int} NOT NULL,
     revision {int} NOT NULL);
 CREATE TABLE lifelore_study_versions (
-    study {int} NOT NULL, version {int} NOT NULL, created {int} NOT NULL, about {text} NOT NULL, content {blob} NOT NULL,
-    PRIMARY KEY (study, version));
+    study {int} NOT NULL, version {int} NOT NULL, created {int} NOT NULL, about {text} NOT NULL,
+    content {blob} NOT NULL, PRIMARY KEY (study, version));
 CREATE TABLE lifelore_study_users (
     number {serial}, study {int} NOT NULL, name {text} NOT NULL, context {text}, features {text}, type {text},
     fitted {int} NOT NULL, version {int} NOT NULL, state {blob},
     personal {int} NOT NULL, personal_sum {real} NOT NULL, control {int} NOT NULL, control_sum {real} NOT NULL,
     UNIQUE (study, name));
 CREATE TABLE lifelore_study_past (
-    study {int} NOT NULL, id {blob} NOT NULL, person {int} NOT NULL, policy {text} NOT NULL, outcome {real} NOT NULL,
-    time {int} NOT NULL, fitted {int} NOT NULL, PRIMARY KEY (study, id)){clustered};
+    study {int} NOT NULL, id {blob} NOT NULL, person {int} NOT NULL, policy {text} NOT NULL,
+    outcome {real} NOT NULL, time {int} NOT NULL, fitted {int} NOT NULL, PRIMARY KEY (study, id)){clustered};
 CREATE INDEX lifelore_study_past_person ON lifelore_study_past (study, person);
 CREATE TABLE lifelore_decisions (
     study {int} NOT NULL, id {blob} NOT NULL, person {int} NOT NULL, policy {text} NOT NULL,
@@ -123,7 +123,8 @@ _HAS_NOTES = {
 # PostgreSQL must compare names byte by byte, as SQLite and Python do, so that the order is the same.
 _WORDS = {
     "sqlite": {
-        "int": "INTEGER", "text": "TEXT", "blob": "BLOB", "real": "REAL", "serial": "INTEGER PRIMARY KEY AUTOINCREMENT",
+        "int": "INTEGER", "text": "TEXT", "blob": "BLOB", "real": "REAL",
+        "serial": "INTEGER PRIMARY KEY AUTOINCREMENT",
         "whole": " CHECK (typeof(value) = 'integer')", "clustered": " WITHOUT ROWID",
     },
     "postgresql": {

@@ -6,8 +6,8 @@
     lifelore_study_past       outcomes that users had elsewhere, each line once
     lifelore_decisions        a row each: policy, probability, group, and the outcome beside it
 
-Studies are rows and no lore: merges and exports leave them out. `study_rows` has what a transaction does with users
-and decisions, `study_totals` the sums and the stream that a report reads.
+Studies are rows and no lore: merges and exports leave them out. `study_rows` has what a transaction does with
+users and decisions, `study_totals` the sums and the log that a report reads.
 """
 
 import json
@@ -23,6 +23,12 @@ from lifelore.memory.study_totals import StudyTotals
 ACTIVE, ARCHIVED = "active", "archived"
 TABLES = ("lifelore_decisions", "lifelore_study_past", "lifelore_study_users", "lifelore_study_versions")
 """All tables with a column ``study``."""
+
+_MAKE = (
+    "INSERT INTO lifelore_studies (name, state, version, revision) VALUES (?, ?, 0, 0)"
+    " ON CONFLICT (name) DO NOTHING"
+)
+_CHANGE = "UPDATE lifelore_studies SET revision = revision + 1 WHERE name = ? RETURNING number, state, version"
 
 
 class StudyVersion(NamedTuple):
@@ -56,7 +62,8 @@ class Studies:
     def states(self) -> dict[str, str]:
         """The state of each study by its name, sorted."""
         with self._store.looking() as conn:
-            return dict(sorted(conn.execute("SELECT name, state FROM lifelore_studies").fetchall()))
+            found: list[tuple[str, str]] = conn.execute("SELECT name, state FROM lifelore_studies").fetchall()
+        return dict(sorted(found))
 
     def revision(self, name: str) -> int | None:
         """A number that differs after each change of a study by any process; None where there is no such study."""
@@ -72,7 +79,10 @@ class Studies:
         )
         with self._store.looking() as conn:
             found = conn.first(query, (name,))
-        return None if found is None else StudyVersion(*found[:3], json.loads(found[3]), bytes(found[4]))
+        if found is None:
+            return None
+        number, state, version, about, content = found
+        return StudyVersion(number, state, version, json.loads(about), content)
 
     def settings(self, number: int) -> dict[int, dict[str, Any]]:
         """The settings of each version of a study."""
@@ -95,10 +105,8 @@ class Studies:
             Settings that a version does not depend on.
         """
         with self._store.writing() as conn:
-            made = "INSERT INTO lifelore_studies (name, state, version, revision) VALUES (?, ?, 0, 0) ON CONFLICT (name) DO NOTHING"
-            conn.execute(made, (name, ACTIVE))
-            query = "UPDATE lifelore_studies SET revision = revision + 1 WHERE name = ? RETURNING number, state, version"
-            number, state, version = conn.execute(query, (name,)).fetchall()[0]
+            conn.execute(_MAKE, (name, ACTIVE))
+            number, state, version = conn.execute(_CHANGE, (name,)).fetchall()[0]
             query = "SELECT about, content FROM lifelore_study_versions WHERE study = ? AND version = ?"
             before = conn.first(query, (number, version))
             text = json.dumps(about)
@@ -111,12 +119,16 @@ class Studies:
             version += 1
             conn.execute("UPDATE lifelore_studies SET version = ? WHERE number = ?", (version, number))
             columns = ("study", "version", "created", "about", "content")
-            conn.insert("lifelore_study_versions", columns, [(number, version, time.time_ns() // 10**6, text, content)])
+            conn.insert(
+                "lifelore_study_versions", columns, [(number, version, time.time_ns() // 10**6, text, content)]
+            )
         return StudyVersion(number, state, version, json.loads(text), content)
 
     def set_state(self, name: str, state: str) -> bool:
         """Archive a study or make it active again; whether there is one."""
-        statement = "UPDATE lifelore_studies SET state = ?, revision = revision + 1 WHERE name = ? RETURNING number"
+        statement = (
+            "UPDATE lifelore_studies SET state = ?, revision = revision + 1 WHERE name = ? RETURNING number"
+        )
         with self._store.writing() as conn:
             return conn.first(statement, (state, name)) is not None
 

@@ -7,12 +7,13 @@ from typing import Any, NamedTuple
 from lifelore.memory.connection import Connection
 
 DECISION = (
-    "study", "id", "person", "policy", "probability", "control", "version", "context", "available", "request", "time",
+    "study", "id", "person", "policy", "probability", "control", "version", "time", "context", "available",
+    "request",
 )  # fmt: skip
 """Columns of a decision without its outcome."""
 _USER = "number, name, context, features, type, fitted, version, state"
 _COUNT = ", (SELECT COUNT(*) FROM lifelore_decisions d WHERE d.study = u.study AND d.person = u.number)"
-_DECISION = "id, person, policy, probability, control, version, context, available, request, time, outcome, ended"
+_DECISION = "id, person, policy, probability, control, version, time, context, available, request, outcome, ended"
 
 
 class UserRow(NamedTuple):
@@ -53,12 +54,12 @@ class DecisionRow(NamedTuple):
     probability: float
     control: bool
     version: int
-    context: str | None
-    available: tuple[str, ...] | None
-    request: str | None
     time: int
-    outcome: float | None
-    ended: int | None
+    context: str | None = None
+    available: tuple[str, ...] | None = None
+    request: str | None = None
+    outcome: float | None = None
+    ended: int | None = None
 
 
 class PastRow(NamedTuple):
@@ -106,7 +107,9 @@ class StudyRows:
 
     def numbered(self, numbers: Iterable[int], *, lock: bool = False) -> dict[int, UserRow]:
         """Users by number; with `lock` no other transaction changes them before this one ends."""
-        query = f"SELECT {_USER} FROM lifelore_study_users WHERE study = ? AND number IN ({{many}}) ORDER BY number"
+        query = (
+            f"SELECT {_USER} FROM lifelore_study_users WHERE study = ? AND number IN ({{many}}) ORDER BY number"
+        )
         found = self._conn.matching(query + self._locked(lock, "UPDATE"), sorted(set(numbers)), (self._study,))
         return {row[0]: _user(row) for row in found}
 
@@ -114,7 +117,8 @@ class StudyRows:
         """Add users (name, context, features) before their first outcome; those that exist stay as they are."""
         statement = (
             "INSERT INTO lifelore_study_users (study, name, context, features, fitted, version, personal,"
-            " personal_sum, control, control_sum) VALUES (?, ?, ?, ?, 0, ?, 0, 0, 0, 0) ON CONFLICT (study, name) DO NOTHING"
+            " personal_sum, control, control_sum) VALUES (?, ?, ?, ?, 0, ?, 0, 0, 0, 0)"
+            " ON CONFLICT (study, name) DO NOTHING"
         )
         rows = [(self._study, name, context, _json(features), version) for name, context, features in users]
         self._conn.execute_many(statement, rows)
@@ -130,7 +134,9 @@ class StudyRows:
             "UPDATE lifelore_study_users SET context = ?, features = ?, type = ?, version = 0"
             " WHERE study = ? AND number = ?"
         )
-        rows = [(context, _json(features), type_, self._study, number) for number, context, features, type_ in users]
+        rows = [
+            (context, _json(features), type_, self._study, number) for number, context, features, type_ in users
+        ]
         self._conn.execute_many(statement, rows)
 
     def keep_beliefs(self, beliefs: Iterable[tuple[int, bytes | None]], version: int) -> None:
@@ -172,7 +178,7 @@ class StudyRows:
     def add_decisions(self, decisions: Iterable[DecisionRow]) -> None:
         """Store new decisions, without their outcomes."""
         rows = [
-            (self._study, *one[:4], int(one.control), *one[5:7], _json(one.available), *one[8:10])
+            (self._study, *one[:4], int(one.control), *one[5:8], _json(one.available), one.request)
             for one in decisions
         ]
         self._conn.insert("lifelore_decisions", DECISION, rows)
@@ -198,7 +204,15 @@ class StudyRows:
             found.setdefault(row.person, []).append(row)
         return found
 
-    def requested(self, pairs: Sequence[tuple[int, str]]) -> dict[tuple[int, str], DecisionRow]:
+    def first_decisions(self, numbers: Sequence[int]) -> dict[int, int]:
+        """Time of the first decision for each user that had one, in milliseconds since 1970."""
+        query = (
+            "SELECT person, MIN(time) FROM lifelore_decisions WHERE study = ? AND person IN ({many})"
+            " GROUP BY person"
+        )
+        return dict(self._conn.matching(query, numbers, (self._study,)))
+
+    def requested(self, pairs: Sequence[tuple[int, str | None]]) -> dict[tuple[int, str | None], DecisionRow]:
         """The decisions that were made for (user, request)."""
         query = (
             f"SELECT {_DECISION} FROM lifelore_decisions WHERE study = ? AND request IS NOT NULL"
@@ -212,7 +226,7 @@ class StudyRows:
         people = sorted({person for person, _ in pairs})
         found = map(_decision, self._conn.matching(query, people, parameters))
         wanted = set(pairs)
-        return {pair: row for row in found if (pair := (row.person, row.request or "")) in wanted}
+        return {pair: row for row in found if (pair := (row.person, row.request)) in wanted}
 
     def end_decisions(self, outcomes: Iterable[tuple[bytes, float]], ended: int) -> None:
         """Store the outcomes of decisions that have none."""
@@ -236,7 +250,8 @@ class StudyRows:
     def past_of(self, numbers: Sequence[int]) -> dict[int, list[tuple[str, float]]]:
         """(policy, outcome) of the past of users by their number, in order of time."""
         query = (
-            "SELECT person, policy, outcome, time, id FROM lifelore_study_past WHERE study = ? AND person IN ({many})"
+            "SELECT person, policy, outcome, time, id FROM lifelore_study_past"
+            " WHERE study = ? AND person IN ({many})"
         )
         found: dict[int, list[tuple[str, float]]] = {}
         for person, policy, outcome, *_ in sorted(
@@ -282,9 +297,9 @@ def _user(row: Sequence[Any]) -> UserRow:
 
 
 def _decision(row: Sequence[Any]) -> DecisionRow:
-    id_, person, policy, probability, control, version, context, available, *rest = row
+    id_, person, policy, probability, control, version, time, context, available, *rest = row
     listed = None if available is None else tuple(json.loads(available))
-    return DecisionRow(id_, person, policy, probability, bool(control), version, context, listed, *rest)
+    return DecisionRow(id_, person, policy, probability, bool(control), version, time, context, listed, *rest)
 
 
 def _json(content: Any) -> str | None:

@@ -141,4 +141,3 @@ def _columns(parts: Iterator[list[tuple[Any, ...]]], n: int) -> tuple[Array, ...
     found = [np.array(rows, np.float64).reshape(-1, n) for rows in parts]
     joined = np.concatenate(found) if found else np.empty((0, n))
     return tuple(joined.T)
-

@@ -15,9 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.agent.reuse.history import user_key
 from lifelore.agent.personalise.log.log_columns import check_word
-from lifelore.agent.personalise.study import check_study_name
+from lifelore.agent.personalise.study import check_study_name, user_key
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream

@@ -35,11 +35,12 @@ def open_beliefs(rows: StudyRows, study: Study, users: Sequence[UserRow]) -> Bel
     """The beliefs about users."""
     algorithm = study.algorithm.new_rows(len(users))
     start_at_priors(algorithm, study, users)
-    stored = [place for place, user in enumerate(users) if user.version == study.version and user.state is not None]
+    current = [user.version == study.version for user in users]
+    stored = [place for place, user in enumerate(users) if current[place] and user.state is not None]
     if stored:
         packed = np.frombuffer(b"".join(users[place].state or b"" for place in stored), "<f8")
         algorithm.unpack(np.array(stored), packed.reshape(len(stored), -1))
-    stale = [place for place, user in enumerate(users) if user.version != study.version]
+    stale = [place for place, holds in enumerate(current) if not holds]
     row = {user.number: place for place, user in enumerate(users)}
     if stale:
         evidence = rows.evidence([users[place].number for place in stale])
@@ -66,9 +67,7 @@ def learn(algorithm: ReuseAlgorithm, study: Study, evidence: Iterable[tuple[int,
         learn_turn(algorithm, rows, policies, outcomes)
 
 
-def learn_turn(
-    algorithm: ReuseAlgorithm, rows: Numbers, policies: Numbers, outcomes: NDArray[np.float64]
-) -> None:
+def learn_turn(algorithm: ReuseAlgorithm, rows: Numbers, policies: Numbers, outcomes: NDArray[np.float64]) -> None:
     """Learn from an outcome of each of distinct rows.
 
     A policy that the library does not know (−1) gives no evidence, but the user's type may change all the same.

@@ -17,6 +17,7 @@ from lifelore.interaction.reuse.calibration import outcome_calibration, type_cal
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 
 Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
 
 
 def calibration(study: Study, histories: Sequence[History]) -> dict[str, Any]:
@@ -57,7 +58,7 @@ def _of_outcomes(study: Study, histories: Sequence[History]) -> dict[str, Any] |
     return outcome_calibration(np.concatenate(levels), np.concatenate(users)).to_dict() if users else None
 
 
-def _levels(algorithm: ReuseAlgorithm, rows: NDArray[np.int64], policies: NDArray[np.int64], values: Array) -> Array:
+def _levels(algorithm: ReuseAlgorithm, rows: Numbers, policies: Numbers, values: Array) -> Array:
     """P(U < u) and P(U ≤ u) of an outcome of each user under the belief before it, (n, 2)."""
     performance, belief = algorithm.known(rows).performance, algorithm.belief(rows)
     every, levels = np.arange(len(rows)), []

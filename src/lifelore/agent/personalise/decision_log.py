@@ -50,8 +50,8 @@ def log_parts(
     ----------
     form : {"csv", "ndjson"}
         CSV as in RFC 4180, with `COLUMNS` and the features of the study, so that a new fit can read it: outcomes
-        not yet known are empty, times are seconds since 1970, ``available`` is a JSON list of the policies that were
-        available, empty where all were. A word that a spreadsheet would take for a formula begins with ``'``.
+        not yet known are empty, times are seconds since 1970, ``available`` is a JSON list of the policies that
+        were available, empty where all were. A word that a spreadsheet would take for a formula begins with ``'``.
     since, until : float, optional
         Seconds since 1970: decisions from the first on, and before the second.
     cursor : str, optional
@@ -109,7 +109,9 @@ def _parts(
 
 
 def _line(row: Sequence[Any], rules: dict[int, str], features: Sequence[str]) -> list[Any]:
-    user, policy, outcome, context, time, probability, control, id_, version, ended, available, request, *known = row
+    user, policy, outcome, context, time, probability, control, id_, version, ended, available, request, *known = (
+        row
+    )
     line = [
         user, policy, outcome, context, time / 1000, probability, GROUPS[control], identifier(id_), version,
         rules.get(version), None if ended is None else ended / 1000, available, request,

@@ -1,10 +1,10 @@
-"""Decisions for users of a study and their outcomes: `decide` and `observe`, for one user or many in a transaction.
+"""Decisions for users of a study and their outcomes: `decide` and `observe`, for one user or many.
 
     decide    belief of each user → probabilities of policies → a policy drawn, stored with its probability
     observe   outcome of a decision, stored once → the user's belief learns → stored with it
 
-After a crash at any moment a decision or an outcome is there as a whole or not at all. Users are locked while their
-beliefs change, so that several programs may serve a study.
+Each is one transaction: after a crash at any moment a decision or an outcome is there as a whole or not at all.
+Users are locked while their beliefs change, so that several programs may serve a study.
 """
 
 import hashlib
@@ -85,7 +85,9 @@ class Request:
         return Request(self.user, self.context, features, available, self.request)
 
 
-def choose(memory: Memory, study: Study, user: str, *, seed: int = 0, novelty: bool = False, **known: Any) -> Answer:
+def choose(
+    memory: Memory, study: Study, user: str, *, seed: int = 0, novelty: bool = False, **known: Any
+) -> Answer:
     """Choose a policy for a user's next time and remember that it was chosen.
 
     Parameters
@@ -201,7 +203,7 @@ def _made(
     rows: StudyRows, users: Sequence[UserRow], requests: Sequence[Request]
 ) -> dict[tuple[int, str | None], DecisionRow]:
     """The decisions that were made for the same requests before."""
-    pairs = [
+    pairs: list[tuple[int, str | None]] = [
         (user.number, request.request)
         for user, request in zip(users, requests, strict=True)
         if request.request is not None
@@ -255,12 +257,8 @@ def _drawn(
             policies = _for_control(study, request.available)
             policy, own = policies[int(draw * len(policies))], 1 / len(policies)
         available = None if request.available is None else tuple(request.available)
-        found.append(
-            DecisionRow(
-                id_, user.number, policy, own, control, study.version, user.context, available, request.request,
-                now, None, None,
-            )  # fmt: skip
-        )
+        made = DecisionRow(id_, user.number, policy, own, control, study.version, now, user.context)
+        found.append(made._replace(available=available, request=request.request))
     return found
 
 
@@ -345,8 +343,8 @@ def update(memory: Memory, study: Study, decision: str, outcome: float) -> Answe
     Returns
     -------
     dict
-        ``decision``, ``user``, ``policy``, ``control``, ``outcome``; ``taken``: False where the same outcome was there already
-        and nothing changed; ``belief`` by type after it.
+        ``decision``, ``user``, ``policy``, ``control``, ``outcome``; ``taken``: False where the same outcome
+        was there already and nothing changed; ``belief`` by type after it.
 
     Raises
     ------
@@ -388,9 +386,7 @@ def observe(
             id_, outcome = answers[place]
             answers[place] = _or_error(_taken, study, found.get(id_), taken, id_, outcome)
         rows.end_decisions(taken.items(), time.time_ns() // 10**6)
-        evidence = [
-            (beliefs.row[found[id_].person], found[id_].policy, outcome) for id_, outcome in taken.items()
-        ]
+        evidence = [(beliefs.row[found[id_].person], found[id_].policy, outcome) for id_, outcome in taken.items()]
         learn(beliefs.algorithm, study, evidence)
         rows.learn(_learnt(beliefs, found, taken), study.version)
     for place in good:
@@ -400,7 +396,11 @@ def observe(
 
 
 def _checked_outcome(decision: str, outcome: Any) -> tuple[bytes, float]:
-    if isinstance(outcome, bool) or not isinstance(outcome, int | float | np.number) or not abs(outcome) <= LARGEST:
+    if (
+        isinstance(outcome, bool)
+        or not isinstance(outcome, int | float | np.number)
+        or not abs(outcome) <= LARGEST
+    ):
         raise InputError(f"outcome must be a finite number of at most {LARGEST:g} in size, got {outcome!r:.60}")
     return parse_identifier(decision), float(outcome)
 

@@ -62,7 +62,8 @@ def take_earlier(memory: Memory, name: str) -> bool:
             _read_past(memory, study, people)
             _read_panel(memory, study, people)
         except (zlib.error, ValueError, LookupError) as error:
-            raise StoreError(f"study '{name}' of an earlier Lifelore is damaged ({error}); restore an export") from None
+            what = f"study '{name}' of an earlier Lifelore"
+            raise StoreError(f"{what} is damaged ({error}); restore an export") from None
         with memory.studies.writing(study.number) as rows:
             _store(rows, study, people)
         own = f"reuse {name}"
@@ -108,20 +109,21 @@ def _read_users(memory: Memory, study: Study, people: People) -> None:
                 available.setdefault(slot // _WIDTH, []).append(names.get(value, ""))
         for number in sorted({slot // _FIELDS for slot in cells}):
             stored = [cells.get(_FIELDS * number + field) for field in range(7)]
-            if stored[_POLICY] is None:
+            if (policy := stored[_POLICY]) is None:
                 continue
             attempt = stored[_ATTEMPT] or 0
             text = f"{key}-{number}" + (f".{attempt}" if attempt else "")
-            listed = tuple(available[number]) if number in available else None
-            own["decisions"].append(
-                DecisionRow(
-                    parse_identifier(text), 0, names.get(stored[_POLICY], ""), _number(stored[_PROBABILITY] or 0),
-                    bool(stored[_CONTROL]), study.version, own["context"], listed, None,
-                    1000 * (stored[_CHOSEN] or 0),
-                    None if stored[_OUTCOME] is None else _number(stored[_OUTCOME]),
-                    None if stored[_ENDED] is None else 1000 * stored[_ENDED] + number,
-                )  # fmt: skip
-            )
+            decision = DecisionRow(
+                parse_identifier(text), 0, names.get(policy, ""), _number(stored[_PROBABILITY]),
+                bool(stored[_CONTROL]), study.version, 1000 * (stored[_CHOSEN] or 0), own["context"],
+            )  # fmt: skip
+            if number in available:
+                decision = decision._replace(available=tuple(available[number]))
+            if (outcome := stored[_OUTCOME]) is not None:
+                # Whole seconds were stored; outcomes of a second are put in the order of their decisions.
+                ended = 1000 * (stored[_ENDED] or 0) + number
+                decision = decision._replace(outcome=_number(outcome), ended=ended)
+            own["decisions"].append(decision)
 
 
 def _read_past(memory: Memory, study: Study, people: People) -> None:
@@ -142,7 +144,8 @@ def _read_past(memory: Memory, study: Study, people: People) -> None:
             for number, places, values in files:
                 by_fit = number in fitted
                 own["fitted"] |= by_fit
-                own["past"] += [(policies[place], value, by_fit) for place, value in zip(places, values, strict=True)]
+                names = [policies[place] for place in places]
+                own["past"] += [(*pair, by_fit) for pair in zip(names, values, strict=True)]
 
 
 def _read_panel(memory: Memory, study: Study, people: People) -> None:
@@ -160,16 +163,12 @@ def _read_panel(memory: Memory, study: Study, people: People) -> None:
             keys[run] = np.concatenate([known, columns["keys"]])
             batches[name] = []
             users = [f"{one:016x}" for one in keys[run][np.cumsum(columns["number"])].tolist()]
-            rows = zip(users, *(columns[one].tolist() for one in ("policy", "probability", "control")), strict=True)
-            for place, (user, policy, probability, control) in enumerate(rows):
+            told = (columns[one].tolist() for one in ("policy", "probability", "control"))
+            for place, (user, policy, probability, control) in enumerate(zip(users, *told, strict=True)):
                 own = _person(people, user)["decisions"]
                 batches[name].append((user, len(own)))
-                own.append(
-                    DecisionRow(
-                        parse_identifier(f"{name}/{place}"), 0, about["policies"][policy], probability,
-                        bool(control), study.version, None, None, None, time, None, None,
-                    )  # fmt: skip
-                )
+                id_, named = parse_identifier(f"{name}/{place}"), about["policies"][policy]
+                own.append(DecisionRow(id_, 0, named, probability, bool(control), study.version, time))
             continue
         for place, outcome in zip(columns["place"].tolist(), columns["outcome"].tolist(), strict=True):
             user, number = batches[about["batch"]][place]
@@ -231,6 +230,5 @@ def _policy_number(policy: str) -> int:
     return int.from_bytes(hashlib.sha256(policy.encode()).digest()[:7], "big")
 
 
-def _number(bits: int) -> float:
-    return float(np.int64(bits).view(np.float64))
-
+def _number(bits: int | None) -> float:
+    return float(np.int64(bits or 0).view(np.float64))

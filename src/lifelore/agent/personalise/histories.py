@@ -16,8 +16,7 @@ class History(NamedTuple):
     """A user.
 
     past : (policy, outcome) of the outcomes elsewhere
-    decisions : in order of time, those that count
-    learnt : the same decisions with an outcome, in the order in which outcomes came, each as (policy, outcome)
+    decisions : those that count, in order of time
     """
 
     user: UserRow
@@ -27,7 +26,8 @@ class History(NamedTuple):
     @property
     def ended(self) -> list[DecisionRow]:
         """The decisions with an outcome in the order in which outcomes came."""
-        return sorted((one for one in self.decisions if one.outcome is not None), key=lambda one: (one.ended, one.id))
+        ended = (one for one in self.decisions if one.outcome is not None)
+        return sorted(ended, key=lambda one: (one.ended, one.id))
 
 
 def sampled_histories(memory: Memory, study: Study, *, strangers: bool = False, since: int = 0) -> list[History]:

@@ -1,8 +1,8 @@
-"""The past of users: outcomes in logs of other systems, each line once, before memory's own decisions for them.
+"""The past of users: outcomes in logs of other systems, each line once, before memory's own decisions.
 
-A line is known by the identifier that it gives, else by its user, policy and time; a log without times knows lines
-by user, policy and outcome, and equal lines by their number. So a log counts once in any order and in any window. A
-fit takes its logs' lines in place of those of the fit before; `warm` adds lines.
+A line is known by the identifier that it gives, else by its user, policy and time; in a log without times by user,
+policy and outcome, and equal lines by their number. So a log counts once in any order and in any window. A fit
+takes its logs' lines in place of those of the fit before; `warm` adds lines.
 """
 
 import hashlib
@@ -102,7 +102,7 @@ def keep_fitted_past(memory: Memory, study: Study, log: ReuseLog) -> dict[str, i
 
 
 def _stored(rows: StudyRows, study: Study, lines: Sequence[Line], *, fitted: bool) -> dict[str, int]:
-    """Store lines; numbers of new ``rows`` and their ``users``, of ``known`` ones, and of memory's ``decisions``."""
+    """Store lines; numbers of new ``rows``, of their ``users``, of ``known`` rows, of memory's ``decisions``."""
     names = list({line.user: None for line in lines})
     users = known_users(rows, study, names, lock=True)
     if new := [name for name in names if name not in users]:
@@ -185,7 +185,9 @@ def lines_of(log: ReuseLog) -> list[Line]:
         time, identifier = at[times[row]], given[row]
         if time is None:  # not a time that we can read, but it tells lines apart
             time, identifier = 0, identifier or "\x1f".join((users[row], policies[row], times[row]))
-        features = dict(zip(names, log.features[row].tolist(), strict=True)) if names and whole[row] else None
+        features = (
+            dict(zip(names, log.features[row].tolist(), strict=True)) if names and bool(whole[row]) else None
+        )
         context, type_ = contexts[row] or None, types[row] or None
         lines.append(Line(users[row], policies[row], outcome, time, identifier, context, features, type_))
     return lines

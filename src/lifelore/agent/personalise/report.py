@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.calibration import after_past, calibration, outcomes_of
 from lifelore.agent.personalise.beliefs import learn
+from lifelore.agent.personalise.calibration import after_past, calibration, outcomes_of
 from lifelore.agent.personalise.decision_log import write_log
-from lifelore.agent.personalise.histories import SAMPLE, History, sampled_histories
+from lifelore.agent.personalise.histories import History, sampled_histories
 from lifelore.agent.personalise.result_folder import write_picture, write_result
 from lifelore.agent.personalise.study import Study
 from lifelore.core.errors import InputError, NotFoundError
@@ -157,7 +157,7 @@ def _difference(first: Array, second: Array) -> dict[str, Any] | None:
     """Difference of means with Welch's interval, if there are users and spread enough for one."""
     if not len(first) or not len(second):
         return None
-    ci95 = welch_interval(first, second)
+    ci95 = welch_interval(first, second)  # pyright: ignore[reportArgumentType]
     return {
         "value": float(np.mean(first) - np.mean(second)),
         "ci95": list(ci95) if ci95 else None,
@@ -172,7 +172,7 @@ def _beside(policy: str, personal: Array, by_policy: dict[str, Array]) -> dict[s
 
 
 def _regret(study: Study, histories: Sequence[History]) -> dict[str, Any]:
-    """For each group the mean over decisions of what the best policy under the last belief is expected to bring more."""
+    """Of each group the mean over decisions of what the best policy under the last belief is expected to add."""
     lost: dict[str, list[float]] = {"personal": [], "control": []}
     if histories:
         algorithm = after_past(study, histories)

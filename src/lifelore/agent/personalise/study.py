@@ -208,7 +208,9 @@ def share_of(*words: object) -> float:
 
 def user_key(study: str, user: str) -> str:
     """16 hexadecimal digits that stand for a user of a study."""
-    return user[-16:] if user.startswith(EARLIER) else hashlib.sha256(f"{study}\x1f{user}".encode()).hexdigest()[:16]
+    if user.startswith(EARLIER):
+        return user.removeprefix(EARLIER)
+    return hashlib.sha256(f"{study}\x1f{user}".encode()).hexdigest()[:16]
 
 
 def earlier_name(key: str) -> str:
@@ -312,4 +314,3 @@ def _check_change(change: Change) -> None:
 def _check_share(name: str, share: float, below_one: bool = False) -> None:
     if not 0 <= share <= 1 or (below_one and share == 1):
         raise InputError(f"{name} must lie between 0 and 1{', 1 left out' if below_one else ''}, got {share}")
-

@@ -1,7 +1,7 @@
-"""The routes of decisions and outcomes, and their batches: Starlette functions that read and write JSON by msgspec.
+"""The routes of decisions and outcomes, and their batches: Starlette functions with msgspec, for speed.
 
-These four take nearly all requests. What they take and give is declared once, as msgspec types, which check requests
-and describe the routes in the OpenAPI document.
+These four take nearly all requests. What they take and give is declared once, as msgspec types, which check
+requests and describe the routes in the OpenAPI document.
 """
 
 from collections.abc import Awaitable, Callable

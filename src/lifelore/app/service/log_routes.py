@@ -123,9 +123,7 @@ def router(service: Service) -> APIRouter:
         limit: Annotated[int | None, Query(ge=1, description="Largest number of decisions.")] = None,
         form: Annotated[Literal["csv", "ndjson"], Query(alias="format")] = "csv",
     ) -> StreamingResponse:
-        parts = log_parts(
-            memory, studies.get(study), form, since=since, until=until, cursor=cursor, limit=limit
-        )
+        parts = log_parts(memory, studies.get(study), form, since=since, until=until, cursor=cursor, limit=limit)
         return StreamingResponse(parts, media_type=KINDS[form])
 
     return routes

@@ -7,8 +7,8 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from lifelore.agent.personalise.explanation import stranger_table
 from lifelore.agent.personalise.library_document import library_of
-from lifelore.agent.personalise.registration import StudySettings, register, study_document
 from lifelore.agent.personalise.policy_states import add, retire
+from lifelore.agent.personalise.registration import StudySettings, register, study_document
 from lifelore.agent.personalise.study import study_states
 from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service

@@ -34,7 +34,9 @@ class Past(BaseModel):
 
     model_config = ConfigDict(
         extra="forbid",
-        json_schema_extra={"example": {"items": [{"user": "ada", "policy": "slow", "outcome": 7.5, "time": 1.7e9}]}},
+        json_schema_extra={
+            "example": {"items": [{"user": "ada", "policy": "slow", "outcome": 7.5, "time": 1.7e9}]}
+        },
     )
     items: list[PastLine] = Field(min_length=1, max_length=LARGEST_BATCH)
 

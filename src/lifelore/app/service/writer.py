@@ -1,8 +1,8 @@
 """The thread that stores: requests that wait at the same moment share a transaction of memory.
 
 SQLite has one writer at a time, and each transaction waits for the disk. A request is answered after the
-transaction that holds it has been committed. Decisions and outcomes of a study that wait together are one batch, so
-that many users cost little more than one.
+transaction that holds it has been committed. Decisions and outcomes of a study that wait together are one batch,
+so that many users cost little more than one.
 """
 
 import asyncio
@@ -69,7 +69,9 @@ class Writer:
         """The answers of `decisions.decide`, once the decisions are committed; a long batch in parts."""
         return await self._rows("decisions", study, requests, brief)
 
-    async def observe(self, study: str, outcomes: Sequence[tuple[str, float]], *, brief: bool = False) -> list[Any]:
+    async def observe(
+        self, study: str, outcomes: Sequence[tuple[str, float]], *, brief: bool = False
+    ) -> list[Any]:
         """The answers of `decisions.observe`, once the outcomes are committed; a long batch in parts."""
         return await self._rows("outcomes", study, outcomes, brief)
 

@@ -18,15 +18,18 @@ from lifelore.agent.personalise.evaluate.cross_fitted import (
     expected_by_means,
     studies_of_others,
 )
-from lifelore.agent.reuse.history import histories, user_key
-from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.evaluate.logged_decisions import CERTAIN, LoggedDecisions, read_decisions
-from lifelore.agent.reuse.past import read_past
 from lifelore.agent.personalise.evaluate.replayed_choices import replayed_choices
-from lifelore.agent.personalise.result_folder import write_result
-from lifelore.agent.personalise.study import Study, open_study
 from lifelore.agent.personalise.evaluate.target_estimates import target_estimates
-from lifelore.agent.personalise.evaluate.target_policies import TargetPolicy, replayed_policy, single_policy, table_policy
+from lifelore.agent.personalise.evaluate.target_policies import (
+    TargetPolicy,
+    replayed_policy,
+    single_policy,
+    table_policy,
+)
+from lifelore.agent.personalise.log.log_format import LogFormat
+from lifelore.agent.personalise.result_folder import write_result
+from lifelore.agent.personalise.study import Study, known_users, open_study
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.evaluation.estimators import logged_value
@@ -177,14 +180,18 @@ def _of_strangers(decisions: LoggedDecisions, memory: Memory, study: Study) -> t
     The library has learnt from the outcomes of the users of the fit, so they cannot judge it; a user with a past
     does not start as a stranger. Users with a decision before the fit may have been in its logs.
     """
-    fitted_at = study.fitted.get("time", np.inf)
-    earlier = {
-        history.key
-        for history in histories(memory, study)
-        if any(decision.chosen < fitted_at for decision in history.decisions)
+    fitted_at = 1000 * study.fitted.get("time", np.inf)
+    names = list(decisions.log.user.names)
+    with memory.studies.reading(study.number) as rows:
+        users = known_users(rows, study, names)
+        numbers = [user.number for user in users.values()]
+        past, first = rows.past_of(numbers), rows.first_decisions(numbers)
+    known = {
+        name
+        for name, user in users.items()
+        if user.fitted or user.number in past or first.get(user.number, np.inf) < fitted_at
     }
-    known = earlier | set(read_past(memory, study.name).users)
-    new = np.array([user_key(study.name, user) not in known for user in decisions.log.user.names])
+    new = np.array([name not in known for name in names])
     rows = np.flatnonzero(new[decisions.log.user.codes])
     if not rows.size:
         raise InputError(

@@ -8,8 +8,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.agent.personalise.evaluate.replayed_choices import ReplayedChoices
+from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.interaction.evaluation.reward_models import RewardModel
 

@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.agent.personalise.earlier_studies import take_earlier
 from lifelore.agent.personalise.fit.fit_notes import fit_notes, personalised_by
 from lifelore.agent.personalise.fit.library_from_log import TypedRows, library_of
+from lifelore.agent.personalise.fit.model_choice import chosen_model
+from lifelore.agent.personalise.fit.types_of_users import typed_rows
 from lifelore.agent.personalise.log.log import ReuseLog, read_log
 from lifelore.agent.personalise.log.log_format import LogFormat
-from lifelore.agent.personalise.fit.model_choice import chosen_model
-from lifelore.agent.personalise.earlier_studies import take_earlier
+from lifelore.agent.personalise.past import keep_fitted_past
 from lifelore.agent.personalise.study import (
     ACTIVE,
     LEARNT,
@@ -24,8 +26,6 @@ from lifelore.agent.personalise.study import (
     Study,
     check_study_name,
 )
-from lifelore.agent.personalise.fit.types_of_users import typed_rows
-from lifelore.agent.personalise.past import keep_fitted_past
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.feature_prior import FeaturePrior

@@ -10,8 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.agent.personalise.evaluate.replayed_choices import turns
+from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
