@@ -267,7 +267,7 @@ def retire(
     as_json: AsJson = False,
 ) -> None:
     """Stop choosing a policy."""
-    from lifelore.agent.personalise.decisions import retire as retired
+    from lifelore.agent.personalise.policy_states import retire as retired
 
     with _opened(name, where) as (memory, study):
         study = retired(memory, study, policy)
@@ -285,7 +285,7 @@ def add(
 
     A new policy is first given to the control group only.
     """
-    from lifelore.agent.personalise.decisions import add as added
+    from lifelore.agent.personalise.policy_states import add as added
 
     with _opened(name, where) as (memory, study):
         study = added(memory, study, policy)
@@ -306,7 +306,38 @@ def forget(
 
     with _opened(name, where) as (memory, study):
         count = forgot(memory, study, user)
-    _say({"user": user, "forgotten": count}, f"{count} contributions of {user} forgotten", as_json)
+    _say(
+        {"user": user, "forgotten": count},
+        f"{user} and {count} decisions and lines of the past forgotten",
+        as_json,
+    )
+
+
+@reuse.command()
+def studies(
+    archive: Annotated[str | None, Option(metavar="NAME", help="Archive a study: it takes no decisions.")] = None,
+    activate: Annotated[str | None, Option(metavar="NAME", help="Make an archived study active again.")] = None,
+    delete: Annotated[
+        str | None, Option(metavar="NAME", help="Delete a study with all its users, for ever.")
+    ] = None,
+    where: Where = None,
+    as_json: AsJson = False,
+) -> None:
+    """List the studies in memory, archive or delete one."""
+    from lifelore.agent.personalise.study import open_study, study_states
+    from lifelore.memory import open_memory
+
+    with open_memory(where, durable=True, create=False) as memory:
+        for name, state in ((archive, "archived"), (activate, "active")):
+            if name is not None:
+                open_study(memory, name)
+                memory.studies.set_state(name, state)
+        if delete is not None:
+            open_study(memory, delete)
+            memory.studies.delete(delete)
+        listed = study_states(memory)
+    lines = [f"{name} ({state})" for name, state in sorted(listed.items())]
+    _say({"studies": listed}, "\n".join(lines) or "no study; begin with 'lifelore reuse fit'", as_json)
 
 
 @contextmanager
@@ -380,6 +411,11 @@ def _print_fit(document: dict[str, Any]) -> None:
         print(
             f"  {document['borrowed']} pairs of type and policy have no outcome; the mean of all types is expected"
         )
+    if kept := document["kept"]:
+        print(
+            f"  {kept['decisions']} decisions for {kept['users']} users in memory stay ({kept['pending']} without an "
+            f"outcome yet); {kept['in_log']} of them are lines of the log and count once"
+        )
     for name, before in document["changed"].items():
         keep = "" if before is None else f" (--{name} {before} keeps it)"
         print(f"  {name} is {document[name]}, was {before} until now{keep}")
@@ -406,6 +442,8 @@ def _print_warm(document: dict[str, Any]) -> None:
         *LEFT_OUT,
         ("have a policy that the study does not know; they give no evidence", "unknown_policies"),
     )
+    if not document["by_time"]:
+        print("  lines have no time: equal lines of a user count as often as one log has them (add a column time)")
     if document["unknown_types"]:
         print(f"  types that the study does not know are ignored: {', '.join(document['unknown_types'])}")
 

@@ -179,14 +179,14 @@ def lines_of(log: ReuseLog) -> list[Line]:
     given, times, contexts, types = log.decision.words, log.time.words, log.context.words, log.type.words
     at = {word: parse_time(word) for word in log.time.names}
     names = log.feature_names
-    whole = ~np.isnan(log.features).any(axis=1)
+    whole = (~np.isnan(log.features).any(axis=1)).tolist()
     lines = []
     for row, outcome in enumerate(log.outcomes.tolist()):
         time, identifier = at[times[row]], given[row]
         if time is None:  # not a time that we can read, but it tells lines apart
             time, identifier = 0, identifier or "\x1f".join((users[row], policies[row], times[row]))
         features = (
-            dict(zip(names, log.features[row].tolist(), strict=True)) if names and bool(whole[row]) else None
+            dict(zip(names, log.features[row].tolist(), strict=True)) if names and whole[row] else None
         )
         context, type_ = contexts[row] or None, types[row] or None
         lines.append(Line(users[row], policies[row], outcome, time, identifier, context, features, type_))
