@@ -179,7 +179,7 @@ def lines_of(log: ReuseLog) -> list[Line]:
     given, times, contexts, types = log.decision.words, log.time.words, log.context.words, log.type.words
     at = {word: parse_time(word) for word in log.time.names}
     names = log.feature_names
-    whole = (~np.isnan(log.features).any(axis=1)).tolist()
+    whole: list[bool] = np.isfinite(log.features).all(axis=1).tolist()  # pyright: ignore
     lines = []
     for row, outcome in enumerate(log.outcomes.tolist()):
         time, identifier = at[times[row]], given[row]
