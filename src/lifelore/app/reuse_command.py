@@ -413,8 +413,8 @@ def _print_fit(document: dict[str, Any]) -> None:
         )
     if kept := document["kept"]:
         print(
-            f"  {kept['decisions']} decisions for {kept['users']} users in memory stay, {kept['pending']} without an "
-            f"outcome yet; {kept['in_log']} of them are lines of the log and count once"
+            f"  {kept['decisions']} decisions for {kept['users']} users in memory stay, {kept['pending']} without "
+            f"an outcome yet; {kept['in_log']} of them are lines of the log and count once"
         )
     for name, before in document["changed"].items():
         keep = "" if before is None else f" (--{name} {before} keeps it)"
