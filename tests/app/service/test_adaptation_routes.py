@@ -13,7 +13,7 @@ LIBRARY = {
     "signals": [[[0.9, 0.1], [0.8, 0.2]], [[0.6, 0.4], [0.2, 0.8]]], "categories": ["hit", "miss"],
 }  # fmt: skip
 MOVES = [("fast", "miss"), ("fast", "miss"), ("slow", "hit"), ("fast", "miss")]
-USER = "/v1/adaptations/game/users/ada"
+USER = "/v1/adaptations/game/user?user=ada"
 
 
 @pytest.fixture
@@ -26,7 +26,7 @@ def game(client):
 
 def move(client, step, moves, **fields):
     listed = [{"action_set": action_set, "signal": signal} for action_set, signal in moves]
-    return client.post(f"{USER}/moves", json={"step": step, "moves": listed} | fields)
+    return client.post("/v1/adaptations/game/moves", json={"user": "ada", "step": step, "moves": listed} | fields)
 
 
 def test_moves_teach_as_the_learner_itself(game):
@@ -75,7 +75,7 @@ def test_another_library_starts_users_anew_and_the_same_does_not(game):
 
 def test_exploration_has_its_probability(game):
     game.put("/v1/adaptations/game", json={"library": LIBRARY, "epsilon": 0.4})
-    answers = [game.get(f"/v1/adaptations/game/users/user {number}").json() for number in range(60)]
+    answers = [game.get(f"/v1/adaptations/game/user?user=user {number}").json() for number in range(60)]
     for answer in answers:
         assert np.isclose(answer["probability"], 0.8 if answer["action_set"] == "fast" else 0.2)
     assert {answer["action_set"] for answer in answers} == {"slow", "fast"}

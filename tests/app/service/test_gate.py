@@ -223,7 +223,7 @@ def test_metrics_and_log_name_routes_and_not_users(serve, study, caplog):
     client.put("/v1/studies/s", json=study)
     with caplog.at_level(logging.INFO, "lifelore.service"):
         client.post("/v1/studies/s/decisions", json={"user": "zoe"})
-        client.get("/v1/studies/s/users/zoe")
+        client.get("/v1/studies/s/user?name=zoe")
         client.get("/nowhere/zoe")
     metrics = client.get("/metrics").text
     route = 'method="POST",route="/v1/studies/{study}/decisions",status="200"'

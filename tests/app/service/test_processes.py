@@ -15,8 +15,7 @@ from typing import Any
 
 import pytest
 
-from lifelore.agent.personalise.panel import Panel
-from lifelore.agent.reuse.history import open_history, parse_identifier
+from lifelore.agent.personalise.decisions import parse_identifier
 from lifelore.agent.personalise.study import open_study
 from lifelore.memory import open_memory
 
@@ -64,8 +63,8 @@ def test_it_serves_and_stops_by_a_signal(started, study, tmp_path):
         child, url = started(memory, "--access-log")
         with Client(url) as client:
             client.ask("PUT", "/v1/studies/s", study)
-            made = client.ask("POST", "/v1/studies/s/decisions", {"user": "ada"})
-        assert made["number"] == number
+            client.ask("POST", "/v1/studies/s/decisions", {"user": "ada"})
+            assert client.ask("GET", "/v1/studies/s/user?name=ada")["decisions"] == number + 1
         child.send_signal(stop)
         assert child.wait(60) == status
     lines = [json.loads(line) for line in (tmp_path / "log").read_text().splitlines() if line.startswith("{")]
@@ -97,8 +96,7 @@ def test_it_stops_where_its_standard_input_ends(start, study, tmp_path):
     child.stdin = None  # `communicate` of the fixture would write to it
     assert child.wait(60) == 0
     with open_memory(memory) as opened:
-        history = open_history(opened, open_study(opened, "s"), parse_identifier(made["decision"])[0])
-    assert [history.identifier(decision) for decision in history.decisions] == [made["decision"]]
+        assert list(stored_decisions(opened, [made])) == [parse_identifier(made["decision"])]
 
 
 def test_a_host_that_others_reach_needs_tokens(ask):
@@ -118,7 +116,7 @@ def test_a_new_token_is_printed_once(ask, tmp_path):
     assert answer["token"] not in (tmp_path / "tokens").read_text()
 
 
-def load(url: str, name: str, acknowledged: list[tuple[dict, float | None]], batches: list[Any]) -> None:
+def load(url: str, name: str, acknowledged: list[tuple[dict, float | None]]) -> None:
     """Decide and observe until the service is gone; note what it acknowledged."""
     with contextlib.suppress(OSError, http.client.HTTPException), Client(url) as client:
         for number in itertools.count():
@@ -128,19 +126,17 @@ def load(url: str, name: str, acknowledged: list[tuple[dict, float | None]], bat
             ended = client.ask("POST", "/v1/studies/s/outcomes", {"decision": made["decision"], "outcome": number})
             assert ended["taken"]
             acknowledged[-1] = (made, float(number))
-            if number % 5:
-                continue
-            request = {"users": [user, f"{user}'s friend"], "request": f"{name}/{number}"}
-            batches.append((request, client.ask("POST", "/v1/studies/s/panel/decisions", request)))
+            if number % 5 == 0:
+                items = [{"user": user, "request": f"{name}/{number}/batch"}, {"user": f"{user}'s friend"}]
+                answers = client.ask("POST", "/v1/studies/s/decisions/batch", {"items": items})["items"]
+                acknowledged += [(answer, None) for answer in answers]
 
 
-def killed_under_load(
-    started, memory: Path, run: int, seconds: float, batches: list[Any]
-) -> list[tuple[dict, float | None]]:
+def killed_under_load(started, memory: Path, run: int, seconds: float) -> list[tuple[dict, float | None]]:
     child, url = started(memory)
     notes: list[list[tuple[dict, float | None]]] = [[] for _ in range(CLIENTS)]
     clients = [
-        threading.Thread(target=load, args=(url, f"run {run} client {number}", note, batches))
+        threading.Thread(target=load, args=(url, f"run {run} client {number}", note))
         for number, note in enumerate(notes)
     ]
     for client in clients:
@@ -163,27 +159,25 @@ def kill_loop(started, study, memory: Path, kills: int, seed: int) -> None:
         client.ask("PUT", "/v1/studies/s", study)
     child.terminate()
     child.wait()
-    draw, acknowledged, batches = random.Random(seed), [], []
+    draw, acknowledged = random.Random(seed), []
     for run in range(kills):
-        acknowledged += killed_under_load(started, memory, run, draw.uniform(0.0, 0.5), batches)
+        acknowledged += killed_under_load(started, memory, run, draw.uniform(0.0, 0.5))
         with open_memory(memory) as opened:
             assert opened.check() == []
             assert_stored(opened, acknowledged)
-            panel = Panel(opened, open_study(opened, "s"))
-            for request, answer in batches:
-                assert panel.decide(request["users"], request=request["request"]) == answer | {"repeated": True}
     assert any(outcome is not None for _, outcome in acknowledged)
 
 
+def stored_decisions(memory, made):
+    study = open_study(memory, "s")
+    with memory.studies.reading(study.number) as rows:
+        return rows.decisions([parse_identifier(one["decision"]) for one in made])
+
+
 def assert_stored(memory, acknowledged) -> None:
-    opened = open_study(memory, "s")
-    keys = {parse_identifier(made["decision"])[0] for made, _ in acknowledged}
-    histories = {key: open_history(memory, opened, key) for key in keys}
-    stored = {
-        history.identifier(decision): decision for history in histories.values() for decision in history.decisions
-    }
+    stored = stored_decisions(memory, [made for made, _ in acknowledged])
     for made, outcome in acknowledged:
-        decision = stored[made["decision"]]
+        decision = stored[parse_identifier(made["decision"])]
         assert (decision.policy, decision.probability) == (made["policy"], made["probability"])
         if outcome is not None:
             assert decision.outcome == outcome

@@ -1,11 +1,18 @@
 """Decisions and outcomes over HTTP: as the command line stores them, once for each request."""
 
+import csv
+import io
+import json
 import math
+
+import pytest
 
 from lifelore.agent.personalise.decisions import choose
 from lifelore.agent.personalise.study import open_study
 from lifelore.interaction.beliefs.learnt_dynamics import HAZARD_WEIGHTS, HAZARDS
 from lifelore.memory import open_memory
+
+LIBRARY = {"types": ["calm", "lively"], "means": [[8.0, 2.0], [3.0, 8.5]], "deviations": 2.0}
 
 
 def decide(client, user="ada", **fields):
@@ -42,10 +49,10 @@ def test_the_same_request_gets_the_same_decision_and_is_stored_once(client, wher
     again = decide(client, request="monday")
     other = decide(client, request="tuesday")
     assert (first["repeated"], again["repeated"], other["repeated"]) == (False, True, False)
-    for key in ("decision", "policy", "probability", "available", "control", "number"):
+    for key in ("decision", "policy", "probability", "available", "control"):
         assert again[key] == first[key]
     assert other["decision"] != first["decision"]
-    assert client.get("/v1/studies/s/users/ada").json()["decisions"] == 2
+    assert client.get("/v1/studies/s/user?name=ada").json()["decisions"] == 2
     # Another user may use the same identifier.
     assert not decide(client, "ben", request="monday")["repeated"]
 
@@ -54,7 +61,7 @@ def test_a_request_keeps_its_decision_after_a_restart_and_after_others(client, s
     first = decide(client, request="monday", available=["fast"])
     assert first["policy"] == "fast"
     decide(client)
-    again = decide(serve(where), request="monday")
+    again = decide(serve(where), request="monday", available=["fast"])
     assert again["repeated"]
     assert (again["decision"], again["policy"], again["available"]) == (first["decision"], "fast", ["fast"])
 
@@ -85,16 +92,15 @@ def test_the_command_line_sees_the_same_user(client, where):
     made = decide(client)
     observe(client, made["decision"], 8.0)
     with open_memory(where) as memory:
-        own = choose(memory, open_study(memory, "s"), "ada")
-    assert own["number"] == 1
-    assert client.get("/v1/studies/s/users/ada").json()["decisions"] == 2
+        choose(memory, open_study(memory, "s"), "ada")
+    assert client.get("/v1/studies/s/user?name=ada").json()["decisions"] == 2
 
 
 def test_a_batch_answers_each_item(client):
     items = [{"user": "ada"}, {"user": "ben", "available": ["brisk"]}, {"user": "ada"}]
     answers = client.post("/v1/studies/s/decisions/batch", json={"items": items}).json()["items"]
-    assert [answer.get("number") for answer in answers] == [0, None, 1]
     assert answers[1]["error"]["kind"] == "not found"
+    assert answers[0]["decision"] != answers[2]["decision"]
     outcomes = [{"decision": answer["decision"], "outcome": 8.0} for answer in answers if "decision" in answer]
     taken = client.post("/v1/studies/s/outcomes/batch", json={"items": [*outcomes, outcomes[0]]}).json()["items"]
     assert [answer["taken"] for answer in taken] == [True, True, False]
@@ -103,7 +109,7 @@ def test_a_batch_answers_each_item(client):
 def test_the_explanation_names_evidence_and_next_choice(client):
     made = decide(client, available=["slow"])
     observe(client, made["decision"], 8.0)
-    shown = client.get("/v1/studies/s/users/ada").json()
+    shown = client.get("/v1/studies/s/user?name=ada").json()
     assert list(shown["belief"]) == ["calm", "lively"]
     assert math.isclose(shown["belief"]["calm"], belief_after(0, 8.0), abs_tol=1e-12)
     assert shown["probabilities"] == {"slow": 1.0, "fast": 0.0}
@@ -118,6 +124,95 @@ def test_the_explanation_names_evidence_and_next_choice(client):
 
 def test_a_forgotten_user_is_a_stranger(client):
     observe(client, decide(client, request="monday")["decision"], 8.0)
-    assert client.delete("/v1/studies/s/users/ada").json() == {"user": "ada", "forgotten": 2}
-    assert client.get("/v1/studies/s/users/ada").status_code == 404
+    assert client.delete("/v1/studies/s/user?name=ada").json() == {"user": "ada", "forgotten": 1}
+    assert client.get("/v1/studies/s/user?name=ada").status_code == 404
     assert decide(client, request="monday")["belief"] == {"calm": 0.5, "lively": 0.5}
+
+
+@pytest.mark.parametrize("name", ["google-oauth2/117", "50% off", "ада ☃", "a&b=c?#", "../x"])
+def test_names_of_any_characters_can_be_read_and_forgotten(client, name):
+    decide(client, name)
+    assert client.get("/v1/studies/s/user", params={"name": name}).json()["decisions"] == 1
+    assert client.delete("/v1/studies/s/user", params={"name": name}).json()["forgotten"] == 1
+    assert client.get("/v1/studies/s/user", params={"name": name}).status_code == 404
+
+
+def test_policies_of_any_name_can_be_retired(client):
+    library = LIBRARY | {"policies": ["50% off / sale", "fast"]}
+    assert client.put("/v1/studies/shop", json={"library": library}).status_code == 200
+    change = {"policy": "50% off / sale", "state": "retired"}
+    assert client.put("/v1/studies/shop/policies", json=change).json()["state"] == "retired"
+    made = client.post("/v1/studies/shop/decisions", json={"user": "ada"}).json()
+    assert made["policy"] == "fast"
+
+
+@pytest.mark.parametrize("outcome", ["7", True, None, [1], 1e200])
+def test_only_numbers_are_outcomes(client, outcome):
+    refused = client.post(
+        "/v1/studies/s/outcomes", json={"decision": decide(client)["decision"], "outcome": outcome}
+    )
+    assert refused.status_code == 422
+    assert "outcome" in refused.json()["error"]["message"]
+
+
+def test_the_same_request_with_other_policies_is_refused(client):
+    decide(client, request="monday", available=["fast"])
+    refused = client.post(
+        "/v1/studies/s/decisions", json={"user": "ada", "request": "monday", "available": ["slow"]}
+    )
+    assert refused.status_code == 422
+    assert "other available policies" in refused.json()["error"]["message"]
+
+
+def test_outcomes_of_another_system_count_once(client):
+    lines = [
+        {"user": "ada", "policy": "slow", "outcome": 8.0, "time": 1.7e9},
+        {"user": "ada", "policy": "fast", "outcome": 2.0, "time": 1.7e9 + 60},
+        {"id": "order 7", "user": "ben", "policy": "slow", "outcome": 3.0},
+    ]
+    for items, rows, known in ((lines[:2], 2, 0), (lines, 1, 2)):
+        answer = client.post("/v1/studies/s/past", json={"items": items}).json()
+        assert (answer["rows"], answer["known"]) == (rows, known)
+    assert client.post("/v1/studies/s/past", json={"items": lines[::-1]}).json()["rows"] == 0
+    belief = client.get("/v1/studies/s/user?name=ada").json()["belief"]
+    assert max(belief, key=belief.get) == "calm"
+
+
+def test_strangers_get_what_the_table_says(client):
+    table = client.get("/v1/studies/s/table").json()
+    made = decide(client, "stranger")
+    assert table["default"] == made["probabilities"]
+    assert table["contexts"] == {}
+
+
+def test_the_log_pages_by_a_cursor(client):
+    made = [decide(client, f"user {number}")["decision"] for number in range(5)]
+    first = client.get("/v1/studies/s/log?format=ndjson&limit=2").text.splitlines()
+    rest = client.get(
+        "/v1/studies/s/log", params={"format": "ndjson", "cursor": json.loads(first[-1])["decision"]}
+    ).text.splitlines()
+    assert sorted(json.loads(line)["decision"] for line in [*first, *rest]) == sorted(made)
+    text = client.get("/v1/studies/s/log").text
+    assert len(list(csv.DictReader(io.StringIO(text)))) == 5
+    assert client.get("/v1/studies/s/log?cursor=nonsense").status_code == 422
+
+
+def test_an_archived_study_takes_no_decisions_and_a_deleted_one_is_gone(client):
+    made = decide(client)
+    assert client.put("/v1/studies/s/state", json={"state": "archived"}).json()["state"] == "archived"
+    assert client.get("/v1/studies").json() == {"studies": [{"name": "s", "state": "archived"}]}
+    assert client.post("/v1/studies/s/decisions", json={"user": "ada"}).status_code == 422
+    assert observe(client, made["decision"], 8.0).json()["taken"]
+    assert client.delete("/v1/studies/s").status_code == 200
+    assert client.get("/v1/studies/s").status_code == 404
+
+
+def test_metrics_count_by_study_and_policy(client):
+    made = decide(client)
+    observe(client, made["decision"], 8.0)
+    observe(client, made["decision"], 8.0)
+    text = client.get("/metrics").text
+    labels = f'{{group="treated",policy="{made["policy"]}",study="s"}}'
+    assert f"lifelore_study_decisions_total{labels} 1.0" in text
+    assert f"lifelore_study_outcomes_total{labels} 1.0" in text
+    assert f"lifelore_study_outcome_sum{labels} 8.0" in text

@@ -329,9 +329,11 @@ def identifier(id_: bytes) -> str:
 
 def parse_identifier(text: str) -> bytes:
     """The 16 bytes of a decision's identifier, also of one of an earlier Lifelore; InputError where it is none."""
-    if EARLIER_IDENTIFIER.fullmatch(str(text)):
-        return bytes(6) + hashlib.sha256(text.encode()).digest()[:10]
     try:
+        if len(text) == 36:
+            return bytes.fromhex(text.replace("-", ""))
+        if EARLIER_IDENTIFIER.fullmatch(text):
+            return bytes(6) + hashlib.sha256(text.encode()).digest()[:10]
         return uuid.UUID(text).bytes
     except (ValueError, AttributeError, TypeError):
         raise InputError(f"decision must be the identifier that a choice gave, got {str(text)[:60]!r}") from None

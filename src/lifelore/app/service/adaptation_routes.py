@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Path
+from fastapi import APIRouter, Path, Query
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from lifelore.agent.personalise.adaptation import (
@@ -15,9 +15,9 @@ from lifelore.agent.personalise.adaptation import (
 from lifelore.agent.personalise.library_document import described, library_of
 from lifelore.app.service.service_state import Service
 from lifelore.app.service.study_routes import LibraryDocument
-from lifelore.app.service.user_routes import User
 
 Name = Annotated[str, Path(description="Name of the adaptation.", min_length=1, max_length=60, examples=["game"])]
+User = Annotated[str, Query(description="Name of the user.", min_length=1, max_length=200)]
 Signal = int | FiniteFloat | str | list[list[int]]
 _LIBRARY = {
     "types": ["steady", "shaky"], "policies": ["slow", "fast"],
@@ -51,8 +51,9 @@ class Moves(BaseModel):
 
     model_config = ConfigDict(
         extra="forbid",
-        json_schema_extra={"example": {"step": 0, "moves": [{"action_set": "fast", "signal": "miss"}]}},
+        json_schema_extra={"example": {"user": "ada", "step": 0, "moves": [{"action_set": "fast", "signal": "miss"}]}},
     )
+    user: str = Field(description="Name of the user.", min_length=1, max_length=200)
     step: int = Field(ge=0, le=2**62, description="Number of the first move; moves that were stored count once.")
     moves: list[Move] = Field(min_length=1, max_length=10_000)
     ends_episode: bool = Field(False, description="Whether the last move ends an episode.")
@@ -73,20 +74,20 @@ def router(service: Service) -> APIRouter:
         found = open_adaptation(memory, name)
         return {"adaptation": name, "epsilon": found.epsilon, **described(found.library)}
 
-    @routes.get("/users/{user}", summary="The action set for the next step of a user, and the belief behind it")
+    @routes.get("/user", summary="The action set for the next step of a user, and the belief behind it")
     def next_set(name: Name, user: User) -> dict[str, Any]:
         return select(memory, open_adaptation(memory, name), user, service.settings.seed)
 
-    @routes.post("/users/{user}/moves", summary="Learn from moves of a user, each once")
-    async def moves(name: Name, user: User, document: Moves) -> dict[str, Any]:
-        return await service.writer.run(learn, name, user, document)
+    @routes.post("/moves", summary="Learn from moves of a user, each once")
+    async def moves(name: Name, document: Moves) -> dict[str, Any]:
+        return await service.writer.run(learn, name, document.user, document)
 
     def learn(name: str, user: str, document: Moves) -> dict[str, Any]:
         listed = [(move.action_set, move.signal) for move in document.moves]
         adaptation = open_adaptation(memory, name)
         return learn_moves(memory, adaptation, user, document.step, listed, ends_episode=document.ends_episode)
 
-    @routes.delete("/users/{user}", summary="Forget all that is stored of a user, for ever")
+    @routes.delete("/user", summary="Forget all that is stored of a user, for ever")
     def delete(name: Name, user: User) -> dict[str, Any]:
         return {"user": user, "forgotten": forget_adaptation(memory, open_adaptation(memory, name), user)}
 
