@@ -17,6 +17,7 @@ from lifelore.app.service.application import create_app
 from lifelore.app.service.settings import ServiceSettings
 
 JSON = {"Content-Type": "application/json"}
+FILE = {"Content-Type": "application/octet-stream"}
 PAGE = Path(__file__).parents[1] / "docs" / "service.md"
 
 
@@ -57,7 +58,7 @@ def test_every_example_is_answered(tmp_path):
                     body = body and body.replace(f"${name.upper()}", value)
                 answer = client.request(method, path, content=body, headers=JSON)
             else:
-                answer = client.request(method, path, content=files[body])
+                answer = client.request(method, path, content=files[body], headers=FILE)
             assert answer.status_code == 200, (path, answer.text)
             if path.endswith("/export"):
                 files["@backup.db"] = answer.content

@@ -129,6 +129,7 @@ def test_walk(serve_pages: Callable[..., str], open_page: Callable[..., Page], s
     page = open_page(f"{serve_pages('--map', f'office={OFFICE}')}/", tall(860))
     page.add_init_script("crypto.getRandomValues = (numbers) => numbers.fill(8);")
     page.goto(page.url + "walk")
+    page.get_by_role("button", name="New start").click()
     errand = page.locator("#errand")
     expect(errand).to_have_text(re.compile("0 steps"), timeout=LOADED)
     random, heading, steps = stream(0, "a picture of a walk"), "", 0

@@ -192,7 +192,7 @@ def test_a_reload_goes_on_with_the_walk_in_progress(
     assert walker.walk != name
 
 
-def test_a_walk_that_the_memory_has_lost_begins_anew(
+def test_a_walk_that_the_memory_has_lost_is_not_begun_again(
     serve_pages: Callable[..., str], browser: Browser, tmp_path: Path
 ):
     # Not by `open_page`: the browser itself logs each answer that is an error.
@@ -206,9 +206,20 @@ def test_a_walk_that_the_memory_has_lost_begins_anew(
             "sessionStorage['lifelore walks'] = sessionStorage['lifelore walks'].replace(/walk-[0-9-]+/, 'walk-0')"
         )
         page.reload()
-        walker.ready()
-        assert walker.walk not in (name, "walk-0")
+        expect(page.locator("#errand")).to_have_text("Choose a building and press New start")
         expect(page.get_by_role("alert")).to_have_count(0)
+        walker.begin(MAZE)
+        assert walker.walk not in (name, "walk-0")
+
+
+def test_a_visit_stores_nothing(serve_pages: Callable[..., str], open_page: Callable[..., Page], tmp_path: Path):
+    page = open_page(serve_pages() + "/walk")
+    expect(page.locator("#errand")).to_have_text("Choose a building and press New start")
+    expect(page.get_by_role("combobox", name="Building")).not_to_have_value("")
+    page.keyboard.press("ArrowUp")
+    page.reload()
+    with open_memory(tmp_path / "pages.db") as memory:
+        assert memory.robots() == []
 
 
 def test_two_tabs_of_one_walk_agree(serve_pages: Callable[..., str], open_page: Callable[..., Page]):
@@ -252,8 +263,8 @@ def test_without_advice_there_are_no_arrows_and_the_curve_goes_on(
 def test_a_map_of_the_person_comes_first(serve_pages: Callable[..., str], open_page: Callable[..., Page]):
     page = open_page(serve_pages("--map", f"hall={OFFICE}") + "/walk")
     walker = Walker(page)
-    walker.ready()
     expect(page.get_by_role("combobox", name="Building")).to_have_value("hall")
+    walker.begin("hall")
     walker.press("north")
     # Arrow keys in the list of buildings choose a building and are no step.
     page.get_by_role("combobox", name="Building").focus()
@@ -282,7 +293,7 @@ def test_an_error_of_the_service_is_a_line_on_the_page(serve_pages: Callable[...
     page.route("**/steps", answer)
     page.goto(serve_pages() + "/walk")
     walker = Walker(page)
-    walker.ready()
+    walker.begin(MAZE)
     page.keyboard.press("ArrowUp")
     expect(page.get_by_role("alert")).to_have_text("the disk is full")
     expect(page.locator("#errand")).to_contain_text("· 0 steps")
@@ -295,6 +306,8 @@ def test_an_error_of_the_service_is_a_line_on_the_page(serve_pages: Callable[...
 def test_routes_check_what_they_are_given(tmp_path: Path):
     settings = ServiceSettings(str(tmp_path / "m.db"))
     with TestClient(app_with_pages(settings), base_url="http://127.0.0.1") as client:
+        assert client.get("/v1/walks/ada", params={"building": MAZE}).status_code == 404
+        assert client.get("/v1/memory").json()["robots"] == []
         begun = client.put("/v1/walks/ada", json={"building": MAZE}).json()
         step = {"building": MAZE, "step": 1, "state": begun["state"], "move": "north"}
         assert client.post("/v1/walks/ada/steps", json=step).json()["step"] == 1

@@ -1,4 +1,4 @@
-"""Connections whose headers are slow or too large close; slow bodies and slow answers are for the gate to judge."""
+"""Connections whose headers are slow or too large close; the gate judges slow bodies and answers."""
 
 import asyncio
 import contextlib

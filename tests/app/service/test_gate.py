@@ -47,7 +47,7 @@ def test_a_defect_shows_no_traceback_and_logs_it(serve, monkeypatch, caplog):
     def broken(memory):
         raise ZeroDivisionError("secret of the inside")
 
-    monkeypatch.setattr("lifelore.app.service.study_routes.study_names", broken)
+    monkeypatch.setattr("lifelore.app.service.study_routes.study_states", broken)
     with caplog.at_level(logging.INFO, "lifelore.service"):
         answer = client.get("/v1/studies", headers={"X-Request-ID": "mine-7"})
     message = error_of(answer, 500, "defect")
@@ -168,7 +168,7 @@ def test_a_file_comes_as_a_file(serve, path):
 
 def test_an_address_names_all_its_methods(serve):
     client = serve()
-    assert client.patch("/v1/studies/s").headers["allow"] == "GET, PUT"
+    assert client.patch("/v1/studies/s").headers["allow"] == "GET, PUT, DELETE"
     assert client.post("/healthz", json={}).headers["allow"] == "GET, HEAD"
 
 
@@ -214,7 +214,7 @@ def test_a_request_that_takes_too_long_is_answered(serve, monkeypatch):
     import time
 
     client = serve(seconds=0.1)
-    monkeypatch.setattr("lifelore.app.service.study_routes.study_names", lambda memory: time.sleep(0.5))
+    monkeypatch.setattr("lifelore.app.service.study_routes.study_states", lambda memory: time.sleep(0.5))
     assert "0.1 s" in error_of(client.get("/v1/studies"), 504, "time")
 
 

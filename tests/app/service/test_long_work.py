@@ -1,5 +1,6 @@
 """Long work ends with its request: where its client leaves, at the time limit, and when the service stops."""
 
+import asyncio
 import contextlib
 import http.client
 import json
@@ -16,8 +17,9 @@ import pytest
 
 pytest.importorskip("fastapi", reason="needs the extra web")
 
-from lifelore.app.service.worker_process import WorkerProcess
+from lifelore.app.service.worker_process import WorkerProcess, over_memory
 from lifelore.core.errors import InputError
+from lifelore.memory import Memory, open_memory
 
 SERVICE = """
 import os, sys, time
@@ -181,6 +183,31 @@ async def test_a_process_that_dies_is_replaced(anyio_backend):
         assert await worker.call(max, 2, 3) == 3
     finally:
         worker.stop()
+
+
+@pytest.mark.anyio
+@pytest.mark.parametrize("anyio_backend", ["asyncio"])
+async def test_work_over_a_memory_is_whole_or_not_at_all(anyio_backend, where):
+    worker = WorkerProcess()
+    try:
+        assert await worker.call(over_memory, where, contribute, "rosie") == 1
+        with pytest.raises(TimeoutError):
+            async with asyncio.timeout(4.0):
+                await worker.call(over_memory, where, contribute, "ben", 600.0)
+        with open_memory(where) as memory:
+            assert memory.robots() == ["rosie"]
+            contribute(memory, "ada")
+    finally:
+        worker.stop()
+
+
+def contribute(memory: Memory, robot: str, seconds: float = 0.0) -> int:
+    """Store, wait, and store again, in one transaction."""
+    with memory.together():
+        memory.contribute(robot, [], process="p", seq=0, task={})
+        time.sleep(seconds)
+        memory.contribute(robot, [], process="p", seq=1, task={})
+    return len(memory.robots())
 
 
 def raise_mistake() -> None:

@@ -51,7 +51,9 @@ class Moves(BaseModel):
 
     model_config = ConfigDict(
         extra="forbid",
-        json_schema_extra={"example": {"user": "ada", "step": 0, "moves": [{"action_set": "fast", "signal": "miss"}]}},
+        json_schema_extra={
+            "example": {"user": "ada", "step": 0, "moves": [{"action_set": "fast", "signal": "miss"}]}
+        },
     )
     user: str = Field(description="Name of the user.", min_length=1, max_length=200)
     step: int = Field(ge=0, le=2**62, description="Number of the first move; moves that were stored count once.")

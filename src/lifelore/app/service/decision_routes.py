@@ -4,6 +4,7 @@ These four take nearly all requests. What they take and give is declared once, a
 requests and describe the routes in the OpenAPI document.
 """
 
+import re
 from collections.abc import Awaitable, Callable
 from typing import Annotated, Any, NamedTuple
 
@@ -74,39 +75,24 @@ class ItemError(msgspec.Struct):
 
 
 class Decision(msgspec.Struct):
-    """A stored decision."""
+    """A stored decision, with the belief before it."""
 
     decision: Annotated[str, Meta(description="Identifier, by which the outcome is given later: a UUID.")]
+    user: str
     policy: Policy
     probability: Annotated[float, Meta(description="Of the policy at this moment.")]
     control: Annotated[bool, Meta(description="Whether the user is of the control group.")]
     repeated: Annotated[bool, Meta(description="Whether the request was answered before.")]
-    error: ItemError | None = None
+    available: list[str] | None
+    context: Annotated[str | None, Meta(description="Context whose prior counts.")]
+    features: dict[str, float] | None
+    belief: Annotated[dict[str, float], Meta(description="Probability of each type.")]
+    expected: Annotated[dict[str, float], Meta(description="Expected outcome of each policy in use.")]
+    probabilities: Annotated[dict[str, float], Meta(description="Of the policies in use, by the belief.")]
+    novelty: Annotated[float | None, Meta(description="Probability that no known type fits, if asked for.")]
 
 
-class FullDecision(Decision):
-    """A stored decision and the belief before it."""
-
-    user: str = ""
-    available: list[str] | None = None
-    context: str | None = None
-    features: dict[str, float] | None = None
-    belief: dict[str, float] = {}
-    expected: dict[str, float] = {}
-    probabilities: dict[str, float] = {}
-    novelty: float | None = None
-
-
-class Taken(msgspec.Struct):
-    """Whether an outcome of a batch is new."""
-
-    taken: bool
-    policy: Policy
-    control: bool
-    error: ItemError | None = None
-
-
-class FullOutcome(msgspec.Struct):
+class Outcome(msgspec.Struct):
     """A stored outcome and the belief after it."""
 
     decision: str
@@ -118,16 +104,36 @@ class FullOutcome(msgspec.Struct):
     belief: dict[str, float]
 
 
+class DecisionItem(msgspec.Struct):
+    """A stored decision, or the error of this item alone."""
+
+    decision: str | msgspec.UnsetType = msgspec.UNSET
+    policy: str | msgspec.UnsetType = msgspec.UNSET
+    probability: float | msgspec.UnsetType = msgspec.UNSET
+    control: bool | msgspec.UnsetType = msgspec.UNSET
+    repeated: bool | msgspec.UnsetType = msgspec.UNSET
+    error: ItemError | msgspec.UnsetType = msgspec.UNSET
+
+
+class OutcomeItem(msgspec.Struct):
+    """Whether an outcome is new, or the error of this item alone."""
+
+    taken: bool | msgspec.UnsetType = msgspec.UNSET
+    policy: str | msgspec.UnsetType = msgspec.UNSET
+    control: bool | msgspec.UnsetType = msgspec.UNSET
+    error: ItemError | msgspec.UnsetType = msgspec.UNSET
+
+
 class DecisionItems(msgspec.Struct):
     """Answers in the order of the items."""
 
-    items: list[Decision]
+    items: list[DecisionItem]
 
 
 class OutcomeItems(msgspec.Struct):
     """Answers in the order of the items."""
 
-    items: list[Taken]
+    items: list[OutcomeItem]
 
 
 class HotRoute(NamedTuple):
@@ -175,8 +181,8 @@ def hot_routes(service: Service) -> list[HotRoute]:
         return {"error": {"kind": KINDS[status_of(error)], "message": message}}
 
     return [
-        HotRoute("/decisions", "Choose a policy for a user, and store it", DecisionRequest, FullDecision, decide),
-        HotRoute("/outcomes", "Store the outcome of a decision, once", OutcomeRequest, FullOutcome, observe),
+        HotRoute("/decisions", "Choose a policy for a user, and store it", DecisionRequest, Decision, decide),
+        HotRoute("/outcomes", "Store the outcome of a decision, once", OutcomeRequest, Outcome, observe),
         HotRoute("/decisions/batch", "Choose for each of many users", Decisions, DecisionItems, decide_many),
         HotRoute("/outcomes/batch", "Store outcomes of many decisions", Outcomes, OutcomeItems, observe_many),
     ]
@@ -192,17 +198,21 @@ def starlette_route(route: HotRoute) -> Route:
             document = await parsed(await request.body(), decode)
         except (msgspec.ValidationError, msgspec.DecodeError, UnicodeDecodeError) as error:
             raise InputError(_plain(str(error))) from None
+        request.scope["route"] = made  # for metrics and the log
         answer = await route.handle(request.path_params["study"], document)
         return Response(encode(answer), media_type="application/json")
 
-    return Route(PREFIX + route.path, endpoint, methods=["POST"])
+    made = Route(PREFIX + route.path, endpoint, methods=["POST"])
+    return made
 
 
 def _plain(message: str) -> str:
     """A message of msgspec with its place first, as the other routes have it."""
     text, _, place = message.partition(" - at `$")
-    where = place.rstrip("`").lstrip(".") or "body"
-    return f"{where}: {text[:1].lower()}{text[1:]}"
+    where = place.rstrip("`").lstrip(".")
+    if missing := re.fullmatch("Object missing required field `(.*)`", text):
+        where, text = f"{where}.{missing[1]}".lstrip("."), "field required"
+    return f"{where or 'body'}: {text[:1].lower()}{text[1:]}"
 
 
 def describe(document: dict[str, Any], routes: list[HotRoute]) -> None:

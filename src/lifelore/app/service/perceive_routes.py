@@ -74,6 +74,54 @@ class DepthImage(SceneOptions):
     depth_scale: FiniteFloat | None = Field(None, description="Metres for each unit of depth.")
 
 
+class Planning(BaseModel):
+    """The planning problem of a scene."""
+
+    domain: str = Field(description="Domain in PDDL.")
+    problem: str = Field(description="Problem in PDDL.")
+
+
+class SceneObject(BaseModel):
+    """An object of a scene."""
+
+    model_config = ConfigDict(extra="allow")
+    id: int
+    n_points: int
+    centroid: list[float] = Field(description="Metres.")
+    contact_points: list[dict[str, Any]] = Field(description="Places where it touches others.")
+
+
+class SceneRelation(BaseModel):
+    """How an object lies to another one, or to the table."""
+
+    model_config = ConfigDict(extra="allow")
+    a: int | str
+    b: int | str
+    relation: str
+    confidence: float | None = None
+
+
+class SceneWarning(BaseModel):
+    """What may be wrong with a scene."""
+
+    model_config = ConfigDict(extra="allow")
+    code: str
+    message: str
+
+
+class SceneDocument(BaseModel):
+    """A perceived scene."""
+
+    model_config = ConfigDict(extra="allow")
+    objects: list[SceneObject]
+    relations: list[SceneRelation]
+    facts: list[str] = Field(description="Relations that are stated, as logical facts.")
+    warnings: list[SceneWarning]
+    pddl: Planning
+    dot: str = Field(description="The scene graph for Graphviz.")
+    seconds: float = Field(description="Time to perceive it.")
+
+
 def router(service: Service) -> APIRouter:
     """The routes of perception."""
     routes = APIRouter(prefix="/v1/perceive", tags=["perceive"], route_class=JsonRoute)
@@ -83,7 +131,10 @@ def router(service: Service) -> APIRouter:
         given = options.model_dump(exclude={"format"}, exclude_none=True)
         return await service.worker.run(request, function, options.format, {"cloud": content}, given)
 
-    @routes.post("/cloud", summary="Perceive the scene of a point cloud", openapi_extra=BODY)
+    @routes.post(
+        "/cloud", summary="Perceive the scene of a point cloud", openapi_extra=BODY,
+        response_model=SceneDocument, response_model_exclude_unset=True,
+    )  # fmt: skip
     async def cloud(request: Request, options: Annotated[CloudOptions, Query()]) -> dict[str, Any]:
         return await of_cloud(perceive_upload, request, options)
 
@@ -99,7 +150,10 @@ def router(service: Service) -> APIRouter:
         given = document.model_dump(include=set(SceneOptions.model_fields), exclude_none=True)
         return await service.worker.run(request, function, "depth", parts, given, document.depth_scale)
 
-    @routes.post("/depth", summary="Perceive the scene of a depth image")
+    @routes.post(
+        "/depth", summary="Perceive the scene of a depth image",
+        response_model=SceneDocument, response_model_exclude_unset=True,
+    )  # fmt: skip
     async def depth(request: Request, document: DepthImage) -> dict[str, Any]:
         return await of_depth(perceive_upload, request, document)
 

@@ -18,6 +18,7 @@ from anyio import to_thread
 from starlette.requests import Request
 
 from lifelore.core.errors import InputError, LifeloreError
+from lifelore.memory import open_memory
 
 MEMORY = 16 << 30
 """Bytes of address space of a process; more let a hostile file take more of the machine."""
@@ -46,8 +47,8 @@ class WorkerProcess:
             Its body has been read. The call ends when its client leaves, or when its task is cancelled: at the
             time limit, and when the service stops.
         function, arguments
-            They and the result travel to and from the process. A function that stores opens the memory itself,
-            by its location, and stores in one transaction: a kill then leaves all or nothing.
+            They and the result travel to and from the process, so a memory is none of them: see `over_memory`.
+            What a function stores in one transaction, a kill leaves whole or not at all.
 
         Raises
         ------
@@ -137,6 +138,19 @@ class _Process:
 async def _left(request: Request) -> None:
     while (await request.receive())["type"] != "http.disconnect":
         pass
+
+
+def over_memory(where: str | None, function: Callable[..., Any], *arguments: Any) -> Any:
+    """``function(memory, *arguments)`` over the memory of the settings, opened in this process.
+
+    Examples
+    --------
+    In a route::
+
+        await service.worker.run(request, over_memory, service.settings.memory, function, *arguments)
+    """
+    with open_memory(where, durable=True) as memory:
+        return function(memory, *arguments)
 
 
 def _answer_calls(pipe: Connection) -> None:

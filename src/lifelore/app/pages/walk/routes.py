@@ -56,6 +56,12 @@ def router(service: Service) -> APIRouter:
     def prepare(document: BeginRequest) -> None:
         desk_of(building_of(document.building), document.advice)
 
+    def find(document: BeginRequest) -> None:
+        """As `prepare`, but a desk that is new is not found: to look stores nothing."""
+        name = walk_desk_name(building_of(document.building), document.advice)
+        if name not in service.desks:
+            service.desks[name] = AdviceDesk(service.memory, name, maps)
+
     def begun(walk: str, document: BeginRequest) -> dict[str, Any]:
         building = building_of(document.building)
         return begin_walk(building, desk_of(building, document.advice), walk)
@@ -81,7 +87,7 @@ def router(service: Service) -> APIRouter:
 
     @routes.get("/{walk}", summary="A walk that has begun: its errand, its way so far, and all that was in sight")
     async def resume(walk: Walk, document: Annotated[BeginRequest, Query()]) -> dict[str, Any]:
-        await run_in_threadpool(prepare, document)
+        await run_in_threadpool(find, document)
         return await service.writer.run(resumed, walk, document)
 
     @routes.post("/{walk}/steps", summary="Take a step: what is in sight then, and advice where the rule fires")

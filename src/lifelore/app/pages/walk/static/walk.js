@@ -36,7 +36,14 @@ async function main() {
   } else {
     current = null;
   }
-  renew();
+  // A visit stores nothing: a walk begins where a person asks for it.
+  if (current) renew();
+  else invite();
+}
+
+/** Ask for the first start. */
+function invite() {
+  at("errand").textContent = "Choose a building and press New start";
 }
 
 function onKey(event) {
@@ -90,7 +97,7 @@ async function begin() {
   openWalk({ ...view, way: [view], known: view });
 }
 
-/** Go on with the current walk; the service has its steps. Where it has none, a new walk begins. */
+/** Go on with the current walk; the service has its steps. Where it has none, the person can begin another. */
 async function resume() {
   const { name, building, advice } = current;
   let view;
@@ -98,7 +105,9 @@ async function resume() {
     view = await ask(`/v1/walks/${name}?${new URLSearchParams({ building, advice })}`);
   } catch (error) {
     if (error.status !== 404) throw error;
-    await begin();
+    current = null;
+    store();
+    invite();
     return;
   }
   if (!renewal) openWalk(view);
