@@ -68,7 +68,7 @@ def test_it_serves_and_stops_by_a_signal(started, study, tmp_path):
         child.send_signal(stop)
         assert child.wait(60) == status
     lines = [json.loads(line) for line in (tmp_path / "log").read_text().splitlines() if line.startswith("{")]
-    assert [one["status"] for one in lines if one["message"] == "request"] == [200] * 4
+    assert [one["status"] for one in lines if one["message"] == "request"] == [200] * 6
 
 
 @pytest.mark.parametrize("inherited", [signal.SIG_IGN, signal.SIG_DFL], ids=["ignored", "default"])

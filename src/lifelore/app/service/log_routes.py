@@ -17,7 +17,8 @@ from lifelore.agent.personalise.report import report
 from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service
 from lifelore.app.service.study_routes import Name
-from lifelore.memory import open_memory
+from lifelore.app.service.worker_process import over_memory
+from lifelore.memory import Memory
 
 KINDS = {"csv": "text/csv; charset=utf-8", "ndjson": "application/x-ndjson"}
 """Media types of logs."""
@@ -88,7 +89,7 @@ def router(service: Service) -> APIRouter:
         options = document.model_dump(include={one.name for one in fields(FitSettings)} - {"name", "seed"})
         settings = FitSettings(study, seed=service.settings.seed, **options)
         fitted = await service.worker.run(
-            request, fit_in_process, service.settings.memory, document.log, settings, document.form
+            request, over_memory, service.settings.memory, fit_text, document.log, settings, document.form
         )
         studies.drop(study)
         return fitted
@@ -106,7 +107,7 @@ def router(service: Service) -> APIRouter:
             tuple(document.policies), rules=tuple(document.rules), seed=service.settings.seed, **options
         )
         return await service.worker.run(
-            request, evaluate_in_process, service.settings.memory, document.log, settings
+            request, over_memory, service.settings.memory, evaluate_text, document.log, settings
         )
 
     @routes.get(
@@ -129,15 +130,15 @@ def router(service: Service) -> APIRouter:
     return routes
 
 
-def fit_in_process(where: str | None, log: str, settings: FitSettings, form: LogFormat) -> dict[str, Any]:
-    """`fit` of a log's text, in a process of its own, which opens the memory."""
-    with TemporaryDirectory() as folder, open_memory(where, durable=True) as memory:
+def fit_text(memory: Memory, log: str, settings: FitSettings, form: LogFormat) -> dict[str, Any]:
+    """`fit` of a log's text."""
+    with TemporaryDirectory() as folder:
         return fit([_written(folder, log)], memory, settings, form)
 
 
-def evaluate_in_process(where: str | None, log: str, settings: EvaluateSettings) -> dict[str, Any]:
-    """`evaluate` of a log's text, in a process of its own, which opens the memory."""
-    with TemporaryDirectory() as folder, open_memory(where, durable=True) as memory:
+def evaluate_text(memory: Memory, log: str, settings: EvaluateSettings) -> dict[str, Any]:
+    """`evaluate` of a log's text."""
+    with TemporaryDirectory() as folder:
         return evaluate([_written(folder, log)], settings, memory=memory)
 
 

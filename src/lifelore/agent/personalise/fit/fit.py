@@ -126,8 +126,9 @@ def fit(
     log = read_log(sources, form)
     earlier = _earlier(memory, settings.name)
     study, typed, counts, held_out = study_of_log(log, settings, dict(earlier.get("states", {})))
-    study = study.keep(memory)
-    past = keep_fitted_past(memory, study, log)
+    with memory.together():
+        study = study.keep(memory)
+        past = keep_fitted_past(memory, study, log)
     document = _document(study, log, typed, counts) | {"changed": _changed(study, earlier), "held_out": held_out}
     document["kept"] = _kept(memory, study, past) if earlier else None
     return document | {"personalised_by": personalised_by(study), "notes": fit_notes(study, document)}
