@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 from lifelore.memory.connection import Connection
@@ -81,6 +82,9 @@ class PastRow(NamedTuple):
 class StudyRows:
     """The rows of a study inside a transaction.
 
+    Whatever changes several users does so in the order of their numbers, or of their names where they are new, so
+    that two transactions of a PostgreSQL server never wait for each other.
+
     Parameters
     ----------
     conn : Connection
@@ -110,7 +114,9 @@ class StudyRows:
         query = (
             f"SELECT {_USER} FROM lifelore_study_users WHERE study = ? AND number IN ({{many}}) ORDER BY number"
         )
-        found = self._conn.matching(query + self._locked(lock, "UPDATE"), sorted(set(numbers)), (self._study,))
+        found = self._conn.matching(
+            query + self._locked(lock, "NO KEY UPDATE"), sorted(set(numbers)), (self._study,)
+        )
         return {row[0]: _user(row) for row in found}
 
     def add_users(self, users: Sequence[tuple[str, str | None, Mapping[str, float] | None]], version: int) -> None:
@@ -120,7 +126,10 @@ class StudyRows:
             " personal_sum, control, control_sum) VALUES (?, ?, ?, ?, 0, ?, 0, 0, 0, 0)"
             " ON CONFLICT (study, name) DO NOTHING"
         )
-        rows = [(self._study, name, context, _json(features), version) for name, context, features in users]
+        rows = [
+            (self._study, name, context, _json(features), version)
+            for name, context, features in sorted(users, key=itemgetter(0))
+        ]
         self._conn.execute_many(statement, rows)
 
     def rename(self, names: Mapping[int, str]) -> None:
@@ -135,14 +144,16 @@ class StudyRows:
             " WHERE study = ? AND number = ?"
         )
         rows = [
-            (context, _json(features), type_, self._study, number) for number, context, features, type_ in users
+            (context, _json(features), type_, self._study, number)
+            for number, context, features, type_ in sorted(users, key=itemgetter(0))
         ]
         self._conn.execute_many(statement, rows)
 
     def keep_beliefs(self, beliefs: Iterable[tuple[int, bytes | None]], version: int) -> None:
         """Store the beliefs about users by number."""
         statement = "UPDATE lifelore_study_users SET state = ?, version = ? WHERE study = ? AND number = ?"
-        self._conn.execute_many(statement, [(state, version, self._study, number) for number, state in beliefs])
+        rows = [(state, version, self._study, number) for number, state in sorted(beliefs, key=itemgetter(0))]
+        self._conn.execute_many(statement, rows)
 
     def learn(self, learnt: Iterable[tuple[int, bytes | None, int, float, int, float]], version: int) -> None:
         """Store beliefs, and add outcomes to users' sums.
@@ -162,13 +173,18 @@ class StudyRows:
 
     def forget(self, number: int) -> int:
         """Delete a user with everything stored; the number of decisions and lines of the past deleted."""
-        own = (self._study, number)
-        count = 0
-        for table in ("lifelore_decisions", "lifelore_study_past"):
-            count += int(self._conn.value(f"SELECT COUNT(*) FROM {table} WHERE study = ? AND person = ?", own))
-            self._conn.execute(f"DELETE FROM {table} WHERE study = ? AND person = ?", own)
-        self._conn.execute("DELETE FROM lifelore_study_users WHERE study = ? AND number = ?", own)
-        return count
+        own, count = (self._study, number), 0
+        # First the user: that waits for transactions that are about to store decisions for the user.
+        for table, column in (
+            ("lifelore_study_users", "number"),
+            ("lifelore_decisions", "person"),
+            ("lifelore_study_past", "person"),
+        ):
+            rows = self._conn.execute(
+                f"DELETE FROM {table} WHERE study = ? AND {column} = ? RETURNING study", own
+            ).fetchall()
+            count += len(rows)
+        return count - 1
 
     def _locked(self, lock: bool, how: str) -> str:
         return f" FOR {how}" if lock and not self._conn.is_sqlite else ""

@@ -151,7 +151,7 @@ def decide(
     good = [place for place, one in enumerate(answers) if isinstance(one, Request)]
     checked: list[Request] = [answers[place] for place in good]
     with memory.studies.writing(study.number) as rows:
-        users = _users(rows, study, checked)
+        users = _locked(rows, study, checked, _users(rows, study, checked))
         own = [users[request.user] for request in checked]
         made = _made(rows, own, checked)
         beliefs = open_beliefs(rows, study, list(users.values()))
@@ -193,6 +193,24 @@ def _users(rows: StudyRows, study: Study, requests: Sequence[Request]) -> dict[s
         for user, context, features in changed:
             users[user.name] = user._replace(context=context, features=dict(features or {}) or None, version=0)
     return users
+
+
+def _locked(
+    rows: StudyRows, study: Study, requests: Sequence[Request], users: dict[str, UserRow]
+) -> dict[str, UserRow]:
+    """The users, of whom no other transaction changes those that this one needs alone.
+
+    These have a belief to compute again, or a request that may come twice at the same moment.
+    """
+    again = {request.user for request in requests if request.request is not None}
+    numbers = [user.number for user in users.values() if user.version != study.version or user.name in again]
+    if not numbers:
+        return users
+    fresh = rows.numbered(numbers, lock=True)
+    return {
+        name: fresh.get(user.number, user)._replace(name=name, n_decisions=user.n_decisions)
+        for name, user in users.items()
+    }
 
 
 def _told(request: Request | None) -> tuple[str | None, Mapping[str, float] | None]:
@@ -484,10 +502,9 @@ def forget(memory: Memory, study: Study, user: str) -> int:
         Nothing is known of the user.
     """
     with memory.studies.writing(study.number) as rows:
-        known = known_users(rows, study, [user], lock=True).get(user)
+        known = known_users(rows, study, [user]).get(user)
         if known is None:
             raise NotFoundError(f"nothing is stored of user '{user}' in study '{study.name}'")
-        rows.numbered([known.number], lock=True)
         count = rows.forget(known.number)
     memory.studies.forgotten()
     return count

@@ -185,9 +185,7 @@ def lines_of(log: ReuseLog) -> list[Line]:
         time, identifier = at[times[row]], given[row]
         if time is None:  # not a time that we can read, but it tells lines apart
             time, identifier = 0, identifier or "\x1f".join((users[row], policies[row], times[row]))
-        features = (
-            dict(zip(names, log.features[row].tolist(), strict=True)) if names and whole[row] else None
-        )
+        features = dict(zip(names, log.features[row].tolist(), strict=True)) if names and whole[row] else None
         context, type_ = contexts[row] or None, types[row] or None
         lines.append(Line(users[row], policies[row], outcome, time, identifier, context, features, type_))
     return lines
