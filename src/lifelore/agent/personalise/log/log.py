@@ -11,10 +11,10 @@ Commas, semicolons or tabs lie between columns, as the header has them; capitals
 Other columns are ignored. Several logs are read as one. `LogFormat` reads logs that are written otherwise.
 """
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +28,7 @@ from lifelore.agent.personalise.log.log_lines import read_lines
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.interaction.outcomes.frame_columns import is_frame
 
-__all__ = ["Column", "ReadFile", "ReuseLog", "check_word", "read_log", "read_outcome"]
+__all__ = ["Column", "ReuseLog", "check_word", "read_log", "read_outcome"]
 
 MANY_POLICIES = 20
 """Number of policies up to which a log may have few lines of each; beyond, it looks like the wrong column."""
@@ -60,23 +60,6 @@ NOTHING = Column(("",), np.zeros(0, np.int64))
 """A column of a log without rows."""
 
 
-@dataclass(frozen=True)
-class ReadFile:
-    """A log that was read.
-
-    path : str; of a table in memory, a name made of its digest
-    size, digest : bytes, and their SHA-256
-    last_line : number of the last line with a choice
-    content : of a table in memory, as CSV; None for a file
-    """
-
-    path: str
-    size: int
-    digest: str
-    last_line: int
-    content: bytes | None = field(default=None, repr=False)
-
-
 @dataclass(frozen=True, eq=False)
 class ReuseLog:
     """Choices whose outcome is known, one a row.
@@ -88,8 +71,7 @@ class ReuseLog:
     outcomes : (n,) float64
         Finite.
     file, line : (n,) int64
-        Number of each row's file in `files`, and of its line there.
-    files : tuple of ReadFile
+        Number of each row's source, and of its line there.
     pending : int
         Lines left out because their outcome is missing.
     filled_outcomes, filled_policies : int
@@ -115,7 +97,6 @@ class ReuseLog:
     outcomes: NDArray[np.float64]
     file: NDArray[np.int64]
     line: NDArray[np.int64]
-    files: tuple[ReadFile, ...]
     pending: int
     filled_outcomes: int = 0
     filled_policies: int = 0
@@ -197,50 +178,36 @@ def read_log(sources: Any, form: LogFormat | None = None) -> ReuseLog:
     """
     form = form or LogFormat()
     sources = [sources] if is_frame(sources) else list(sources)
-    read = [_table(source, form) if is_frame(source) else _file(Path(source), form) for source in sources]
-    lines, files = [one for one, _ in read], [file for _, file in read]
-    paths = [
-        NAME if file.content is not None else str(source) for source, file in zip(sources, files, strict=True)
+    paths = [NAME if is_frame(source) else str(source) for source in sources]
+    places = [number if is_frame(source) else Path(source).resolve() for number, source in enumerate(sources)]
+    contents = [frame_content(source, form) if is_frame(source) else _content(Path(source)) for source in sources]
+    for number, other in combinations(range(len(sources)), 2):
+        if places[number] == places[other] or contents[number] == contents[other]:
+            given = "is given twice" if paths[number] == paths[other] else f"and '{paths[other]}' are equal"
+            raise InputError(f"log '{paths[number]}' {given}; its lines would count twice, leave one out")
+    lines = [
+        read_lines(content, path, frame_format(form) if is_frame(source) else form)
+        for source, path, content in zip(sources, paths, contents, strict=True)
     ]
-    for number, file in enumerate(files):
-        if file.path in (other.path for other in files[:number]):
-            raise InputError(f"log '{paths[number]}' is given twice; its lines would count twice, leave one out")
-    for number, one in enumerate(files):
-        for other in range(number):
-            if files[other].digest == one.digest:
-                raise InputError(
-                    f"logs '{paths[other]}' and '{paths[number]}' are equal; lines would count twice, "
-                    "leave one out"
-                )
-    log = _joined(lines, files, form)
+    log = _joined(lines, form)
     if not len(log):
-        raise InputError(f"{', '.join(map(str, paths))} must hold at least one line with an outcome, got none")
+        raise InputError(f"{', '.join(paths)} must hold at least one line with an outcome, got none")
     _check_types(lines, paths)
     _check_policies(log, paths)
     return log
 
 
-def _table(frame: Any, form: LogFormat) -> tuple[Lines, ReadFile]:
-    content = frame_content(frame, form)
-    lines = read_lines(content, NAME, frame_format(form))
-    digest = hashlib.sha256(content).hexdigest()
-    return lines, ReadFile(f"frame {digest[:16]}", len(content), digest, lines.last_line, content)
-
-
-def _file(path: Path, form: LogFormat) -> tuple[Lines, ReadFile]:
+def _content(path: Path) -> bytes:
     if not path.is_file():
         what = "is no file" if path.exists() else "does not exist"
         raise NotFoundError(f"log '{path}' {what}; give a CSV file")
     try:
-        content = path.read_bytes()
+        return path.read_bytes()
     except OSError as error:
         raise StoreError(f"cannot read {path}: {error.strerror}") from None
-    lines = read_lines(content, str(path), form)
-    digest = hashlib.sha256(content).hexdigest()
-    return lines, ReadFile(str(path.resolve()), len(content), digest, lines.last_line)
 
 
-def _joined(lines: Sequence[Lines], files: Sequence[ReadFile], form: LogFormat) -> ReuseLog:
+def _joined(lines: Sequence[Lines], form: LogFormat) -> ReuseLog:
     user, policy, type_, context, decision, time, probability, group = (
         _column([part.names[place] for part in lines], [part.codes[place] for part in lines])
         for place in range(len(WORDS))
@@ -255,7 +222,6 @@ def _joined(lines: Sequence[Lines], files: Sequence[ReadFile], form: LogFormat) 
         outcomes=np.concatenate([part.outcomes for part in lines]),
         file=np.repeat(np.arange(len(lines)), [len(part.outcomes) for part in lines]),
         line=np.concatenate([part.line for part in lines]),
-        files=tuple(files),
         **counts, weights=weights, feature_names=tuple(name.strip() for name in form.features),
         features=np.stack(numbers, axis=1) if numbers else np.empty((n_rows, 0)),
     )  # fmt: skip

@@ -29,7 +29,6 @@ class Lines:
     line : (n,) int64, number of the line in the file
     numbers : for each of `LogFormat.numbers`, (n,) float64, NaN where missing
     counts : lines left out or filled, by the reason
-    last_line : number of the last line with a choice
     """
 
     names: tuple[tuple[str, ...], ...]
@@ -38,7 +37,6 @@ class Lines:
     line: NDArray[np.int64]
     numbers: tuple[NDArray[np.float64], ...]
     counts: dict[str, int]
-    last_line: int
 
 
 @dataclass
@@ -57,7 +55,6 @@ class ColumnReader:
     _codes: list[dict[str, int]] = field(default_factory=lambda: [{} for _ in WORDS])
     _parts: list[tuple[NDArray, ...]] = field(default_factory=list)
     _counts: dict[str, int] = field(default_factory=dict)
-    _last_line: int = 0
 
     def __post_init__(self) -> None:
         self._counts = dict.fromkeys(COUNTED, 0)
@@ -74,7 +71,6 @@ class ColumnReader:
         columns : outcomes, `WORDS`, `LogFormat.numbers`; None for a column that the file does not have
         line : numbers of the lines in the file
         """
-        self._last_line = int(line[-1])
         outcomes, here = self._outcomes(columns[0] or [], line)
         last = len(WORDS) + 1
         words = [self._words(place, column, line) for place, column in enumerate(columns[1:last])]
@@ -96,7 +92,7 @@ class ColumnReader:
         ]  # fmt: skip
         names = tuple(tuple(codes) for codes in self._codes)
         words, numbers = tuple(joined[2 : 2 + len(WORDS)]), tuple(joined[2 + len(WORDS) :])
-        return Lines(names, words, joined[0], joined[1], numbers, self._counts, self._last_line)
+        return Lines(names, words, joined[0], joined[1], numbers, self._counts)
 
     def _outcomes(self, words: Sequence[str], line: NDArray[np.int64]) -> tuple[NDArray, NDArray]:
         """Outcomes, and which lines have one."""
