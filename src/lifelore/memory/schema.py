@@ -93,7 +93,8 @@ CREATE TABLE lifelore_decisions (
 CREATE INDEX lifelore_decisions_person ON lifelore_decisions (study, person);
 CREATE UNIQUE INDEX lifelore_decisions_request ON lifelore_decisions (study, person, request)
     WHERE request IS NOT NULL;
-CREATE INDEX lifelore_decisions_control ON lifelore_decisions (study, policy, person, outcome) WHERE control = 1
+CREATE INDEX lifelore_decisions_control ON lifelore_decisions (study, policy, person, outcome, control)
+    WHERE control = 1
 """
 
 MIGRATIONS = {

@@ -1,6 +1,7 @@
 """Sums over the rows of a study, and its log as a stream, for reports at any size."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,14 +12,19 @@ from lifelore.memory.connection import MANY, Connection
 Array = NDArray[Any]
 
 
-class Sums(NamedTuple):
-    """Outcomes by user of a group.
+class UserSums(NamedTuple):
+    """Outcomes by user, (n_users,) float64 each.
 
-    number, total : (n_users,) int64 and float64, of users with an outcome
+    person : number of the user
+    personal, personal_sum : number and sum of outcomes that were chosen by belief
+    control, control_sum : number and sum of outcomes in the control group
     """
 
-    number: Array
-    total: Array
+    person: Array
+    personal: Array
+    personal_sum: Array
+    control: Array
+    control_sum: Array
 
 
 class StudyTotals:
@@ -45,8 +51,14 @@ class StudyTotals:
         n = int(self._conn.value(count, (self._study,)))
         return n, n - int(self._conn.value(ended, (self._study,)))
 
-    def by_user(self, *, strangers: bool = False, since: int = 0) -> tuple[Sums, Sums]:
-        """Outcomes of users chosen for by belief, and of the control group.
+    def first_decision(self) -> int | None:
+        """Time of the first decision, in milliseconds since 1970; None without one."""
+        query = "SELECT time FROM lifelore_decisions WHERE study = ? ORDER BY id LIMIT 1"
+        found = self._conn.first(query, (self._study,))
+        return None if found is None else int(found[0])
+
+    def by_user(self, *, strangers: bool = False, since: int = 0) -> UserSums:
+        """Outcomes of all users with one.
 
         Parameters
         ----------
@@ -55,47 +67,43 @@ class StudyTotals:
         since : int
             Only decisions from this time on count, in milliseconds.
         """
-        return self._sums("personal", 0, strangers, since), self._sums("control", 1, strangers, since)
-
-    def _sums(self, group: str, control: int, strangers: bool, since: int) -> Sums:
         if since == 0:
             query = (
-                f"SELECT {group}, {group}_sum FROM lifelore_study_users WHERE study = ? AND {group} > 0"
-                + " AND fitted = 0" * strangers
+                "SELECT number, personal, personal_sum, control, control_sum FROM lifelore_study_users"
+                f" WHERE study = ? AND personal + control > 0{' AND fitted = 0' * strangers}"
             )
-            return Sums(*_columns(self._conn.stream(query, (self._study,)), 2))
+            return UserSums(*self._columns(query, (self._study,), 5))
         query = (
-            "SELECT COUNT(outcome), SUM(outcome) FROM lifelore_decisions WHERE study = ? AND control = ?"
-            f" AND time >= ?{self._who(strangers)} AND outcome IS NOT NULL GROUP BY person"
+            "SELECT person, SUM(1 - control), SUM((1 - control) * outcome), SUM(control), SUM(control * outcome)"
+            f" FROM lifelore_decisions WHERE study = ? AND time >= ?{self._who(strangers)}"
+            " AND outcome IS NOT NULL GROUP BY person"
         )
-        return Sums(*_columns(self._conn.stream(query, (self._study, control, since)), 2))
+        return UserSums(*self._columns(query, (self._study, since), 5))
 
-    def control_by_policy(self, *, strangers: bool = False, since: int = 0) -> dict[str, Sums]:
-        """Outcomes of the control group by policy and user."""
+    def control_means(self, policy: str, *, strangers: bool = False, since: int = 0) -> Array:
+        """Mean outcome of a policy for each user of the control group who got it, (n_users,)."""
         timed = " AND time >= ?" if since else ""
         query = (
-            "SELECT policy, COUNT(outcome), SUM(outcome) FROM lifelore_decisions WHERE study = ? AND control = 1"
-            f"{timed}{self._who(strangers)} AND outcome IS NOT NULL GROUP BY policy, person"
+            "SELECT AVG(outcome) FROM lifelore_decisions WHERE study = ? AND control = 1 AND policy = ?"
+            f"{timed}{self._who(strangers)} AND outcome IS NOT NULL GROUP BY person"
         )
-        found: dict[str, list[tuple[int, float]]] = {}
-        for rows in self._conn.stream(query, (self._study, since) if since else (self._study,)):
-            for policy, number, total in rows:
-                found.setdefault(policy, []).append((number, total))
-        return {policy: Sums(*np.array(rows, np.float64).T) for policy, rows in found.items()}
+        return self._columns(query, (self._study, policy, since)[: 3 if since else 2], 1)[0]
 
     def _who(self, strangers: bool) -> str:
         only = " AND person IN (SELECT number FROM lifelore_study_users WHERE study = {} AND fitted = 0)"
         return only.format(int(self._study)) if strangers else ""
 
+    def _columns(self, query: str, parameters: Sequence[Any], n: int) -> Array:
+        """Columns of numbers of a statement, (n, n_rows) float64."""
+        parts = [
+            np.fromiter(chain.from_iterable(rows), np.float64, n * len(rows)).reshape(-1, n)
+            for rows in self._conn.stream(query, parameters)
+        ]
+        return np.concatenate(parts).T if parts else np.empty((n, 0))
+
     def n_users(self) -> int:
         """Number of users, also of those whom a log alone names."""
         return int(self._conn.value("SELECT COUNT(*) FROM lifelore_study_users WHERE study = ?", (self._study,)))
-
-    def people(self, *, strangers: bool = False) -> Array:
-        """Numbers of all users with an outcome of a decision, or of those whom no fit knew, ascending."""
-        query = "SELECT number FROM lifelore_study_users WHERE study = ? AND personal + control > 0"
-        found = _columns(self._conn.stream(query + " AND fitted = 0" * strangers, (self._study,)), 1)[0]
-        return np.sort(found.astype(np.int64))
 
     def by_version(self) -> dict[int, int]:
         """Number of decisions by version of the study."""
@@ -134,10 +142,3 @@ class StudyTotals:
 def first_id(time: int) -> bytes:
     """The least identifier of a decision at a time, in milliseconds since 1970."""
     return max(0, time).to_bytes(6, "big") + bytes(10)
-
-
-def _columns(parts: Iterator[list[tuple[Any, ...]]], n: int) -> tuple[Array, ...]:
-    """Columns of numbers from parts of rows."""
-    found = [np.array(rows, np.float64).reshape(-1, n) for rows in parts]
-    joined = np.concatenate(found) if found else np.empty((0, n))
-    return tuple(joined.T)

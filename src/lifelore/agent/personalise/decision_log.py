@@ -92,6 +92,7 @@ def _parts(
     names = () if study.feature_prior is None else study.feature_prior.names
     features = [name for name in names if name.strip().lower() not in COLUMNS]
     columns = (*_READ, "u.features") if features else _READ
+    word = escaped if form == "csv" else _same
     written: Callable[[Iterable[Sequence[Any]]], bytes] = _csv if form == "csv" else _ndjson([*COLUMNS, *features])
     if form == "csv":
         yield _csv([[*COLUMNS, *features]])
@@ -101,20 +102,23 @@ def _parts(
         with memory.studies.totals(study.number) as totals:
             rows = totals.log(columns, after, before, size)
         if rows:
-            yield written(_line(row, rules, features) for row in rows)
+            yield written([_line(row, rules, features, word) for row in rows])
             after = rows[-1][_READ.index("d.id")]
         if len(rows) < size:
             return
         left = None if left is None else left - len(rows)
 
 
-def _line(row: Sequence[Any], rules: dict[int, str], features: Sequence[str]) -> list[Any]:
+def _line(
+    row: Sequence[Any], rules: dict[int, str], features: Sequence[str], word: Callable[[Any], Any]
+) -> list[Any]:
     user, policy, outcome, context, time, probability, control, id_, version, ended, available, request, *known = (
         row
     )
     line = [
-        user, policy, outcome, context, time / 1000, probability, GROUPS[control], identifier(id_), version,
-        rules.get(version), None if ended is None else ended / 1000, available, request,
+        word(user), word(policy), outcome, word(context), time / 1000, probability, GROUPS[control],
+        identifier(id_), version, rules.get(version), None if ended is None else ended / 1000, available,
+        word(request),
     ]  # fmt: skip
     if features:
         own = json.loads(known[0] or "{}")
@@ -122,11 +126,13 @@ def _line(row: Sequence[Any], rules: dict[int, str], features: Sequence[str]) ->
     return line
 
 
+def _same(word: Any) -> Any:
+    return word
+
+
 def _csv(lines: Iterable[Sequence[Any]]) -> bytes:
     text = io.StringIO()
-    csv.writer(text, lineterminator="\r\n").writerows(
-        [escaped(word) if isinstance(word, str) else word for word in line] for line in lines
-    )
+    csv.writer(text, lineterminator="\r\n").writerows(lines)
     return text.getvalue().encode()
 
 

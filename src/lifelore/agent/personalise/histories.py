@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.agent.personalise.study import Study
 from lifelore.memory import Memory
@@ -30,21 +31,22 @@ class History(NamedTuple):
         return sorted(ended, key=lambda one: (one.ended, one.id))
 
 
-def sampled_histories(memory: Memory, study: Study, *, strangers: bool = False, since: int = 0) -> list[History]:
-    """At most `SAMPLE` users drawn from all, sorted by name; the same sample for the same users.
+def sampled_histories(
+    memory: Memory, study: Study, people: NDArray[np.float64], *, since: int = 0
+) -> list[History]:
+    """At most `SAMPLE` of users, sorted by name; the same sample of the same users.
 
     Parameters
     ----------
-    strangers : bool
-        Whether only users count whom the newest fit did not know.
+    people : (n,) float64
+        Numbers of users.
     since : int
         Decisions before this time are left out, in milliseconds.
     """
-    with memory.studies.totals(study.number) as totals:
-        people = totals.people(strangers=strangers)
+    people = np.sort(people)
     if len(people) > SAMPLE:
         people = np.sort(np.random.default_rng(0).choice(people, SAMPLE, replace=False))
-    numbers = people.tolist()
+    numbers = people.astype(np.int64).tolist()
     with memory.studies.reading(study.number) as rows:
         users, past, decisions = rows.numbered(numbers), rows.past_of(numbers), rows.decisions_of(numbers)
     found = [

@@ -23,7 +23,6 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.intervals import LEAST_VALUES, t_interval, welch_interval
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.memory import Memory
-from lifelore.memory.study_totals import Sums
 
 Array = NDArray[np.float64]
 SPLITS = ("user", "time", "both")
@@ -111,11 +110,13 @@ def _counting(study: Study, split: str | None) -> dict[str, Any]:
 def _document(memory: Memory, study: Study, incumbent: str | None, split: str | None) -> dict[str, Any]:
     counting = _counting(study, split)
     with memory.studies.totals(study.number) as totals:
+        if (totals.first_decision() or 0) >= counting["since"]:
+            counting["since"] = 0  # all decisions count, which takes no look at each
         decisions, pending = totals.n_decisions(**counting)
-        personal, control = map(_means, totals.by_user(**counting))
-        by_policy = {policy: _means(sums) for policy, sums in totals.control_by_policy(**counting).items()}
-    histories = sampled_histories(memory, study, **counting)
-    nobody = np.empty(0)
+        users = totals.by_user(**counting)
+        by_policy = {policy: np.sort(totals.control_means(policy, **counting)) for policy in study.states}
+    personal, control = _means(users.personal, users.personal_sum), _means(users.control, users.control_sum)
+    histories = sampled_histories(memory, study, users.person, since=counting["since"])
     return {
         "study": study.name,
         "decisions": decisions,
@@ -127,7 +128,7 @@ def _document(memory: Memory, study: Study, incumbent: str | None, split: str | 
         "best_single": _beside(study.best_single, personal, by_policy),
         "incumbent": None if incumbent is None else _beside(incumbent, personal, by_policy),
         "policies": [
-            {"name": policy, "state": state, "outcome": _estimate(by_policy.get(policy, nobody))}
+            {"name": policy, "state": state, "outcome": _estimate(by_policy[policy])}
             for policy, state in sorted(study.states.items())
         ],
         "regret": _regret(study, histories),
@@ -138,9 +139,9 @@ def _document(memory: Memory, study: Study, incumbent: str | None, split: str | 
     }
 
 
-def _means(sums: Sums) -> Array:
-    """Mean outcome of each user, sorted, so that sums of them do not depend on the order of rows."""
-    return np.sort(sums.total / np.maximum(sums.number, 1))
+def _means(number: Array, total: Array) -> Array:
+    """Mean outcome of each user with one, sorted, so that sums of them do not depend on the order of rows."""
+    return np.sort(total[number > 0] / number[number > 0])
 
 
 def _estimate(values: Sequence[float] | Array) -> dict[str, Any] | None:
@@ -167,7 +168,7 @@ def _difference(first: Array, second: Array) -> dict[str, Any] | None:
 
 def _beside(policy: str, personal: Array, by_policy: dict[str, Array]) -> dict[str, Any]:
     """A single policy's outcome in the control group, and what those chosen for by belief have more."""
-    means = by_policy.get(policy, np.empty(0))
+    means = by_policy[policy]
     return {"name": policy, "outcome": _estimate(means), "uplift": _difference(personal, means)}
 
 

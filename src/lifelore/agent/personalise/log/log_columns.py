@@ -207,14 +207,14 @@ def check_word(what: str, word: str) -> str:
     return word
 
 
-def escaped(word: str) -> str:
+def escaped(word: str | None) -> str | None:
     """The word behind ``'`` where a spreadsheet would take it for a formula."""
-    return "'" + word if word[:1] in FORMULAS and word else word
+    return "'" + word if word and word[0] in FORMULAS else word
 
 
 def unescaped(word: str) -> str:
     """The word of `escaped`."""
-    return word[1:] if word[:1] == "'" and word[1:2] in FORMULAS and word[1:] else word
+    return word[1:] if word[:1] == "'" and len(word) > 1 and word[1] in FORMULAS else word
 
 
 def read_outcome(
