@@ -8,14 +8,18 @@ import socket
 import statistics
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections import Counter
 from pathlib import Path
+from unittest import mock
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from lifelore.bridges.study_client import REMEMBERED, Choice, ServiceUnavailable, StudyClient
+from lifelore.bridges.study_client import REMEMBERED, Choice, ServiceUnavailable, StudyClient, _Queue
 
 from .service_stand_in import POLICIES, STUDY, StandIn, State
 
@@ -413,11 +417,44 @@ def test_the_file_does_not_grow_with_what_is_delivered(service, connect, tmp_pat
     assert (tmp_path / "queue").read_bytes().count(b"\n") == 5000
     service.start()
     assert client.flush(20)
-    assert (tmp_path / "queue").stat().st_size < 5000
+    wait_until(lambda: not (tmp_path / "queue").stat().st_size)
     assert len(counted(service.state)) == 5000
     client.observe(choice, 1.0)
     client.close(0)
     assert choice.decision in (tmp_path / "queue").read_text() or choice.decision in counted(service.state)
+
+
+STEPS = st.one_of(
+    st.tuples(st.just("put"), st.integers(0, 3)),
+    st.tuples(st.just("pop"), st.integers(0, 4)),
+    st.tuples(st.just("keep"), st.integers(0, 3)),
+    st.tuples(st.just("reopen"), st.just(0)),
+)
+
+
+@given(st.lists(STEPS, max_size=60))
+def test_a_queue_with_a_file_is_a_list(steps):
+    """A list is the naive twin; the file is written anew every few steps, and opened again as after a crash."""
+    with tempfile.TemporaryDirectory() as folder, mock.patch("lifelore.bridges.study_client.BATCH", 2):
+        queue, twin = _Queue(f"{folder}/queue", 10, fsync=False), []
+        for step, number in steps:
+            if step == "put":
+                line = {"user": f"u{number}", "place": len(twin)}
+                assert queue.put(line) == (len(twin) < 10)
+                twin += [line] if len(twin) < 10 else []
+            elif step == "pop":
+                assert queue.head(number) == twin[:number]
+                queue.pop(min(number, len(twin)))
+                del twin[:number]
+            elif step == "keep":
+                queue.keep(lambda line, gone=f"u{number}": line["user"] != gone)
+                twin = [line for line in twin if line["user"] != f"u{number}"]
+                assert f'"u{number}"' not in Path(f"{folder}/queue").read_text()
+            else:
+                queue.close()
+                queue = _Queue(f"{folder}/queue", 10, fsync=False)
+            assert queue.head(20) == twin
+        queue.close()
 
 
 def test_one_client_at_a_time_uses_a_file(connect, tmp_path):

@@ -631,8 +631,8 @@ class _Breaker:
 class _Queue:
     """Outcomes in the order of their arrival; with a path, also as lines of JSON in a file.
 
-    The file only grows: a line for each outcome, and ``{"done": n}`` once the n oldest ones are delivered. It is
-    written anew, without the delivered outcomes, when it is opened and when these are the larger part.
+    The file grows by a line for each outcome, and by ``{"done": n}`` once the n oldest ones are delivered. It is
+    emptied when all are delivered, and written anew, without the delivered ones, when these are the larger part.
     """
 
     def __init__(self, path: str | os.PathLike[str] | None, capacity: int, fsync: bool) -> None:
@@ -673,7 +673,12 @@ class _Queue:
             for _ in range(number):
                 self._lines.popleft()
             self._delivered += number
-            if self._path is not None and self._delivered > max(len(self._lines), BATCH):
+            if self._file < 0:
+                return
+            if not self._lines:
+                os.ftruncate(self._file, 0)
+                self._delivered = 0
+            elif self._delivered > max(len(self._lines), BATCH):
                 self._write_anew()
             else:
                 self._append({"done": number})
@@ -682,7 +687,7 @@ class _Queue:
         """Remove all outcomes but those wanted."""
         with self._lock:
             self._lines = deque(filter(wanted, self._lines))
-            if self._path is not None:  # delivered lines too may name a user
+            if self._file >= 0:  # delivered lines too may name a user
                 self._write_anew()
 
     def close(self) -> None:
