@@ -23,7 +23,7 @@ from lifelore.bridges.study_client import REMEMBERED, Choice, ServiceUnavailable
 
 from .service_stand_in import POLICIES, STUDY, StandIn, State
 
-SOAK_KILLS, SOAK_CALLS = 200, 100_000
+SOAK_KILLS, SOAK_CALLS, SOAK_RATE = 200, 100_000, 500
 ROOT = Path(__file__).parents[2]
 
 
@@ -536,7 +536,7 @@ def test_each_call_is_answered_and_counts_once_through_200_kills(tmp_path):
     client = StudyClient(f"http://127.0.0.1:{port}", STUDY, fallback="slow", queue=tmp_path / "queue")
     wait_until(lambda: client._table)
     made, sources, slowest, kills = {}, Counter(), [0.0], 0
-    calls = iter(range(SOAK_CALLS))
+    calls, started = iter(range(SOAK_CALLS)), time.monotonic()
     lock = threading.Lock()
 
     def work() -> None:
@@ -545,9 +545,8 @@ def test_each_call_is_answered_and_counts_once_through_200_kills(tmp_path):
                 number = next(calls, None)
             if number is None:
                 return
-            # In pace with the kills, so that all calls do not fall into the first outage.
-            while number > SOAK_CALLS * (kills + 1) / SOAK_KILLS:
-                time.sleep(0.001)
+            # At a steady rate: calls without the service are so fast that all would fall into one outage.
+            time.sleep(max(started + number / SOAK_RATE - time.monotonic(), 0))
             begun = time.perf_counter()
             choice = client.decide(f"u{number % 1000}")
             took = time.perf_counter() - begun
@@ -560,8 +559,8 @@ def test_each_call_is_answered_and_counts_once_through_200_kills(tmp_path):
     threads = [threading.Thread(target=work) for _ in range(8)]
     for thread in threads:
         thread.start()
-    while kills < SOAK_KILLS:
-        time.sleep(draws.uniform(0.1, 0.6))
+    while kills < SOAK_KILLS or any(thread.is_alive() for thread in threads):
+        time.sleep(draws.uniform(0.2, 0.9))
         child.kill()
         child.wait()
         child.stdout.close()
@@ -582,4 +581,5 @@ def test_each_call_is_answered_and_counts_once_through_200_kills(tmp_path):
     assert len(made) == SOAK_CALLS
     assert counted(state) == made
     assert counts["lost"] == counts["refused"] == 0
+    assert sources["service"] > SOAK_CALLS / 10
     assert slowest[0] < 2

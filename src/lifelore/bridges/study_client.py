@@ -153,7 +153,7 @@ class StudyClient:
         self._link = _Link(url, f"/v1/studies/{quote(study, safe='')}", token)
         self._breaker, self._random = _Breaker(), random.Random(seed)
         self._table: _Table | None = None
-        self._users, self._offline = _Recent(REMEMBERED), _Recent(REMEMBERED)
+        self._users, self._offline = Recent(REMEMBERED), Recent(REMEMBERED)
         self._counts, self._lock, self._delivering = Counter(), threading.Lock(), threading.Lock()
         self._delivery_wait, self._deliver_at, self._probed_at = 0.0, 0.0, -math.inf
         self._process = os.getpid()
@@ -559,7 +559,7 @@ class _Table:
         return self._default if context is None else self._contexts.get(context, self._default)
 
 
-class _Recent:
+class Recent:
     """The last values by key, at most `size` of them."""
 
     def __init__(self, size: int) -> None:
