@@ -100,11 +100,15 @@ class State:
         return {"rows": len(new), "known": len(items) - len(new)}
 
     def forget(self, user: str) -> dict[str, Any]:
+        if user not in {row["user"] for row in (*self.decisions.values(), *self.past.values())}:
+            raise Refusal(404, "not found", f"nothing is stored of user {user!r}")
         self.store("forget", {"user": user})
         return {"user": user, "forgotten": True}
 
     def report(self) -> dict[str, Any]:
-        return {"decisions": len(self.decisions), "pending": len(self.decisions) - len(self.outcomes)}
+        uplift = {"value": 0.0, "ci95": [0.0, 0.0], "n": 0}  # nothing is estimated here
+        pending = len(self.decisions) - len(self.outcomes)
+        return {"decisions": len(self.decisions), "pending": pending, "uplift": uplift}
 
 
 class Server(ThreadingHTTPServer):

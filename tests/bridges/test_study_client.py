@@ -74,7 +74,7 @@ def test_the_service_decides_and_learns(service, connect):
     client.observe(choice.decision, 7.5)
     assert client.flush()
     assert counted(service.state) == {choice.decision: 7.5}
-    assert client.report() == {"decisions": 1, "pending": 0}
+    assert client.report()["decisions"] == 1
     assert client.counts() == {
         "service": 2, "table": 0, "fallback": 0, "delivered": 2, "refused": 0, "lost": 0, "pending": 0,
     }  # fmt: skip
@@ -335,6 +335,8 @@ def test_a_forgotten_user_is_nowhere(service, connect, tmp_path):
     assert client.flush(10)
     assert counted(service.state) == {other.decision: 3.0}
     assert not service.state.decisions
+    with pytest.raises(ValueError, match="nothing is stored"):
+        client.forget("ada/1 ä")
 
 
 def test_a_closed_client_says_so(service, connect):
@@ -373,6 +375,15 @@ def test_a_process_that_ends_delivers_first(service):
     )
     assert done.returncode == 0, done.stderr
     assert list(counted(service.state).values()) == [1.0]
+
+
+def test_the_example_decides_observes_reports_and_forgets(service, tmp_path):
+    command = [sys.executable, "-W", "error", ROOT / "examples" / "personalise_client.py", service.url]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[0].startswith("choices by the service: 500, without it: 0")
+    assert len(service.state.outcomes) == 495  # of 100 users with 5 decisions each, less the forgotten user
+    assert "user0" not in {row["user"] for row in service.state.decisions.values()}
 
 
 # The queue's file

@@ -295,22 +295,20 @@ class StudyClient:
         return self._link.ask("GET", "/report", None, seconds)
 
     def forget(self, user: str) -> None:
-        """Erase all that the service and this client store of a user. Wait for it: nothing is queued.
+        """Erase all that the service and this client store of a user. Unlike outcomes, this is not queued.
 
         Raises
         ------
+        ValueError
+            The service stores nothing of the user.
         ServiceUnavailable
-            The service gave no answer; ask again later.
+            The service gave no answer in ten seconds; ask again later.
         """
         with self._delivering:
             self._queue.keep(lambda line: line.get("user") != user)
             self._users.drop(lambda key, _: key[0] == user)
             self._offline.drop(lambda _, choice: choice.user == user)
-            try:
-                self._link.ask("DELETE", f"/user?name={quote(user, safe='')}", None, PATIENCE)
-            except ServiceRefusal as error:
-                if error.status != 404:  # nothing was stored of the user
-                    raise
+            self._link.ask("DELETE", f"/user?name={quote(user, safe='')}", None, PATIENCE)
 
     def counts(self) -> dict[str, int]:
         """Numbers of choices and of outcomes since the start.
