@@ -7,6 +7,7 @@ import json
 import os
 import random
 import socket
+import ssl
 import struct
 import sys
 import threading
@@ -130,6 +131,7 @@ class Handler(BaseHTTPRequestHandler):
     protocol_version = "HTTP/1.1"
     disable_nagle_algorithm = True
     server: Server
+    asked_here = 0
 
     def log_message(self, *arguments: Any) -> None:
         pass
@@ -141,6 +143,10 @@ class Handler(BaseHTTPRequestHandler):
             stand_in.asked += 1
             if stand_in.mode == "hang":
                 stand_in.woken.wait(30)
+            self.asked_here += 1
+            if stand_in.mode == "close second" and self.asked_here > 1:
+                self.close_connection = True
+                return
         try:
             status, document = 200, self.result(json.loads(body) if body else None)
         except Refusal as error:
@@ -169,7 +175,7 @@ class Handler(BaseHTTPRequestHandler):
         stand_in = self.server.stand_in
         if stand_in and stand_in.token and self.headers["Authorization"] != f"Bearer {stand_in.token}":
             raise Refusal(401, "token", "a token is needed")
-        if unquote(study) != STUDY:
+        if unquote(study) != STUDY or (stand_in and stand_in.mode == "no study"):
             raise Refusal(404, "not found", f"no study has the name {unquote(study)!r}")
         state = self.server.state
         with state.lock:
@@ -190,17 +196,24 @@ class Handler(BaseHTTPRequestHandler):
 
     def each(self, one: Any, item: dict[str, Any]) -> dict[str, Any]:
         try:
+            if self.server.stand_in and self.server.stand_in.mode == "full disk":
+                raise Refusal(503, "store", "the disk is full")
             return one(item)
         except Refusal as error:
             return error.document
 
 
 class StandIn:
-    """The service in threads of this process; `mode` is how it answers: well, hang, broken, proxy, or drip."""
+    """The service in threads of this process; `mode` is how it answers.
+
+    Modes: well, hang, drip (a byte at a time), broken (503), proxy (a page of another program), full disk (an
+    error for each item of a batch), no study, close second (a connection serves a single request without warning).
+    """
 
     def __init__(self, path: Path) -> None:
         self._path, self._port = path, 0
         self.mode, self.token, self.asked, self.dead = "well", "", 0, True
+        self.tls: ssl.SSLContext | None = None
         self.sockets: set[socket.socket] = set()
         self.woken = threading.Event()
         self.start()
@@ -216,6 +229,8 @@ class StandIn:
     def start(self) -> None:
         self._server = Server(("127.0.0.1", self._port), Handler)
         self._server.stand_in, self._server.state = self, State(self._path)
+        if self.tls:
+            self._server.socket = self.tls.wrap_socket(self._server.socket, server_side=True)
         self._port, self.dead = self._server.server_address[1], False
         self._thread = threading.Thread(target=self._server.serve_forever, args=(0.005,), daemon=True)
         self._thread.start()

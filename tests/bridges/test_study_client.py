@@ -3,8 +3,10 @@
 import json
 import os
 import random
+import shutil
 import signal
 import socket
+import ssl
 import statistics
 import subprocess
 import sys
@@ -207,6 +209,13 @@ def test_answers_that_are_none_are_not_the_callers_mistake(service, connect, mod
     wait_until(lambda: client.decide("ada").source == "service")
 
 
+def test_a_connection_that_the_service_closed_is_replaced(service, connect):
+    client = connect()
+    wait_until(lambda: client._table)
+    service.mode = "close second"
+    assert [client.decide("ada").source for _ in range(20)] == ["service"] * 20
+
+
 def test_a_call_costs_microseconds_while_the_service_is_gone(service, connect):
     client = connect()
     wait_until(lambda: client._table)
@@ -243,6 +252,24 @@ def test_a_single_call_tries_a_service_that_is_back(service, connect):
     for thread in threads:
         thread.join()
     assert sum(seconds > 0.25 for seconds in took) == 1
+
+
+def test_the_service_behind_tls(service, connect, tmp_path, monkeypatch):
+    if shutil.which("openssl") is None:
+        pytest.skip("needs openssl")
+    files = [tmp_path / "key.pem", tmp_path / "certificate.pem"]
+    command = ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-subj", "/CN=localhost", "-days", "2"]
+    command += ["-addext", "subjectAltName=DNS:localhost", "-keyout", files[0], "-out", files[1]]
+    subprocess.run(command, check=True, capture_output=True)
+    service.kill()
+    service.tls = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    service.tls.load_cert_chain(files[1], files[0])
+    service.start()
+    url = service.url.replace("http://127.0.0.1", "https://localhost")
+    assert connect(url=url, timeout=2).decide("ada").source == "fallback"  # the certificate is unknown
+    monkeypatch.setenv("SSL_CERT_FILE", str(files[1]))
+    client = connect(url=url, timeout=2)
+    assert [client.decide("ada").source for _ in range(5)] == ["service"] * 5
 
 
 # Mistakes of the caller
@@ -292,6 +319,19 @@ def test_refused_outcomes_are_counted_and_hold_nothing_up(service, connect, capl
     assert counted(service.state) == expected
     assert (client.counts()["delivered"], client.counts()["refused"]) == (7, 3)
     assert "another outcome already" in caplog.text
+
+
+@pytest.mark.parametrize("mode", ["broken", "proxy", "full disk", "no study"])
+def test_outcomes_wait_for_a_service_that_cannot_take_them(service, connect, mode):
+    client = connect()
+    choice = client.decide("ada")
+    service.mode = mode
+    client.observe(choice, 1.0)
+    assert not client.flush(0.3)
+    service.mode = "well"
+    assert client.flush()
+    assert counted(service.state) == {choice.decision: 1.0}
+    assert client.counts()["refused"] == 0
 
 
 def test_the_queue_is_bounded(service, connect):
