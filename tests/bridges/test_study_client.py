@@ -269,7 +269,10 @@ def test_the_service_behind_tls(service, connect, tmp_path, monkeypatch):
     assert connect(url=url, timeout=2).decide("ada").source == "fallback"  # the certificate is unknown
     monkeypatch.setenv("SSL_CERT_FILE", str(files[1]))
     client = connect(url=url, timeout=2)
+    wait_until(lambda: client._table)
+    before = len(service.sockets)
     assert [client.decide("ada").source for _ in range(5)] == ["service"] * 5
+    assert len(service.sockets) <= before + 1  # connections stay open
 
 
 # Mistakes of the caller
@@ -506,6 +509,26 @@ def test_a_queue_with_a_file_is_a_list(steps):
                 queue = _Queue(f"{folder}/queue", 10, fsync=False)
             assert queue.head(20) == twin
         queue.close()
+
+
+def test_a_file_can_wait_for_the_disk(service, connect, tmp_path):
+    client = connect(queue=tmp_path / "queue", fsync=True)
+    with mock.patch("os.fsync", wraps=os.fsync) as fsync:
+        client.observe(client.decide("ada"), 1.0)
+        assert fsync.called
+    assert client.flush()
+
+
+def test_a_flush_does_not_wait_for_the_next_attempt(service, connect):
+    client = connect()
+    wait_until(lambda: client._table)
+    service.kill()
+    client.observe(client.decide("ada"), 1.0)
+    wait_until(lambda: (client.decide("ada"), client._breaker.wait > 1)[1])
+    service.start()
+    start = time.monotonic()
+    assert client.flush()
+    assert time.monotonic() - start < 0.5
 
 
 def test_one_client_at_a_time_uses_a_file(connect, tmp_path):

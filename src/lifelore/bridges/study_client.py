@@ -227,14 +227,13 @@ class StudyClient:
             As `decide`. Decisions that the service has made for other items then have no outcome.
         """
         checked = [_item(**item) for item in items]
-        made = self._asked(
-            "/decisions/batch", {"items": checked}, timeout or self._timeout, _many_made(len(items))
-        )
+        seconds = timeout or self._timeout
+        made = self._asked("/decisions/batch", {"items": checked}, seconds, _each(len(checked), _Made))
         if made is None:
             return [self._offline_choice(item) for item in checked]
         for place, one in enumerate(made):
-            if isinstance(one, str):
-                raise ServiceRefusal(422, f"items.{place}: {one}")
+            if not isinstance(one, _Made):
+                raise ServiceRefusal(422, f"items.{place}: {one[1]}")
         return [self._online_choice(item, one) for item, one in zip(checked, made, strict=True)]
 
     def observe(self, choice: Choice | str, outcome: float) -> None:
@@ -264,8 +263,10 @@ class StudyClient:
         self._wake.set()
 
     def flush(self, seconds: float = 5.0) -> bool:
-        """Whether all outcomes were delivered within these seconds."""
+        """Whether all outcomes were delivered within these seconds. The first attempt is made at once."""
         end = time.monotonic() + seconds
+        if len(self._queue):
+            self._deliver_at, self._probed_at = 0.0, -math.inf
         while len(self._queue) and time.monotonic() < end:
             self._wake.set()
             time.sleep(min(0.005, seconds))
@@ -275,7 +276,7 @@ class StudyClient:
         """End the client, after at most these seconds to deliver outcomes. A queue's file keeps the rest."""
         if self._stopped.is_set() or self._process != os.getpid():
             return
-        if not self.flush(seconds) and not self._queue.is_stored:
+        if not self.flush(seconds) and not self._queue.path:
             log.error("study %s: %d outcomes are lost, since no queue stores them", self.study, len(self._queue))
         self._stopped.set()
         self._wake.set()
@@ -406,17 +407,15 @@ class StudyClient:
 
     def _probe(self) -> None:
         """Fetch the table; a service that answers may be asked for decisions again."""
-        self._probed_at = time.monotonic()
+        self._probed_at, answered = time.monotonic(), True
         try:
             self._fetch_table()
         except ServiceUnavailable as error:
             self._failed(error)
-            self._breaker.wait_longer()
-            return
+            answered = False
         except ServiceRefusal as error:
             log.warning("study %s has no table: %s", self.study, error)
-        if self._breaker.is_open:
-            self._breaker.half_open()
+        if self._breaker.probed(answered):
             self._delivery_wait = self._deliver_at = 0.0
 
     def _fetch_table(self) -> None:
@@ -444,28 +443,24 @@ class StudyClient:
             log.warning("study %s: the service refused an outcome: %s", self.study, message)
 
     def _post(self, route: str, items: list[dict[str, Any]], refused: list[str]) -> None:
-        """Deliver these outcomes; what the service refuses is added to `refused`."""
+        """Deliver these outcomes; the messages of those that the service refuses are added to `refused`."""
         if not items:
             return
+        read = _each(len(items), lambda _: None) if route == "/outcomes/batch" else lambda _: []
         try:
-            read = _errors(len(items)) if route == "/outcomes/batch" else dict
-            errors = self._link.ask("POST", route, {"items": items}, PATIENCE, read)
+            errors = [error for error in self._link.ask("POST", route, {"items": items}, PATIENCE, read) if error]
         except ServiceRefusal as error:
             if error.status in (404, 405):  # no such study now: not the fault of the outcomes
                 raise ServiceUnavailable(str(error)) from error
-            if len(items) == 1:
-                refused.append(str(error))
+            if len(items) > 1:  # one of them breaks a rule: find it by halves
+                self._post(route, items[: len(items) // 2], refused)
+                self._post(route, items[len(items) // 2 :], refused)
                 return
-            half = len(items) // 2
-            self._post(route, items[:half], refused)
-            self._post(route, items[half:], refused)
-            return
-        if route == "/past":
-            return
+            errors = [("input", str(error))]
         for kind, message in errors:
             if kind in RETRIED:
                 raise ServiceUnavailable(message)
-        refused += [message for _, message in errors]
+            refused.append(message)
 
 
 def _item(
@@ -519,30 +514,19 @@ class _Made:
         self.probabilities = _row(document["probabilities"]) if document.get("probabilities") else None
 
 
-def _many_made(number: int) -> Callable[[Any], list[_Made | str]]:
-    """Reads the service's decisions for a batch, each of them or the message of its error."""
+def _each(number: int, read: Callable[[Any], Any]) -> Callable[[Any], list[Any]]:
+    """A reader of the answers to a batch of this number: each is read, or is the error's (kind, message)."""
 
-    def read(document: Mapping[str, Any]) -> list[_Made | str]:
-        items = _all_of(document, number)
-        return [str(item["error"]["message"]) if "error" in item else _Made(item) for item in items]
+    def read_all(document: Mapping[str, Any]) -> list[Any]:
+        items = document["items"]
+        if len(items) != number:
+            raise ValueError(f"{number} items were sent, {len(items)} came back")
+        return [
+            (str(item["error"]["kind"]), str(item["error"]["message"])) if "error" in item else read(item)
+            for item in items
+        ]
 
-    return read
-
-
-def _errors(number: int) -> Callable[[Any], list[tuple[str, str]]]:
-    """Reads kind and message of the errors among the answers to a batch."""
-
-    def read(document: Mapping[str, Any]) -> list[tuple[str, str]]:
-        errors = [item["error"] for item in _all_of(document, number) if "error" in item]
-        return [(str(error["kind"]), str(error["message"])) for error in errors]
-
-    return read
-
-
-def _all_of(document: Mapping[str, Any], number: int) -> list[Any]:
-    if len(document["items"]) != number:
-        raise ValueError(f"{number} items were sent, {len(document['items'])} came back")
-    return document["items"]
+    return read_all
 
 
 class _Table:
@@ -616,14 +600,14 @@ class _Breaker:
                 self._state = "open"
             return was == "closed" and self._state == "open"
 
-    def wait_longer(self) -> None:
+    def probed(self, answered: bool) -> bool:
+        """Wait longer for the next attempt of the client's thread; whether this one made the breaker half open."""
         with self._lock:
+            if self._state != "open":
+                return False
             self.wait = min(2 * self.wait, WAITS[1])
-
-    def half_open(self) -> None:
-        with self._lock:
-            if self._state == "open":
-                self._state, self.wait = "half open", min(2 * self.wait, WAITS[1])
+            self._state = "half open" if answered else "open"
+            return answered
 
 
 class _Queue:
@@ -634,20 +618,17 @@ class _Queue:
     """
 
     def __init__(self, path: str | os.PathLike[str] | None, capacity: int, fsync: bool) -> None:
-        self._path, self._capacity, self._fsync = path, capacity, fsync
+        self.path = None if path is None else os.fspath(path)
+        self._capacity, self._fsync = capacity, fsync
         self._lines: deque[dict[str, Any]] = deque()
         self._lock, self._file, self._delivered = threading.Lock(), -1, 0
-        if path is not None:
-            self._file = self._opened(os.fspath(path))
+        if self.path is not None:
+            self._file = self._opened(self.path)
             self._lines.extend(_undelivered(self._file))
             self._write_anew()
 
     def __len__(self) -> int:
         return len(self._lines)
-
-    @property
-    def is_stored(self) -> bool:
-        return self._path is not None
 
     def put(self, line: dict[str, Any]) -> bool:
         """Add an outcome; False if the queue is full."""
@@ -709,7 +690,8 @@ class _Queue:
 
     def _write_anew(self) -> None:
         """Replace the file by one of the outcomes that are not delivered, in one step."""
-        path = os.fspath(cast(str, self._path))
+        path = self.path
+        assert path is not None
         try:
             file = self._opened(f"{path}.new", os.O_TRUNC)
             with open(file, "wb", closefd=False) as stream:
@@ -717,6 +699,8 @@ class _Queue:
             if self._fsync:
                 os.fsync(file)
             os.replace(f"{path}.new", path)
+            if self._fsync:
+                _fsync_folder(path)
         except OSError as error:
             log.error("the queue's file cannot be written anew: %s", error)
             return
@@ -734,6 +718,14 @@ class _Queue:
             os.close(file)
             raise ValueError(f"queue must be a file of one client, but another client uses {path}") from None
         return file
+
+
+def _fsync_folder(path: str) -> None:
+    folder = os.open(os.path.dirname(os.path.abspath(path)), os.O_RDONLY)
+    try:
+        os.fsync(folder)
+    finally:
+        os.close(folder)
 
 
 def _encoded(line: dict[str, Any]) -> bytes:
