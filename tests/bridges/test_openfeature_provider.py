@@ -2,7 +2,9 @@
 
 import asyncio
 import importlib
+import re
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -148,6 +150,22 @@ def test_asynchronous_evaluation_leaves_the_loop_free(service, flags):
     service.woken.set()
     assert ticks > 5  # of some 20 in the timeout of 0.2 s
     assert value == "slow"
+
+
+def test_the_program_of_the_page_runs(service, tmp_path, monkeypatch):
+    page = (Path(__file__).parents[2] / "docs" / "service.md").read_text(encoding="utf-8")
+    first, flag = re.findall(r"^```python\n(.*?)^```", page, flags=re.S | re.M)
+    monkeypatch.chdir(tmp_path)
+    names = {"api": api, "EvaluationContext": EvaluationContext, "LifeloreProvider": LifeloreProvider}
+    names["TrackingEventDetails"] = TrackingEventDetails
+    exec(first.replace("http://127.0.0.1:8321", service.url) + flag, names)
+    api.shutdown()
+    api.clear_providers()
+    assert sorted(service.state.outcomes.values()) == [7.5, 7.5]
+    assert names["fast"] == (
+        service.state.requests["ada", "session 17"]
+        in {key for key, row in service.state.decisions.items() if row["policy"] == "fast"}
+    )
 
 
 def test_without_the_sdk_the_extra_is_named(monkeypatch):
