@@ -431,6 +431,16 @@ def test_the_example_decides_observes_reports_and_forgets(service, tmp_path):
     assert "user0" not in {row["user"] for row in service.state.decisions.values()}
 
 
+def test_the_file_can_be_copied_into_a_program_without_lifelore(service, tmp_path):
+    shutil.copy(ROOT / "src" / "lifelore" / "bridges" / "study_client.py", tmp_path / "copied_client.py")
+    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import copied_client\n"
+    code += f"print(copied_client.StudyClient({service.url!r}, {STUDY!r}, fallback='slow').decide('ada').source)\n"
+    code += "print(*{name.split('.')[0] for name in sys.modules} - sys.stdlib_module_names - {'__main__'})"
+    command = [sys.executable, "-I", "-S", "-c", code]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    assert done.stdout.splitlines() == ["service", "copied_client"], done.stderr
+
+
 # The queue's file
 
 CRASH = """
