@@ -192,8 +192,8 @@ def test_a_service_that_hangs_costs_the_timeout_a_few_times(service, connect, mo
         start = time.perf_counter()
         assert client.decide(f"u{number}").source == "table"
         took.append(time.perf_counter() - start)
-    assert max(took) < 0.3
-    assert sum(seconds > 0.05 for seconds in took) <= 3
+    assert max(took) < 1  # the timeout is 0.1 s; the answer would take 3 or 30 s
+    assert sum(seconds > 0.05 for seconds in took) <= 5  # three failures, and two for a busy machine
     service.mode = "well"
     service.woken.set()
     wait_until(lambda: client.decide("ada").source == "service")
