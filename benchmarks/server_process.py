@@ -17,7 +17,7 @@ from lifelore.core.errors import LifeloreError
 STUDY: dict[str, Any] = {
     "library": {
         "types": ["calm", "lively", "moody"], "policies": ["slow", "fast", "mixed", "none"],
-        "means": [[8, 2, 5, 1], [3, 9, 5, 1], [1, 2, 3, 6]], "deviations": 2.0,
+        "means": [[8, 2, 5, 1], [3, 9, 5, 1], [1, 2, 3, 6]], "deviations": 2.0, "counts": 40,
     },
     "rule": "sampling", "control": 0.0,
 }  # fmt: skip
@@ -59,7 +59,7 @@ def pinned_client() -> Iterator[int | None]:
 
 @contextmanager
 def bare_server(core: int | None) -> Iterator[Server]:
-    """The bare route of `benchmarks.peers.bare_route`."""
+    """The bare routes of `benchmarks.peers.bare_route`."""
     port = _free_port()
     with _process(["-m", "benchmarks.peers.bare_route", str(port)], port, core) as process:
         yield Server(port, process)

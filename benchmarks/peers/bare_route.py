@@ -1,7 +1,7 @@
 """Bare Starlette routes as the limit of the service: one stores a row in each transaction, one many that wait.
 
-    POST /row      an insert and a commit to the disk for each request
-    POST /group    inserts of the requests that wait at the same moment share a commit
+POST /row      an insert and a commit to the disk for each request
+POST /group    inserts of the requests that wait at the same moment share a commit
 """
 
 import asyncio
