@@ -81,6 +81,32 @@ class Connection:
             for row in rows:
                 copy.write_row(row)
 
+    def change(
+        self, table: str, setting: str, where: str, types: Mapping[str, str], rows: Sequence[Sequence[Any]]
+    ) -> None:
+        """Update a row of a table for each of `rows`, by one statement where the server takes one.
+
+        Parameters
+        ----------
+        setting, where : str
+            What to set and which row, with the values as ``{name}``.
+        types : mapping of str to str
+            Names of the values in their order in `rows`, and their types on PostgreSQL.
+        """
+        if self.is_sqlite:
+            places = {name: f"?{number}" for number, name in enumerate(types, 1)}
+            statement = f"UPDATE {table} SET {setting.format(**places)} WHERE {where.format(**places)}"
+            self.statements += len(rows)
+            self._driver.executemany(statement, rows)
+        elif rows:
+            places = {name: f"v.new_{name}" for name in types}
+            arrays = ", ".join(f"CAST(? AS {kind}[])" for kind in types.values())
+            given = f"unnest({arrays}) AS v({', '.join(f'new_{name}' for name in types)})"
+            statement = (
+                f"UPDATE {table} SET {setting.format(**places)} FROM {given} WHERE {where.format(**places)}"
+            )
+            self.execute(statement, [list(column) for column in zip(*rows, strict=True)])
+
     def stream(self, sql: str, parameters: Sequence[Any] = ()) -> Iterator[list[tuple[Any, ...]]]:
         """The rows of a statement in parts of bounded size, inside a transaction."""
         if self.is_sqlite:

@@ -134,26 +134,20 @@ class StudyRows:
 
     def rename(self, names: Mapping[int, str]) -> None:
         """Give users other names, by their numbers."""
-        statement = "UPDATE lifelore_study_users SET name = ? WHERE study = ? AND number = ?"
-        self._conn.execute_many(statement, [(name, self._study, number) for number, name in names.items()])
+        self._change_users("name = {name}", {"name": "text"}, names.items())
 
     def describe(self, users: Iterable[tuple[int, str | None, Mapping[str, float] | None, str | None]]) -> None:
         """Set (number, context, features, type) of users, whose beliefs must then be computed again."""
-        statement = (
-            "UPDATE lifelore_study_users SET context = ?, features = ?, type = ?, version = 0"
-            " WHERE study = ? AND number = ?"
+        self._change_users(
+            "context = {context}, features = {features}, type = {type}, version = 0",
+            {"context": "text", "features": "text", "type": "text"},
+            ((number, context, _json(features), type_) for number, context, features, type_ in users),
         )
-        rows = [
-            (context, _json(features), type_, self._study, number)
-            for number, context, features, type_ in sorted(users, key=itemgetter(0))
-        ]
-        self._conn.execute_many(statement, rows)
 
     def keep_beliefs(self, beliefs: Iterable[tuple[int, bytes | None]], version: int) -> None:
         """Store the beliefs about users by number."""
-        statement = "UPDATE lifelore_study_users SET state = ?, version = ? WHERE study = ? AND number = ?"
-        rows = [(state, version, self._study, number) for number, state in sorted(beliefs, key=itemgetter(0))]
-        self._conn.execute_many(statement, rows)
+        setting = f"state = {{state}}, version = {int(version)}"
+        self._change_users(setting, {"state": "bytea"}, beliefs)
 
     def learn(self, learnt: Iterable[tuple[int, bytes | None, int, float, int, float]], version: int) -> None:
         """Store beliefs, and add outcomes to users' sums.
@@ -162,14 +156,25 @@ class StudyRows:
         ----------
         learnt : (number, belief, number and sum of outcomes chosen by belief, and of the control group)
         """
-        statement = (
-            "UPDATE lifelore_study_users SET state = ?, version = ?, personal = personal + ?,"
-            " personal_sum = personal_sum + ?, control = control + ?, control_sum = control_sum + ?"
-            " WHERE study = ? AND number = ?"
-        )
-        self._conn.execute_many(
-            statement, [(state, version, *sums, self._study, number) for number, state, *sums in learnt]
-        )
+        self._change_users(
+            f"state = {{state}}, version = {int(version)}, personal = personal + {{personal}},"
+            " personal_sum = personal_sum + {personal_sum}, control = control + {control},"
+            " control_sum = control_sum + {control_sum}",
+            {"state": "bytea", "personal": "bigint", "personal_sum": "float8", "control": "bigint",
+             "control_sum": "float8"},
+            learnt,
+        )  # fmt: skip
+
+    def _change_users(self, setting: str, types: Mapping[str, str], users: Iterable[Sequence[Any]]) -> None:
+        """Set columns of users, each given by number and values."""
+        rows = sorted(users, key=itemgetter(0))
+        if not self._conn.is_sqlite:
+            query = (
+                "SELECT number FROM lifelore_study_users WHERE study = ? AND number IN ({many}) ORDER BY number"
+            )
+            self._conn.matching(f"{query} FOR NO KEY UPDATE", [row[0] for row in rows], (self._study,))
+        where = f"study = {int(self._study)} AND number = {{number}}"
+        self._conn.change("lifelore_study_users", setting, where, {"number": "bigint", **types}, rows)
 
     def forget(self, number: int) -> int:
         """Delete a user with everything stored; the number of decisions and lines of the past deleted."""
@@ -246,10 +251,11 @@ class StudyRows:
 
     def end_decisions(self, outcomes: Iterable[tuple[bytes, float]], ended: int) -> None:
         """Store the outcomes of decisions that have none."""
-        statement = (
-            "UPDATE lifelore_decisions SET outcome = ?, ended = ? WHERE study = ? AND id = ? AND outcome IS NULL"
-        )
-        self._conn.execute_many(statement, [(outcome, ended, self._study, id_) for id_, outcome in outcomes])
+        self._conn.change(
+            "lifelore_decisions", f"outcome = {{outcome}}, ended = {int(ended)}",
+            f"study = {int(self._study)} AND id = {{id}} AND outcome IS NULL",
+            {"id": "bytea", "outcome": "float8"}, list(outcomes),
+        )  # fmt: skip
 
     # ---- evidence ------------------------------------------------------------------------------------------
 
@@ -303,8 +309,7 @@ class StudyRows:
 
     def mark_fitted(self, numbers: Iterable[int]) -> None:
         """Mark users as known to the newest fit."""
-        statement = "UPDATE lifelore_study_users SET fitted = 1 WHERE study = ? AND number = ?"
-        self._conn.execute_many(statement, [(self._study, number) for number in numbers])
+        self._change_users("fitted = 1", {}, ((number,) for number in numbers))
 
 
 def _user(row: Sequence[Any]) -> UserRow:
