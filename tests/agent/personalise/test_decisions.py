@@ -8,13 +8,13 @@ from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
-
-from lifelore.agent.personalise.fit.fit import FitSettings, fit
 from lifelore.agent.reuse.history import histories, user_key
-from lifelore.agent.personalise.log.log import read_log
-from lifelore.agent.personalise.decisions import add, choose, forget, retire, update
-from lifelore.agent.personalise.study import Study, open_study
 from lifelore.agent.reuse.user_belief import open_belief
+
+from lifelore.agent.personalise.decisions import add, choose, forget, retire, update
+from lifelore.agent.personalise.fit.fit import FitSettings, fit
+from lifelore.agent.personalise.log.log import read_log
+from lifelore.agent.personalise.study import Study, open_study
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
