@@ -106,11 +106,16 @@ class StudyRows:
         return {row[1]: _user(row) for row in found}
 
     def numbered(self, numbers: Iterable[int], *, lock: bool = False) -> dict[int, UserRow]:
-        """Users by number; with `lock` no other transaction changes them before this one ends."""
+        """Users by number; with `lock` no other transaction changes them before this one ends.
+
+        Lock all users of a transaction by a single call, which does so in the order of their numbers: transactions
+        that lock the same users in different orders would wait for one another.
+        """
         query = (
             f"SELECT {_USER} FROM lifelore_study_users WHERE study = ? AND number IN ({{many}}) ORDER BY number"
         )
-        found = self._conn.matching(query + self._locked(lock, "UPDATE"), sorted(set(numbers)), (self._study,))
+        how = self._locked(lock, "NO KEY UPDATE")
+        found = self._conn.matching(query + how, sorted(set(numbers)), (self._study,))
         return {row[0]: _user(row) for row in found}
 
     def add_users(self, users: Sequence[tuple[str, str | None, Mapping[str, float] | None]], version: int) -> None:
@@ -160,10 +165,15 @@ class StudyRows:
             statement, [(state, version, *sums, self._study, number) for number, state, *sums in learnt]
         )
 
-    def forget(self, number: int) -> int:
-        """Delete a user with everything stored; the number of decisions and lines of the past deleted."""
-        own = (self._study, number)
-        count = 0
+    def forget(self, number: int) -> int | None:
+        """Delete a user with everything stored; the number of decisions and lines of the past deleted.
+
+        None where another transaction has deleted the user before.
+        """
+        own, count = (self._study, number), 0
+        query = "SELECT number FROM lifelore_study_users WHERE study = ? AND number = ?"
+        if self._conn.first(query + self._locked(True, "UPDATE"), own) is None:
+            return None
         for table in ("lifelore_decisions", "lifelore_study_past"):
             count += int(self._conn.value(f"SELECT COUNT(*) FROM {table} WHERE study = ? AND person = ?", own))
             self._conn.execute(f"DELETE FROM {table} WHERE study = ? AND person = ?", own)
