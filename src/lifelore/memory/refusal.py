@@ -41,6 +41,12 @@ _MEANINGS = {
     "3D": _NO_SERVER,
 }
 
+# SQLSTATE of what two transactions at the same moment do to one another.
+_RACES = {
+    "23505": "another program stored the same at this moment; try again",
+    "40": "another program changed the same at this moment; try again",
+}
+
 # Error numbers of the operating system for files and folders.
 _SYSTEM_ERRORS = {
     errno.ENOSPC: _FULL,
@@ -50,6 +56,10 @@ _SYSTEM_ERRORS = {
         (errno.ENOENT, errno.ENOTDIR, errno.EEXIST, errno.EACCES, errno.EPERM, errno.ENAMETOOLONG), _CANNOT_OPEN
     ),
 }
+
+
+class RacedError(StoreError):
+    """Another transaction was faster; nothing was stored, and the same again may well succeed."""
 
 
 @contextmanager
@@ -76,6 +86,8 @@ def refusal(location: str, cause: BaseException) -> StoreError:
     code = str(getattr(cause, "sqlite_errorname", None) or getattr(cause, "sqlstate", None) or "")
     message = " ".join(str(cause).split())[:200]
     meaning = next((text for start, text in _MEANINGS.items() if code.startswith(start)), None)
+    if race := next((text for start, text in _RACES.items() if code.startswith(start)), None):
+        return RacedError(f"memory {location}: {race} ({message})")
     if isinstance(cause, OSError):
         meaning = _SYSTEM_ERRORS.get(cause.errno or 0)
     if meaning is None and "connection" in message.lower() and not code:

@@ -110,13 +110,16 @@ class StudyRows:
         return {row[1]: _user(row) for row in found}
 
     def numbered(self, numbers: Iterable[int], *, lock: bool = False) -> dict[int, UserRow]:
-        """Users by number; with `lock` no other transaction changes them before this one ends."""
+        """Users by number; with `lock` no other transaction changes them before this one ends.
+
+        Lock all users of a transaction by a single call, which does so in the order of their numbers: transactions
+        that lock the same users in different orders would wait for one another.
+        """
         query = (
             f"SELECT {_USER} FROM lifelore_study_users WHERE study = ? AND number IN ({{many}}) ORDER BY number"
         )
-        found = self._conn.matching(
-            query + self._locked(lock, "NO KEY UPDATE"), sorted(set(numbers)), (self._study,)
-        )
+        how = self._locked(lock, "NO KEY UPDATE")
+        found = self._conn.matching(query + how, sorted(set(numbers)), (self._study,))
         return {row[0]: _user(row) for row in found}
 
     def add_users(self, users: Sequence[tuple[str, str | None, Mapping[str, float] | None]], version: int) -> None:
@@ -176,20 +179,25 @@ class StudyRows:
         where = f"study = {int(self._study)} AND number = {{number}}"
         self._conn.change("lifelore_study_users", setting, where, {"number": "bigint", **types}, rows)
 
-    def forget(self, number: int) -> int:
-        """Delete a user with everything stored; the number of decisions and lines of the past deleted."""
-        own, count = (self._study, number), 0
+    def forget(self, number: int) -> int | None:
+        """Delete a user with everything stored; the number of decisions and lines of the past deleted.
+
+        None where another transaction has deleted the user before.
+        """
         # First the user: that waits for transactions that are about to store decisions for the user.
-        for table, column in (
-            ("lifelore_study_users", "number"),
-            ("lifelore_decisions", "person"),
-            ("lifelore_study_past", "person"),
-        ):
-            rows = self._conn.execute(
-                f"DELETE FROM {table} WHERE study = ? AND {column} = ? RETURNING study", own
-            ).fetchall()
-            count += len(rows)
-        return count - 1
+        counts = [
+            len(
+                self._conn.execute(
+                    f"DELETE FROM {table} WHERE study = ? AND {column} = ? RETURNING study", (self._study, number)
+                ).fetchall()
+            )
+            for table, column in (
+                ("lifelore_study_users", "number"),
+                ("lifelore_decisions", "person"),
+                ("lifelore_study_past", "person"),
+            )
+        ]
+        return sum(counts[1:]) if counts[0] else None
 
     def _locked(self, lock: bool, how: str) -> str:
         return f" FOR {how}" if lock and not self._conn.is_sqlite else ""

@@ -60,12 +60,13 @@ def _of_outcomes(study: Study, histories: Sequence[History]) -> dict[str, Any] |
 
 def _levels(algorithm: ReuseAlgorithm, rows: Numbers, policies: Numbers, values: Array) -> Array:
     """P(U < u) and P(U ≤ u) of an outcome of each user under the belief before it, (n, 2)."""
-    performance, belief = algorithm.known(rows).performance, algorithm.belief(rows)
-    every, levels = np.arange(len(rows)), []
-    for ends in (np.nextafter(values, -np.inf), values):
-        above = performance.exceedance(ends)[every, :, policies]
-        levels.append(1 - (belief * above).sum(axis=1))
-    return np.clip(np.stack(levels, axis=1), 0.0, 1.0)
+    belief, levels = algorithm.belief(rows), np.empty((len(rows), 2))
+    for policy in np.unique(policies).tolist():
+        at = policies == policy
+        performance = algorithm.known(rows[at]).performance
+        for end, own in enumerate((np.nextafter(values[at], -np.inf), values[at])):
+            levels[at, end] = (belief[at].T * performance.cumulative(policy, own)).sum(axis=0)
+    return np.clip(levels, 0.0, 1.0)
 
 
 def _of_types(study: Study, histories: Sequence[History]) -> dict[str, Any] | None:

@@ -13,7 +13,8 @@ import re
 import time
 import uuid
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,12 +29,15 @@ from lifelore.core.errors import InputError, LifeloreError, NotFoundError
 from lifelore.interaction.outcomes.outcome_model import LARGEST
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.memory import Memory
+from lifelore.memory.refusal import RacedError
 from lifelore.memory.study_rows import DecisionRow, StudyRows, UserRow
 
 Answer = dict[str, Any]
 LARGEST_BLOCK = 1 << 22
 """Numbers of the largest temporary array of a rule; more need more memory and are hardly faster."""
 EARLIER_IDENTIFIER = re.compile(r"[0-9a-f]{16}(-\d{1,9}(\.\d{1,9})?|\.\d+/\d+)")
+ATTEMPTS = 3
+"""Number of times that a decision is tried again where another program is faster."""
 BINS = 50
 """Signals of a policy that a rule may tell apart."""
 
@@ -147,11 +151,25 @@ def decide(
     """
     if study.archived:
         raise InputError(f"study '{study.name}' is archived; make it active again first")
+    return _again_if_raced(_decided, memory, study, requests, seed, brief)
+
+
+def _again_if_raced(function: Callable[..., Any], *arguments: Any) -> Any:
+    """The result of a transaction, which another program may have come before with the same request or users."""
+    for _ in range(ATTEMPTS):
+        with suppress(RacedError):
+            return function(*arguments)
+    return function(*arguments)
+
+
+def _decided(
+    memory: Memory, study: Study, requests: Sequence[Request], seed: int, brief: bool
+) -> list[Answer | LifeloreError]:
     answers: list[Any] = [_or_error(request.checked, study) for request in requests]
     good = [place for place, one in enumerate(answers) if isinstance(one, Request)]
     checked: list[Request] = [answers[place] for place in good]
     with memory.studies.writing(study.number) as rows:
-        users = _locked(rows, study, checked, _users(rows, study, checked))
+        users = _users(rows, study, checked)
         own = [users[request.user] for request in checked]
         made = _made(rows, own, checked)
         beliefs = open_beliefs(rows, study, list(users.values()))
@@ -159,16 +177,16 @@ def decide(
             rows.keep_beliefs(stored_beliefs(beliefs, beliefs.replayed), study.version)
         row = np.array([beliefs.row[user.number] for user in own], np.int64)
         probs = probabilities(study, beliefs.algorithm, row, checked)
-        drawn = _drawn(study, own, checked, probs, seed)
-        decisions, repeated = [], []
-        for user, request, one in zip(own, checked, drawn, strict=True):
-            key = user.number, request.request
-            repeated.append(request.request is not None and key in made)
-            decisions.append(made.setdefault(key, one) if request.request is not None else one)
-        rows.add_decisions([one for one, old in zip(decisions, repeated, strict=True) if not old])
+        keys = [(user.number, request.request) for user, request in zip(own, checked, strict=True)]
+        new = _new(keys, made)
+        drawn = _drawn(study, [own[at] for at in new], [checked[at] for at in new], probs[new], seed)
+        rows.add_decisions(drawn)
+    by_place = dict(zip(new, drawn, strict=True))
+    made |= {keys[at]: one for at, one in by_place.items() if keys[at][1] is not None}
     described = [{}] * len(good) if brief else _described(study, own, beliefs.algorithm, row, probs)
-    for place, request, one, old, about in zip(good, checked, decisions, repeated, described, strict=True):
-        answers[place] = _or_error(_answer, request, one, old, about)
+    for at, (place, request, about) in enumerate(zip(good, checked, described, strict=True)):
+        decision = by_place[at] if at in by_place else made[keys[at]]
+        answers[place] = _or_error(_answer, request, decision, at not in by_place, about)
     return answers
 
 
@@ -181,12 +199,15 @@ def _users(rows: StudyRows, study: Study, requests: Sequence[Request]) -> dict[s
         new = [name for name in names if name not in users]
         rows.add_users([(name, *_told(told.get(name))) for name in new], study.version)
         users |= rows.users(new, lock=True)
+    touched = [users[name].number for name, request in told.items() if _tells(request, users[name])]
+    touched += [user.number for user in users.values() if user.version != study.version]
+    if touched:  # their beliefs will be computed again, so nobody may add to the evidence in the meantime
+        for user in rows.numbered(touched, lock=True).values():
+            users[user.name] = user._replace(n_decisions=users[user.name].n_decisions)
     changed = [
-        (user, context, features)
+        (users[name], request.context or users[name].context, request.features or users[name].features)
         for name, request in told.items()
-        if (user := users[name])
-        and (context := request.context or user.context, features := request.features or user.features)
-        != (user.context, user.features)
+        if _tells(request, users[name])
     ]
     if changed:
         rows.describe((user.number, context, features, user.type) for user, context, features in changed)
@@ -195,22 +216,10 @@ def _users(rows: StudyRows, study: Study, requests: Sequence[Request]) -> dict[s
     return users
 
 
-def _locked(
-    rows: StudyRows, study: Study, requests: Sequence[Request], users: dict[str, UserRow]
-) -> dict[str, UserRow]:
-    """The users, of whom no other transaction changes those that this one needs alone.
-
-    These have a belief to compute again, or a request that may come twice at the same moment.
-    """
-    again = {request.user for request in requests if request.request is not None}
-    numbers = [user.number for user in users.values() if user.version != study.version or user.name in again]
-    if not numbers:
-        return users
-    fresh = rows.numbered(numbers, lock=True)
-    return {
-        name: fresh.get(user.number, user)._replace(name=name, n_decisions=user.n_decisions)
-        for name, user in users.items()
-    }
+def _tells(request: Request, user: UserRow) -> bool:
+    """Whether a request tells of its user what is not stored."""
+    now = request.context or user.context, request.features or user.features
+    return now != (user.context, user.features)
 
 
 def _told(request: Request | None) -> tuple[str | None, Mapping[str, float] | None]:
@@ -227,6 +236,16 @@ def _made(
         if request.request is not None
     ]
     return rows.requested(pairs) if pairs else {}
+
+
+def _new(keys: Sequence[tuple[int, str | None]], made: Mapping[tuple[int, str | None], DecisionRow]) -> list[int]:
+    """Places of the requests that need a decision: of equal ones the first."""
+    first: dict[tuple[int, str | None], int] = {}
+    return [
+        at
+        for at, key in enumerate(keys)
+        if key[1] is None or (key not in made and first.setdefault(key, at) == at)
+    ]
 
 
 def probabilities(
@@ -382,7 +401,7 @@ def update(memory: Memory, study: Study, decision: str, outcome: float) -> Answe
 def observe(
     memory: Memory, study: Study, outcomes: Sequence[tuple[str, float]], *, brief: bool = False
 ) -> list[Answer | LifeloreError]:
-    """Take in how decisions ended, each once, in one transaction; beliefs learn in the order given.
+    """Take in how decisions ended, each once, in one transaction; beliefs learn in the order of the decisions.
 
     Parameters
     ----------
@@ -395,6 +414,12 @@ def observe(
     list
         For each outcome the document of `update`, or its error.
     """
+    return _again_if_raced(_observed, memory, study, outcomes, brief)
+
+
+def _observed(
+    memory: Memory, study: Study, outcomes: Sequence[tuple[str, float]], brief: bool
+) -> list[Answer | LifeloreError]:
     answers: list[Any] = [_or_error(_checked_outcome, *pair) for pair in outcomes]
     good = [place for place, one in enumerate(answers) if isinstance(one, tuple)]
     with memory.studies.writing(study.number) as rows:
@@ -405,6 +430,8 @@ def observe(
         for place in good:
             id_, outcome = answers[place]
             answers[place] = _or_error(_taken, study, found.get(id_), taken, id_, outcome)
+        # Outcomes of one moment count in the order of their decisions, in a replay too.
+        taken = dict(sorted(taken.items()))
         rows.end_decisions(taken.items(), time.time_ns() // 10**6)
         evidence = [(beliefs.row[found[id_].person], found[id_].policy, outcome) for id_, outcome in taken.items()]
         learn(beliefs.algorithm, study, evidence)
@@ -503,9 +530,9 @@ def forget(memory: Memory, study: Study, user: str) -> int:
     """
     with memory.studies.writing(study.number) as rows:
         known = known_users(rows, study, [user]).get(user)
-        if known is None:
+        count = None if known is None else rows.forget(known.number)
+        if count is None:
             raise NotFoundError(f"nothing is stored of user '{user}' in study '{study.name}'")
-        count = rows.forget(known.number)
     memory.studies.forgotten()
     return count
 

@@ -268,11 +268,11 @@ class NormalRows(NormalPrediction):
         return found.reshape(*self._shape, -1)
 
     def cumulative(self, policy: int, values: Array) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,) for a single user, (n_types, n): t, mixed by spread."""
-        location, doubt, variance, freedom = self._law.posterior(policy, self._shown, self._users[0])
+        """P(U ≤ value | type, policy) of `values` (n,), (n_types, n), as for `Prediction`: t, mixed by spread."""
+        location, doubt, variance, freedom = self._law.posterior(policy, self._shown, self._users)
         gap = over_pairs(self._law._scaled(policy, values)) - location
         below = stdtr(np.minimum(freedom, LARGEST_FREEDOM), gap / np.sqrt(variance * (1 + doubt)))
-        return (self._weights[0][:, None] * below).sum(axis=1).T
+        return (self._weights[:, :, None] * below).sum(axis=1).T
 
     def tried_pairs(self) -> tuple[tuple[Array, Array], Array, Array]:
         """Row and policy (m,) of each tried pair; mean and deviation of its outcome by type, (m, n_types)."""

@@ -61,7 +61,7 @@ class Prediction:
         return normal_excess(above, np.sqrt(self.mean_variance))
 
     def cumulative(self, policy: int, values: Array) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,), (n_types, n); of a single user."""
+        """P(U ≤ value | type, policy) of `values` (n,), (n_types, n); of a single user, or a value of each user."""
         raise NotImplementedError
 
     def mean_on(self, types: Any) -> Array:
@@ -86,7 +86,7 @@ class NormalPrediction(Prediction):
         return ndtr((self.mean - over_pairs(threshold)) / self.deviation)
 
     def cumulative(self, policy: int, values: Array) -> Array:
-        return ndtr((values - self.mean[:, policy, None]) / self.deviation[:, policy, None])
+        return ndtr((values[:, None] - self.mean[..., policy]) / self.deviation[..., policy]).T
 
     def expected_excess(self, threshold: ArrayLike) -> Array:
         return normal_excess(self.mean - over_pairs(threshold), self.deviation)
@@ -129,7 +129,8 @@ class CountedPrediction(Prediction):
         return self._expectation(self.cells.excess(np.asarray(threshold, np.float64)[..., None]))
 
     def cumulative(self, policy: int, values: Array) -> Array:
-        return self.probs[:, policy] @ (1 - self.cells.above(values[:, None])).T
+        below = 1 - self.cells.above(values[:, None])
+        return (self.probs[..., policy, :] * below[:, None]).sum(axis=-1).T
 
     def _expectation(self, of_cells: Array) -> Array:
         """Expectation of a number of each cell, (..., n_cells) to (..., n_types, n_policies)."""

@@ -5,12 +5,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from lifelore.agent.reuse import report as reuse_report
+from lifelore.agent.reuse.history import histories
 from scipy import stats
 
-from lifelore.agent.reuse import report as reuse_report
-from lifelore.agent.personalise.fit.fit import FitSettings, fit
-from lifelore.agent.reuse.history import histories
 from lifelore.agent.personalise.decisions import choose, forget, update
+from lifelore.agent.personalise.fit.fit import FitSettings, fit
 from lifelore.agent.personalise.report import COLUMNS, report
 from lifelore.agent.personalise.study import Study, open_study
 from lifelore.core.errors import InputError, NotFoundError, StoreError

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-
 from lifelore.agent.reuse import replayed_choices as module
-from lifelore.agent.personalise.fit.fit import FitSettings, study_of_log
-from lifelore.agent.personalise.log.log import read_log
+from lifelore.agent.reuse.user_state import WorkingBelief
+
 from lifelore.agent.personalise.decisions import policy_odds
 from lifelore.agent.personalise.evaluate.replayed_choices import replayed_choices
-from lifelore.agent.reuse.user_state import WorkingBelief
+from lifelore.agent.personalise.fit.fit import FitSettings, study_of_log
+from lifelore.agent.personalise.log.log import read_log
 
 MEANS = np.array([[5.0, 0.0, 3.0], [0.0, 5.0, 3.0]])
 

@@ -4,16 +4,16 @@ import csv
 
 import numpy as np
 import pytest
-
-from lifelore.agent.personalise.fit.fit import FitSettings, fit
 from lifelore.agent.reuse.history import histories, user_key
-from lifelore.agent.personalise.log.log_format import LogFormat, parse_features
-from lifelore.agent.personalise.decisions import choose, update
 from lifelore.agent.reuse.past import read_past
+from lifelore.agent.reuse.user_belief import open_belief
+
+from lifelore.agent.personalise.decisions import choose, update
+from lifelore.agent.personalise.fit.fit import FitSettings, fit
+from lifelore.agent.personalise.log.log_format import LogFormat, parse_features
+from lifelore.agent.personalise.past import warm
 from lifelore.agent.personalise.report import report
 from lifelore.agent.personalise.study import open_study
-from lifelore.agent.reuse.user_belief import open_belief
-from lifelore.agent.personalise.past import warm
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import open_memory
 

@@ -2,15 +2,15 @@
 
 import numpy as np
 import pytest
-
-from lifelore.agent.personalise.fit.fit import FitSettings, fit
 from lifelore.agent.reuse.history import open_history, user_key
-from lifelore.agent.personalise.decisions import choose, forget, update
 from lifelore.agent.reuse.past import read_past
+from lifelore.agent.reuse.user_belief import NAMED_TYPE, open_belief
+
+from lifelore.agent.personalise.decisions import choose, forget, update
+from lifelore.agent.personalise.fit.fit import FitSettings, fit
+from lifelore.agent.personalise.past import warm
 from lifelore.agent.personalise.report import report
 from lifelore.agent.personalise.study import open_study
-from lifelore.agent.reuse.user_belief import NAMED_TYPE, open_belief
-from lifelore.agent.personalise.past import warm
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.novelty.novelty_detector import MASS

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-
 from lifelore.agent.reuse import user_belief
 from lifelore.agent.reuse.history import KIND, VERSION, Decision, open_history, user_key
-from lifelore.agent.personalise.decisions import choose, forget, update
 from lifelore.agent.reuse.past import PastUser
-from lifelore.agent.personalise.study import Study
 from lifelore.agent.reuse.user_belief import basis_of, open_belief, replayed
 from lifelore.agent.reuse.user_state import from_bytes
+
+from lifelore.agent.personalise.decisions import choose, forget, update
+from lifelore.agent.personalise.study import Study
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.interaction.library.policy_library import PolicyLibrary

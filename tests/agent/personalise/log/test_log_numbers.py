@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
+from lifelore.agent.personalise.decisions import choose
 from lifelore.agent.personalise.fit.fit import FitSettings, fit
 from lifelore.agent.personalise.log.log import read_log
 from lifelore.agent.personalise.log.log_format import LogFormat
-from lifelore.agent.personalise.decisions import choose
-from lifelore.agent.personalise.study import open_study
 from lifelore.agent.personalise.past import warm
+from lifelore.agent.personalise.study import open_study
 from lifelore.core.errors import InputError
 from lifelore.memory import open_memory
 

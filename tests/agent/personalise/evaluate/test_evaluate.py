@@ -8,12 +8,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from lifelore.agent.personalise.decisions import choose, update
 from lifelore.agent.personalise.evaluate.cross_fitted import expected_by_means, studies_of_others
 from lifelore.agent.personalise.evaluate.evaluate import EvaluateSettings, evaluate
+from lifelore.agent.personalise.evaluate.logged_decisions import read_decisions
 from lifelore.agent.personalise.fit.fit import FitSettings, fit
 from lifelore.agent.personalise.log.log_format import LogFormat
-from lifelore.agent.personalise.evaluate.logged_decisions import read_decisions
-from lifelore.agent.personalise.decisions import choose, update
 from lifelore.agent.personalise.report import report
 from lifelore.agent.personalise.study import open_study
 from lifelore.core.errors import InputError, NotFoundError

@@ -5,9 +5,9 @@ import json
 
 import numpy as np
 import pytest
-
 from lifelore.agent.reuse.availability import KIND, listed_policies
 from lifelore.agent.reuse.history import histories, open_history, user_key
+
 from lifelore.agent.personalise.decisions import add, choose, forget, retire, update
 from lifelore.agent.personalise.report import report
 from lifelore.agent.personalise.study import Study

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.agent.reuse import log_lines
+from lifelore.agent.personalise.log import log_lines
 from lifelore.agent.personalise.log.log import read_log, read_outcome
 from lifelore.agent.personalise.log.log_format import LogFormat, parse_columns
 from lifelore.core.errors import InputError, NotFoundError
