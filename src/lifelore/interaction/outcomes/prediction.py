@@ -61,7 +61,7 @@ class Prediction:
         return normal_excess(above, np.sqrt(self.mean_variance))
 
     def cumulative(self, policy: int, values: Array) -> Array:
-        """P(U ≤ value | type, policy) of `values` (n,), (n_types, n); of a single user, or a value of each user."""
+        """P(U ≤ value | type, policy) of `values` (n,), (n_types, n): a single user's, or one of each user."""
         raise NotImplementedError
 
     def mean_on(self, types: Any) -> Array:
