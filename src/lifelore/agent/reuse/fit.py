@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.reuse.fit_notes import fit_notes, personalised_by
-from lifelore.agent.reuse.library_from_log import TypedRows, library_of
+from lifelore.agent.reuse.library_from_log import Fitted, TypedRows, library_of
 from lifelore.agent.reuse.log import ReuseLog, read_log
 from lifelore.agent.reuse.log_format import LogFormat
-from lifelore.agent.reuse.model_choice import chosen_model
+from lifelore.agent.reuse.model_choice import Kind, chosen_model
 from lifelore.agent.reuse.study import (
     ACTIVE,
     KIND,
@@ -25,20 +25,18 @@ from lifelore.agent.reuse.study import (
     Study,
     check_study_name,
 )
+from lifelore.agent.reuse.types_by_context import by_context, priors_by_context
 from lifelore.agent.reuse.types_of_users import typed_rows
 from lifelore.agent.reuse.warm import keep_fitted_past
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.feature_prior import FeaturePrior
-from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import DEFAULT_RULE
 from lifelore.memory import Memory
 
 MODELS = ("auto", "gaussian", "student-t", "categorical", "joint-normal")
 KEPT_SETTINGS = ("control", "incumbent", "rule", "explore", "change", "models")
 """Settings of a study that a new fit sets anew; where one is another than before, the fit says so."""
-CONTEXT_USERS = 5.0
-"""Users of everybody's prior that are mixed into each context's."""
 
 
 @dataclass(frozen=True)
@@ -145,20 +143,19 @@ def study_of_log(
     """
     generator = stream(settings.seed, "reuse types", settings.name)
 
-    def library_of_part(part: ReuseLog, model: str, types: int | None) -> PolicyLibrary:
-        return library_of(part, typed_rows(part, model, types, generator), model)[0]
+    def fitted(part: ReuseLog, kind: Kind) -> Fitted:
+        typed = typed_rows(part, kind.model, kind.types, generator)
+        return (by_context if kind.by_context else library_of)(part, typed, kind.model)
 
-    choice = chosen_model(log, settings.model, settings.types, library_of_part, generator)
-    typed = typed_rows(log, choice.model, choice.types, generator)
-    library, counts = library_of(log, typed, choice.model)
+    choice = chosen_model(log, settings.model, settings.types, fitted, generator)
+    found = fitted(log, choice.kind)
     # Computed once and stored with the library.
-    library.performance.spread  # noqa: B018  # pyright: ignore
-    return _study(log, library, typed, settings, earlier or {}), typed, counts, choice.held_out
+    found.library.performance.spread  # noqa: B018  # pyright: ignore
+    return _study(log, found, settings, earlier or {}), found.typed, found.counts, choice.held_out
 
 
-def _study(
-    log: ReuseLog, library: PolicyLibrary, typed: TypedRows, settings: FitSettings, earlier: dict[str, str]
-) -> Study:
+def _study(log: ReuseLog, found: Fitted, settings: FitSettings, earlier: dict[str, str]) -> Study:
+    library, typed = found.library, found.typed
     known = {policy: RETIRED if earlier.get(policy) == RETIRED else ACTIVE for policy in library.policies}
     # What the logs do not know cannot be chosen; it goes, unless it still waits for its first outcomes.
     gone = {policy: state for policy, state in earlier.items() if policy not in known}
@@ -168,19 +165,10 @@ def _study(
     fitted = {"rows": len(typed.rows), "users": len(typed.users(log)[0]), "found": typed.found}
     fitted["time"] = int(time.time())
     return Study(
-        settings.name, library, states, _contexts(log, typed, library.prior), settings.control,
+        settings.name, library, states, priors_by_context(log, found), settings.control,
         settings.incumbent, settings.rule, settings.explore, settings.change, settings.models, fitted,
         feature_prior=_feature_prior(log, typed, library.prior, settings.seed),
     )  # fmt: skip
-
-
-def _contexts(log: ReuseLog, typed: TypedRows, prior: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
-    """Prior over types in each context, from its users and a few of everybody's."""
-    counts: dict[str, NDArray[np.float64]] = {}
-    for user, type_ in zip(*typed.users(log), strict=True):
-        if log.context_of_user[user] >= 0:
-            counts.setdefault(log.context.names[log.context_of_user[user]], CONTEXT_USERS * prior)[type_] += 1
-    return {context: count / count.sum() for context, count in sorted(counts.items())}
 
 
 def _feature_prior(log: ReuseLog, typed: TypedRows, prior: NDArray[np.float64], seed: int) -> FeaturePrior | None:
