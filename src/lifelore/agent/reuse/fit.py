@@ -25,7 +25,7 @@ from lifelore.agent.reuse.study import (
     Study,
     check_study_name,
 )
-from lifelore.agent.reuse.types_by_context import by_context, priors_by_context
+from lifelore.agent.reuse.types_by_context import by_context, contexts_differ, priors_by_context
 from lifelore.agent.reuse.types_of_users import typed_rows
 from lifelore.agent.reuse.warm import keep_fitted_past
 from lifelore.core.errors import InputError, NotFoundError
@@ -105,8 +105,13 @@ def fit(
         were compared on users held out (None where they were not): number of ``users`` and mean ``value`` of the
         chosen model's choices, its difference and 95 % interval to the best single policy (``over_single``) and
         to counting a user's own outcomes with a prior worth two (``over_counting``), and all ``candidates``;
-        ``personalised_by``: "types", "items" (what a policy shows tells of others), both, or nothing; ``notes``:
-        sentences for the reader; ``types`` (name, users, prior, best policy);
+        ``personalised_by``: "types", "context" (types by context), "items" (what a policy shows tells of others),
+        several, or nothing; ``notes``: sentences for the reader; ``context`` (None without contexts): ``users``
+        with one, ``several`` (users with more than one; the last counts), ``differ`` (whether outcomes differ
+        between contexts beyond chance), ``types_of`` (number of contexts with types of their own; 0: types are
+        everybody's), ``worth``: gain of choices for held-out users whose contexts are known over choices without
+        a look at them, with its 95 % interval (None where nobody was held out);
+        ``types`` (name, users, prior, best policy);
         ``policies`` (name, state, mean); ``means`` and ``outcomes`` by type and policy; ``borrowed`` (pairs
         without an outcome, which got the policy's outcomes on all types); ``contexts``; ``features`` (None
         without them): their ``names``, ``users`` who have all, chosen ``strength`` and held-out ``gain`` in nats
@@ -126,7 +131,8 @@ def fit(
     study.keep(memory)
     keep_fitted_past(memory, study, log)
     document = _document(study, log, typed, counts) | {"changed": _changed(study, earlier), "held_out": held_out}
-    return document | {"personalised_by": personalised_by(study), "notes": fit_notes(study, document)}
+    document |= {"context": _context(log, typed, held_out), "personalised_by": personalised_by(study, typed)}
+    return document | {"notes": fit_notes(study, document, log, settings.model)}
 
 
 def study_of_log(
@@ -162,7 +168,7 @@ def _study(log: ReuseLog, found: Fitted, settings: FitSettings, earlier: dict[st
     states = known | {policy: PILOT if state == PILOT else RETIRED for policy, state in gone.items()}
     if ACTIVE not in states.values():
         raise InputError("the logs must hold a policy that is not retired, got none")
-    fitted = {"rows": len(typed.rows), "users": len(typed.users(log)[0]), "found": typed.found}
+    fitted = {"rows": _used(log, typed), "users": len(typed.users(log)[0]), "found": typed.found}
     fitted["time"] = int(time.time())
     return Study(
         settings.name, library, states, priors_by_context(log, found), settings.control,
@@ -204,13 +210,13 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
     active = study.active_numbers
     return {
         "study": study.name,
-        "rows": len(typed.rows),
+        "rows": _used(log, typed),
         "pending": log.pending,
         "filled_outcomes": log.filled_outcomes,
         "filled_policies": log.filled_policies,
         "without_policy": log.without_policy,
         "guessed": typed.guessed,
-        "left_out": len(log) - len(typed.rows),
+        "left_out": len(log) - _used(log, typed),
         "users": len(log.user.names),
         "model": library.performance.kind,  # type: ignore[attr-defined]
         "types_found": typed.found,
@@ -239,6 +245,25 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
         "change": study.change,
         "models": study.models,
     }
+
+
+def _context(log: ReuseLog, typed: TypedRows, held_out: Mapping[str, Any] | None) -> dict[str, Any] | None:
+    if not any(log.context.names):
+        return None
+    named = np.array([bool(name) for name in log.context.names])[log.context.codes]
+    pairs = np.unique(np.stack([log.user.codes, log.context.codes])[:, named], axis=1)
+    return {
+        "users": int((log.context_of_user >= 0).sum()),
+        "several": int((np.bincount(pairs[0]) > 1).sum()),
+        "differ": contexts_differ(log),
+        "types_of": typed.contexts,
+        "worth": held_out["over_unknown_context"] if held_out else None,
+    }
+
+
+def _used(log: ReuseLog, typed: TypedRows) -> int:
+    """Number of rows learnt from; types by context learn from users without a context too."""
+    return len(log) if typed.found else len(typed.rows)
 
 
 def _features(study: Study, log: ReuseLog) -> dict[str, Any] | None:

@@ -25,6 +25,7 @@ class TypedRows(NamedTuple):
     names : of the types
     guessed : how many rows' types were guessed from outcomes
     found : whether the types themselves were found
+    contexts : how many contexts have types of their own, numbered context by context; 0: types are everybody's
     """
 
     rows: NDArray[np.int64]
@@ -32,6 +33,7 @@ class TypedRows(NamedTuple):
     names: tuple[str, ...]
     guessed: int = 0
     found: bool = False
+    contexts: int = 0
 
     def users(self, log: ReuseLog) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Users of the rows, as places in ``log.user.names``, and the type of each."""

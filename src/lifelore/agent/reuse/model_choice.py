@@ -175,7 +175,6 @@ class _Trial:
             "value": _mean(value),
             "over_single": _interval(value - self.single),
             "over_counting": _interval(value - self.counting),
-            "by_context": best.kind.by_context,
             "over_unknown_context": _interval(value - blind),
             "candidates": [
                 {

@@ -41,15 +41,14 @@ policy; more cost time in each decision."""
 
 
 def priors_by_context(log: ReuseLog, fitted: Fitted) -> dict[str, Array]:
-    """Prior over types (n_types,) in each context, from its users and a few of everybody's."""
+    """Prior over types (n_types,) in each context of the log, from its users and a few of everybody's."""
     users, types = fitted.typed.users(log)
-    places = log.context_of_user[users]
-    known, prior = places >= 0, fitted.library.prior
+    places, prior = log.context_of_user[users], fitted.library.prior
     counts = np.zeros((len(log.context.names), len(prior)))
-    np.add.at(counts, (places[known], types[known]), 1.0)
+    np.add.at(counts, (places[places >= 0], types[places >= 0]), 1.0)
     rows = CONTEXT_USERS * prior + counts
     rows /= rows.sum(axis=1, keepdims=True)
-    return {log.context.names[place]: rows[place] for place in np.unique(places[known]).tolist()}
+    return {name: row for name, row in zip(log.context.names, rows, strict=True) if name}
 
 
 def own_contexts(log: ReuseLog, n_types: int, n_policies: int) -> list[int]:
@@ -161,7 +160,7 @@ def _parted(log: ReuseLog, typed: TypedRows, contexts: list[int]) -> TypedRows:
     words = [log.context.names[context] for context in contexts]
     names = [word if n_types == 1 else f"{name}, {word}" for word in words for name in typed.names]
     types = of_row[known] * n_types + typed.types[known]
-    return TypedRows(typed.rows[known], types, tuple(names), typed.guessed, typed.found)
+    return TypedRows(typed.rows[known], types, tuple(names), typed.guessed, typed.found, len(contexts))
 
 
 def _rows(log: ReuseLog, parted: TypedRows, wide: PolicyLibrary) -> tuple[OutcomeRows, NDArray[np.int64]]:
