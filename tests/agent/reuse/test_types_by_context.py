@@ -1,5 +1,7 @@
 """Types by context: the shrinkage beside loops, and fits in which context counts, does not, or looks wrong."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -98,18 +100,17 @@ def naive_means(log, typed, wide):
 def test_means_and_counts_are_those_of_loops(kind, model, n_types):
     log = read_log(drawn(1, RATES, n_users=90, kind=kind))
     typed = typed_of(log, n_types)
-    wide = library_of(log, typed, model).library.performance
+    wide: Any = library_of(log, typed, model).library.performance
     library, parted, counts = by_context(log, typed, model)
     ratio, expected = naive_means(log, typed, wide)
     assert ratio > 0
     assert library.n_types == len(parted.names) == 3 * n_types
-    behind = (
-        library.performance.counts.sum(axis=2) if model == "categorical" else library.performance.moments.count
-    )
+    performance: Any = library.performance
+    behind = performance.counts.sum(axis=2) if model == "categorical" else performance.moments.count
     for (context, type_, policy), (mean, count) in expected.items():
         place = n_types * int(context[1:]) + type_
         assert parted.names[place] == (context if n_types == 1 else f"type {type_ + 1}, {context}")
-        assert library.performance.mean[place, policy] == pytest.approx(mean)
+        assert performance.mean[place, policy] == pytest.approx(mean)
         assert behind[place, policy] == pytest.approx(count)
     assert counts.sum() == len(log)
 
@@ -120,18 +121,18 @@ def test_contexts_that_do_not_differ_expect_the_same():
     names, contexts = [f"u{user}" for user in users], [f"c{user // 20}" for user in users]
     log = read_log({"user": names, "policy": ["x", "y"] * 40, "outcome": outcomes.tolist(), "context": contexts})
     typed = typed_of(log, 1)
-    library = by_context(log, typed, "categorical").library
-    wide = library_of(log, typed, "categorical").library
-    assert library.performance.counts == pytest.approx(np.repeat(wide.performance.counts, 2, axis=0))
+    found: Any = by_context(log, typed, "categorical").library.performance
+    wide: Any = library_of(log, typed, "categorical").library.performance
+    assert found.counts == pytest.approx(np.repeat(wide.counts, 2, axis=0))
     assert not contexts_differ(log)
 
 
 def test_contexts_move_jointly_normal_means_and_leave_one_covariance():
     log = read_log(drawn(0, RATES, kind="minutes", n_users=600))
-    library = by_context(log, typed_of(log, 1), "joint-normal").library
-    assert library.performance.mean == pytest.approx(np.array(RATES), abs=0.2)
+    performance: Any = by_context(log, typed_of(log, 1), "joint-normal").library.performance
+    assert performance.mean == pytest.approx(np.array(RATES), abs=0.2)
     # Outcomes less their contexts' means are noise.
-    variance = library.performance.noise**2 + np.diag(library.performance.covariance)
+    variance = performance.noise**2 + np.diag(performance.covariance)
     assert variance == pytest.approx(NOISE**2, abs=0.04)
 
 

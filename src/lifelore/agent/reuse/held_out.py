@@ -1,10 +1,10 @@
 """How well libraries serve users of a log who were held out: log scores, and the values of the policies chosen.
 
 A held-out user starts as a stranger of the user's context, and the library is asked twice: before the first
-outcome, and when half of the user's outcomes were shown to it. Each time it gives a probability to each outcome
-that was not shown, and chooses one of the policies that these outcomes are of. The value of the choice is the
-user's mean outcome of that policy among them. Outcomes are scored in bins that all models share, so that
-categories and amounts compare.
+outcome, and when half of the user's outcomes were shown to it. Each time it chooses one of the policies that the
+outcomes which were not shown are of. The value of the choice is the user's mean outcome of that policy among them.
+The second time it also gives a probability to each of these outcomes. They are scored in bins that all models
+share, so that categories and amounts compare.
 """
 
 from collections.abc import Mapping
@@ -34,10 +34,10 @@ COUNTED = 2.0
 
 
 class Scores(NamedTuple):
-    """Of each held-out user, (n_users,), means of the two times.
+    """Of each held-out user, (n_users,).
 
-    log_score : mean log probability of an outcome's bin; 0 where the library knows none of the policies
-    value : mean outcome of the policy chosen; NaN where there was no choice but a single policy
+    log_score : mean log probability of a later outcome's bin; 0 where the library knows none of the policies
+    value : mean outcome of the policy chosen, mean of both times; NaN where there was only one policy
     """
 
     log_score: Array
@@ -59,8 +59,8 @@ class HeldOut:
     outcomes : (n_users, MOST_SHOWN) float64
     half : (n_users,) int64
         Number of outcomes that are shown.
-    later : (2, n_users, MOST_SHOWN) bool
-        Outcomes that are not shown at the start, and when half are.
+    later : (n_users, MOST_SHOWN) bool
+        The other outcomes.
     """
 
     def __init__(self, log: ReuseLog) -> None:
@@ -70,8 +70,7 @@ class HeldOut:
         at = user[rows], turn[rows]
         self.policies[at], self.outcomes[at] = log.policy.codes[rows], log.outcomes[rows]
         self.half = np.minimum(np.bincount(user), MOST_SHOWN) // 2
-        later = np.arange(MOST_SHOWN) >= self.half[:, None]
-        self.later = (self.policies >= 0) & np.stack([np.ones_like(later), later])
+        self.later = (self.policies >= 0) & (np.arange(MOST_SHOWN) >= self.half[:, None])
         ends = np.unique(log.outcomes)
         cuts = 0.5 * (ends[:-1] + ends[1:])
         some = np.searchsorted(ends, np.quantile(log.outcomes, np.arange(1, BINS) / BINS))
@@ -91,23 +90,23 @@ class HeldOut:
         priors = [(contexts or {}).get(name, library.prior) for name in (*self.log.context.names, "")]
         # Without a context the place is -1, the last row.
         algorithm.log_belief[:] = np.stack([algorithm.start(prior) for prior in priors])[self.log.context_of_user]
-        start = self._asked(algorithm, place, self.later[0])
+        every = np.arange(len(self.policies))
+        start = self._expected(algorithm.known(every).performance, algorithm.belief(every), place)
         for turn, policies in enumerate(place[self.policies].T):
             users = np.flatnonzero((turn < self.half) & (policies >= 0))
             if users.size:
                 algorithm.update(users, policies[users], self.outcomes[users, turn])
-        half = self._asked(algorithm, place, self.later[1])
-        log_score, value = (_mean_of_times(*pair) for pair in zip(start, half, strict=True))
-        return Scores(np.nan_to_num(log_score), value)
-
-    def _asked(self, algorithm: ReuseAlgorithm, place: NDArray[np.int64], later: Bools) -> tuple[Array, Array]:
-        """Log scores and values of all users at one time, (n_users,) each; `later` outcomes are not shown yet."""
-        every = np.arange(len(self.policies))
         performance, belief = algorithm.known(every).performance, algorithm.belief(every)
+        value = self._values(start, self._expected(performance, belief, place))
+        return Scores(self._log_score(performance, belief, place[self.policies]), value)
+
+    @staticmethod
+    def _expected(performance: Prediction, belief: Array, place: NDArray[np.int64]) -> Array:
+        """Expected outcomes of the log's policies, (n_users, n_policies); minus infinity without a place."""
         known = place[:-1] >= 0
-        expected = np.full((len(every), len(known)), -np.inf)
+        expected = np.full((len(belief), len(known)), -np.inf)
         expected[:, known] = performance.expected(belief)[:, place[:-1][known]]
-        return self._log_score(performance, belief, place[self.policies], later), self.value(expected, later)
+        return expected
 
     def by_means(self, means: Array, counted: float = np.inf) -> Array:
         """Values of choosing by policies' `means` that count as `counted` outcomes beside a user's own."""
@@ -116,8 +115,13 @@ class HeldOut:
         number = np.bincount(place, minlength=len(self.policies) * n).reshape(-1, n)
         total = np.bincount(place, self.outcomes[shown], minlength=len(self.policies) * n).reshape(-1, n)
         own = total / np.maximum(number, 1) - means
-        start = self.value(np.tile(means, (len(number), 1)), self.later[0])
-        return _mean_of_times(start, self.value(means + number / (number + counted) * own, self.later[1]))
+        return self._values(np.tile(means, (len(number), 1)), means + number / (number + counted) * own)
+
+    def _values(self, start: Array, half: Array) -> Array:
+        """Mean of the values of both times, by expected outcomes (n_users, n_policies) at each."""
+        both = np.stack([self.value(start, self.policies >= 0), self.value(half, self.later)])
+        number = (~np.isnan(both)).sum(axis=0)
+        return np.where(number > 0, np.nansum(both, axis=0) / np.maximum(number, 1), np.nan)
 
     def value(self, expected: Array, scored: Bools) -> Array:
         """Mean outcome of the best of the policies of `scored` outcomes, by `expected` (n_users, n_policies)."""
@@ -129,8 +133,8 @@ class HeldOut:
         found = (self.outcomes * chosen).sum(axis=1) / np.maximum(chosen.sum(axis=1), 1)
         return np.where(several, found, np.nan)
 
-    def _log_score(self, performance: Prediction, belief: Array, own: NDArray[np.int64], later: Bools) -> Array:
-        scored, bins = later & (own >= 0), np.searchsorted(self.cuts, self.outcomes).clip(1, len(self.cuts) - 1)
+    def _log_score(self, performance: Prediction, belief: Array, own: NDArray[np.int64]) -> Array:
+        scored, bins = self.later & (own >= 0), np.searchsorted(self.cuts, self.outcomes)
         probs = np.zeros(own.shape)
         for number, cut in enumerate(self.cuts):
             # P(outcome > cut) ends the bin below the cut, and begins the one above.
@@ -138,12 +142,4 @@ class HeldOut:
             above = (belief[..., None] * above).sum(axis=1)
             probs += np.where(bins == number + 1, above, 0.0) - np.where(bins == number, above, 0.0)
         logs = np.where(scored, np.log(np.maximum(probs, LEAST)), 0.0)
-        number = scored.sum(axis=1)
-        return np.where(number > 0, logs.sum(axis=1) / np.maximum(number, 1), np.nan)
-
-
-def _mean_of_times(start: Array, half: Array) -> Array:
-    """Mean of numbers of users at two times, of one where the other is NaN."""
-    both = np.stack([start, half])
-    number = (~np.isnan(both)).sum(axis=0)
-    return np.where(number > 0, np.nansum(both, axis=0) / np.maximum(number, 1), np.nan)
+        return logs.sum(axis=1) / np.maximum(scored.sum(axis=1), 1)
