@@ -118,7 +118,7 @@ def naive_scores(held_out, contexts):
                 agent.update(policy, outcome)
         times.append(asked(held_out, agent, rows[len(rows) // 2 :]))
         scores.append(times[1][0])
-        values.append(np.nanmean([value for _, value in times]))
+        values.append(np.nanmean(np.array([value for _, value in times])))
     return scores, values
 
 
