@@ -166,3 +166,10 @@ def test_later_outcomes_of_a_single_policy_have_no_value_and_long_histories_are_
     assert np.isnan(held_out.by_means(np.array([1.0, 0.0]))).tolist() == [False, True]
     assert (held_out.policies >= 0).sum(axis=1).tolist() == [MOST_SHOWN, 2]
     assert held_out.half.tolist() == [MOST_SHOWN // 2, 1]
+
+
+def test_users_without_a_click_are_one_bin():
+    log = {"user": ["a", "a", "b", "b"], "policy": ["x", "y"] * 2, "outcome": [0.0] * 4}
+    found = HeldOut(read_log(log)).of_library(LIBRARY)
+    assert found.log_score == pytest.approx(0.0)
+    assert found.value.tolist() == [0.0, 0.0]

@@ -72,9 +72,10 @@ class HeldOut:
         self.half = np.minimum(np.bincount(user), MOST_SHOWN) // 2
         self.later = (self.policies >= 0) & (np.arange(MOST_SHOWN) >= self.half[:, None])
         ends = np.unique(log.outcomes)
-        cuts = 0.5 * (ends[:-1] + ends[1:])
+        # Outcomes may all be equal, as are rare clicks in a part of the users: then there is a single bin.
+        cuts = np.append(0.5 * (ends[:-1] + ends[1:]), np.inf)
         some = np.searchsorted(ends, np.quantile(log.outcomes, np.arange(1, BINS) / BINS))
-        self.cuts = np.concatenate([[-np.inf], np.unique(cuts[np.minimum(some, len(cuts) - 1)]), [np.inf]])
+        self.cuts = np.unique([-np.inf, *cuts[np.minimum(some, max(len(ends) - 2, 0))], np.inf])
 
     def of_library(self, library: PolicyLibrary, contexts: Mapping[str, Array] | None = None) -> Scores:
         """The scores of a library; policies that it does not know are neither scored nor chosen.
