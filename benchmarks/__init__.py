@@ -1,4 +1,4 @@
-"""Benchmarks of speed: ratios to other programs, measured side by side; the answer is plain data.
+"""Benchmarks of speed and of one value: ratios to others, measured side by side; the answer is plain data.
 
 A script a subject; `peers` holds the programs beside ours, and `rounds` measures all in turns. ``python -m
 benchmarks`` lists them, ``python -m benchmarks NAME`` runs one. Stored results lie in ``benchmarks/results``.
@@ -22,6 +22,7 @@ BENCHES = {
     "buildings": "the first and a later task in buildings of 5,000 to 300,000 places",
     "lives": "the time of a life's tasks, beside Q-learning in plain Python",
     "priors": "an action prior of a million contexts, beside dictionaries and lists; a factory's tables",
+    "personalise_value": "choices for strangers by the default of reuse fit, beside LinUCB; value, not speed",
 }
 """Each benchmark and what it measures; the function is ``bench_NAME(repeats, progress)`` in the module NAME."""
 

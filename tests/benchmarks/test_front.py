@@ -30,7 +30,7 @@ def test_all_ten_are_listed_with_a_line_each(capsys):
     assert main([]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == list(BENCHES)
-    assert len(BENCHES) == 10
+    assert len(BENCHES) == 11
     assert all(callable(getattr(import_module(f"benchmarks.{name}"), f"bench_{name}")) for name in BENCHES)
 
 

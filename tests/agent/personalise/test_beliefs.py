@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lifelore.agent.reuse import user_belief
 from lifelore.agent.reuse.history import KIND, VERSION, Decision, open_history, user_key
-from lifelore.agent.reuse.past import PastUser
+from lifelore.agent.personalise.past import PastUser
 from lifelore.agent.reuse.user_belief import basis_of, open_belief, replayed
 from lifelore.agent.reuse.user_state import from_bytes
 

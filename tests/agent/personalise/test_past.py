@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from lifelore.agent.reuse.history import open_history, user_key
-from lifelore.agent.reuse.past import read_past
+from lifelore.agent.personalise.past import read_past
 from lifelore.agent.reuse.user_belief import NAMED_TYPE, open_belief
 
 from lifelore.agent.personalise.decisions import choose, forget, update

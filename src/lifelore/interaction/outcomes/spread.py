@@ -73,25 +73,55 @@ class Spread(NamedTuple):
         return cls(found[0], found[1])
 
 
-def spread_between(pairs: NDArray[np.int64], tasks: NDArray[np.int64], values: Array) -> Spread | None:
-    """The spread by the variance of outcomes between tasks of the same pair (one-way analysis of variance).
+class VarianceAnalysis(NamedTuple):
+    """One-way analysis of variance of outcomes of several pairs, within each pair between tasks.
+
+    ratio : F, the variance between tasks' means over that within tasks
+    between, within : degrees of freedom
+    size : mean number of outcomes of a task with a pair, where these differ as the analysis counts it
+    """
+
+    ratio: float
+    between: int
+    within: int
+    size: float
+
+    @property
+    def spread(self) -> float:
+        """Variance of tasks' means in units of the variance of an outcome, ≥ 0."""
+        return max(0.0, (self.ratio - 1) / self.size)
+
+    @property
+    def chance(self) -> float:
+        """P(F at least as large) of independent normal outcomes whose tasks do not differ."""
+        from scipy.special import fdtrc
+
+        return float(fdtrc(self.between, self.within, self.ratio))
+
+
+def variance_analysis(
+    pairs: NDArray[np.int64], tasks: NDArray[np.int64], values: Array, least: int = 1
+) -> VarianceAnalysis | None:
+    """The analysis of variance between tasks of the same pair.
 
     Parameters
     ----------
     pairs, tasks : (n,) int
         Number of the pair of type and policy, and of the task, of each outcome.
     values : (n,) float
+    least : int
+        Number of comparisons between tasks, and within a task, that are needed.
 
     Returns
     -------
-    Spread or None
-        None where fewer than `LEAST_FREEDOM` comparisons between tasks, or within a task, are possible.
+    VarianceAnalysis or None
+        None where fewer comparisons are possible, or outcomes within a task never differ.
     """
-    groups, of_group, sizes = np.unique(np.stack([pairs, tasks]), axis=1, return_inverse=True, return_counts=True)
-    of_group = of_group.ravel()
-    _, of_pair, pair_groups = np.unique(groups[0], return_inverse=True, return_counts=True)
-    between, within = (pair_groups - 1).sum(), len(values) - len(sizes)
-    if min(between, within) < LEAST_FREEDOM:
+    n_tasks = int(tasks.max(initial=0)) + 1
+    groups, of_group, sizes = np.unique(pairs * n_tasks + tasks, return_inverse=True, return_counts=True)
+    _, of_pair, pair_groups = np.unique(groups // n_tasks, return_inverse=True, return_counts=True)
+    between, within = int((pair_groups - 1).sum()), len(values) - len(sizes)
+    if min(between, within) < least:
         return None
     totals = np.bincount(of_pair, sizes)
     group_means = np.bincount(of_group, values) / sizes
@@ -100,9 +130,20 @@ def spread_between(pairs: NDArray[np.int64], tasks: NDArray[np.int64], values: A
     apart = (sizes * (group_means - pair_means[of_pair]) ** 2).sum() / between
     if not noise > 0:
         return None
-    # Mean size of a group where groups differ in size, as the analysis of variance counts it.
     size = (len(values) - (np.bincount(of_pair, sizes**2) / totals).sum()) / between
-    return Spread.known(max(0.0, (apart / noise - 1) / size))
+    return VarianceAnalysis(float(apart / noise), between, within, float(size))
+
+
+def spread_between(pairs: NDArray[np.int64], tasks: NDArray[np.int64], values: Array) -> Spread | None:
+    """The spread by the variance of outcomes between tasks of the same pair, see `variance_analysis`.
+
+    Returns
+    -------
+    Spread or None
+        None where fewer than `LEAST_FREEDOM` comparisons between tasks, or within a task, are possible.
+    """
+    found = variance_analysis(pairs, tasks, values, LEAST_FREEDOM)
+    return None if found is None else Spread.known(found.spread)
 
 
 def held_out(n_types: int, numbers: int) -> NDArray[np.int64]:

@@ -5,7 +5,7 @@ import csv
 import numpy as np
 import pytest
 from lifelore.agent.reuse.history import histories, user_key
-from lifelore.agent.reuse.past import read_past
+from lifelore.agent.personalise.past import read_past
 from lifelore.agent.reuse.user_belief import open_belief
 
 from lifelore.agent.personalise.decisions import choose, update

@@ -90,7 +90,8 @@ def test_types_are_found_where_the_log_names_none(fitted):
     assert [one["users"] for one in document["types"]] == [30, 30]
     assert (document["model"], document["personalised_by"]) == ("gaussian", ["types"])
     assert document["held_out"]["users"] > 50
-    assert document["held_out"]["over_single"][1] > 0.5
+    # Half of the choices are for strangers, who get the best single policy.
+    assert document["held_out"]["over_single"][1] > 0.25
     few, _ = fitted(list(many(MEANS, users=14)), name="few")
     assert [one["best"] for one in few["types"]] in (["p0", "p1"], ["p1", "p0"])
     asked, _ = fitted(list(many(MEANS)), types=1, name="one")
@@ -99,7 +100,7 @@ def test_types_are_found_where_the_log_names_none(fitted):
 
 @pytest.mark.parametrize(
     ("model", "kind"),
-    [("auto", "gaussian"), ("categorical", "categorical"), ("student-t", "student-t"), ("joint-normal",) * 2],
+    [("auto", "categorical"), ("categorical", "categorical"), ("student-t", "student-t"), ("joint-normal",) * 2],
 )
 def test_three_users_hold_nobody_out(model, kind, fitted):
     document, study = fitted([f"u{i % 3},p{i % 2},{i // 2 % 2}" for i in range(18)], model=model)
@@ -113,7 +114,7 @@ def test_who_gets_the_same_as_everybody_is_told_so(fitted):
     assert document["personalised_by"] == []
     assert document["notes"][0].startswith("nothing is personalised: one type was found")
     assert "every user starts with x" in document["notes"][0]
-    assert document["notes"][1].startswith("contexts and features change nothing")
+    assert document["notes"][1] == "context changes nothing: outcomes do not differ by context"
     items, _ = fitted(["a,x,1", "a,y,0", "b,x,2"], model="joint-normal")
     assert items["personalised_by"] == ["items"]
     assert not any("nothing is personalised" in note for note in items["notes"])

@@ -101,47 +101,62 @@ def rows_of(user):
     return [(p, x) for u, p, x in zip(LOG["user"], LOG["policy"], LOG["outcome"], strict=True) if u == user]
 
 
-def naive_scores(held_out):
-    """Log score and value of each user, one outcome at a time."""
+CONTEXTS = {"k": np.array([0.9, 0.1]), "l": np.array([0.2, 0.8])}
+"""The log has k for user a, and nothing for others."""
+
+
+def naive_scores(held_out, contexts):
+    """Log score and value of each user, asked before the first outcome and when half are shown."""
     scores, values = [], []
     for user in ("a", "b", "c"):
         rows = rows_of(user)
-        shown, later = rows[: len(rows) // 2], rows[len(rows) // 2 :]
-        agent = BayesianPolicyReuse(LIBRARY, dynamics=TypeDynamics.static())
-        for policy, outcome in shown:
+        prior = contexts.get("k") if user == "a" else None
+        agent = BayesianPolicyReuse(LIBRARY, dynamics=TypeDynamics.static(), prior=prior)
+        times = [asked(held_out, agent, rows)]
+        for policy, outcome in rows[: len(rows) // 2]:
             if policy in LIBRARY.policies:
                 agent.update(policy, outcome)
-        known = agent.algorithm.known(0).performance
-        logs = []
-        for policy, outcome in later:
-            place = int(np.searchsorted(held_out.cuts, outcome))
-            below = known.cumulative(LIBRARY.policies.index(policy), held_out.cuts[place - 1 : place + 1])
-            logs.append(np.log(max(agent.belief @ (below[:, 1] - below[:, 0]), LEAST)))
-        scores.append(np.mean(logs))
-        offered = sorted({policy for policy, _ in later})
-        expected = [agent.expected_utility()[LIBRARY.policies.index(policy)] for policy in offered]
-        best = offered[int(np.argmax(expected))]
-        own = [outcome for policy, outcome in later if policy == best]
-        values.append(np.mean(own) if len(offered) > 1 else np.nan)
+        times.append(asked(held_out, agent, rows[len(rows) // 2 :]))
+        scores.append(times[1][0])
+        values.append(np.nanmean(np.array([value for _, value in times])))
     return scores, values
 
 
-def test_scores_are_those_of_loops():
-    held_out = HeldOut(read_log(LOG))
-    found = held_out.of_library(LIBRARY)
-    scores, values = naive_scores(held_out)
+def asked(held_out, agent, later):
+    """Mean log probability of the bins of later outcomes, and the mean of those of the policy chosen."""
+    known = agent.algorithm.known(0).performance
+    logs = []
+    for policy, outcome in later:
+        if policy in LIBRARY.policies:
+            place = int(np.searchsorted(held_out.cuts, outcome))
+            below = known.cumulative(LIBRARY.policies.index(policy), held_out.cuts[place - 1 : place + 1])
+            logs.append(np.log(max(agent.belief @ (below[:, 1] - below[:, 0]), LEAST)))
+    offered = sorted({policy for policy, _ in later if policy in LIBRARY.policies})
+    expected = [agent.expected_utility()[LIBRARY.policies.index(policy)] for policy in offered]
+    best = offered[int(np.argmax(expected))]
+    own = [outcome for policy, outcome in later if policy == best]
+    return np.mean(logs), np.mean(own) if len(offered) > 1 else np.nan
+
+
+@pytest.mark.parametrize("contexts", [{}, CONTEXTS])
+def test_scores_are_those_of_loops(contexts):
+    log = LOG | {"context": ["k" if user == "a" else "" for user in LOG["user"]]}
+    held_out = HeldOut(read_log(log))
+    found = held_out.of_library(LIBRARY, contexts)
+    scores, values = naive_scores(held_out, contexts)
     assert found.log_score == pytest.approx(scores)
     assert found.value == pytest.approx(values, nan_ok=True)
-    assert np.isnan(found.value).tolist() == [False, False, False]
 
 
 def test_counting_is_the_mean_of_own_outcomes_and_two_of_everybodys():
     held_out = HeldOut(read_log(LOG))
     means = np.array([1.9, 2.0, 0.0])
+    # At the start all choose y: a 2 of 0 and 4; b 1.5 of 1 and 2; c 3.5.
+    start = np.array([2.0, 1.5, 3.5])
     # a showed x 3, y 0: x is (2 · 1.9 + 3) / 3 = 2.27, y 4 / 3; b showed y 1: x 1.9, y (4 + 1) / 3; c showed z.
-    assert held_out.by_means(means, COUNTED).tolist() == [1.75, 2.0, 3.5]
+    assert held_out.by_means(means, COUNTED) == pytest.approx((start + np.array([1.75, 2.0, 3.5])) / 2)
     # Everybody's best policy is y.
-    assert held_out.by_means(means).tolist() == [4.0, 2.0, 3.5]
+    assert held_out.by_means(means) == pytest.approx((start + np.array([4.0, 2.0, 3.5])) / 2)
 
 
 def test_later_outcomes_of_a_single_policy_have_no_value_and_long_histories_are_cut():
@@ -149,5 +164,12 @@ def test_later_outcomes_of_a_single_policy_have_no_value_and_long_histories_are_
     log = {"user": ["a"] * n + ["b"] * 2, "policy": ["x", "y"] * (n // 2) + ["x", "x"], "outcome": [1.0, 0.0] * 26}
     held_out = HeldOut(read_log(log))
     assert np.isnan(held_out.by_means(np.array([1.0, 0.0]))).tolist() == [False, True]
-    assert (held_out.shown[0] >= 0).sum(axis=1).tolist() == [MOST_SHOWN, 1]
-    assert (held_out.scored[0] >= 0).sum(axis=1).tolist() == [MOST_SHOWN, 1]
+    assert (held_out.policies >= 0).sum(axis=1).tolist() == [MOST_SHOWN, 2]
+    assert held_out.half.tolist() == [MOST_SHOWN // 2, 1]
+
+
+def test_users_without_a_click_are_one_bin():
+    log = {"user": ["a", "a", "b", "b"], "policy": ["x", "y"] * 2, "outcome": [0.0] * 4}
+    found = HeldOut(read_log(log)).of_library(LIBRARY)
+    assert found.log_score == pytest.approx(0.0)
+    assert found.value.tolist() == [0.0, 0.0]

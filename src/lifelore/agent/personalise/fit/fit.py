@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from lifelore.agent.personalise.earlier_studies import take_earlier
 from lifelore.agent.personalise.fit.fit_notes import fit_notes, personalised_by
-from lifelore.agent.personalise.fit.library_from_log import TypedRows, library_of
-from lifelore.agent.personalise.fit.model_choice import chosen_model
+from lifelore.agent.personalise.fit.library_from_log import Fitted, TypedRows, library_of
+from lifelore.agent.personalise.fit.model_choice import Kind, chosen_model
+from lifelore.agent.personalise.fit.types_by_context import by_context, contexts_differ, priors_by_context
 from lifelore.agent.personalise.fit.types_of_users import typed_rows
 from lifelore.agent.personalise.log.log import ReuseLog, read_log
 from lifelore.agent.personalise.log.log_format import LogFormat
@@ -29,15 +30,12 @@ from lifelore.agent.personalise.study import (
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.feature_prior import FeaturePrior
-from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import DEFAULT_RULE
 from lifelore.memory import Memory
 
 MODELS = ("auto", "gaussian", "student-t", "categorical", "joint-normal")
 KEPT_SETTINGS = ("control", "incumbent", "rule", "explore", "change", "models")
 """Settings of a study that a new fit sets anew; where one is another than before, the fit says so."""
-CONTEXT_USERS = 5.0
-"""Users of everybody's prior that are mixed into each context's."""
 
 
 @dataclass(frozen=True)
@@ -106,8 +104,13 @@ def fit(
         were compared on users held out (None where they were not): number of ``users`` and mean ``value`` of the
         chosen model's choices, its difference and 95 % interval to the best single policy (``over_single``) and
         to counting a user's own outcomes with a prior worth two (``over_counting``), and all ``candidates``;
-        ``personalised_by``: "types", "items" (what a policy shows tells of others), both, or nothing; ``notes``:
-        sentences for the reader; ``types`` (name, users, prior, best policy);
+        ``personalised_by``: "types", "context" (types by context), "items" (what a policy shows tells of others),
+        several, or nothing; ``notes``: sentences for the reader; ``context`` (None without contexts): ``users``
+        with one, ``several`` (users with more than one; the last counts), ``differ`` (whether outcomes differ
+        between contexts beyond chance), ``types_of`` (number of contexts with types of their own; 0: types are
+        everybody's), ``worth``: gain of choices for held-out users whose contexts are known over choices without
+        a look at them, with its 95 % interval (None where nobody was held out);
+        ``types`` (name, users, prior, best policy);
         ``policies`` (name, state, mean); ``means`` and ``outcomes`` by type and policy; ``borrowed`` (pairs
         without an outcome, which got the policy's outcomes on all types); ``contexts``; ``features`` (None
         without them): their ``names``, ``users`` who have all, chosen ``strength`` and held-out ``gain`` in nats
@@ -131,7 +134,8 @@ def fit(
         past = keep_fitted_past(memory, study, log)
     document = _document(study, log, typed, counts) | {"changed": _changed(study, earlier), "held_out": held_out}
     document["kept"] = _kept(memory, study, past) if earlier else None
-    return document | {"personalised_by": personalised_by(study), "notes": fit_notes(study, document)}
+    document |= {"context": _context(log, typed, held_out), "personalised_by": personalised_by(study, typed)}
+    return document | {"notes": fit_notes(study, document, log, settings.model)}
 
 
 def study_of_log(
@@ -148,42 +152,32 @@ def study_of_log(
     """
     generator = stream(settings.seed, "reuse types", settings.name)
 
-    def library_of_part(part: ReuseLog, model: str, types: int | None) -> PolicyLibrary:
-        return library_of(part, typed_rows(part, model, types, generator), model)[0]
+    def fitted(part: ReuseLog, kind: Kind) -> Fitted:
+        typed = typed_rows(part, kind.model, kind.types, generator)
+        return (by_context if kind.by_context else library_of)(part, typed, kind.model)
 
-    choice = chosen_model(log, settings.model, settings.types, library_of_part, generator)
-    typed = typed_rows(log, choice.model, choice.types, generator)
-    library, counts = library_of(log, typed, choice.model)
+    choice = chosen_model(log, settings.model, settings.types, fitted, generator)
+    found = fitted(log, choice.kind)
     # Computed once and stored with the library.
-    library.performance.spread  # noqa: B018  # pyright: ignore
-    return _study(log, library, typed, settings, earlier or {}), typed, counts, choice.held_out
+    found.library.performance.spread  # noqa: B018  # pyright: ignore
+    return _study(log, found, settings, earlier or {}), found.typed, found.counts, choice.held_out
 
 
-def _study(
-    log: ReuseLog, library: PolicyLibrary, typed: TypedRows, settings: FitSettings, earlier: dict[str, str]
-) -> Study:
+def _study(log: ReuseLog, found: Fitted, settings: FitSettings, earlier: dict[str, str]) -> Study:
+    library, typed = found.library, found.typed
     known = {policy: RETIRED if earlier.get(policy) == RETIRED else ACTIVE for policy in library.policies}
     # What the logs do not know cannot be chosen; it goes, unless it still waits for its first outcomes.
     gone = {policy: state for policy, state in earlier.items() if policy not in known}
     states = known | {policy: PILOT if state == PILOT else RETIRED for policy, state in gone.items()}
     if ACTIVE not in states.values():
         raise InputError("the logs must hold a policy that is not retired, got none")
-    fitted = {"rows": len(typed.rows), "users": len(typed.users(log)[0]), "found": typed.found}
+    fitted = {"rows": _used(log, typed), "users": len(typed.users(log)[0]), "found": typed.found}
     fitted["time"] = int(time.time())
     return Study(
-        settings.name, library, states, _contexts(log, typed, library.prior), settings.control,
+        settings.name, library, states, priors_by_context(log, found), settings.control,
         settings.incumbent, settings.rule, settings.explore, settings.change, settings.models, fitted,
         feature_prior=_feature_prior(log, typed, library.prior, settings.seed),
     )  # fmt: skip
-
-
-def _contexts(log: ReuseLog, typed: TypedRows, prior: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
-    """Prior over types in each context, from its users and a few of everybody's."""
-    counts: dict[str, NDArray[np.float64]] = {}
-    for user, type_ in zip(*typed.users(log), strict=True):
-        if log.context_of_user[user] >= 0:
-            counts.setdefault(log.context.names[log.context_of_user[user]], CONTEXT_USERS * prior)[type_] += 1
-    return {context: count / count.sum() for context, count in sorted(counts.items())}
 
 
 def _feature_prior(log: ReuseLog, typed: TypedRows, prior: NDArray[np.float64], seed: int) -> FeaturePrior | None:
@@ -229,13 +223,13 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
     active = study.active_numbers
     return {
         "study": study.name,
-        "rows": len(typed.rows),
+        "rows": _used(log, typed),
         "pending": log.pending,
         "filled_outcomes": log.filled_outcomes,
         "filled_policies": log.filled_policies,
         "without_policy": log.without_policy,
         "guessed": typed.guessed,
-        "left_out": len(log) - len(typed.rows),
+        "left_out": len(log) - _used(log, typed),
         "users": len(log.user.names),
         "model": library.performance.kind,  # type: ignore[attr-defined]
         "types_found": typed.found,
@@ -264,6 +258,25 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
         "change": study.change,
         "models": study.models,
     }
+
+
+def _context(log: ReuseLog, typed: TypedRows, held_out: Mapping[str, Any] | None) -> dict[str, Any] | None:
+    if not any(log.context.names):
+        return None
+    named = np.array([bool(name) for name in log.context.names])[log.context.codes]
+    pairs = np.unique(np.stack([log.user.codes, log.context.codes])[:, named], axis=1)
+    return {
+        "users": int((log.context_of_user >= 0).sum()),
+        "several": int((np.bincount(pairs[0]) > 1).sum()),
+        "differ": contexts_differ(log),
+        "types_of": typed.contexts,
+        "worth": held_out["over_unknown_context"] if held_out else None,
+    }
+
+
+def _used(log: ReuseLog, typed: TypedRows) -> int:
+    """Number of rows learnt from; types by context learn from users without a context too."""
+    return len(log) if typed.found else len(typed.rows)
 
 
 def _features(study: Study, log: ReuseLog) -> dict[str, Any] | None:

@@ -3,42 +3,78 @@
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
+from lifelore.agent.personalise.fit.library_from_log import TypedRows
 from lifelore.agent.personalise.fit.model_choice import LEAST_USERS
+from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.agent.personalise.study import Study
 
+FEW_USERS = 10
+"""Number of users of a type below which the reader is warned."""
 
-def personalised_by(study: Study) -> list[str]:
-    """Of "types" and "items", those by which a user's outcomes tell of policies that the user has not tried."""
+
+def personalised_by(study: Study, typed: TypedRows) -> list[str]:
+    """What a choice follows from: "types" and "items" tell of policies that the user has not tried, "context"."""
     library = study.library
-    shared = library.performance.kind == "joint-normal"
-    return ["types"] * (library.n_types > 1) + ["items"] * shared
+    types, shared = library.n_types > max(1, typed.contexts), library.performance.kind == "joint-normal"
+    return ["types"] * types + ["context"] * (typed.contexts > 0) + ["items"] * shared
 
 
-def fit_notes(study: Study, document: Mapping[str, Any]) -> list[str]:
-    """Sentences on what is personalised and how well held-out users were served, for the document of a fit."""
-    notes = []
-    if not personalised_by(study):
+def fit_notes(study: Study, document: Mapping[str, Any], log: ReuseLog, model: str) -> list[str]:
+    """Sentences on what is personalised, how well held-out users were served, and what looks wrong in the log.
+
+    Parameters
+    ----------
+    document : mapping
+        Of the fit, with ``held_out``, ``context`` and ``personalised_by``.
+    model : str
+        That the user asked for.
+    """
+    notes, by = [], document["personalised_by"]
+    if not by:
         counts = study.models == "uncertain" and study.library.performance.spread.mean > 0
         own = " but by counting a user's own outcomes of each policy" if counts else ""
         notes.append(
             f"nothing is personalised{own}: one type was found, and no policy tells of another; every user starts "
             f"with {document['types'][0]['best']}"
         )
-    if study.library.n_types == 1 and (document["contexts"] or document["features"]):
-        notes.append("contexts and features change nothing: they tell of types, and there is one")
-    held_out = document["held_out"]
+    notes += _of_context(study, document) + _of_held_out(document["held_out"])
+    return notes + _warnings(document, log, model)
+
+
+def _of_context(study: Study, document: Mapping[str, Any]) -> list[str]:
+    """What the context of a user changes, and its value."""
+    context, plain = document["context"], study.library.n_types == 1
+    if document["features"]:
+        return ["contexts and features change nothing: they tell of types, and there is one"] * plain
+    if context is None:
+        return []
+    if plain:
+        served = "types by context were not compared" if context["worth"] is None else "on users held out"
+        found = f"outcomes differ between contexts, but that gives no better choices ({served})"
+        return [f"context changes nothing: {found if context['differ'] else 'outcomes do not differ by context'}"]
+    worth = ""
+    if context["worth"] is not None:
+        gain, low, high = context["worth"]
+        worth = f", worth {gain:+.3g} ({low:.3g} to {high:.3g}) an outcome on users held out"
+    if not context["types_of"]:
+        return [f"context tells of types{worth}"]
+    types = study.library.n_types // context["types_of"]
+    found = "one type: users of a context start alike" if types == 1 else f"{types} types in each context"
+    return [f"{found}; {context['types_of']} contexts have outcomes of their own{worth}"]
+
+
+def _of_held_out(held_out: Mapping[str, Any] | None) -> list[str]:
+    """How well users were served who were held out."""
     if held_out is None or held_out["over_single"] is None:
-        return [
-            *notes,
-            f"models were not compared: that needs model auto and {LEAST_USERS} users with two outcomes",
-        ]
+        return [f"models were not compared: that needs model auto and {LEAST_USERS} users with two outcomes"]
     gain, low, high = held_out["over_single"]
-    notes.append(
-        f"choices for {held_out['users']} users held out: {gain:+.3g} ({low:.3g} to {high:.3g}) an outcome over "
-        "the best single policy"
-    )
-    notes.append(_beside_counting(*held_out["over_counting"]))
-    return notes
+    return [
+        f"choices for {held_out['users']} users held out, as strangers and after half of their outcomes: "
+        f"{gain:+.3g} ({low:.3g} to {high:.3g}) an outcome over the best single policy",
+        _beside_counting(*held_out["over_counting"]),
+    ]
 
 
 def _beside_counting(gain: float, low: float, high: float) -> str:
@@ -47,3 +83,19 @@ def _beside_counting(gain: float, low: float, high: float) -> str:
         return f"{counting} does as well for them: prefer it, it is simpler"
     clearly = "better" if low > 0 else "not clearly better"
     return f"{clearly} than {counting}: {gain:+.3g} ({low:.3g} to {high:.3g})"
+
+
+def _warnings(document: Mapping[str, Any], log: ReuseLog, model: str) -> list[str]:
+    """What in the log or the settings may not be meant."""
+    found = []
+    if document["context"] and document["context"]["several"]:
+        found.append(f"{document['context']['several']} users have several contexts; the last of each counts")
+    small = [kind for kind in document["types"] if kind["users"] < FEW_USERS] if document["types_found"] else []
+    if small and len(document["types"]) > 1:
+        named = ", ".join(f"{kind['name']}: {kind['users']}" for kind in small[:3])
+        found.append(f"{len(small)} types have fewer than {FEW_USERS} users ({named}); ask for fewer --types")
+    if model not in ("auto", "categorical") and len(np.unique(log.outcomes)) == 2:
+        found.append(
+            f"outcomes have two values, which model {model} reads as amounts; --model categorical counts them"
+        )
+    return found

@@ -1,11 +1,14 @@
-"""How well libraries serve users of a log who were held out: log scores, and the value of the policy chosen.
+"""How well libraries serve users of a log who were held out: log scores, and the values of the policies chosen.
 
-A held-out user's first outcomes are shown to the library. It then gives a probability to each later outcome, and
-chooses one of the policies that these outcomes are of. The value is the user's mean later outcome of that policy.
-Outcomes are scored in bins that all models share, so that categories and amounts compare.
+A held-out user starts as a stranger of the user's context, and the library is asked twice: before the first
+outcome, and when half of the user's outcomes were shown to it. Each time it chooses one of the policies that the
+outcomes which were not shown are of. The value of the choice is the user's mean outcome of that policy among them.
+The second time it also gives a probability to each of these outcomes. They are scored in bins that all models
+share, so that categories and amounts compare.
 """
 
-from typing import Any, NamedTuple
+from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +17,14 @@ from lifelore.agent.personalise.evaluate.replayed_choices import turns
 from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.prediction import Prediction
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 
 Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
-MOST_SHOWN = 10
-"""Largest number of a user's outcomes that are shown, and that are scored; more cost time."""
+MOST_SHOWN = 20
+"""Largest number of a user's outcomes that are used; more cost time."""
 BINS = 8
 """Largest number of bins of outcomes in log scores."""
 LEAST = 1e-4
@@ -31,8 +36,8 @@ COUNTED = 2.0
 class Scores(NamedTuple):
     """Of each held-out user, (n_users,).
 
-    log_score : mean log probability of a later outcome's bin
-    value : mean later outcome of the policy chosen; NaN where the later outcomes are of a single policy
+    log_score : mean log probability of a later outcome's bin; 0 where the library knows none of the policies
+    value : mean outcome of the policy chosen, mean of both times; NaN where there was only one policy
     """
 
     log_score: Array
@@ -40,76 +45,102 @@ class Scores(NamedTuple):
 
 
 class HeldOut:
-    """Users of a log, of each the first half of the outcomes to show, and the others to score.
+    """Users of a log, and of each the first `MOST_SHOWN` outcomes in turn.
 
     Parameters
     ----------
     log : ReuseLog
         Every user has at least two rows.
+
+    Attributes
+    ----------
+    policies : (n_users, MOST_SHOWN) int64
+        −1 where there is none.
+    outcomes : (n_users, MOST_SHOWN) float64
+    half : (n_users,) int64
+        Number of outcomes that are shown.
+    later : (n_users, MOST_SHOWN) bool
+        The other outcomes.
     """
 
     def __init__(self, log: ReuseLog) -> None:
         self.log, user, turn = log, log.user.codes, turns(log.user.codes)
-        n_shown = np.minimum(np.bincount(user) // 2, MOST_SHOWN)
-        self.shown = self._table(turn < n_shown[user], turn)
-        scored = (turn >= n_shown[user]) & (turn < n_shown[user] + MOST_SHOWN)
-        self.scored = self._table(scored, turn - n_shown[user])
+        rows, shape = turn < MOST_SHOWN, (len(log.user.names), MOST_SHOWN)
+        self.policies, self.outcomes = np.full(shape, -1), np.zeros(shape)
+        at = user[rows], turn[rows]
+        self.policies[at], self.outcomes[at] = log.policy.codes[rows], log.outcomes[rows]
+        self.half = np.minimum(np.bincount(user), MOST_SHOWN) // 2
+        self.later = (self.policies >= 0) & (np.arange(MOST_SHOWN) >= self.half[:, None])
         ends = np.unique(log.outcomes)
-        cuts = 0.5 * (ends[:-1] + ends[1:])
+        # Outcomes may all be equal, as are rare clicks in a part of the users: then there is a single bin.
+        cuts = np.append(0.5 * (ends[:-1] + ends[1:]), np.inf)
         some = np.searchsorted(ends, np.quantile(log.outcomes, np.arange(1, BINS) / BINS))
-        self.cuts = np.concatenate([[-np.inf], np.unique(cuts[np.minimum(some, len(cuts) - 1)]), [np.inf]])
+        self.cuts = np.unique([-np.inf, *cuts[np.minimum(some, max(len(ends) - 2, 0))], np.inf])
 
-    def _table(self, rows: NDArray[np.bool_], place: NDArray[np.int64]) -> tuple[NDArray[np.int64], Array]:
-        """Policies, −1 where there is none, and outcomes of some rows, (n_users, n) each."""
-        shape = len(self.log.user.names), MOST_SHOWN
-        policies, outcomes = np.full(shape, -1), np.zeros(shape)
-        at = self.log.user.codes[rows], place[rows]
-        policies[at], outcomes[at] = self.log.policy.codes[rows], self.log.outcomes[rows]
-        return policies, outcomes
+    def of_library(self, library: PolicyLibrary, contexts: Mapping[str, Array] | None = None) -> Scores:
+        """The scores of a library; policies that it does not know are neither scored nor chosen.
 
-    def of_library(self, library: PolicyLibrary) -> Scores:
-        """The scores of a library; policies that it does not know are neither scored nor chosen."""
+        Parameters
+        ----------
+        contexts : mapping of str to (n_types,) float, optional
+            Prior over types of users of a context; the library's for others.
+        """
         numbers = {policy: number for number, policy in enumerate(library.policies)}
         place = np.array([numbers.get(policy, -1) for policy in self.log.policy.names] + [-1])
-        algorithm = ReuseAlgorithm(library, len(self.log.user.names), dynamics=TypeDynamics.static())
-        for policies, outcomes in zip(place[self.shown[0]].T, self.shown[1].T, strict=True):
-            if (users := np.flatnonzero(policies >= 0)).size:
-                algorithm.update(users, policies[users], outcomes[users])
-        every = np.arange(algorithm.n_users)
+        algorithm = ReuseAlgorithm(library, len(self.policies), dynamics=TypeDynamics.static())
+        priors = [(contexts or {}).get(name, library.prior) for name in (*self.log.context.names, "")]
+        # Without a context the place is -1, the last row.
+        algorithm.log_belief[:] = np.stack([algorithm.start(prior) for prior in priors])[self.log.context_of_user]
+        every = np.arange(len(self.policies))
+        start = self._expected(algorithm.known(every).performance, algorithm.belief(every), place)
+        for turn, policies in enumerate(place[self.policies].T):
+            users = np.flatnonzero((turn < self.half) & (policies >= 0))
+            if users.size:
+                algorithm.update(users, policies[users], self.outcomes[users, turn])
         performance, belief = algorithm.known(every).performance, algorithm.belief(every)
-        expected = performance.expected(belief)
-        by_log = np.full((len(every), len(self.log.policy.names)), -np.inf)
-        by_log[:, place[:-1] >= 0] = expected[:, place[:-1][place[:-1] >= 0]]
-        return Scores(self._log_score(performance, belief, place[self.scored[0]]), self.value(by_log))
+        value = self._values(start, self._expected(performance, belief, place))
+        return Scores(self._log_score(performance, belief, place[self.policies]), value)
+
+    @staticmethod
+    def _expected(performance: Prediction, belief: Array, place: NDArray[np.int64]) -> Array:
+        """Expected outcomes of the log's policies, (n_users, n_policies); minus infinity without a place."""
+        known = place[:-1] >= 0
+        expected = np.full((len(belief), len(known)), -np.inf)
+        expected[:, known] = performance.expected(belief)[:, place[:-1][known]]
+        return expected
 
     def by_means(self, means: Array, counted: float = np.inf) -> Array:
         """Values of choosing by policies' `means` that count as `counted` outcomes beside a user's own."""
-        policies, outcomes = self.shown
-        n = len(self.log.policy.names)
-        known = policies >= 0
-        place = (np.arange(len(policies))[:, None] * n + policies)[known]
-        number = np.bincount(place, minlength=len(policies) * n).reshape(-1, n)
-        total = np.bincount(place, outcomes[known], minlength=len(policies) * n).reshape(-1, n)
+        n, shown = len(self.log.policy.names), np.arange(MOST_SHOWN) < self.half[:, None]
+        place = (np.arange(len(self.policies))[:, None] * n + self.policies)[shown]
+        number = np.bincount(place, minlength=len(self.policies) * n).reshape(-1, n)
+        total = np.bincount(place, self.outcomes[shown], minlength=len(self.policies) * n).reshape(-1, n)
         own = total / np.maximum(number, 1) - means
-        return self.value(means + number / (number + counted) * own)
+        return self._values(np.tile(means, (len(number), 1)), means + number / (number + counted) * own)
 
-    def value(self, expected: Array) -> Array:
-        """Mean later outcome of the best of the later policies by `expected` (n_users, n_policies)."""
-        policies, outcomes = self.scored
-        users, known = np.arange(len(policies)), policies >= 0
+    def _values(self, start: Array, half: Array) -> Array:
+        """Mean of the values of both times, by expected outcomes (n_users, n_policies) at each."""
+        both = np.stack([self.value(start, self.policies >= 0), self.value(half, self.later)])
+        number = (~np.isnan(both)).sum(axis=0)
+        return np.where(number > 0, np.nansum(both, axis=0) / np.maximum(number, 1), np.nan)
+
+    def value(self, expected: Array, scored: Bools) -> Array:
+        """Mean outcome of the best of the policies of `scored` outcomes, by `expected` (n_users, n_policies)."""
+        rows, _ = np.nonzero(scored)
         offered = np.full(expected.shape, -np.inf)
-        rows = np.broadcast_to(users[:, None], policies.shape)[known]
-        offered[rows, policies[known]] = expected[rows, policies[known]]
-        chosen = policies == offered.argmax(axis=1)[:, None]
+        offered[rows, self.policies[scored]] = expected[rows, self.policies[scored]]
+        chosen = scored & (self.policies == offered.argmax(axis=1)[:, None])
         several = np.isfinite(offered).sum(axis=1) > 1
-        found = (outcomes * chosen).sum(axis=1) / np.maximum(chosen.sum(axis=1), 1)
+        found = (self.outcomes * chosen).sum(axis=1) / np.maximum(chosen.sum(axis=1), 1)
         return np.where(several, found, np.nan)
 
-    def _log_score(self, performance: Any, belief: Array, policies: NDArray[np.int64]) -> Array:
-        users, total, number = np.arange(len(belief)), np.zeros(len(belief)), np.zeros(len(belief))
-        for own, outcomes in zip(policies.T, self.scored[1].T, strict=True):
-            above = np.searchsorted(self.cuts, outcomes).clip(1, len(self.cuts) - 1)
-            ends = [performance.exceedance(self.cuts[end])[users, :, own] for end in (above - 1, above)]
-            probs = np.maximum((belief * (ends[0] - ends[1])).sum(axis=1), LEAST)
-            total, number = total + np.where(own >= 0, np.log(probs), 0.0), number + (own >= 0)
-        return total / np.maximum(number, 1)
+    def _log_score(self, performance: Prediction, belief: Array, own: NDArray[np.int64]) -> Array:
+        scored, bins = self.later & (own >= 0), np.searchsorted(self.cuts, self.outcomes)
+        probs = np.zeros(own.shape)
+        for number, cut in enumerate(self.cuts):
+            # P(outcome > cut) ends the bin below the cut, and begins the one above.
+            above = np.take_along_axis(performance.exceedance(cut), np.maximum(own, 0)[:, None], axis=2)
+            above = (belief[..., None] * above).sum(axis=1)
+            probs += np.where(bins == number + 1, above, 0.0) - np.where(bins == number, above, 0.0)
+        logs = np.where(scored, np.log(np.maximum(probs, LEAST)), 0.0)
+        return logs.sum(axis=1) / np.maximum(scored.sum(axis=1), 1)

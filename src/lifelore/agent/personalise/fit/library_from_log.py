@@ -25,6 +25,7 @@ class TypedRows(NamedTuple):
     names : of the types
     guessed : how many rows' types were guessed from outcomes
     found : whether the types themselves were found
+    contexts : how many contexts have types of their own, numbered context by context; 0: types are everybody's
     """
 
     rows: NDArray[np.int64]
@@ -32,6 +33,7 @@ class TypedRows(NamedTuple):
     names: tuple[str, ...]
     guessed: int = 0
     found: bool = False
+    contexts: int = 0
 
     def users(self, log: ReuseLog) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Users of the rows, as places in ``log.user.names``, and the type of each."""
@@ -39,8 +41,21 @@ class TypedRows(NamedTuple):
         return users, self.types[first]
 
 
-def library_of(log: ReuseLog, typed: TypedRows, model: str) -> tuple[PolicyLibrary, NDArray[np.float64]]:
-    """The library, and the number of outcomes of each pair, (n_types, n_policies).
+class Fitted(NamedTuple):
+    """A library learnt from a log.
+
+    library : PolicyLibrary
+    typed : the rows that its types are of
+    counts : (n_types, n_policies) float64, number of outcomes of each pair
+    """
+
+    library: PolicyLibrary
+    typed: TypedRows
+    counts: NDArray[np.float64]
+
+
+def library_of(log: ReuseLog, typed: TypedRows, model: str) -> Fitted:
+    """The library of typed rows.
 
     Rows of weight 0 are left out. Weights count in the outcomes of each pair, not in the prior over types.
 
@@ -59,7 +74,7 @@ def library_of(log: ReuseLog, typed: TypedRows, model: str) -> tuple[PolicyLibra
     prior = np.ones(len(typed.names)) + np.bincount(typed.users(log)[1], minlength=len(typed.names))
     names = [log.policy.names[code] for code in policies]
     if model == JointNormalOutcomes.kind:
-        return _joint_normal(log, typed, places, of_policy, names), rows.sums()
+        return Fitted(_joint_normal(log, typed, places, of_policy, names), typed, rows.sums())
     library = PolicyLibrary.from_rows(
         lent, typed.names, names, model, prior=prior / prior.sum(),
         weights=None if log.weights is None else weights,
@@ -68,7 +83,7 @@ def library_of(log: ReuseLog, typed: TypedRows, model: str) -> tuple[PolicyLibra
     spread = spread_between(rows.pair, log.user.codes[places], rows.values)
     if spread is not None:
         library.performance.spread = spread  # pyright: ignore[reportAttributeAccessIssue]
-    return library, rows.sums()
+    return Fitted(library, typed, rows.sums())
 
 
 def _joint_normal(

@@ -1,11 +1,14 @@
 """Which model of outcomes, and with how many types, serves users best who were held out when it was fitted.
 
 Candidates are types with categories where outcomes have few values, types with normal outcomes, and jointly normal
-outcomes with a single type and with the types found. Each of `PARTS` parts of the users is held out once.
+outcomes with a single type and with the types found. Where outcomes differ between contexts beyond chance, each
+family has candidates with types by context too. Each of `PARTS` parts of the users is held out once; they come
+with their contexts.
 
-Within a family, the smallest number of types wins that is not clearly below the number with the best log score, by
-log scores and choices together. Of families whose choices are not clearly worse than the best family's, the first
-in the order above wins in the same way: what is not needed is not personalised.
+Among numbers of types, the smallest wins that is not clearly below the number with the best log score, by log
+scores and choices together. Of all candidates whose choices are not clearly worse than the best, the first wins in
+the same way: categories before normal and these before jointly normal outcomes, types by context before types of
+everybody, few types before many. So what is not needed is not personalised, but contexts that differ count.
 """
 
 from collections.abc import Callable, Iterable
@@ -15,17 +18,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.personalise.fit.held_out import COUNTED, HeldOut, Scores
+from lifelore.agent.personalise.fit.library_from_log import Fitted
+from lifelore.agent.personalise.fit.types_by_context import contexts_differ, priors_by_context
 from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.core.errors import InputError
-from lifelore.interaction.library.policy_library import PolicyLibrary
 
 Array = NDArray[np.float64]
-Fit = Callable[[ReuseLog, str, int | None], PolicyLibrary]
 
 PARTS = 3
 """Parts of the users, each held out once; more cost time."""
-LEAST_USERS, MOST_USERS = 12, 1500
-"""Users with two outcomes below whom nothing is held out, and beyond whom a random sample is used."""
+LEAST_USERS = 12
+"""Number of users with two outcomes below which nothing is held out."""
+MOST_USERS, MOST_NUMBERS = (1500, 3000), 100_000
+"""Number of users beyond which a random sample is used, and of pairs of a user and a policy up to which it is the
+larger one; more cost time."""
 FEW_VALUES = 10
 """Outcomes of at most so many different values may be categories."""
 MOST_TYPES, PATIENCE = 12, 2
@@ -35,22 +41,32 @@ CLEARLY, TOGETHER = 1.64, 1.0
 or where it personalises nothing; and by log scores and choices together."""
 
 
-class Candidate(NamedTuple):
-    """A model with a number of types, None where the log names them, and its scores of the held-out users."""
+class Kind(NamedTuple):
+    """A kind of library: a model, a number of types (None: those that the log names), and whether by context."""
 
     model: str
     types: int | None
+    by_context: bool = False
+
+
+Fit = Callable[[ReuseLog, Kind], Fitted]
+
+
+class Candidate(NamedTuple):
+    """A kind of library, its scores of the held-out users, and the libraries of the parts."""
+
+    kind: Kind
     scores: Scores
+    fitted: list[Fitted]
 
 
 class ModelChoice(NamedTuple):
-    """A model, a number of types (None: those that the log names), and how it was chosen.
+    """A kind of library, and how it was chosen.
 
     held_out : None where too few users could be held out
     """
 
-    model: str
-    types: int | None
+    kind: Kind
     held_out: dict[str, Any] | None = None
 
 
@@ -66,7 +82,7 @@ def chosen_model(
     types : int, optional
         Number of types; by default chosen.
     fit : callable
-        ``fit(log, model, types)`` gives the library of a part of the log.
+        ``fit(log, kind)`` gives the library of a part of the log.
 
     Raises
     ------
@@ -77,30 +93,44 @@ def chosen_model(
         raise InputError("types must be left out where the log has a column 'type'; it names them")
     given = None if log.says_types else types or 1
     if model == "joint-normal" or (model != "auto" and (types or log.says_types)):
-        return ModelChoice(model, given)
+        return ModelChoice(Kind(model, given))
     rows, users = _sample(log, generator)
+    differ = not (log.says_types or log.feature_names) and contexts_differ(log)
     if users < max(LEAST_USERS, 2 * (types or 0)):
-        return ModelChoice("gaussian" if model == "auto" else model, given)
+        return ModelChoice(Kind(_families(log, model)[-1], given, differ))
     trial = _Trial(log.take(rows), fit, generator)
-    found: list[Candidate] = []
-    families = [model]
-    if model == "auto":
-        few = len(np.unique(log.outcomes)) <= FEW_VALUES
-        families = ["categorical", "gaussian"] if few else ["gaussian"]
     sizes = range(1, min(MOST_TYPES, users // 2) + 1) if types is None else [types]
-    for family in families:
-        found.append(trial.best_size(family, [None] if log.says_types else sizes))
+    plain = [trial.best_size(family, [None] if log.says_types else sizes) for family in _families(log, model)]
+    kinds = [one.kind for one in plain]
     if model == "auto" and not log.says_types and log.weights is None:
-        found.append(trial.best_size("joint-normal", sorted({types or 1, found[-1].types or 1})))
-    best = _best(found)
-    return ModelChoice(best.model, best.types, trial.document(best))
+        kinds += [Kind("joint-normal", size) for size in sorted({types or 1, kinds[-1].types or 1})]
+    best = _best(trial.candidates(_with_contexts(kinds, types or 1) if differ else kinds))
+    return ModelChoice(best.kind, trial.document(best))
+
+
+def _with_contexts(kinds: list[Kind], least: int) -> list[Kind]:
+    """The kinds, and before those of each family the same by context, also with the least number of types."""
+    found: list[Kind] = []
+    for model in dict.fromkeys(kind.model for kind in kinds):
+        own = [kind for kind in kinds if kind.model == model]
+        sizes = {least} if model == "joint-normal" else {least, *(kind.types or 1 for kind in own)}
+        found += [Kind(model, size, True) for size in sorted(sizes)] + own
+    return found
+
+
+def _families(log: ReuseLog, model: str) -> list[str]:
+    """Models of types to compare, the simplest first."""
+    if model != "auto":
+        return [model]
+    n_values = len(np.unique(log.outcomes))
+    return ["categorical"] * (n_values <= FEW_VALUES) + ["gaussian"] * (n_values != 2)
 
 
 class _Trial:
     """Candidates tried on the same held-out users."""
 
     def __init__(self, log: ReuseLog, fit: Fit, generator: np.random.Generator) -> None:
-        self._fit, self.tried = fit, []
+        self._fit, self.tried = fit, list[Candidate]()
         part = generator.permutation(len(log.user.names)) % PARTS
         rows = [np.flatnonzero(part[log.user.codes] == number) for number in range(PARTS)]
         self._logs = [log.take(np.flatnonzero(part[log.user.codes] != number)) for number in range(PARTS)]
@@ -114,30 +144,41 @@ class _Trial:
         """The candidate of a family with the number of types that serves best."""
         found: list[Candidate] = []
         for size in sizes:
-            found.append(self._candidate(model, size))
+            found.append(self._candidate(Kind(model, size)))
             means = [one.scores.log_score.mean() for one in found]
             if len(found) - 1 - int(np.argmax(means)) >= PATIENCE:
                 break
-        self.tried += found
         return _simplest(found)
 
-    def _candidate(self, model: str, types: int | None) -> Candidate:
-        libraries = [self._fit(log, model, types) for log in self._logs]
-        scores = [users.of_library(one) for users, one in zip(self._held_out, libraries, strict=True)]
-        return Candidate(model, types, Scores(*(np.concatenate(part) for part in zip(*scores, strict=True))))
+    def candidates(self, kinds: list[Kind]) -> list[Candidate]:
+        """The candidates of these kinds, in this order."""
+        known = {one.kind: one for one in self.tried}
+        return [known.get(kind) or self._candidate(kind) for kind in kinds]
+
+    def _candidate(self, kind: Kind) -> Candidate:
+        fitted = [self._fit(log, kind) for log in self._logs]
+        self.tried.append(Candidate(kind, self._scores(fitted), fitted))
+        return self.tried[-1]
+
+    def _scores(self, fitted: list[Fitted], with_contexts: bool = True) -> Scores:
+        parts = []
+        for log, users, found in zip(self._logs, self._held_out, fitted, strict=True):
+            priors = priors_by_context(log, found) if with_contexts else {}
+            parts.append(users.of_library(found.library, priors))
+        return Scores(*(np.concatenate(part) for part in zip(*parts, strict=True)))
 
     def document(self, best: Candidate) -> dict[str, Any]:
         """The choice as plain data; differences have 95 % intervals."""
-        value = best.scores.value
+        value, blind = best.scores.value, self._scores(best.fitted, with_contexts=False).value
         return {
             "users": int((~np.isnan(value)).sum()),
             "value": _mean(value),
             "over_single": _interval(value - self.single),
             "over_counting": _interval(value - self.counting),
+            "over_unknown_context": _interval(value - blind),
             "candidates": [
                 {
-                    "model": one.model,
-                    "types": one.types,
+                    **one.kind._asdict(),
                     "log_score": float(one.scores.log_score.mean()),
                     "over_single": _interval(one.scores.value - self.single),
                 }
@@ -150,8 +191,9 @@ def _sample(log: ReuseLog, generator: np.random.Generator) -> tuple[NDArray[np.i
     """Rows of users with two outcomes, or of a sample of them, and the number of these users."""
     serves = log.type_of_user >= 0 if log.says_types else np.ones(len(log.user.names), bool)
     users = np.flatnonzero(serves & (np.bincount(log.user.codes) > 1))
-    if len(users) > MOST_USERS:
-        users = generator.choice(users, MOST_USERS, replace=False)
+    most = int(np.clip(MOST_NUMBERS // len(log.policy.names), *MOST_USERS))
+    if len(users) > most:
+        users = generator.choice(users, most, replace=False)
     return np.flatnonzero(np.isin(log.user.codes, users)), len(users)
 
 
@@ -173,7 +215,7 @@ def _simplest(found: list[Candidate]) -> Candidate:
     best = max(found, key=lambda one: one.scores.log_score.mean()).scores
     for one in found:
         score, value = (_errors(own - other) for own, other in zip(one.scores, best, strict=True))
-        alike = one.types == 1 and one.model != "joint-normal"
+        alike = one.kind == Kind(one.kind.model, 1) and one.kind.model != "joint-normal"
         if (score + value) / np.sqrt(2) >= -(CLEARLY if alike else TOGETHER):
             break
     return one  # pyright: ignore[reportPossiblyUnboundVariable]

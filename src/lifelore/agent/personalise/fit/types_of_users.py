@@ -43,7 +43,7 @@ def _with_guessed(log: ReuseLog, named: TypedRows, model: str) -> TypedRows:
         waiting.setdefault(int(log.user.codes[row]), []).append(row)
     rows, types = named.rows.tolist(), named.types.tolist()
     if waiting:
-        library, _ = library_of(log, named, model)
+        library = library_of(log, named, model).library
         for own in waiting.values():
             agent = BayesianPolicyReuse(library, dynamics=TypeDynamics.static(), models="plug-in")
             for row in own:
