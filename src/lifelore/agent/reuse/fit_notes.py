@@ -52,10 +52,10 @@ def _of_context(study: Study, document: Mapping[str, Any]) -> list[str]:
         return []
     if plain:
         served = "types by context were not compared" if context["worth"] is None else "on users held out"
-        found = f"outcomes differ by it, but that gives no better choices ({served})"
-        return [
-            f"{context['column']} changes nothing: {found if context['differ'] else 'outcomes do not differ by it'}"
-        ]
+        found = "outcomes do not differ by it"
+        if context["differ"]:
+            found = f"outcomes differ by it, but that gives no better choices ({served})"
+        return [f"{context['column']} changes nothing: {found}"]
     worth = ""
     if context["worth"] is not None:
         gain, low, high = context["worth"]
