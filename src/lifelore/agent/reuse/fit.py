@@ -108,9 +108,10 @@ def fit(
         ``personalised_by``: "types", "context" (types by context), "items" (what a policy shows tells of others),
         several, or nothing; ``notes``: sentences for the reader; ``context`` (None without contexts):
         ``column`` of the log, ``users`` with one, ``several`` (users with more than one; the last counts),
-        ``differ`` (whether outcomes differ between contexts beyond chance), ``types_of`` (number of
-        contexts with types of their own; 0: types are everybody's), ``worth``: gain of choices for held-out users whose contexts are known over choices without
-        a look at them, with its 95 % interval (None where nobody was held out);
+        ``differ`` (whether outcomes differ between contexts beyond chance), ``types_of`` (number of contexts
+        with types of their own; 0: types are everybody's), ``worth``: gain of choices for held-out users whose
+        contexts are known over choices without a look at them, with its 95 % interval (None where nobody was
+        held out);
         ``types`` (name, users, prior, best policy);
         ``policies`` (name, state, mean); ``means`` and ``outcomes`` by type and policy; ``borrowed`` (pairs
         without an outcome, which got the policy's outcomes on all types); ``contexts``; ``features`` (None
