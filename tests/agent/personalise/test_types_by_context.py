@@ -203,7 +203,7 @@ def test_context_acts_where_there_is_one_type(kind, fitted):
     assert (best["c0"], best["c1"]) == ("p0", "p1")
     assert document["context"]["types_of"] == 3
     assert document["context"]["worth"][0] > 0
-    assert document["notes"][0].startswith("one type: users of a context start alike; 3 contexts have outcomes of")
+    assert document["notes"][0].startswith("one type: users of a context start alike; 3 contexts (context)")
     assert "worth +" in document["notes"][0]
     assert (document["left_out"], document["rows"]) == (0, 1800)
 
@@ -218,7 +218,7 @@ def test_context_that_tells_nothing_is_told_so(fitted):
     document, study = fitted(drawn(2, FLAT))
     assert (document["context"]["types_of"], document["context"]["differ"]) == (0, False)
     assert study.library.n_types == 1
-    assert "context changes nothing: outcomes do not differ by context" in document["notes"]
+    assert "context changes nothing: outcomes do not differ by it" in document["notes"]
 
 
 def test_context_acts_where_nobody_has_two_outcomes(fitted):

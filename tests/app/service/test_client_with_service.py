@@ -36,8 +36,13 @@ def served(start, study, tmp_path):
     return memory, f"http://127.0.0.1:{port}", again
 
 
-def through_kills(served, study, tmp_path, kills: int, calls: int) -> tuple[int, dict[str, float]]:
-    """Number of calls that were answered, and what the client counts, after an outage of each kill."""
+def through_kills(
+    served, study, tmp_path, kills: int, calls: int, pause: float = 0.005
+) -> tuple[int, dict[str, float]]:
+    """Number of calls that were answered, and what the client counts; an outage follows each kill.
+
+    Each thread pauses between calls, so that the outcomes of an outage fit the client's queue.
+    """
     memory, url, again = served
     child, answered, stop = again(), [], threading.Event()
     register(url, study)
@@ -48,7 +53,7 @@ def through_kills(served, study, tmp_path, kills: int, calls: int) -> tuple[int,
                 choice = client.decide(f"user {number} {len(answered) % 50}")
                 client.observe(choice, 1.0)
                 answered.append(choice.decision)
-                time.sleep(0.0005)
+                time.sleep(pause)
 
         workers = [threading.Thread(target=work, args=(number,)) for number in range(THREADS)]
         for worker in workers:
@@ -67,6 +72,7 @@ def through_kills(served, study, tmp_path, kills: int, calls: int) -> tuple[int,
             worker.join()
         assert client.flush(120)
         counts = client.counts()
+    assert counts["lost"] == 0
     child.terminate()
     child.wait()
     with open_memory(memory) as opened:
@@ -100,6 +106,6 @@ def test_outcomes_count_once_through_kills(served, study, tmp_path):
 
 @pytest.mark.soak
 def test_soak_a_client_through_kills(served, study, tmp_path):
-    answered, counts = through_kills(served, study, tmp_path, SOAK_KILLS, SOAK_CALLS)
+    answered, counts = through_kills(served, study, tmp_path, SOAK_KILLS, SOAK_CALLS, pause=0.02)
     print(answered, counts)
     assert answered >= SOAK_CALLS

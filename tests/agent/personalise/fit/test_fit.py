@@ -114,7 +114,7 @@ def test_who_gets_the_same_as_everybody_is_told_so(fitted):
     assert document["personalised_by"] == []
     assert document["notes"][0].startswith("nothing is personalised: one type was found")
     assert "every user starts with x" in document["notes"][0]
-    assert document["notes"][1] == "context changes nothing: outcomes do not differ by context"
+    assert document["notes"][1] == "context changes nothing: outcomes do not differ by it"
     items, _ = fitted(["a,x,1", "a,y,0", "b,x,2"], model="joint-normal")
     assert items["personalised_by"] == ["items"]
     assert not any("nothing is personalised" in note for note in items["notes"])

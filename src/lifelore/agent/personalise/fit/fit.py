@@ -105,11 +105,12 @@ def fit(
         chosen model's choices, its difference and 95 % interval to the best single policy (``over_single``) and
         to counting a user's own outcomes with a prior worth two (``over_counting``), and all ``candidates``;
         ``personalised_by``: "types", "context" (types by context), "items" (what a policy shows tells of others),
-        several, or nothing; ``notes``: sentences for the reader; ``context`` (None without contexts): ``users``
-        with one, ``several`` (users with more than one; the last counts), ``differ`` (whether outcomes differ
-        between contexts beyond chance), ``types_of`` (number of contexts with types of their own; 0: types are
-        everybody's), ``worth``: gain of choices for held-out users whose contexts are known over choices without
-        a look at them, with its 95 % interval (None where nobody was held out);
+        several, or nothing; ``notes``: sentences for the reader; ``context`` (None without contexts):
+        ``column`` of the log, ``users`` with one, ``several`` (users with more than one; the last counts),
+        ``differ`` (whether outcomes differ between contexts beyond chance), ``types_of`` (number of contexts
+        with types of their own; 0: types are everybody's), ``worth``: gain of choices for held-out users whose
+        contexts are known over choices without a look at them, with its 95 % interval (None where nobody was
+        held out);
         ``types`` (name, users, prior, best policy);
         ``policies`` (name, state, mean); ``means`` and ``outcomes`` by type and policy; ``borrowed`` (pairs
         without an outcome, which got the policy's outcomes on all types); ``contexts``; ``features`` (None
@@ -134,7 +135,7 @@ def fit(
         past = keep_fitted_past(memory, study, log)
     document = _document(study, log, typed, counts) | {"changed": _changed(study, earlier), "held_out": held_out}
     document["kept"] = _kept(memory, study, past) if earlier else None
-    document |= {"context": _context(log, typed, held_out), "personalised_by": personalised_by(study, typed)}
+    document |= {"context": _context(log, typed, held_out, form), "personalised_by": personalised_by(study, typed)}
     return document | {"notes": fit_notes(study, document, log, settings.model)}
 
 
@@ -260,12 +261,15 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
     }
 
 
-def _context(log: ReuseLog, typed: TypedRows, held_out: Mapping[str, Any] | None) -> dict[str, Any] | None:
+def _context(
+    log: ReuseLog, typed: TypedRows, held_out: Mapping[str, Any] | None, form: LogFormat | None
+) -> dict[str, Any] | None:
     if not any(log.context.names):
         return None
     named = np.array([bool(name) for name in log.context.names])[log.context.codes]
     pairs = np.unique(np.stack([log.user.codes, log.context.codes])[:, named], axis=1)
     return {
+        "column": form.columns.get("context", "context") if form else "context",
         "users": int((log.context_of_user >= 0).sum()),
         "several": int((np.bincount(pairs[0]) > 1).sum()),
         "differ": contexts_differ(log),

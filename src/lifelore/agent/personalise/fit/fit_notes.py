@@ -52,17 +52,19 @@ def _of_context(study: Study, document: Mapping[str, Any]) -> list[str]:
         return []
     if plain:
         served = "types by context were not compared" if context["worth"] is None else "on users held out"
-        found = f"outcomes differ between contexts, but that gives no better choices ({served})"
-        return [f"context changes nothing: {found if context['differ'] else 'outcomes do not differ by context'}"]
+        found = "outcomes do not differ by it"
+        if context["differ"]:
+            found = f"outcomes differ by it, but that gives no better choices ({served})"
+        return [f"{context['column']} changes nothing: {found}"]
     worth = ""
     if context["worth"] is not None:
         gain, low, high = context["worth"]
         worth = f", worth {gain:+.3g} ({low:.3g} to {high:.3g}) an outcome on users held out"
     if not context["types_of"]:
-        return [f"context tells of types{worth}"]
+        return [f"{context['column']} tells of types{worth}"]
     types = study.library.n_types // context["types_of"]
     found = "one type: users of a context start alike" if types == 1 else f"{types} types in each context"
-    return [f"{found}; {context['types_of']} contexts have outcomes of their own{worth}"]
+    return [f"{found}; {context['types_of']} contexts ({context['column']}) have outcomes of their own{worth}"]
 
 
 def _of_held_out(held_out: Mapping[str, Any] | None) -> list[str]:

@@ -30,8 +30,8 @@ PARTS = 3
 LEAST_USERS = 12
 """Number of users with two outcomes below which nothing is held out."""
 MOST_USERS, MOST_NUMBERS = (1500, 3000), 100_000
-"""Number of users beyond which a random sample is used, and of pairs of a user and a policy up to which it is the
-larger one; more cost time."""
+"""Size of the random sample of users, and most pairs of a user and a policy, to which the sample is cut between
+these sizes; more cost time."""
 FEW_VALUES = 10
 """Outcomes of at most so many different values may be categories."""
 MOST_TYPES, PATIENCE = 12, 2
