@@ -24,6 +24,8 @@ class Robot(TypedDict):
     tasks: int
     first: str
     last: str
+
+
 class Lore(TypedDict):
     kind: str
     key: str
@@ -31,11 +33,15 @@ class Lore(TypedDict):
     merge: str
     slots: int
     sum: int
+
+
 class Building(TypedDict):
     name: str
     key: str
     maps: int
     grids: int
+
+
 class Content(TypedDict):
     schema: int
     robots: list[Robot]
@@ -43,13 +49,19 @@ class Content(TypedDict):
     forgotten: int
     forgotten_records: int
     buildings: list[Building]
+
+
 class Merged(TypedDict):
     added: int
     already_there: int
     forgotten: int
+
+
 class ForgottenRobot(TypedDict):
     robot: str
     forgotten: int
+
+
 class ForgottenBuilding(TypedDict):
     building: str
     records: int
