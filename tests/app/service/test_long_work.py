@@ -119,7 +119,6 @@ def test_the_time_limit_ends_the_work(serve_slowly):
     status, content = ask(host, "/long?seconds=600")
     assert (status, json.loads(content)["error"]["kind"]) == (504, "time")
     wait_until(lambda: not sleepers(child))
-    assert ask(host, "/long?seconds=0")[0] == 200
 
 
 def test_sigterm_ends_the_service_whatever_runs(serve_slowly):
