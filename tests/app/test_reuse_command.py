@@ -8,8 +8,8 @@ import sys
 import numpy as np
 import pytest
 
-from lifelore.agent.personalise.fit.fit import fit
 from lifelore.agent.personalise.decisions import choose, update
+from lifelore.agent.personalise.fit.fit import fit
 from lifelore.agent.personalise.study import open_study
 from lifelore.memory import open_memory
 

@@ -4,6 +4,7 @@ import asyncio
 import json
 import threading
 import time
+from importlib import import_module
 
 import pytest
 from hypothesis import given
@@ -11,7 +12,7 @@ from hypothesis import strategies as st
 from starlette.exceptions import HTTPException
 
 from lifelore.app.service import bodies
-from lifelore.app.service.bodies import parsed, patient_json
+from lifelore.app.service.bodies import JsonRoute, parsed, patient_json
 
 VALUES = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False) | st.text(),
@@ -55,6 +56,21 @@ def test_a_large_body_is_decoded_on_another_thread():
 
     assert asyncio.run(found(bodies.LARGE))
     assert not asyncio.run(found(bodies.LARGE + 1))
+
+
+@pytest.mark.parametrize(
+    "module",
+    [
+        *(f"service.{name}_routes" for name in ("adaptation", "advice", "log", "perceive")),
+        *(f"pages.{name}.routes" for name in ("life", "play", "teach", "walk")),
+    ],
+)
+def test_all_routes_with_documents_take_large_ones(serve, module):
+    service = serve().app.state.service
+    routes = import_module(f"lifelore.app.{module}").router(service).routes
+    with_documents = [route for route in routes if getattr(route, "body_field", None)]
+    assert all(isinstance(route, JsonRoute) for route in with_documents)
+    assert with_documents or module == "pages.life.routes"
 
 
 @pytest.mark.parametrize(

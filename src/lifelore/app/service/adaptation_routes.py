@@ -13,6 +13,7 @@ from lifelore.agent.personalise.adaptation import (
     select,
 )
 from lifelore.agent.personalise.library_document import described, library_of
+from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service
 from lifelore.app.service.study_routes import LibraryDocument
 
@@ -63,7 +64,7 @@ class Moves(BaseModel):
 
 def router(service: Service) -> APIRouter:
     """The routes of adaptation."""
-    routes = APIRouter(prefix="/v1/adaptations/{name}", tags=["personalise"])
+    routes = APIRouter(prefix="/v1/adaptations/{name}", tags=["personalise"], route_class=JsonRoute)
     memory = service.memory
 
     @routes.put("", summary="Register a library of action sets")

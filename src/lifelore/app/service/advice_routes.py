@@ -6,6 +6,7 @@ from fastapi import APIRouter, Path
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from lifelore.agent.advise.advice_desk import AdviceDesk, register_desk
+from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service
 
 Name = Annotated[str, Path(description="Name of the desk.", min_length=1, max_length=60, examples=["hall"])]
@@ -74,7 +75,7 @@ class StepsRequest(BaseModel):
 
 def router(service: Service) -> APIRouter:
     """The routes of advice."""
-    routes = APIRouter(prefix="/v1/advice/{name}", tags=["advise"])
+    routes = APIRouter(prefix="/v1/advice/{name}", tags=["advise"], route_class=JsonRoute)
     memory, maps, desks = service.memory, service.settings.maps, service.desks
 
     def desk(name: str) -> AdviceDesk:

@@ -44,7 +44,8 @@ class StoreTrial:
         """Wait for a trial if one is due; StoreError where the last one failed."""
         if self._trial is None or (self._trial.done() and time.monotonic() - self._ended > EVERY):
             self._trial = asyncio.ensure_future(self._try())
-        await asyncio.wait({self._trial}, timeout=PATIENCE)
+        if not self._trial.done():
+            await asyncio.wait({self._trial}, timeout=PATIENCE)
         if not self._stores:
             raise StoreError("the memory does not store; the log of the service has the reason")
 

@@ -112,6 +112,7 @@ def _stop_at_end(file: int, server: uvicorn.Server) -> None:
     except OSError:
         pass  # no open file has ended too
     server.should_exit = True
+    _end_later(signal.SIGTERM)
 
 
 def _listening(host: str, port: int) -> socket.socket:

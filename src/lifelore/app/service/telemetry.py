@@ -62,8 +62,6 @@ class Metrics:
         self.registry.register(self._requests)
         self.count = self._requests.add
         self.running = Gauge("lifelore_requests_running", "Requests in progress.", registry=self.registry)
-        self.decisions = Counter("lifelore_decisions", "Stored decisions.", registry=self.registry)
-        self.outcomes = Counter("lifelore_outcomes", "Stored outcomes.", registry=self.registry)
         self._decided = Counter(
             "lifelore_study_decisions", "Stored decisions of a study.", _ARM, registry=self.registry
         )

@@ -160,8 +160,6 @@ class Writer:
             self._metrics.decided(study, policy, control, n)
         for (study, policy, control), outcomes in taken.items():
             self._metrics.observed(study, policy, sum(outcomes), len(outcomes), control=control)
-        self._metrics.decisions.inc(decided.total())
-        self._metrics.outcomes.inc(sum(map(len, taken.values())))
 
 
 def _result(job: _Job) -> Any:

@@ -22,6 +22,7 @@ from lifelore.agent.play_study.study_results import study_results
 from lifelore.agent.play_study.study_settings import FRAMES_A_SECOND, LENGTHS, StudySettings
 from lifelore.app.pages.open_sessions import CsvResponse, Name, OpenSessions, add_record_routes
 from lifelore.app.pages.play.live_round import LiveRound
+from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service
 from lifelore.core.errors import InputError, LifeloreError
 from lifelore.domains.ball_game.ball_game import SIZES, SPEEDS
@@ -46,7 +47,7 @@ class SessionRequest(BaseModel):
 
 def router(service: Service) -> APIRouter:
     """The routes of the page."""
-    routes = APIRouter(prefix="/v1/play", tags=["play"])
+    routes = APIRouter(prefix="/v1/play", tags=["play"], route_class=JsonRoute)
     memory, run = service.memory, service.writer.run
     sessions = OpenSessions(memory, open_session)
     playing: set[str] = set()

@@ -20,6 +20,7 @@ from lifelore.agent.factory_lesson.lesson_records import (
 )
 from lifelore.agent.factory_lesson.lesson_task import MOST_COMPONENTS
 from lifelore.app.pages.open_sessions import JsonLinesResponse, Name, OpenSessions, add_record_routes
+from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service
 from lifelore.core.errors import StoreError
 
@@ -47,7 +48,7 @@ class Learning(BaseModel):
 
 def router(service: Service) -> APIRouter:
     """The routes of the page."""
-    routes = APIRouter(prefix="/v1/teach", tags=["teach"])
+    routes = APIRouter(prefix="/v1/teach", tags=["teach"], route_class=JsonRoute)
     memory, run = service.memory, service.writer.run
     lessons = OpenSessions(memory, open_lesson)
     stepping = Lock()

@@ -10,6 +10,7 @@ from starlette.concurrency import run_in_threadpool
 from lifelore.agent.advise.advice_desk import AdviceDesk
 from lifelore.agent.advise.guided_walk import begin_walk, resume_walk, take_step, walk_desk, walk_desk_name
 from lifelore.agent.advise.walk_building import WalkBuilding, walk_building, walk_buildings
+from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service
 
 Walk = Annotated[str, Path(description="Name of the walk.", min_length=1, max_length=60, examples=["walk-1"])]
@@ -38,7 +39,7 @@ class MoveRequest(BeginRequest):
 
 def router(service: Service) -> APIRouter:
     """The routes of walks."""
-    routes = APIRouter(prefix="/v1/walks", tags=["walk"])
+    routes = APIRouter(prefix="/v1/walks", tags=["walk"], route_class=JsonRoute)
     maps, open_buildings, opening = service.settings.maps, {}, threading.Lock()
 
     def building_of(name: str) -> WalkBuilding:
