@@ -1,4 +1,4 @@
-"""Decisions and outcomes: what is drawn and stored, and that nothing counts twice, is lost or changes another's."""
+"""Decisions and outcomes: what is drawn and stored, and that nothing counts twice or is lost."""
 
 from collections import Counter
 from dataclasses import replace
@@ -129,7 +129,7 @@ def test_a_request_that_was_answered_before_takes_no_draw_from_others(file_memor
     assert [one["policy"] for one in batch[1:]] == [one["policy"] for one in singles[1:]]
 
 
-# ---- the control group -------------------------------------------------------------------------------------------
+# ---- the control group ---------------------------------------------------------------------------------------
 
 
 def test_the_control_group_is_the_share_asked_for_and_the_same_for_ever():
