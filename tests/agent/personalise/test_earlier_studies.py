@@ -144,7 +144,7 @@ def test_a_damaged_study_stays_as_it_was(old):
         broken = replace(record, values=record.values ^ 1)
         memory.contribute("x", [broken], process="p", seq=0, task={})
         with pytest.raises(
-            StoreError, match=r"study 'shop' of an earlier Lifelore is damaged .*restore an export"
+            StoreError, match=r"study 'shop' of an earlier Lifelore is damaged .*restore"
         ):
             open_study(memory, "shop")
         assert memory.studies.newest("shop") is None
