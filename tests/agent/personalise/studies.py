@@ -19,6 +19,8 @@ MEANS = np.array([[8.0, 1.0, 4.0], [1.0, 8.0, 4.0]])
 def study_of(name: str = "s", policies: Iterable[str] = POLICIES, **settings: Any) -> Study:
     """Two types, whose models are exact: outcomes of deviation 2 around `MEANS`; prior 0.6 and 0.4."""
     library = PolicyLibrary.from_means(MEANS, 2.0, ("reader", "skimmer"), tuple(policies), prior=[0.6, 0.4])
+    # Computed once and stored with the library, as a registration does.
+    getattr(library.performance, "spread", None)
     settings = {"control": 0.0, "rule": "sampling"} | settings
     return Study(name, library, dict.fromkeys(library.policies, "active"), **settings)
 

@@ -1,4 +1,4 @@
-"""The past of users: each line counts once, whatever the order or window of the log that has it, and seeds beliefs."""
+"""The past of users: each line counts once, whatever the order or window of the log that has it."""
 
 import random
 
@@ -131,8 +131,8 @@ def test_a_time_that_is_no_time_tells_lines_apart(memory, study, tmp_path):
     ("word", "milliseconds"),
     [
         ("", 0), ("1700000000", 1_700_000_000_000), ("1700000000.25", 1_700_000_000_250),
-        ("1700000000250", 1_700_000_000_250), ("1970-01-02", 86_400_000), ("1970-01-01T00:00:01+01:00", -3_599_000),
-        ("monday", None), ("inf", None),
+        ("1700000000250", 1_700_000_000_250), ("1970-01-02", 86_400_000),
+        ("1970-01-01T00:00:01+01:00", -3_599_000), ("monday", None), ("inf", None),
     ],
 )  # fmt: skip
 def test_words_of_times(word, milliseconds):
