@@ -167,6 +167,8 @@ def _decided(
 ) -> list[Answer | LifeloreError]:
     answers: list[Any] = [_or_error(request.checked, study) for request in requests]
     good = [place for place, one in enumerate(answers) if isinstance(one, Request)]
+    if not good:
+        return answers
     checked: list[Request] = [answers[place] for place in good]
     with memory.studies.writing(study.number) as rows:
         users = _users(memory, rows, study, checked)
@@ -422,6 +424,8 @@ def _observed(
 ) -> list[Answer | LifeloreError]:
     answers: list[Any] = [_or_error(_checked_outcome, *pair) for pair in outcomes]
     good = [place for place, one in enumerate(answers) if isinstance(one, tuple)]
+    if not good:
+        return answers
     with memory.studies.writing(study.number) as rows:
         ids = list({answers[place][0]: None for place in good})
         found, users = rows.locked_decisions(ids)
