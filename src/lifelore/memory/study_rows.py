@@ -229,7 +229,8 @@ class StudyRows:
         """All decisions for users by their number, in order of time."""
         query = f"SELECT {_DECISION} FROM lifelore_decisions WHERE study = ? AND person IN ({{many}})"
         found: dict[int, list[DecisionRow]] = {}
-        for row in sorted(map(_decision, self._conn.matching(query, numbers, (self._study,)))):
+        rows = map(_decision, self._conn.matching(query, numbers, (self._study,)))
+        for row in sorted(rows, key=lambda row: (row.time, row.id)):
             found.setdefault(row.person, []).append(row)
         return found
 

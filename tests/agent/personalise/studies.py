@@ -8,6 +8,7 @@ import numpy as np
 from lifelore.agent.personalise.decisions import choose, update
 from lifelore.agent.personalise.study import Study
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.memory import Memory
 
@@ -18,14 +19,20 @@ MEANS = np.array([[8.0, 1.0, 4.0], [1.0, 8.0, 4.0]])
 def study_of(name: str = "s", policies: Iterable[str] = POLICIES, **settings: Any) -> Study:
     """Two types, whose models are exact: outcomes of deviation 2 around `MEANS`; prior 0.6 and 0.4."""
     library = PolicyLibrary.from_means(MEANS, 2.0, ("reader", "skimmer"), tuple(policies), prior=[0.6, 0.4])
+    # Computed once and stored with the library, as a registration does.
+    getattr(library.performance, "spread", None)
     settings = {"control": 0.0, "rule": "sampling"} | settings
     return Study(name, library, dict.fromkeys(library.policies, "active"), **settings)
 
 
 def learnt_study(model: str, **settings: Any) -> Study:
-    """A study whose library has seen eight outcomes a pair, each 0 or 1."""
+    """A study whose library has seen eight outcomes of three types, each 0 or 1."""
     samples = np.random.default_rng(0).integers(0, 2, (3, len(POLICIES), 8)).astype(float)
-    library = PolicyLibrary.from_samples(samples, model=model, policies=POLICIES)
+    if model == JointNormalOutcomes.kind:
+        outcomes = JointNormalOutcomes(samples.mean(axis=-1), 0.2 * np.eye(3) + 0.1, 0.5)
+        library = PolicyLibrary(outcomes, policies=POLICIES)
+    else:
+        library = PolicyLibrary.from_samples(samples, model=model, policies=POLICIES)
     return Study("s", library, dict.fromkeys(POLICIES, "active"), **({"control": 0.0} | settings))
 
 

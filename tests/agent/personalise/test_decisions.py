@@ -1,4 +1,4 @@
-"""Decisions and outcomes: what is drawn and stored, and that nothing counts twice, is lost or changes another's."""
+"""Decisions and outcomes: what is drawn and stored, and that nothing counts twice or is lost."""
 
 from collections import Counter
 from dataclasses import replace
@@ -27,7 +27,7 @@ from lifelore.interaction.reuse.novelty.novelty_detector import MASS
 from lifelore.interaction.selection import RULES, rule_named
 from lifelore.memory import open_memory
 
-from .studies import MEANS, POLICIES, belief_of, one_more, study_of
+from .studies import MEANS, POLICIES, belief_of, learnt_study, one_more, study_of
 
 ODD = ("google-oauth2/117", "50% off", "o/ä%59 ✓", "=cmd", "a'b\"c", "a:b?c")
 
@@ -129,7 +129,7 @@ def test_a_request_that_was_answered_before_takes_no_draw_from_others(file_memor
     assert [one["policy"] for one in batch[1:]] == [one["policy"] for one in singles[1:]]
 
 
-# ---- the control group -------------------------------------------------------------------------------------------
+# ---- the control group ---------------------------------------------------------------------------------------
 
 
 def test_the_control_group_is_the_share_asked_for_and_the_same_for_ever():
@@ -223,6 +223,18 @@ def test_errors_of_single_items_leave_the_others(memory):
     assert [type(one) for one in found] == [dict, InputError, NotFoundError, InputError, InputError, dict]
     with memory.studies.totals(study.number) as totals:
         assert (totals.n_users(), totals.n_decisions()) == (1, (2, 0))
+
+
+@pytest.mark.parametrize("model", ["gaussian", "categorical", "joint-normal"])
+def test_a_batch_may_be_empty_or_all_wrong(model, file_memory):
+    study = learnt_study(model).keep(file_memory)
+    assert decide(file_memory, study, []) == observe(file_memory, study, []) == []
+    (wrong,) = decide(file_memory, study, [Request("")])
+    unknown, bad = observe(file_memory, study, [(identifier(new_ids(1, 1)[0]), 1.0), ("x", 1.0)])
+    assert [type(one) for one in (wrong, unknown, bad)] == [InputError, NotFoundError, InputError]
+    for _ in range(2):
+        (made,) = decide(file_memory, study, [Request("ann", request="r")])
+    assert made["repeated"]
 
 
 @pytest.mark.parametrize(

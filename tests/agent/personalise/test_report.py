@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lifelore.agent.reuse import report as reuse_report
 from lifelore.agent.reuse.history import histories
 from scipy import stats
 
@@ -13,6 +12,7 @@ from lifelore.agent.personalise.decisions import choose, forget, update
 from lifelore.agent.personalise.fit.fit import FitSettings, fit
 from lifelore.agent.personalise.report import COLUMNS, report
 from lifelore.agent.personalise.study import Study, open_study
+from lifelore.agent.reuse import report as reuse_report
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.figures.reuse_report import draw_reuse_report
 from lifelore.interaction.library.policy_library import PolicyLibrary

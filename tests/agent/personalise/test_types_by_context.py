@@ -7,9 +7,6 @@ import pytest
 
 from lifelore.agent.personalise.fit.fit import FitSettings, fit
 from lifelore.agent.personalise.fit.library_from_log import TypedRows, library_of
-from lifelore.agent.personalise.log.log import read_log
-from lifelore.agent.personalise.log.log_format import LogFormat
-from lifelore.agent.personalise.study import open_study
 from lifelore.agent.personalise.fit.types_by_context import (
     FEWEST_USERS,
     by_context,
@@ -17,6 +14,9 @@ from lifelore.agent.personalise.fit.types_by_context import (
     own_contexts,
     priors_by_context,
 )
+from lifelore.agent.personalise.log.log import read_log
+from lifelore.agent.personalise.log.log_format import LogFormat
+from lifelore.agent.personalise.study import open_study
 from lifelore.memory import open_memory
 
 NOISE = 0.5

@@ -167,9 +167,11 @@ def _decided(
 ) -> list[Answer | LifeloreError]:
     answers: list[Any] = [_or_error(request.checked, study) for request in requests]
     good = [place for place, one in enumerate(answers) if isinstance(one, Request)]
+    if not good:
+        return answers
     checked: list[Request] = [answers[place] for place in good]
     with memory.studies.writing(study.number) as rows:
-        users = _users(rows, study, checked)
+        users = _users(memory, rows, study, checked)
         own = [users[request.user] for request in checked]
         made = _made(rows, own, checked)
         beliefs = open_beliefs(rows, study, list(users.values()))
@@ -190,7 +192,7 @@ def _decided(
     return answers
 
 
-def _users(rows: StudyRows, study: Study, requests: Sequence[Request]) -> dict[str, UserRow]:
+def _users(memory: Memory, rows: StudyRows, study: Study, requests: Sequence[Request]) -> dict[str, UserRow]:
     """The users of requests by name; new ones are added, and what requests tell of them is kept."""
     names = list({request.user: None for request in requests})
     users = known_users(rows, study, names, lock=True, count=True)
@@ -199,6 +201,8 @@ def _users(rows: StudyRows, study: Study, requests: Sequence[Request]) -> dict[s
         new = [name for name in names if name not in users]
         rows.add_users([(name, *_told(told.get(name))) for name in new], study.version)
         users |= rows.users(new, lock=True)
+        if len(users) < len(names):
+            raise RacedError(f"memory {memory.location}: a user was forgotten at this moment; try again")
     touched = [users[name].number for name, request in told.items() if _tells(request, users[name])]
     touched += [user.number for user in users.values() if user.version != study.version]
     if touched:  # their beliefs will be computed again, so nobody may add to the evidence in the meantime
@@ -422,6 +426,8 @@ def _observed(
 ) -> list[Answer | LifeloreError]:
     answers: list[Any] = [_or_error(_checked_outcome, *pair) for pair in outcomes]
     good = [place for place, one in enumerate(answers) if isinstance(one, tuple)]
+    if not good:
+        return answers
     with memory.studies.writing(study.number) as rows:
         ids = list({answers[place][0]: None for place in good})
         found, users = rows.locked_decisions(ids)

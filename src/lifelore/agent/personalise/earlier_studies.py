@@ -113,14 +113,14 @@ def _read_users(memory: Memory, study: Study, people: People) -> None:
                 continue
             attempt = stored[_ATTEMPT] or 0
             text = f"{key}-{number}" + (f".{attempt}" if attempt else "")
+            # Whole seconds were stored; decisions and outcomes of a second come in the order of the decisions.
             decision = DecisionRow(
                 parse_identifier(text), 0, names.get(policy, ""), _number(stored[_PROBABILITY]),
-                bool(stored[_CONTROL]), study.version, 1000 * (stored[_CHOSEN] or 0), own["context"],
+                bool(stored[_CONTROL]), study.version, 1000 * (stored[_CHOSEN] or 0) + number, own["context"],
             )  # fmt: skip
             if number in available:
                 decision = decision._replace(available=tuple(available[number]))
             if (outcome := stored[_OUTCOME]) is not None:
-                # Whole seconds were stored; outcomes of a second are put in the order of their decisions.
                 ended = 1000 * (stored[_ENDED] or 0) + number
                 decision = decision._replace(outcome=_number(outcome), ended=ended)
             own["decisions"].append(decision)

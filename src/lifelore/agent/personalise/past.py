@@ -180,11 +180,16 @@ def lines_of(log: ReuseLog) -> list[Line]:
     at = {word: parse_time(word) for word in log.time.names}
     names = log.feature_names
     whole: list[bool] = np.isfinite(log.features).all(axis=1).tolist()  # pyright: ignore
-    lines = []
+    lines, seen = [], Counter[tuple[str, str, str]]()
     for row, outcome in enumerate(log.outcomes.tolist()):
         time, identifier = at[times[row]], given[row]
         if time is None:  # not a time that we can read, but it tells lines apart
-            time, identifier = 0, identifier or "\x1f".join((users[row], policies[row], times[row]))
+            # A word that is no time tells lines apart all the same; equal lines by their number.
+            which = users[row], policies[row], times[row]
+            if not identifier:
+                seen[which] += 1
+                identifier = "\x1f".join((*which, str(seen[which])))
+            time = 0
         features = dict(zip(names, log.features[row].tolist(), strict=True)) if names and whole[row] else None
         context, type_ = contexts[row] or None, types[row] or None
         lines.append(Line(users[row], policies[row], outcome, time, identifier, context, features, type_))

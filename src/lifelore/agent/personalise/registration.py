@@ -4,6 +4,7 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
+from lifelore.agent.personalise.earlier_studies import take_earlier
 from lifelore.agent.personalise.library_document import described
 from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.study import (
@@ -54,6 +55,8 @@ def register(memory: Memory, name: str, library: PolicyLibrary, settings: StudyS
             "adaptation"
         )
     earlier = memory.studies.newest(name)
+    if earlier is None and take_earlier(memory, name):
+        earlier = memory.studies.newest(name)
     states = dict(earlier.about["states"]) if earlier else {}
     known = {policy: RETIRED if states.get(policy) == RETIRED else ACTIVE for policy in library.policies}
     if ACTIVE not in known.values():
@@ -66,7 +69,8 @@ def register(memory: Memory, name: str, library: PolicyLibrary, settings: StudyS
     # Computed once and stored with the library.
     getattr(library.performance, "spread", None)
     fitted = {"rows": 0, "users": 0, "found": False, "time": int(time.time())}
-    study = Study(name, library, known | gone, fitted=fitted, **vars(settings or StudySettings()))
+    by_key = bool(earlier and earlier.about["earlier"])
+    study = Study(name, library, known | gone, fitted=fitted, earlier=by_key, **vars(settings or StudySettings()))
     return study.keep(memory)
 
 

@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from lifelore.agent.reuse import replayed_choices as module
-from lifelore.agent.reuse.user_state import WorkingBelief
 
-from lifelore.agent.personalise.decisions import policy_odds
+from lifelore.agent.personalise.evaluate import replayed_choices as module
 from lifelore.agent.personalise.evaluate.replayed_choices import replayed_choices
 from lifelore.agent.personalise.fit.fit import FitSettings, study_of_log
 from lifelore.agent.personalise.log.log import read_log
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 
 MEANS = np.array([[5.0, 0.0, 3.0], [0.0, 5.0, 3.0]])
 
@@ -27,19 +26,29 @@ def log_of(policies, n_users=9, seed=0, context="web"):
 
 
 def naive(study, log, rows):
-    """The slow twin: the verbs' own belief and probabilities, a decision at a time."""
-    beliefs, expected, probs, unknown = {}, [], [], []
+    """The slow twin: an agent for each user, a decision at a time."""
+    agents, expected, probs, unknown = {}, [], [], []
+    numbers = study.active_numbers
+    mask = np.isin(np.arange(study.library.n_policies), numbers)
     for row in rows:
         user, policy = log.user.codes[row], log.policy.names[log.policy.codes[row]]
         context = log.context.names[log.context_of_user[user]] if log.context_of_user[user] >= 0 else None
-        now = beliefs.setdefault(user, WorkingBelief.of_stranger(study, study.prior_of(context)))
-        odds = policy_odds(study, now)
-        chosen = dict(zip(odds.policies, odds.probs.tolist(), strict=True))
-        means = dict(zip(study.active, now.expected[study.active_numbers].tolist(), strict=True))
+        if user not in agents:
+            prior = study.prior_of(context)
+            agents[user] = BayesianPolicyReuse(
+                study.library, prior=prior, dynamics=study.dynamics, models=study.models
+            )
+        agent = agents[user]
+        odds = agent.algorithm.propensities(0, study.selection, mask)[numbers]
+        chosen = dict(zip(study.active, (0.9 * odds + 0.1 / len(odds)).tolist(), strict=True))
+        means = dict(zip(study.active, agent.expected_utility()[numbers].tolist(), strict=True))
         expected.append([means.get(name, np.nan) for name in log.policy.names])
         probs.append([chosen.get(name, 0.0) for name in log.policy.names])
         unknown.append(sum(chosen[name] for name in chosen if name not in log.policy.names))
-        now.learn(policy, log.outcomes[row])
+        if policy in study.library.policies:
+            agent.update(policy, log.outcomes[row])
+        else:
+            agent.end_episode()
     return np.array(expected), np.array(probs), np.array(unknown)
 
 

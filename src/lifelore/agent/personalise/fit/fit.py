@@ -3,7 +3,7 @@
 import time
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -131,7 +131,7 @@ def fit(
     earlier = _earlier(memory, settings.name)
     study, typed, counts, held_out = study_of_log(log, settings, dict(earlier.get("states", {})))
     with memory.together():
-        study = study.keep(memory)
+        study = replace(study, earlier=bool(earlier.get("earlier"))).keep(memory)
         past = keep_fitted_past(memory, study, log)
     document = _document(study, log, typed, counts) | {"changed": _changed(study, earlier), "held_out": held_out}
     document["kept"] = _kept(memory, study, past) if earlier else None
