@@ -389,6 +389,8 @@ def _say(document: dict[str, Any], line: str, as_json: bool) -> None:
 
 def _print_fit(document: dict[str, Any]) -> None:
     found = "found" if document["types_found"] else "named in the log"
+    if document["context"] and document["context"]["types_of"]:
+        found = "by context"
     policies = _count(document["policies"], "policy", "policies")
     print(
         f"study {document['study']}: {document['rows']} outcomes of {document['users']} users, "
