@@ -148,7 +148,7 @@ async def _many_and_a_single(port: int, number: int) -> tuple[float, float]:
     large, small = [Connection(*await asyncio.open_connection("127.0.0.1", port)) for _ in range(2)]
     items = [{"user": f"many {number} {place}"} for place in range(MANY)]
     asked = asyncio.ensure_future(large.post("/v1/studies/bench/decisions/batch", {"items": items}))
-    await asyncio.sleep(0.1)
+    await asyncio.sleep(0.01)
     while not asked.done():
         await small.post("/v1/studies/bench/decisions", {"user": "ada"})
     await asked

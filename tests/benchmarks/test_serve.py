@@ -14,7 +14,7 @@ from benchmarks import bench, serve
 def test_the_service_is_measured_beside_the_bare_route(monkeypatch):
     monkeypatch.setattr(serve, "SECONDS", 0.3)
     monkeypatch.setattr(serve, "BATCH", 50)
-    monkeypatch.setattr(serve, "MANY", 2000)
+    monkeypatch.setattr(serve, "MANY", 10_000)
     monkeypatch.setattr(serve, "CONNECTIONS", 3)
     before, cores = children(), os.sched_getaffinity(0)
     document = bench("serve", repeats=1)
