@@ -21,6 +21,22 @@ class Sums(NamedTuple):
     total: Array
 
 
+class UserHalves(NamedTuple):
+    """A row for each user and group with a decision in a window of time.
+
+    person : (n,) int64
+    control : (n,) bool
+    current : (n,) bool, whether the newest version of the study made a decision
+    before, after : sums of outcomes in the two halves, (n,) each; 0 where there is none
+    """
+
+    person: Array
+    control: Array
+    current: Array
+    before: Sums
+    after: Sums
+
+
 class StudyTotals:
     """Sums over the rows of a study on a snapshot.
 
@@ -102,13 +118,38 @@ class StudyTotals:
         query = "SELECT version, COUNT(*) FROM lifelore_decisions WHERE study = ? GROUP BY version"
         return dict(self._conn.execute(query, (self._study,)).fetchall())
 
-    def recent(self, since: int) -> list[tuple[str, int, int, int, float]]:
-        """(policy, control, decisions, outcomes, sum of outcomes) of decisions from a time on, in milliseconds."""
+    def counts(self, since: int, until: int) -> list[tuple[str, int, int, int, float]]:
+        """(policy, control, decisions, outcomes, sum of outcomes) of decisions in [since, until), in milliseconds.
+
+        Decisions of an earlier Lifelore are left out, because their identifiers do not have their times.
+        """
         query = (
             "SELECT policy, control, COUNT(*), COUNT(outcome), COALESCE(SUM(outcome), 0) FROM lifelore_decisions"
-            " WHERE study = ? AND id >= ? GROUP BY policy, control"
+            " WHERE study = ? AND id >= ? AND id < ? GROUP BY policy, control"
         )
-        return self._conn.execute(query, (self._study, first_id(since))).fetchall()
+        return self._conn.execute(query, (self._study, first_id(since), first_id(until))).fetchall()
+
+    def halves(self, since: int, middle: int, *, version: int, every: int = 1) -> UserHalves:
+        """Decisions and outcomes by user and group since a time, before and after a middle, in milliseconds.
+
+        Parameters
+        ----------
+        version : int
+            Of the study; decisions by it are counted apart.
+        every : int
+            Users whose number divides by it count: 1 for all.
+        """
+        query = (
+            "SELECT person, control, COUNT(CASE WHEN version = ? THEN 1 END),"
+            " COUNT(CASE WHEN id < ? THEN outcome END), COALESCE(SUM(CASE WHEN id < ? THEN outcome END), 0),"
+            " COUNT(CASE WHEN id >= ? THEN outcome END), COALESCE(SUM(CASE WHEN id >= ? THEN outcome END), 0)"
+            f" FROM lifelore_decisions WHERE study = ? AND id >= ? AND person % {int(every)} = 0"
+            " GROUP BY person, control"
+        )
+        cut = [first_id(middle)] * 4
+        found = self._conn.stream(query, (version, *cut, self._study, first_id(since)))
+        person, control, current, *sums = _columns(found, 7)
+        return UserHalves(person.astype(np.int64), control > 0, current > 0, Sums(*sums[:2]), Sums(*sums[2:]))
 
     def log(
         self, columns: Sequence[str], after: bytes = b"", before: bytes | None = None, limit: int = MANY
