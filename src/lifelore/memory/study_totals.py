@@ -24,17 +24,19 @@ class Sums(NamedTuple):
 class UserHalves(NamedTuple):
     """A row for each user and group with a decision in a window of time.
 
-    person : (n,) int64
-    control : (n,) bool
-    current : (n,) bool, whether the newest version of the study made a decision
-    before, after : sums of outcomes in the two halves, (n,) each; 0 where there is none
+    person : (n,) float64, number of the user
+    control : (n,) float64, 1 in the control group, else 0
+    current : (n,) float64, number of decisions by a version of the study
+    before, before_sum, after, after_sum : (n,) float64, number and sum of outcomes in the two halves
     """
 
     person: Array
     control: Array
     current: Array
-    before: Sums
-    after: Sums
+    before: Array
+    before_sum: Array
+    after: Array
+    after_sum: Array
 
 
 class StudyTotals:
@@ -147,9 +149,9 @@ class StudyTotals:
             " GROUP BY person, control"
         )
         cut = [first_id(middle)] * 4
-        found = self._conn.stream(query, (version, *cut, self._study, first_id(since)))
-        person, control, current, *sums = _columns(found, 7)
-        return UserHalves(person.astype(np.int64), control > 0, current > 0, Sums(*sums[:2]), Sums(*sums[2:]))
+        parts = self._conn.stream(query, (version, *cut, self._study, first_id(since)))
+        rows = np.array([row for part in parts for row in part], np.float64)
+        return UserHalves(*rows.reshape(-1, 7).T)
 
     def log(
         self, columns: Sequence[str], after: bytes = b"", before: bytes | None = None, limit: int = MANY

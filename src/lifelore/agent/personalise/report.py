@@ -123,7 +123,7 @@ def _document(memory: Memory, study: Study, incumbent: str | None, split: str | 
         "personal": _estimate(personal),
         "control": _estimate(control),
         "control_gets": study.incumbent or "each policy alike",
-        "uplift": difference(personal, control),
+        "uplift": _difference(personal, control),
         "best_single": _beside(study.best_single, personal, by_policy),
         "incumbent": None if incumbent is None else _beside(incumbent, personal, by_policy),
         "policies": [
@@ -153,7 +153,7 @@ def _estimate(values: Sequence[float] | Array) -> dict[str, Any] | None:
     return Estimate(mean, float(np.median(values)), (low, high) if error > 0 else None, len(values)).to_dict()
 
 
-def difference(first: Array, second: Array) -> dict[str, Any] | None:
+def _difference(first: Array, second: Array) -> dict[str, Any] | None:
     """Difference of means with Welch's interval, if there are users and spread enough for one."""
     if not len(first) or not len(second):
         return None
@@ -168,7 +168,7 @@ def difference(first: Array, second: Array) -> dict[str, Any] | None:
 def _beside(policy: str, personal: Array, by_policy: dict[str, Array]) -> dict[str, Any]:
     """A single policy's outcome in the control group, and what those chosen for by belief have more."""
     means = by_policy.get(policy, np.empty(0))
-    return {"name": policy, "outcome": _estimate(means), "uplift": difference(personal, means)}
+    return {"name": policy, "outcome": _estimate(means), "uplift": _difference(personal, means)}
 
 
 def _regret(study: Study, histories: Sequence[History]) -> dict[str, Any]:

@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 
 from lifelore.agent.personalise.beliefs import open_beliefs, start_at_priors, turns
-from lifelore.agent.personalise.report import difference
 from lifelore.agent.personalise.study import Study
 from lifelore.core.errors import InputError
+from lifelore.core.intervals import welch_interval
 from lifelore.interaction.reuse.novelty.novelty_detector import MASS
 from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
 from lifelore.memory import Memory
@@ -71,8 +71,8 @@ def traffic(memory: Memory, study: Study, days: int = 14, now: int | None = None
         "ratio": _ratio(halves, study.control),
         "missing": _missing({at: rows for at, rows in counts.items() if at + step <= now - DAY}),
         "drift": {
-            "personal": _drift(halves, ~halves.control),
-            "control": _drift(halves, halves.control),
+            "personal": _drift(halves, 0),
+            "control": _drift(halves, 1),
         },
         "beliefs": _beliefs(memory, study, halves),
     }
@@ -125,7 +125,7 @@ def _policies(study: Study, counts: dict[int, list[tuple[Any, ...]]], n: int) ->
 
 def _ratio(halves: UserHalves, share: float) -> dict[str, Any] | None:
     """Users of decisions by the newest version, for an earlier one may have held out another share."""
-    users, control = int(halves.current.sum()), int((halves.current & halves.control).sum())
+    users, control = int((halves.current > 0).sum()), int(halves.control[halves.current > 0].sum())
     p = ratio_p(control, users, share)
     return (
         None if p is None else {"users": users, "control": control, "share": control / users, "set": share, "p": p}
@@ -139,13 +139,23 @@ def _missing(counts: dict[int, list[tuple[Any, ...]]]) -> dict[str, Any] | None:
     return {"decisions": decisions, "missing": missing, "share": missing / decisions} if decisions else None
 
 
-def _drift(halves: UserHalves, own: np.ndarray) -> dict[str, Any] | None:
-    means = [half.total[who] / half.number[who] for half in halves[3:] for who in [own & (half.number > 0)]]
-    return difference(means[1], means[0])
+def _drift(halves: UserHalves, control: int) -> dict[str, Any] | None:
+    """Mean over users of a group after the middle less that before, with Welch's interval."""
+    own = halves.control == control
+    before, after = own & (halves.before > 0), own & (halves.after > 0)
+    if not before.any() or not after.any():
+        return None
+    means = halves.after_sum[after] / halves.after[after], halves.before_sum[before] / halves.before[before]
+    ci95 = welch_interval(*means)  # pyright: ignore[reportArgumentType]
+    return {
+        "value": float(means[0].mean() - means[1].mean()),
+        "ci95": list(ci95) if ci95 else None,
+        "n": [len(one) for one in means],
+    }
 
 
 def _beliefs(memory: Memory, study: Study, halves: UserHalves) -> dict[str, Any] | None:
-    people = np.unique(halves.person[halves.before.number + halves.after.number > 0])
+    people = np.unique(halves.person[halves.before + halves.after > 0]).astype(np.int64)
     if not len(people):
         return None
     if len(people) > SAMPLE:
@@ -167,7 +177,8 @@ def _log_odds(study: Study, users: Sequence[UserRow], evidence: Sequence[tuple[i
     found = UnknownEvidence(study.library, len(users), dynamics=study.dynamics, models=study.models)  # pyright: ignore
     start_at_priors(found.types, study, users)
     row = {user.number: place for place, user in enumerate(users)}
-    for places, policies, outcomes in turns(study, [(row[number], *pair) for number, *pair in evidence]):
+    own = [(row[number], policy, outcome) for number, policy, outcome in evidence]
+    for places, policies, outcomes in turns(study, own):
         known = policies >= 0
         if known.any():
             found.observe(places[known], policies[known], outcomes[known])
@@ -178,16 +189,11 @@ def _log_odds(study: Study, users: Sequence[UserRow], evidence: Sequence[tuple[i
 def _alarms(checks: dict[str, Any]) -> Iterator[tuple[str, str]]:
     ratio, missing, beliefs = checks["ratio"], checks["missing"], checks["beliefs"]
     if ratio and ratio["p"] < RATIO_P:
-        has = f"The control group has {ratio['share']:.1%} of {ratio['users']} users and should have"
-        yield (
-            "ratio",
-            f"{has} {ratio['set']:.1%} (p = {ratio['p']:.1g}). Do not trust the uplift before you know why.",
-        )
+        share = f"{ratio['share']:.1%} of {ratio['users']} users are in the control group"
+        yield "ratio", f"{share}, {ratio['set']:.1%} were set (p = {ratio['p']:.1g}). Find out why first."
     if missing and missing["share"] > MISSING:
-        yield (
-            "missing",
-            f"{missing['share']:.1%} of {missing['decisions']} decisions older than a day have no outcome.",
-        )
+        share = f"{missing['share']:.1%} of {missing['decisions']} decisions"
+        yield "missing", f"{share} older than a day have no outcome."
     for group, found in checks["drift"].items():
         low, high = (found and found["ci95"]) or (0, 0)
         if high < 0 or (group == "control" and low > 0):

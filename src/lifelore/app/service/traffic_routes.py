@@ -1,13 +1,13 @@
 """The route of a study's traffic: decisions by day, shares of policies, alarms."""
 
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Query
 
 from lifelore.app.service.service_state import Service
 from lifelore.app.service.study_routes import Name
 
-Days = Annotated[Literal[2, 14, 90], Query(description="Window; 2 days come by hour, the others by day.")]
+Days = Annotated[int, Query(ge=2, le=90, description="Window; 2 days come by hour, more by day.")]
 
 
 def router(service: Service) -> APIRouter:
