@@ -27,6 +27,24 @@ class UserSums(NamedTuple):
     control_sum: Array
 
 
+class UserHalves(NamedTuple):
+    """A row for each user and group with a decision in a window of time.
+
+    person : (n,) float64, number of the user
+    control : (n,) float64, 1 in the control group, else 0
+    current : (n,) float64, number of decisions by a version of the study
+    before, before_sum, after, after_sum : (n,) float64, number and sum of outcomes in the two halves
+    """
+
+    person: Array
+    control: Array
+    current: Array
+    before: Array
+    before_sum: Array
+    after: Array
+    after_sum: Array
+
+
 class StudyTotals:
     """Sums over the rows of a study on a snapshot.
 
@@ -110,13 +128,38 @@ class StudyTotals:
         query = "SELECT version, COUNT(*) FROM lifelore_decisions WHERE study = ? GROUP BY version"
         return dict(self._conn.execute(query, (self._study,)).fetchall())
 
-    def recent(self, since: int) -> list[tuple[str, int, int, int, float]]:
-        """(policy, control, decisions, outcomes, sum of outcomes) of decisions from a time on, in milliseconds."""
+    def counts(self, since: int, until: int) -> list[tuple[str, int, int, int, float]]:
+        """(policy, control, decisions, outcomes, sum of outcomes) of decisions in [since, until), in milliseconds.
+
+        Decisions of an earlier Lifelore are left out, because their identifiers do not have their times.
+        """
         query = (
             "SELECT policy, control, COUNT(*), COUNT(outcome), COALESCE(SUM(outcome), 0) FROM lifelore_decisions"
-            " WHERE study = ? AND id >= ? GROUP BY policy, control"
+            " WHERE study = ? AND id >= ? AND id < ? GROUP BY policy, control"
         )
-        return self._conn.execute(query, (self._study, first_id(since))).fetchall()
+        return self._conn.execute(query, (self._study, first_id(since), first_id(until))).fetchall()
+
+    def halves(self, since: int, middle: int, *, version: int, every: int = 1) -> UserHalves:
+        """Decisions and outcomes by user and group since a time, before and after a middle, in milliseconds.
+
+        Parameters
+        ----------
+        version : int
+            Of the study; decisions by it are counted apart.
+        every : int
+            Users whose number divides by it count: 1 for all.
+        """
+        query = (
+            "SELECT person, control, COUNT(CASE WHEN version = ? THEN 1 END),"
+            " COUNT(CASE WHEN id < ? THEN outcome END), COALESCE(SUM(CASE WHEN id < ? THEN outcome END), 0),"
+            " COUNT(CASE WHEN id >= ? THEN outcome END), COALESCE(SUM(CASE WHEN id >= ? THEN outcome END), 0)"
+            f" FROM lifelore_decisions WHERE study = ? AND id >= ? AND person % {int(every)} = 0"
+            " GROUP BY person, control"
+        )
+        cut = [first_id(middle)] * 4
+        parts = self._conn.stream(query, (version, *cut, self._study, first_id(since)))
+        rows = np.array([row for part in parts for row in part], np.float64)
+        return UserHalves(*rows.reshape(-1, 7).T)
 
     def log(
         self, columns: Sequence[str], after: bytes = b"", before: bytes | None = None, limit: int = MANY

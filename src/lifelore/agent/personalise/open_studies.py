@@ -43,6 +43,10 @@ class OpenStudies:
         self._open[name] = known._replace(looked=now)
         return known.study
 
+    def names(self) -> list[str]:
+        """Names of the studies that are open."""
+        return list(self._open)
+
     def drop_all(self) -> None:
         """Read every study again at its next use."""
         self._open.clear()

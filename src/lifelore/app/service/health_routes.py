@@ -7,6 +7,7 @@ from typing import Literal
 
 from fastapi import APIRouter, Response
 from pydantic import BaseModel
+from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
 from lifelore import __version__
@@ -82,6 +83,8 @@ def router(service: Service) -> APIRouter:
 
     @routes.get("/metrics", summary="Metrics in the text format of Prometheus", response_class=Response)
     def metrics() -> Response:
-        return Response(service.metrics.text(), media_type=CONTENT_TYPE_LATEST)
+        # What takes long is computed after the answer, and is in the next one.
+        later = BackgroundTask(service.watch.refresh)
+        return Response(service.metrics.text(), media_type=CONTENT_TYPE_LATEST, background=later)
 
     return routes

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from lifelore.agent.advise.advice_desk import AdviceDesk
 from lifelore.agent.personalise.open_studies import OpenStudies
 from lifelore.app.service.settings import ServiceSettings
+from lifelore.app.service.study_watch import StudyWatch
 from lifelore.app.service.telemetry import Metrics
 from lifelore.app.service.worker_process import WorkerProcess
 from lifelore.app.service.writer import Writer
@@ -28,10 +29,12 @@ class Service:
     worker: WorkerProcess = field(default_factory=WorkerProcess)
     writer: Writer = field(init=False)
     studies: OpenStudies = field(init=False)
+    watch: StudyWatch = field(init=False)
 
     def __post_init__(self) -> None:
         self.desks: dict[str, AdviceDesk] = {}
         self.studies = OpenStudies(self.memory)
+        self.watch = StudyWatch(self.memory, self.studies, self.metrics)
         self.writer = Writer(self.memory, self.studies, self.metrics, self.read_again, self.settings.seed)
 
     def read_again(self) -> None:

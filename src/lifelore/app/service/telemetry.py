@@ -7,6 +7,7 @@ import time
 from bisect import bisect_left
 from collections.abc import Iterator, Mapping
 from functools import cache
+from math import nan
 from typing import Any
 
 from prometheus_client import CollectorRegistry, Counter, Gauge, generate_latest
@@ -19,6 +20,14 @@ __all__ = ["CONTENT_TYPE_LATEST", "Metrics", "log_request", "log_to_stderr"]
 log = logging.getLogger("lifelore.service")
 MOST_ARMS = 2000
 """Largest number of (study, policy) with metrics of their own; the others are counted together as "other"."""
+WATCHED = {
+    "outcome_mean": "Mean of the outcomes of the last 14 days",
+    "belief_entropy": "Mean entropy of the beliefs about a sample of users, in nats",
+    "no_type_share": "Share of a sample of users whom no known type fits",
+    "ratio_p": "p value of the number of users in the control group",
+    "missing_share": "Share of the decisions older than a day without an outcome",
+}
+"""Numbers of a study that `watched` sets, and what they are."""
 _SECONDS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10, 60)
 _ARM = ("study", "policy", "group")
 
@@ -72,6 +81,10 @@ class Metrics:
         self._total = Gauge(
             "lifelore_study_outcome_sum", "Sum of the stored outcomes of a study.", _ARM, registry=self.registry
         )
+        self._watched = {
+            name: Gauge(f"lifelore_study_{name}", f"{text}; NaN: not known.", ("study",), registry=self.registry)
+            for name, text in WATCHED.items()
+        }
         self._arms: set[tuple[str, str]] = set()
         # To look up the children of labels takes longer than to count.
         self._children = cache(
@@ -89,6 +102,11 @@ class Metrics:
         _, outcomes, total = self._arm(study, policy, control)
         outcomes.inc(n)
         total.inc(outcome_sum)
+
+    def watched(self, study: str, numbers: Mapping[str, float | None]) -> None:
+        """Set the numbers of the alarms of a study, by the names of `WATCHED`."""
+        for name, value in numbers.items():
+            self._watched[name].labels(study).set(nan if value is None else value)
 
     def text(self) -> bytes:
         """All metrics in the text format of Prometheus."""

@@ -48,6 +48,7 @@ PAGES: tuple[Page, ...] = (
         "Watch a memory grow: tasks, learning curves, maps, beliefs, curiosity, and reasons.",
         live=True,
     ),
+    Page("study", "Study", "See what a study of personalisation achieves: traffic, uplift, policies, alarms."),
 )
 HOME = Page("", "Lifelore", "Choose a page.")
 

@@ -29,9 +29,9 @@ export function ticksBetween(low, high, count = 5) {
  * A figure of lines.
  *
  * `series` are {name, points: [[x, y], …], half: [number or null, …]}: `half` is half of an interval around y.
- * `xends` are the ends of the x axis, by default those of the points. `logarithmic` makes the y axis logarithmic, `level` draws a horizontal line. Series differ in colour, dash and marker.
+ * `xends` are the ends of the x axis, by default those of the points; `xname` writes an x. `logarithmic` makes the y axis logarithmic, `level` draws a horizontal line. Series differ in colour, dash and marker.
  */
-export function lineChart({ title, xlabel, ylabel, series, logarithmic = false, level = null, xticks = null, xends = null, markers = true, digits = 2 }) {
+export function lineChart({ title, xlabel, ylabel, series, logarithmic = false, level = null, xticks = null, xends = null, markers = true, digits = 2, xname = (x) => `${x}` }) {
   const figure = make("figure");
   figure.append(make("figcaption", {}, make("strong", {}, title)));
   const drawn = series.filter((one) => one.points.length);
@@ -60,7 +60,7 @@ export function lineChart({ title, xlabel, ylabel, series, logarithmic = false, 
     svg.append(draw("text", { x: left - 6, y: py(y) + 4, "text-anchor": "end" }, `${y}`));
   }
   for (const x of xticks ?? ticksBetween(x0, x1, 6))
-    svg.append(draw("text", { x: px(x), y: HEIGHT - BOTTOM + 16, "text-anchor": "middle" }, `${x}`));
+    svg.append(draw("text", { x: px(x), y: HEIGHT - BOTTOM + 16, "text-anchor": "middle" }, xname(x)));
   svg.append(draw("text", { x: (left + WIDTH - RIGHT) / 2, y: HEIGHT - 8, "text-anchor": "middle" }, xlabel));
   svg.append(draw("text", { transform: `translate(12 ${(HEIGHT - BOTTOM + TOP) / 2}) rotate(-90)`, "text-anchor": "middle" }, ylabel));
   if (level !== null) svg.append(draw("line", { x1: left, x2: WIDTH - RIGHT, y1: py(level), y2: py(level), stroke: INK, "stroke-dasharray": "1 3" }));
@@ -75,7 +75,7 @@ export function lineChart({ title, xlabel, ylabel, series, logarithmic = false, 
     if (markers)
       for (const [x, y] of one.points) svg.append(draw("circle", { cx: px(x), cy: py(y), r: 3, fill: PAPER, stroke: look.colour, "stroke-width": 1.5 }));
   });
-  figure.append(svg, legend(series), table(xlabel, series, digits));
+  figure.append(svg, legend(series), table(xlabel, series, digits, xname));
   return figure;
 }
 
@@ -99,12 +99,12 @@ function legend(series) {
   return list;
 }
 
-function table(xlabel, series, digits) {
+function table(xlabel, series, digits, xname) {
   const xs = [...new Set(series.flatMap((one) => one.points.map(([x]) => x)))].sort((a, b) => a - b);
   const every = Math.ceil(xs.length / 25);
   const shown = xs.filter((_, i) => i % every === 0 || i === xs.length - 1);
   const head = make("tr", {}, make("th", { scope: "col" }, xlabel), ...series.map((one) => make("th", { scope: "col", class: "number" }, one.name)));
-  const rows = shown.map((x) => make("tr", {}, make("th", { scope: "row" }, `${x}`), ...series.map((one) => {
+  const rows = shown.map((x) => make("tr", {}, make("th", { scope: "row" }, xname(x)), ...series.map((one) => {
     const point = one.points.find(([at]) => at === x);
     return make("td", { class: "number" }, point ? point[1].toFixed(digits) : "–");
   })));
