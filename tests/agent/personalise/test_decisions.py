@@ -187,7 +187,7 @@ def test_an_outcome_counts_once(memory):
     assert [one["taken"] for one in answers[:2]] == [True, False]
     assert isinstance(answers[2], InputError)
     with memory.studies.totals(study.number) as totals:
-        assert totals.by_user()[0].total.tolist() == [9.0]
+        assert totals.by_user().personal_sum.tolist() == [9.0]
 
 
 def test_the_same_request_gets_the_same_decision(memory):
