@@ -75,6 +75,8 @@ class Request:
             if (word := getattr(self, name)) is not None:
                 check_word(name, word)
         features, available = self.features, self.available
+        if features is None and available is None:
+            return self
         if features is not None:
             if study.feature_prior is None:
                 raise InputError(f"features must be left out: study '{study.name}' was fitted without --features")
@@ -298,8 +300,20 @@ def _drawn(
             policies = _for_control(study, request.available)
             policy, own = policies[int(draw * len(policies))], 1 / len(policies)
         available = None if request.available is None else tuple(request.available)
-        made = DecisionRow(id_, user.number, policy, own, control, study.version, now, user.context)
-        found.append(made._replace(available=available, request=request.request))
+        found.append(
+            DecisionRow(
+                id_,
+                user.number,
+                policy,
+                own,
+                control,
+                study.version,
+                now,
+                user.context,
+                available,
+                request.request,
+            )
+        )
     return found
 
 

@@ -110,12 +110,12 @@ class Study:
                 f"incumbent must be a policy in use, got '{self.incumbent}'; there are {', '.join(self.active)}"
             )
 
-    @property
+    @cached_property
     def active(self) -> list[str]:
         """Policies chosen from, in the library's order."""
         return [policy for policy in self.library.policies if self.states[policy] == ACTIVE]
 
-    @property
+    @cached_property
     def pilots(self) -> list[str]:
         """Policies that the control group alone gets, by name."""
         return sorted(policy for policy, state in self.states.items() if state == PILOT)

@@ -20,6 +20,8 @@ from lifelore.memory import Memory
 
 MOST = 256
 """Largest number of requests in a transaction; more let each of them wait longer."""
+PATIENCE = 0.001
+"""Seconds to wait for another request where the last transaction had several; a commit takes about as long."""
 PART = 500
 """Rows of a long batch that are stored at a time, between which other requests get their turn."""
 
@@ -89,18 +91,19 @@ class Writer:
         self._thread.join()
 
     def _work(self) -> None:
+        patience = 0.0
         while (first := self._jobs.get()) is not None:
-            jobs, last = [first], False
-            n_rows = len(first.arguments)
+            jobs, last, n_rows = [first], False, len(first.arguments)
             while len(jobs) < MOST and n_rows < PART and not last:
                 try:
-                    following = self._jobs.get_nowait()
+                    following = self._jobs.get(timeout=patience) if patience else self._jobs.get_nowait()
                 except queue.Empty:
                     break
                 last = following is None
                 if following is not None:
                     jobs.append(following)
                     n_rows += len(following.arguments)
+            patience = PATIENCE if len(jobs) > 1 else 0.0
             of_rows = [job for job in jobs if job.function is None]
             others = [job for job in jobs if job.function is not None]
             for group, rows in ((of_rows, True), (others, False)):
