@@ -81,7 +81,7 @@ format: setup-test ## Mend formatting and what lint can mend
 bench: setup-test ## Speed beside peers, side by side in one process: make bench NAME=kernels
 	$(BIN)/python -m benchmarks $(NAME)
 
-soak: setup-test ## Long runs: 200 kills of lives, 50 of the service under load, 100,000 hostile clouds
+soak: setup-test ## Long runs: 200 kills of lives, 50 of the service under load, 200 beside its client, 100,000 hostile clouds
 	$(BIN)/python -m pytest -m soak
 
 reproduction-pages: setup-test ## The pages of docs/reproduction and the gallery from the committed results

@@ -10,6 +10,8 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
+SERVED = ("personalise_client",)
+"""Examples that need a running service: `tests/bridges/test_study_client.py` runs them."""
 
 
 def numbers(text: str) -> list[float]:
@@ -56,7 +58,9 @@ HOLDS = {
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+@pytest.mark.parametrize(
+    "example", [path for path in EXAMPLES if path.stem not in SERVED], ids=lambda path: path.stem
+)
 def test_an_example_runs_and_shows_its_point(example, tmp_path):
     command = [sys.executable, "-W", "error", str(example)]
     environment = os.environ | {"XDG_DATA_HOME": str(tmp_path)}

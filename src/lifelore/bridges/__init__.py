@@ -1,1 +1,1 @@
-"""Connections to other programs: MiniGrid, Stable-Baselines3, rosbags and PDDL planners."""
+"""Connections to other programs: MiniGrid, Stable-Baselines3, rosbags, PDDL planners, clients of the service."""

@@ -1,0 +1,893 @@
+"""A Python client of one study, which answers also while the service is gone, and delivers each outcome once.
+
+This file imports the standard library alone: copy it into a program that has no Lifelore. Linux and macOS.
+
+    with StudyClient("http://127.0.0.1:8321", "playlists", fallback="slow") as client:
+        choice = client.decide("ada")
+        client.observe(choice, 7.5)
+
+A thread of the client fetches the study's table of probabilities, delivers outcomes, and finds out when a service
+that was gone is back.
+"""
+
+import atexit
+import fcntl
+import http.client
+import io
+import json
+import logging
+import math
+import os
+import random
+import select
+import socket
+import ssl
+import threading
+import time
+import uuid
+from collections import Counter, deque
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from typing import Any, cast
+from urllib.parse import quote, urlsplit
+
+log = logging.getLogger("lifelore.study_client")
+
+FAILURES = 3
+"""Failures in a row after which calls no longer ask the service; more cost slow calls, fewer give up too early."""
+WAITS = (0.25, 5.0)
+"""Seconds between attempts to reach a service that is gone: the first wait, doubled up to the last."""
+LINGER = 0.05
+"""Seconds in which outcomes gather to be delivered together; more saves requests, but beliefs are older."""
+BATCH = 1000
+"""Outcomes in one delivery."""
+PROBE = 2.0
+"""Seconds that the table may take; more finds a slow service, but a service that hangs is found back later."""
+PATIENCE = 10.0
+"""Seconds that a delivery or the erasure of a user may take."""
+REMEMBERED = 10_000
+"""Users whose last probabilities, and offline choices whose particulars, are in memory."""
+RETRIED = ("store", "rate", "time")
+"""Kinds of errors of one outcome that are not its fault."""
+
+
+class ServiceUnavailable(ConnectionError):
+    """The service gave no answer in time, or said that it cannot answer now."""
+
+
+class ServiceRefusal(ValueError):
+    """The service refused a request that breaks a rule; the message is the service's own."""
+
+    def __init__(self, status: int, message: str) -> None:
+        super().__init__(message)
+        self.status = status
+
+
+@dataclass(frozen=True)
+class Choice:
+    """A policy for a user.
+
+    Attributes
+    ----------
+    policy : str
+        Name of the policy.
+    decision : str
+        UUID of the decision.
+    probability : float
+        Probability with which this policy was drawn, in (0, 1].
+    source : str
+        ``"service"``; ``"table"``, drawn from the last probabilities known of the user or of strangers; or
+        ``"fallback"``.
+    user : str
+        Name of the user.
+    context : str, optional
+        Context of the user.
+    time : float
+        Seconds since 1970, UTC.
+    """
+
+    policy: str
+    decision: str
+    probability: float
+    source: str
+    user: str
+    context: str | None
+    time: float
+
+
+class StudyClient:
+    """Decisions and outcomes of one study over HTTP. All methods may be called from many threads.
+
+    Parameters
+    ----------
+    url : str
+        Address of the service, such as ``"https://lore.example.org"``.
+    study : str
+        Name of the study.
+    token : str, optional
+        Token of the service.
+    fallback : str, optional
+        The policy if nothing else is known. Without it, the constructor waits for the service's first table.
+    queue : path, optional
+        A file for the outcomes that are not delivered yet: they survive a crash of this process. One client at a
+        time can use it. Without a file, outcomes that `close` could not deliver are lost.
+    timeout : float
+        Seconds after which `decide` answers without the service, > 0.
+    refresh : float
+        Seconds between two fetches of the table, > 0.
+    capacity : int
+        Maximum number of outcomes that wait for delivery; further ones are lost, and counted as ``lost``.
+    fsync : bool
+        Whether the queue's file also survives a failure of the machine; each outcome then waits for the disk.
+    seed : int, optional
+        Seed of the draws that the client makes itself.
+
+    Raises
+    ------
+    ValueError
+        An argument breaks its rule, another client uses the queue's file, or the service refuses the request.
+    ServiceUnavailable
+        Without `fallback`: the service gave no table within two seconds.
+    """
+
+    def __init__(
+        self,
+        url: str,
+        study: str,
+        token: str | None = None,
+        fallback: str | None = None,
+        queue: str | os.PathLike[str] | None = None,
+        timeout: float = 0.2,
+        *,
+        refresh: float = 60.0,
+        capacity: int = 100_000,
+        fsync: bool = False,
+        seed: int | None = None,
+    ) -> None:
+        if not (timeout > 0 and refresh > 0 and capacity > 0):
+            raise ValueError(
+                f"timeout, refresh and capacity must be above 0, got {timeout}, {refresh}, {capacity}"
+            )
+        self.study, self._fallback, self._timeout, self._refresh = study, fallback, timeout, refresh
+        self._link = _Link(url, f"/v1/studies/{quote(study, safe='')}", token)
+        self._breaker, self._random = _Breaker(), random.Random(seed)
+        self._table: _Table | None = None
+        self._users, self._offline = Recent(REMEMBERED), Recent(REMEMBERED)
+        self._counts, self._lock, self._delivering = Counter(), threading.Lock(), threading.Lock()
+        self._delivery_wait, self._deliver_at, self._probed_at = 0.0, 0.0, -math.inf
+        self._process = os.getpid()
+        self._wake, self._stopped = threading.Event(), threading.Event()
+        self._queue = _Queue(queue, capacity, fsync)
+        try:
+            if fallback is None:
+                self._fetch_table()
+        except BaseException:
+            self._link.close()
+            self._queue.close()
+            raise
+        self._thread = threading.Thread(target=self._run, name=f"study {study}", daemon=True)
+        self._thread.start()
+        atexit.register(self.close)
+
+    def __enter__(self) -> "StudyClient":
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    def decide(
+        self,
+        user: str,
+        context: str | None = None,
+        features: Mapping[str, float] | None = None,
+        available: Sequence[str] | None = None,
+        request: str | None = None,
+    ) -> Choice:
+        """A policy for the user, within about `timeout` seconds whether or not the service answers.
+
+        Parameters
+        ----------
+        user : str
+            Name of the user.
+        context : str, optional
+            Context of the user, as in the logs of the fit.
+        features : mapping, optional
+            Numbers known of the user beforehand.
+        available : sequence of str, optional
+            Policies that the user can get now; default: all.
+        request : str, optional
+            An identifier unique for the user. The same request gets the same decision from the service. Without
+            the service it gets the same decision as long as the probabilities are the same.
+
+        Raises
+        ------
+        ValueError
+            An argument breaks a rule, or the service does not know the study.
+        RuntimeError
+            The client is closed, or was made before a fork of the process.
+        """
+        item = _item(user, context, features, available, request)
+        made = self._asked("/decisions", item, self._timeout, _Made)
+        return self._offline_choice(item) if made is None else self._online_choice(item, made)
+
+    def decide_many(self, items: Sequence[Mapping[str, Any]], timeout: float | None = None) -> list[Choice]:
+        """A policy for each item, a mapping with the arguments of `decide`; all are asked for in one request.
+
+        Parameters
+        ----------
+        items : sequence of mappings
+            At most 100,000.
+        timeout : float, optional
+            Seconds for the whole request; default: as the client.
+
+        Raises
+        ------
+        ValueError
+            As `decide`. Decisions that the service has made for other items then have no outcome.
+        """
+        checked = [_item(**item) for item in items]
+        seconds = timeout or self._timeout
+        made = self._asked("/decisions/batch", {"items": checked}, seconds, _each(len(checked), _Made))
+        if made is None:
+            return [self._offline_choice(item) for item in checked]
+        for place, one in enumerate(made):
+            if not isinstance(one, _Made):
+                raise ServiceRefusal(422, f"items.{place}: {one[1]}")
+        return [self._online_choice(item, one) for item, one in zip(checked, made, strict=True)]
+
+    def observe(self, choice: Choice | str, outcome: float) -> None:
+        """Queue the outcome of a decision; it is delivered soon, and counts once however often it is delivered.
+
+        Parameters
+        ----------
+        choice : Choice or str
+            The choice, or its ``decision``. Of a choice made without the service, the identifier alone is enough
+            for the last 10,000 of this client.
+        outcome : float
+            Finite; larger is better.
+        """
+        self._check_usable()
+        outcome = float(outcome)
+        if not math.isfinite(outcome):
+            raise ValueError(f"outcome must be a finite number, got {outcome}")
+        if isinstance(choice, str):
+            choice = self._offline.get(choice) or choice
+        if isinstance(choice, str) or choice.source == "service":
+            line = {"decision": choice if isinstance(choice, str) else choice.decision, "outcome": outcome}
+        else:
+            line = {"id": choice.decision, "user": choice.user, "policy": choice.policy, "outcome": outcome}
+            line |= {"time": choice.time} | ({} if choice.context is None else {"context": choice.context})
+        if not self._queue.put(line):
+            self._count("lost")
+        self._wake.set()
+
+    def flush(self, seconds: float = 5.0) -> bool:
+        """Whether all outcomes were delivered within these seconds. The first attempt is made at once."""
+        end = time.monotonic() + seconds
+        if len(self._queue):
+            self._deliver_at, self._probed_at = 0.0, -math.inf
+        while len(self._queue) and time.monotonic() < end:
+            self._wake.set()
+            time.sleep(min(0.005, seconds))
+        return not len(self._queue)
+
+    def close(self, seconds: float = 5.0) -> None:
+        """End the client, after at most these seconds to deliver outcomes. A queue's file keeps the rest."""
+        if self._stopped.is_set() or self._process != os.getpid():
+            return
+        if not self.flush(seconds) and not self._queue.path:
+            log.error("study %s: %d outcomes are lost, since no queue stores them", self.study, len(self._queue))
+        self._stopped.set()
+        self._wake.set()
+        self._thread.join(seconds)
+        self._link.close()
+        self._queue.close()
+        atexit.unregister(self.close)
+
+    def report(self, seconds: float = 60.0) -> dict[str, Any]:
+        """The study's report: decisions, outcomes, uplift over the control group with its interval.
+
+        Raises
+        ------
+        ServiceUnavailable
+            The service gave no answer in these seconds.
+        """
+        return self._link.ask("GET", "/report", None, seconds)
+
+    def forget(self, user: str) -> None:
+        """Erase all that the service and this client store of a user. Unlike outcomes, this is not queued.
+
+        Raises
+        ------
+        ValueError
+            The service stores nothing of the user.
+        ServiceUnavailable
+            The service gave no answer in ten seconds; ask again later.
+        """
+        with self._delivering:
+            self._queue.keep(lambda line: line.get("user") != user)
+            self._users.drop(lambda key, _: key[0] == user)
+            self._offline.drop(lambda _, choice: choice.user == user)
+            self._link.ask("DELETE", f"/user?name={quote(user, safe='')}", None, PATIENCE)
+
+    def counts(self) -> dict[str, int]:
+        """Numbers of choices and of outcomes since the start.
+
+        Returns
+        -------
+        dict
+            Choices by source: ``service``, ``table``, ``fallback``. Outcomes ``delivered``, ``refused`` by the
+            service, ``lost`` since the queue was full, and ``pending``.
+        """
+        names = ("service", "table", "fallback", "delivered", "refused", "lost")
+        with self._lock:
+            return {name: self._counts[name] for name in names} | {"pending": len(self._queue)}
+
+    def _asked(self, route: str, document: Any, seconds: float, read: Callable[[Any], Any]) -> Any:
+        """The service's answer to a question for decisions; None if it has none."""
+        self._check_usable()
+        if not self._breaker.admits():
+            return None
+        try:
+            answer = self._link.ask("POST", route, document, seconds, read)
+        except ServiceUnavailable as error:
+            self._failed(error)
+            self._wake.set()
+            return None
+        except ServiceRefusal:
+            self._breaker.succeeded()
+            raise
+        if self._breaker.succeeded():
+            log.warning("study %s: the service is back", self.study)
+        return answer
+
+    def _failed(self, error: ServiceUnavailable) -> None:
+        if self._breaker.failed():
+            log.warning("study %s: choices are made without the service: %s", self.study, error)
+
+    def _online_choice(self, item: dict[str, Any], made: "_Made") -> Choice:
+        self._count("service")
+        if made.probabilities:
+            self._users.put((item["user"], item.get("context")), made.probabilities)
+        return _choice(item, made.policy, made.decision, made.probability, "service")
+
+    def _offline_choice(self, item: dict[str, Any]) -> Choice:
+        user, context, available = item["user"], item.get("context"), item.get("available")
+        draws, decision = self._random, uuid.uuid4()
+        if "request" in item:  # the same one again gets the same draw, in another process too
+            draws = random.Random(json.dumps([self.study, user, item["request"]]))
+            decision = uuid.UUID(int=draws.getrandbits(128), version=4)
+        source = "table"
+        drawn = _drawn(self._users.get((user, context)), available, draws)
+        drawn = drawn or _drawn(self._table and self._table.probabilities(context), available, draws)
+        if drawn is None:
+            source, drawn = "fallback", (self._fallback_of(available), 1.0)
+        choice = _choice(item, drawn[0], str(decision), drawn[1], source)
+        self._offline.put(choice.decision, choice)
+        self._count(source)
+        return choice
+
+    def _fallback_of(self, available: Sequence[str] | None) -> str:
+        """The fallback; if it is not available, the first policy that is."""
+        if available is not None and self._fallback not in available:
+            return available[0]
+        assert self._fallback is not None  # without it there is a table
+        return self._fallback
+
+    def _count(self, name: str, more: int = 1) -> None:
+        with self._lock:
+            self._counts[name] += more
+
+    def _check_usable(self) -> None:
+        if self._process != os.getpid():
+            raise RuntimeError("the client was made before a fork of the process; make one in each process")
+        if self._stopped.is_set():
+            raise RuntimeError("the client is closed; make another one")
+
+    def _run(self) -> None:
+        """Until the end: fetch the table when it is due, deliver outcomes when there are any."""
+        while not self._stopped.is_set():
+            try:
+                if time.monotonic() >= self._probe_at():
+                    self._probe()
+                if not self._breaker.is_open and time.monotonic() >= self._deliver_at:
+                    self._deliver()
+            except Exception:  # a defect in one round must not end all later deliveries
+                log.exception("study %s: the client's thread goes on", self.study)
+            if len(self._queue) < BATCH or self._breaker.is_open or self._deliver_at:
+                can_deliver = len(self._queue) and not self._breaker.is_open
+                due = max(self._deliver_at, time.monotonic()) if can_deliver else math.inf
+                self._wake.wait(max(min(due, self._probe_at()) - time.monotonic(), 0))
+                self._wake.clear()
+                self._stopped.wait(LINGER)
+
+    def _probe_at(self) -> float:
+        return self._probed_at + (self._breaker.wait if self._breaker.is_open else self._refresh)
+
+    def _probe(self) -> None:
+        """Fetch the table; a service that answers may be asked for decisions again."""
+        self._probed_at, answered = time.monotonic(), True
+        try:
+            self._fetch_table()
+        except ServiceUnavailable as error:
+            self._failed(error)
+            answered = False
+        except ServiceRefusal as error:
+            log.warning("study %s has no table: %s", self.study, error)
+        if self._breaker.probed(answered):
+            self._delivery_wait = self._deliver_at = 0.0
+
+    def _fetch_table(self) -> None:
+        self._link.resolve()
+        self._table = self._link.ask("GET", "/table", None, PROBE, _Table)
+
+    def _deliver(self) -> None:
+        """Deliver the oldest outcomes; if the service cannot take them now, they stay in the queue."""
+        with self._delivering:
+            lines = self._queue.head(BATCH)
+            refused: list[str] = []
+            try:
+                for route, name in (("/outcomes/batch", "decision"), ("/past", "id")):
+                    self._post(route, [line for line in lines if name in line], refused)
+            except ServiceUnavailable as error:
+                self._delivery_wait = min(max(WAITS[0], 2 * self._delivery_wait), WAITS[1])
+                self._deliver_at = time.monotonic() + self._delivery_wait
+                log.info("study %s: %d outcomes wait: %s", self.study, len(self._queue), error)
+                return
+            self._queue.pop(len(lines))
+        self._delivery_wait = self._deliver_at = 0.0
+        self._count("delivered", len(lines) - len(refused))
+        self._count("refused", len(refused))
+        for message in refused[:3]:
+            log.warning("study %s: the service refused an outcome: %s", self.study, message)
+
+    def _post(self, route: str, items: list[dict[str, Any]], refused: list[str]) -> None:
+        """Deliver these outcomes; the messages of those that the service refuses are added to `refused`."""
+        if not items:
+            return
+        read = _each(len(items), lambda _: None) if route == "/outcomes/batch" else lambda _: []
+        try:
+            errors = [error for error in self._link.ask("POST", route, {"items": items}, PATIENCE, read) if error]
+        except ServiceRefusal as error:
+            if error.status in (404, 405):  # no such study now: not the fault of the outcomes
+                raise ServiceUnavailable(str(error)) from error
+            if len(items) > 1:  # one of them breaks a rule: find it by halves
+                self._post(route, items[: len(items) // 2], refused)
+                self._post(route, items[len(items) // 2 :], refused)
+                return
+            errors = [("input", str(error))]
+        for kind, message in errors:
+            if kind in RETRIED:
+                raise ServiceUnavailable(message)
+            refused.append(message)
+
+
+def _item(
+    user: str,
+    context: str | None = None,
+    features: Mapping[str, float] | None = None,
+    available: Sequence[str] | None = None,
+    request: str | None = None,
+) -> dict[str, Any]:
+    """The document of a decision, without what is left out."""
+    if not (isinstance(user, str) and user):
+        raise ValueError(f"user must be a text of at least one character, got {user!r}")
+    item: dict[str, Any] = {"user": user, "context": context, "request": request}
+    item["features"] = None if features is None else dict(features)
+    item["available"] = None if available is None else list(available)
+    if item["available"] == []:
+        raise ValueError("available must name a policy, got none")
+    return {name: value for name, value in item.items() if value is not None}
+
+
+def _choice(item: Mapping[str, Any], policy: str, decision: str, probability: float, source: str) -> Choice:
+    return Choice(policy, decision, float(probability), source, item["user"], item.get("context"), time.time())
+
+
+def _drawn(
+    probabilities: Mapping[str, float] | None, available: Collection[str] | None, draws: random.Random
+) -> tuple[str, float] | None:
+    """A policy and its probability among those available; None if none of them has a probability above 0."""
+    row = probabilities or {}
+    known = {name: p for name, p in row.items() if p > 0 and (available is None or name in available)}
+    if not known:
+        return None
+    (name,) = draws.choices(list(known), list(known.values()))
+    return name, known[name] / sum(known.values())
+
+
+def _row(document: Mapping[str, Any]) -> dict[str, float]:
+    """Probabilities by policy, at least one of them above 0."""
+    row = {name: float(p) for name, p in document.items()}
+    if not (all(0 <= p <= 1 for p in row.values()) and sum(row.values()) > 0):
+        raise ValueError(f"probabilities must lie in [0, 1] and not all be 0, got {row}")
+    return row
+
+
+class _Made:
+    """A decision that the service made."""
+
+    def __init__(self, document: Mapping[str, Any]) -> None:
+        self.policy, self.decision = str(document["policy"]), str(document["decision"])
+        self.probability = float(document["probability"])
+        self.probabilities = _row(document["probabilities"]) if document.get("probabilities") else None
+
+
+def _each(number: int, read: Callable[[Any], Any]) -> Callable[[Any], list[Any]]:
+    """A reader of the answers to a batch of this number: each is read, or is the error's (kind, message)."""
+
+    def read_all(document: Mapping[str, Any]) -> list[Any]:
+        items = document["items"]
+        if len(items) != number:
+            raise ValueError(f"{number} items were sent, {len(items)} came back")
+        return [
+            (str(item["error"]["kind"]), str(item["error"]["message"])) if "error" in item else read(item)
+            for item in items
+        ]
+
+    return read_all
+
+
+class _Table:
+    """The probabilities of policies for strangers, by context."""
+
+    def __init__(self, document: Mapping[str, Any]) -> None:
+        self._default = _row(document["default"])
+        self._contexts = {context: _row(row) for context, row in document.get("contexts", {}).items()}
+
+    def probabilities(self, context: str | None) -> dict[str, float]:
+        """Those of a context; those of everybody if the context is unknown."""
+        return self._default if context is None else self._contexts.get(context, self._default)
+
+
+class Recent:
+    """The last values by key, at most `size` of them."""
+
+    def __init__(self, size: int) -> None:
+        self._values: dict[Any, Any] = {}
+        self._size, self._lock = size, threading.Lock()
+
+    def get(self, key: Any) -> Any:
+        return self._values.get(key)
+
+    def put(self, key: Any, value: Any) -> None:
+        with self._lock:
+            self._values.pop(key, None)
+            self._values[key] = value
+            if len(self._values) > self._size:
+                del self._values[next(iter(self._values))]
+
+    def drop(self, unwanted: Callable[[Any, Any], bool]) -> None:
+        with self._lock:
+            self._values = {key: value for key, value in self._values.items() if not unwanted(key, value)}
+
+
+class _Breaker:
+    """Whether calls ask the service: closed, all do; open, none does; half open, a single one tries."""
+
+    def __init__(self) -> None:
+        self._state, self._failures, self._lock = "closed", 0, threading.Lock()
+        self.wait = WAITS[0]
+
+    @property
+    def is_open(self) -> bool:
+        return self._state == "open"
+
+    def admits(self) -> bool:
+        if self._state != "half open":
+            return self._state == "closed"
+        with self._lock:
+            if self._state == "half open":
+                self._state = "open"  # for all others, until this call has ended
+                return True
+            return self._state == "closed"
+
+    def succeeded(self) -> bool:
+        """Close; whether the breaker was not closed before."""
+        if self._state == "closed" and not self._failures:
+            return False
+        with self._lock:
+            was, self._state, self._failures, self.wait = self._state, "closed", 0, WAITS[0]
+            return was != "closed"
+
+    def failed(self) -> bool:
+        """Count a failure; whether it opened the breaker."""
+        with self._lock:
+            self._failures += 1
+            was = self._state
+            if self._failures >= FAILURES:
+                self._state = "open"
+            return was == "closed" and self._state == "open"
+
+    def probed(self, answered: bool) -> bool:
+        """Wait longer for the next attempt of the client's thread; whether this one made the breaker half open."""
+        with self._lock:
+            if self._state != "open":
+                return False
+            self.wait = min(2 * self.wait, WAITS[1])
+            self._state = "half open" if answered else "open"
+            return answered
+
+
+class _Queue:
+    """Outcomes in the order of their arrival; with a path, also as lines of JSON in a file.
+
+    The file grows by a line for each outcome, and by ``{"done": n}`` once the n oldest ones are delivered. It is
+    emptied when all are delivered, and written anew, without the delivered ones, when these are the larger part.
+    """
+
+    def __init__(self, path: str | os.PathLike[str] | None, capacity: int, fsync: bool) -> None:
+        self.path = None if path is None else os.fspath(path)
+        self._capacity, self._fsync = capacity, fsync
+        self._lines: deque[dict[str, Any]] = deque()
+        self._lock, self._file, self._delivered = threading.Lock(), -1, 0
+        if self.path is not None:
+            self._file = self._opened(self.path)
+            self._lines.extend(_undelivered(self._file))
+            self._write_anew()
+
+    def __len__(self) -> int:
+        return len(self._lines)
+
+    def put(self, line: dict[str, Any]) -> bool:
+        """Add an outcome; False if the queue is full."""
+        with self._lock:
+            if len(self._lines) >= self._capacity:
+                return False
+            self._lines.append(line)
+            self._append(line)
+            return True
+
+    def head(self, most: int) -> list[dict[str, Any]]:
+        """The oldest outcomes."""
+        with self._lock:
+            return list(islice(self._lines, most))
+
+    def pop(self, number: int) -> None:
+        """Remove the oldest outcomes, which are delivered."""
+        if not number:
+            return
+        with self._lock:
+            for _ in range(number):
+                self._lines.popleft()
+            self._delivered += number
+            if self._file < 0:
+                return
+            if not self._lines:
+                os.ftruncate(self._file, 0)
+                self._delivered = 0
+            elif self._delivered > max(len(self._lines), BATCH):
+                self._write_anew()
+            else:
+                self._append({"done": number})
+
+    def keep(self, wanted: Callable[[dict[str, Any]], bool]) -> None:
+        """Remove all outcomes but those wanted."""
+        with self._lock:
+            self._lines = deque(filter(wanted, self._lines))
+            if self._file >= 0:  # delivered lines too may name a user
+                self._write_anew()
+
+    def close(self) -> None:
+        with self._lock:
+            if self._file >= 0:
+                os.close(self._file)
+                self._file = -1
+
+    def _append(self, line: dict[str, Any]) -> None:
+        if self._file < 0:
+            return
+        data, size = _encoded(line), os.fstat(self._file).st_size
+        try:
+            if os.write(self._file, data) < len(data):
+                raise OSError("the disk is full")
+            if self._fsync:
+                os.fsync(self._file)
+        except OSError as error:
+            log.error("an outcome is in memory alone, since its file cannot be written: %s", error)
+            os.ftruncate(self._file, size)
+
+    def _write_anew(self) -> None:
+        """Replace the file by one of the outcomes that are not delivered, in one step."""
+        path = self.path
+        assert path is not None
+        try:
+            file = self._opened(f"{path}.new", os.O_TRUNC)
+            with open(file, "wb", closefd=False) as stream:
+                stream.writelines(map(_encoded, self._lines))
+            if self._fsync:
+                os.fsync(file)
+            os.replace(f"{path}.new", path)
+            if self._fsync:
+                _fsync_folder(path)
+        except OSError as error:
+            log.error("the queue's file cannot be written anew: %s", error)
+            return
+        os.close(self._file)
+        self._file, self._delivered = file, 0
+
+    def _opened(self, path: str, flags: int = 0) -> int:
+        """The open file, which no other client can open."""
+        if os.path.exists(path) and not os.path.isfile(path):
+            raise ValueError(f"queue must be the path of a file, got {path}")
+        file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND | flags, 0o600)
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            os.close(file)
+            raise ValueError(f"queue must be a file of one client, but another client uses {path}") from None
+        return file
+
+
+def _fsync_folder(path: str) -> None:
+    folder = os.open(os.path.dirname(os.path.abspath(path)), os.O_RDONLY)
+    try:
+        os.fsync(folder)
+    finally:
+        os.close(folder)
+
+
+def _encoded(line: dict[str, Any]) -> bytes:
+    return json.dumps(line).encode() + b"\n"
+
+
+def _undelivered(file: int) -> list[dict[str, Any]]:
+    """The outcomes of a queue's file that are not delivered. A crash can leave a last line that is not whole."""
+    lines: deque[dict[str, Any]] = deque()
+    with open(file, "rb", closefd=False) as stream:
+        for text in stream:
+            try:
+                line = json.loads(text)
+                done = line.get("done", 0)
+            except (ValueError, AttributeError):
+                log.warning("a line of the queue's file is not whole and is left out")
+                continue
+            if "done" not in line:
+                lines.append(line)
+            for _ in range(min(done, len(lines))):
+                lines.popleft()
+    return list(lines)
+
+
+class _Link:
+    """HTTP to one service: connections stay open, each serves one thread at a time, and each wait has an end."""
+
+    MOST_IDLE = 64
+
+    def __init__(self, url: str, prefix: str, token: str | None) -> None:
+        parts = urlsplit(url)
+        if parts.scheme not in ("http", "https") or not parts.hostname:
+            raise ValueError(f"url must begin with http:// or https:// and a host, got {url!r}")
+        self._host, self._prefix = parts.hostname, parts.path.rstrip("/") + prefix
+        self._port = parts.port or (443 if parts.scheme == "https" else 80)
+        self._tls = ssl.create_default_context() if parts.scheme == "https" else None
+        headers = f"Host: {parts.netloc.rpartition('@')[2]}\r\nContent-Type: application/json\r\n"
+        if token is not None:
+            if not (token.isascii() and token.isprintable()):
+                raise ValueError("token must be printable ASCII, as `lifelore serve --add-token` prints it")
+            headers += f"Authorization: Bearer {token}\r\n"
+        self._headers = headers
+        self._idle: deque[socket.socket] = deque()
+        self._addresses: list[Any] = []
+        self._resolved, self._closed = threading.Event(), False
+
+    def resolve(self) -> None:
+        """Ask for the addresses of the host, which can take long: calls of users take those found here."""
+        try:
+            self._addresses = socket.getaddrinfo(self._host, self._port, type=socket.SOCK_STREAM)
+        except OSError as error:
+            raise ServiceUnavailable(f"{self._host} has no address: {error}") from error
+        self._resolved.set()
+
+    def ask(self, method: str, path: str, document: Any, seconds: float, read: Callable[[Any], Any] = dict) -> Any:
+        """The document of the answer, read by a function.
+
+        Raises
+        ------
+        ServiceUnavailable
+            No answer within these seconds, one that says to come back later, or one that is not the service's.
+        ServiceRefusal
+            The service says that the request breaks a rule.
+        """
+        deadline = time.monotonic() + seconds
+        body = b"" if document is None else json.dumps(document, allow_nan=False).encode()
+        head = f"{method} {self._prefix}{path} HTTP/1.1\r\n{self._headers}Content-Length: {len(body)}\r\n\r\n"
+        try:
+            status, content = self._exchange(head.encode() + body, deadline)
+            answer = json.loads(content)
+            if status == 200:
+                return read(answer)
+            message = str(answer["error"]["message"])
+        except (OSError, http.client.HTTPException, ValueError, LookupError, TypeError, AttributeError) as error:
+            raise ServiceUnavailable(f"{type(error).__name__}: {error}") from error
+        if 400 <= status < 500 and status not in (401, 403, 408, 429):
+            raise ServiceRefusal(status, message)
+        raise ServiceUnavailable(f"status {status}: {message}")
+
+    def close(self) -> None:
+        self._closed = True
+        while self._idle:
+            self._idle.pop().close()
+
+    def _exchange(self, message: bytes, deadline: float) -> tuple[int, bytes]:
+        """Status and content of the answer. A connection that ended while it was idle is replaced once."""
+        connection = self._idle_connection()
+        if connection is not None:
+            try:
+                return self._sent(connection, message, deadline)
+            except ConnectionError:
+                pass
+        return self._sent(self._connected(deadline), message, deadline)
+
+    def _sent(self, connection: socket.socket, message: bytes, deadline: float) -> tuple[int, bytes]:
+        try:
+            connection.settimeout(_left(deadline))
+            connection.sendall(message)
+            response = http.client.HTTPResponse(cast(Any, _Until(connection, deadline)))
+            response.begin()
+            content = response.read()
+        except BaseException:
+            connection.close()
+            raise
+        if response.will_close or self._closed or len(self._idle) >= self.MOST_IDLE:
+            connection.close()
+        else:
+            self._idle.append(connection)
+        return response.status, content
+
+    def _idle_connection(self) -> socket.socket | None:
+        """The connection that was used last, if the service has not closed it."""
+        while True:
+            try:
+                connection = self._idle.pop()
+            except IndexError:
+                return None
+            readable = select.poll()
+            readable.register(connection, select.POLLIN)
+            if not readable.poll(0):
+                return connection
+            connection.close()
+
+    def _connected(self, deadline: float) -> socket.socket:
+        """A new connection to the first of the host's addresses that answers; each gets its share of the time."""
+        self._resolved.wait(_left(deadline))
+        error: OSError = TimeoutError(f"{self._host} has no address yet")
+        addresses = self._addresses
+        for place, (family, kind, protocol, _, address) in enumerate(addresses):
+            connection = socket.socket(family, kind, protocol)
+            try:
+                connection.settimeout(_left(deadline) / (len(addresses) - place))
+                connection.connect(address)
+                connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+                connection.settimeout(_left(deadline))
+                return self._tls.wrap_socket(connection, server_hostname=self._host) if self._tls else connection
+            except OSError as failure:
+                connection.close()
+                error = failure
+        raise error
+
+
+class _Until(io.RawIOBase):
+    """What a socket receives, until a deadline."""
+
+    def __init__(self, connection: socket.socket, deadline: float) -> None:
+        self._connection, self._deadline = connection, deadline
+
+    def makefile(self, mode: str) -> io.BufferedReader:
+        return io.BufferedReader(self)
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        self._connection.settimeout(_left(self._deadline))
+        return self._connection.recv_into(buffer)
+
+
+def _left(deadline: float) -> float:
+    """Seconds until the deadline."""
+    left = deadline - time.monotonic()
+    if left <= 0:
+        raise TimeoutError("no answer in time")
+    return left
