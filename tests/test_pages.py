@@ -53,7 +53,14 @@ EXPECTED = {
     ],
     "long_lived": ["points below the best possible return", "task 3, context", "believed in"],
     "fleet": ["karl", "rosie", "contributions: 2 added", "contributions: 0 added"],
-    "log_to_choices": ["10 types named", "decision ", "uplift ", "columns is retired", "new 3 forgotten"],
+    "log_to_choices": [
+        "10 types named",
+        "decision ",
+        "uplift ",
+        "columns is retired",
+        "new 3 and 12 decisions",
+        "(archived)",
+    ],
 }
 """Words of the output of each page, in this order."""
 NOT_RUN = {
@@ -179,16 +186,32 @@ def test_a_prior_is_learnt_kept_and_explored_by(walked):
 @pytest.mark.slow
 def test_an_outcome_comes_by_the_identifier_that_the_choice_printed(tmp_path):
     (line,) = re.findall(
-        r"^    (lifelore reuse update .*)", (DOCS / "log_to_choices.md").read_text("utf-8"), flags=re.M
+        r"^    (lifelore reuse update .*)", (DOCS / "start" / "personalisation.md").read_text("utf-8"), flags=re.M
     )
     log = DOCS.parent / "examples" / "data" / "log.csv"
     made = output(
         "sh", f"lifelore reuse fit {log} > fit.txt; lifelore reuse choose --user ann", tmp_path, tmp_path
     )
     (decision,) = re.findall(r"^decision (\S+) ", made, flags=re.M)
-    assert "5a0f…-0" in line
-    stored = output("sh", line.replace("5a0f…-0", decision), tmp_path, tmp_path)
-    assert f"outcome 1 of {made.splitlines()[0]} stored; ann is" in stored
+    line, replaced = re.subn(r"(?<=--decision )\S+", decision, line)
+    assert replaced == 1
+    stored = output("sh", line, tmp_path, tmp_path)
+    assert f"outcome 41.5 of {made.splitlines()[0]} stored; ann is" in stored
+
+
+@pytest.mark.slow
+def test_the_first_page_of_personalisation_shows_what_its_commands_print(walked):
+    shown, _ = walked("start/personalisation")
+    page = (DOCS / "start" / "personalisation.md").read_text("utf-8")
+    told = [line for line in re.findall(r"^    (.*)", page, flags=re.M) if line not in code_of(page)]
+    results = [line for line in told if not line.startswith(("decision ", "lifelore "))]
+    assert len(results) == 9
+    assert not [line for line in results if line not in shown]
+
+
+def code_of(page: str) -> str:
+    """The code of a page's blocks."""
+    return "".join(re.findall(r"^```.*?^```", page, flags=re.S | re.M))
 
 
 def test_every_page_with_commands_is_walked():

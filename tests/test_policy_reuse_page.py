@@ -64,7 +64,8 @@ def test_the_tutorial_from_a_log_to_its_end(run, tmp_path):
     told = run(*TUTORIAL[3])
     assert "columns is retired" in told
     assert "whole is given to the control group" in told
-    assert "contributions of new 3 forgotten" in told
+    assert "new 3 and 12 decisions and lines of the past forgotten" in told
+    assert "default (archived)" in told
 
 
 def test_where_outcomes_are_0_or_1_expected_improvement_is_greedy():

@@ -76,7 +76,7 @@ def serve() -> str:
     value, ratio = measured("serve")
     return (
         f"{ratio['decision and outcome']:.2f} × the route, {value['decision and outcome']:.0f}/s; "
-        f"panels: {value['batches of decisions']:,.0f} decisions/s"
+        f"batches: {value['batches of decisions']:,.0f} decisions/s"
     )
 
 

@@ -126,7 +126,7 @@ class BayesianPolicyReuse:
         ----------
         available : sequence of str or int, or (n_policies,) bool, optional
             The policies that can be run now: names, numbers or a mask; all by default. Rules then choose as if
-            the library had no others, see `availability`.
+            the library had no others, see `available_mask`.
 
         Raises
         ------
