@@ -153,7 +153,7 @@ class StudyRows:
         self._change_users(setting, {"state": "bytea"}, beliefs)
 
     def learn(self, learnt: Iterable[tuple[int, bytes | None, int, float, int, float]], version: int) -> None:
-        """Store beliefs, and add outcomes to users' sums.
+        """Store beliefs of locked users, and add outcomes to their sums.
 
         Parameters
         ----------
@@ -166,12 +166,15 @@ class StudyRows:
             {"state": "bytea", "personal": "bigint", "personal_sum": "float8", "control": "bigint",
              "control_sum": "float8"},
             learnt,
+            locked=True,
         )  # fmt: skip
 
-    def _change_users(self, setting: str, types: Mapping[str, str], users: Iterable[Sequence[Any]]) -> None:
+    def _change_users(
+        self, setting: str, types: Mapping[str, str], users: Iterable[Sequence[Any]], *, locked: bool = False
+    ) -> None:
         """Set columns of users, each given by number and values."""
         rows = sorted(users, key=itemgetter(0))
-        if not self._conn.is_sqlite:
+        if not (locked or self._conn.is_sqlite):
             query = (
                 "SELECT number FROM lifelore_study_users WHERE study = ? AND number IN ({many}) ORDER BY number"
             )

@@ -49,9 +49,12 @@ def assert_beliefs_are_replays(memory, study):
     with memory.studies.totals(study.number) as totals:
         sums = totals.by_user()
     ended = [one for own in decisions.values() for one in own if one.outcome is not None]
-    for control, group in enumerate(sums):
-        own = [one.outcome for one in ended if one.control == bool(control)]
-        assert (group.number.sum(), group.total.sum()) == (len(own), pytest.approx(sum(own)))
+    for control, number, total in (
+        (False, sums.personal, sums.personal_sum),
+        (True, sums.control, sums.control_sum),
+    ):
+        own = [one.outcome for one in ended if one.control == control]
+        assert (number.sum(), total.sum()) == (len(own), pytest.approx(sum(own)))
     for name, user in users.items():
         own = [one for one in decisions.get(user.number, []) if one.outcome is not None]
         own.sort(key=lambda one: (one.ended, one.id))
@@ -86,7 +89,8 @@ def test_an_outcome_that_all_programs_send_counts_once(memories):
     answers = [one for batch in side_by_side(memories, send, 6) for one in batch]
     assert sum(one["taken"] for one in answers) == len(pairs)
     with memories[0].studies.totals(study.number) as totals:
-        assert sum(sums.total.sum() for sums in totals.by_user()) == sum(outcome for _, outcome in pairs)
+        sums = totals.by_user()
+    assert sums.personal_sum.sum() + sums.control_sum.sum() == sum(outcome for _, outcome in pairs)
 
 
 def test_the_same_request_is_one_decision(memories):
@@ -172,7 +176,8 @@ def test_forgetting_during_decisions_leaves_a_whole_user_or_none(memories):
         n, _ = totals.n_decisions()
         assert n == sum(map(len, own.values()))
         assert totals.n_users() == len(known)
-        assert sum(sums.number.sum() for sums in totals.by_user()) == n - sum(
+        sums = totals.by_user()
+        assert sums.personal.sum() + sums.control.sum() == n - sum(
             one.outcome is None for part in own.values() for one in part
         )
     assert forget(memories[0], study, "ann") == n if known else True

@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from lifelore.agent.reuse.history import histories
 from scipy import stats
 
+from lifelore.agent.personalise.decision_log import COLUMNS
 from lifelore.agent.personalise.decisions import choose, forget, update
+from lifelore.agent.personalise.explanation import explain
 from lifelore.agent.personalise.fit.fit import FitSettings, fit
-from lifelore.agent.personalise.report import COLUMNS, report
+from lifelore.agent.personalise.report import report
 from lifelore.agent.personalise.study import Study, open_study
-from lifelore.agent.reuse import report as reuse_report
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.figures.reuse_report import draw_reuse_report
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -26,9 +26,9 @@ def memory(tmp_path):
 
 
 @pytest.fixture
-def study():
+def study(memory):
     library = PolicyLibrary.from_means([[8.0, 2.0], [2.0, 6.0]], 1.0, policies=["x", "y"])
-    return Study("s", library, {"x": "active", "y": "active"}, control=0.5, rule="greedy", change=0.0)
+    return Study("s", library, {"x": "active", "y": "active"}, control=0.5, rule="greedy", change=0.0).keep(memory)
 
 
 def lived(memory, study, users=12, times=3):
@@ -71,7 +71,7 @@ def test_numbers_by_hand(memory, study):
 def test_the_interval_of_many_users_is_students(memory, study, monkeypatch):
     said = lived(memory, study, 20)
     resampled = report(memory, study)["personal"]
-    monkeypatch.setattr(reuse_report, "MANY", 4)
+    monkeypatch.setattr("lifelore.agent.personalise.report.MANY", 4)
     document = report(memory, study)
     means = [np.mean([outcome for _, outcome in rows]) for (_, held), rows in said.items() if not held]
     half = stats.t.ppf(0.975, len(means) - 1) * stats.sem(means)
@@ -106,7 +106,7 @@ def test_the_folder_and_the_log(memory, study, tmp_path):
     assert head == ",".join(COLUMNS)
     assert len(lines) == 36
     fields = dict(zip(COLUMNS, lines[2].split(","), strict=True))
-    assert (fields["user"], fields["outcome"], fields["number"], fields["outcome_time"]) == ("u0", "", "2", "")
+    assert (fields["user"], fields["outcome"], fields["outcome_time"]) == ("u0", "", "")
     assert fields["probability"] == ("0.5" if fields["group"] == "control" else "1.0")
 
 
@@ -122,7 +122,7 @@ def test_names_are_drawn_as_they_are(memory, tmp_path):
     """Neither a formula, which may be a wrong one, nor a warning about letters that the font has not."""
     names = ["$\\nothing$", "用户"]
     library = PolicyLibrary.from_means([[8.0, 2.0]], 1.0, policies=names)
-    odd = Study("a $\\study$", library, dict.fromkeys(names, "active"), control=0.5)
+    odd = Study("a $\\study$", library, dict.fromkeys(names, "active"), control=0.5).keep(memory)
     lived(memory, odd)
     document = report(memory, odd, tmp_path)
     assert (tmp_path / "report.png").exists()
@@ -153,7 +153,7 @@ def test_a_place_that_cannot_be_written(memory, study, tmp_path):
 
 def test_a_user_who_changed_groups_counts_in_each_by_its_own_decisions(memory, study):
     for control, outcome in ((0.0, 4.0), (0.9999, 6.0)):
-        now = replace(study, control=control)
+        now = replace(study, control=control).keep(memory)
         update(memory, now, choose(memory, now, "ann")["decision"], outcome)
     document = report(memory, study)
     assert (document["personal"]["value"], document["control"]["value"]) == (4.0, 6.0)
@@ -189,7 +189,7 @@ def test_the_best_single_policy_is_that_of_the_fit_and_not_of_the_control_group(
 
 
 def test_a_control_group_with_an_incumbent_does_not_measure_the_best_single_policy(memory, study):
-    held = replace(study, incumbent="y")
+    held = replace(study, incumbent="y").keep(memory)
     lived(memory, held)
     document = report(memory, held)
     assert (document["best_single"]["outcome"], document["best_single"]["uplift"]) == (None, None)
@@ -212,15 +212,16 @@ def test_a_user_whose_decisions_a_later_fit_read_is_known_to_it(memory, tmp_path
     assert report(memory, study, split="user")["decisions"] == 1
     assert report(memory, study, split="user")["personal"]["value"] == 6.0
     made = choose(memory, study, "ann")
-    assert made["number"] == 2
-    assert made["belief"] == before
+    assert list(made["belief"].values()) == pytest.approx(list(before.values()))
     assert forget(memory, study, "bo") > 0
-    assert "bo" not in {history.user for history in histories(memory, study)}
+    with pytest.raises(NotFoundError):
+        explain(memory, study, "bo")
 
 
 def test_splits_leave_out_what_the_fit_has_seen(memory, tmp_path, monkeypatch):
     clock = [1000.0]
     monkeypatch.setattr("time.time", lambda: clock[0])
+    monkeypatch.setattr("time.time_ns", lambda: int(1e9 * clock[0]))
     lines = [f"u{user},{policy},{user + (policy == 'x')}" for user in range(6) for policy in "xy"]
     (tmp_path / "log.csv").write_text("\n".join(["user,policy,outcome", *lines]) + "\n")
 
@@ -248,3 +249,14 @@ def test_splits_leave_out_what_the_fit_has_seen(memory, tmp_path, monkeypatch):
         report(memory, study, split="none")
     with pytest.raises(InputError, match="knows when it was fitted; fit it anew"):
         report(memory, replace(study, fitted={}), split="time")
+
+
+def test_a_large_study_is_reported_by_a_sample(memory, study, monkeypatch):
+    """Sums are of all users; curve, regret and calibration of the users drawn."""
+    monkeypatch.setattr("lifelore.agent.personalise.histories.SAMPLE", 10)
+    said = lived(memory, study, 40)
+    document = report(memory, study)
+    assert document["personal"]["n"] + document["control"]["n"] == len(said) == 40
+    assert document["sample"] == 10
+    assert document["calibration"]["outcomes"]["groups"] == 10
+    assert document == report(memory, study)

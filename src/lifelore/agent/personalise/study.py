@@ -242,12 +242,12 @@ def open_study(memory: Memory, name: str = "default") -> Study:
     StoreError
         It is damaged.
     """
-    from lifelore.agent.personalise.earlier_studies import take_earlier
-
     check_study_name(name)
     found = memory.studies.newest(name)
-    if found is None and take_earlier(memory, name):
-        found = memory.studies.newest(name)
+    if found is None:
+        from lifelore.agent.personalise.earlier_studies import take_earlier
+
+        found = memory.studies.newest(name) if take_earlier(memory, name) else None
     if found is None:
         _refuse_unknown(memory, name)
     return _study_of(name, found)

@@ -227,7 +227,7 @@ def test_chunks_make_no_difference(written, monkeypatch):
 
 def test_equal_logs_are_refused(written):
     paths = [written(HEAD + "a,p,1\n"), written(HEAD + "a,p,1\n", "copy.csv")]
-    with pytest.raises(InputError, match="are equal; lines would count twice"):
+    with pytest.raises(InputError, match="are equal; its lines would count twice"):
         read_log(paths)
 
 
