@@ -39,6 +39,8 @@ LARGEST_BLOCK = 1 << 22
 EARLIER_IDENTIFIER = re.compile(r"[0-9a-f]{16}(-\d{1,9}(\.\d{1,9})?|\.\d+/\d+)")
 ATTEMPTS = 3
 """Number of times that a decision is tried again where another program is faster."""
+SET_BACK = 60_000
+"""Milliseconds by which a clock may run back without an effect on the order of identifiers."""
 BINS = 50
 """Signals of a policy that a rule may tell apart."""
 
@@ -328,7 +330,10 @@ def _for_control(study: Study, available: Sequence[str] | None) -> list[str]:
 
 
 class _Clock:
-    """Times of identifiers: milliseconds, and a number that rises within one; neither ever falls in a process."""
+    """Times of identifiers: milliseconds, and a number that rises within one.
+
+    In a process they only rise, unless the machine's clock is set back by more than `SET_BACK`.
+    """
 
     def __init__(self) -> None:
         self._lock, self._ticks = threading.Lock(), 0
@@ -336,7 +341,8 @@ class _Clock:
     def tick(self, now: int) -> int:
         """Milliseconds since 1970 · 2¹² + number."""
         with self._lock:
-            self._ticks = max(now << 12, self._ticks + 1)
+            following = self._ticks + 1 if now << 12 > self._ticks - (SET_BACK << 12) else 0
+            self._ticks = max(now << 12, following)
             return self._ticks
 
 
