@@ -84,14 +84,14 @@ CREATE TABLE lifelore_study_users (
 CREATE TABLE lifelore_study_past (
     study {int} NOT NULL, id {blob} NOT NULL, person {int} NOT NULL, policy {text} NOT NULL,
     outcome {real} NOT NULL, time {int} NOT NULL, fitted {int} NOT NULL, PRIMARY KEY (study, id)){clustered};
-CREATE INDEX lifelore_study_past_person ON lifelore_study_past (study, person);
+CREATE INDEX lifelore_study_past_person ON lifelore_study_past (person);
 CREATE TABLE lifelore_decisions (
     study {int} NOT NULL, id {blob} NOT NULL, person {int} NOT NULL, policy {text} NOT NULL,
     probability {real} NOT NULL, control {int} NOT NULL, version {int} NOT NULL, context {text}, available {text},
     request {text}, time {int} NOT NULL, outcome {real}, ended {int},
     PRIMARY KEY (study, id)){clustered};
-CREATE INDEX lifelore_decisions_person ON lifelore_decisions (study, person);
-CREATE UNIQUE INDEX lifelore_decisions_request ON lifelore_decisions (study, person, request)
+CREATE INDEX lifelore_decisions_person ON lifelore_decisions (person);
+CREATE UNIQUE INDEX lifelore_decisions_request ON lifelore_decisions (person, request)
     WHERE request IS NOT NULL;
 CREATE INDEX lifelore_decisions_control ON lifelore_decisions (study, policy, person, outcome, control)
     WHERE control = 1

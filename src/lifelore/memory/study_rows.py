@@ -13,7 +13,7 @@ DECISION = (
 )  # fmt: skip
 """Columns of a decision without its outcome."""
 _USER = "number, name, context, features, type, fitted, version, state"
-_COUNT = ", (SELECT COUNT(*) FROM lifelore_decisions d WHERE d.study = u.study AND d.person = u.number)"
+_COUNT = ", (SELECT COUNT(*) FROM lifelore_decisions d WHERE d.person = u.number)"
 _DECISION = "id, person, policy, probability, control, version, time, context, available, request, outcome, ended"
 
 
@@ -83,7 +83,8 @@ class StudyRows:
     """The rows of a study inside a transaction.
 
     Whatever changes several users does so in the order of their numbers, or of their names where they are new, so
-    that two transactions of a PostgreSQL server never wait for each other.
+    that two transactions of a PostgreSQL server never wait for each other. Numbers of users are unique in a
+    memory: where they are given, ``+study`` keeps SQLite from reading the whole study to find a few users.
 
     Parameters
     ----------
@@ -116,7 +117,7 @@ class StudyRows:
         that lock the same users in different orders would wait for one another.
         """
         query = (
-            f"SELECT {_USER} FROM lifelore_study_users WHERE study = ? AND number IN ({{many}}) ORDER BY number"
+            f"SELECT {_USER} FROM lifelore_study_users WHERE +study = ? AND number IN ({{many}}) ORDER BY number"
         )
         how = self._locked(lock, "NO KEY UPDATE")
         found = self._conn.matching(query + how, sorted(set(numbers)), (self._study,))
@@ -176,7 +177,7 @@ class StudyRows:
         rows = sorted(users, key=itemgetter(0))
         if not (locked or self._conn.is_sqlite):
             query = (
-                "SELECT number FROM lifelore_study_users WHERE study = ? AND number IN ({many}) ORDER BY number"
+                "SELECT number FROM lifelore_study_users WHERE +study = ? AND number IN ({many}) ORDER BY number"
             )
             self._conn.matching(f"{query} FOR NO KEY UPDATE", [row[0] for row in rows], (self._study,))
         where = f"study = {int(self._study)} AND number = {{number}}"
@@ -191,7 +192,7 @@ class StudyRows:
         counts = [
             len(
                 self._conn.execute(
-                    f"DELETE FROM {table} WHERE study = ? AND {column} = ? RETURNING study", (self._study, number)
+                    f"DELETE FROM {table} WHERE +study = ? AND {column} = ? RETURNING study", (self._study, number)
                 ).fetchall()
             )
             for table, column in (
@@ -230,7 +231,7 @@ class StudyRows:
 
     def decisions_of(self, numbers: Sequence[int]) -> dict[int, list[DecisionRow]]:
         """All decisions for users by their number, in order of time."""
-        query = f"SELECT {_DECISION} FROM lifelore_decisions WHERE study = ? AND person IN ({{many}})"
+        query = f"SELECT {_DECISION} FROM lifelore_decisions WHERE +study = ? AND person IN ({{many}})"
         found: dict[int, list[DecisionRow]] = {}
         rows = map(_decision, self._conn.matching(query, numbers, (self._study,)))
         for row in sorted(rows, key=lambda row: (row.time, row.id)):
@@ -240,7 +241,7 @@ class StudyRows:
     def first_decisions(self, numbers: Sequence[int]) -> dict[int, int]:
         """Time of the first decision for each user that had one, in milliseconds since 1970."""
         query = (
-            "SELECT person, MIN(time) FROM lifelore_decisions WHERE study = ? AND person IN ({many})"
+            "SELECT person, MIN(time) FROM lifelore_decisions WHERE +study = ? AND person IN ({many})"
             " GROUP BY person"
         )
         return dict(self._conn.matching(query, numbers, (self._study,)))
@@ -248,7 +249,7 @@ class StudyRows:
     def requested(self, pairs: Sequence[tuple[int, str | None]]) -> dict[tuple[int, str | None], DecisionRow]:
         """The decisions that were made for (user, request)."""
         query = (
-            f"SELECT {_DECISION} FROM lifelore_decisions WHERE study = ? AND request IS NOT NULL"
+            f"SELECT {_DECISION} FROM lifelore_decisions WHERE +study = ? AND request IS NOT NULL"
             " AND person IN ({many})"
         )
         if len(pairs) == 1:
@@ -276,7 +277,7 @@ class StudyRows:
         past = [(number, *pair) for number, own in self.past_of(numbers).items() for pair in own]
         query = (
             "SELECT person, policy, outcome, ended, id FROM lifelore_decisions"
-            " WHERE study = ? AND outcome IS NOT NULL AND person IN ({many})"
+            " WHERE +study = ? AND outcome IS NOT NULL AND person IN ({many})"
         )
         found = self._conn.matching(query, numbers, (self._study,))
         return past + [row[:3] for row in sorted(found, key=lambda row: row[3:])]
@@ -285,7 +286,7 @@ class StudyRows:
         """(policy, outcome) of the past of users by their number, in order of time."""
         query = (
             "SELECT person, policy, outcome, time, id FROM lifelore_study_past"
-            " WHERE study = ? AND person IN ({many})"
+            " WHERE +study = ? AND person IN ({many})"
         )
         found: dict[int, list[tuple[str, float]]] = {}
         for person, policy, outcome, *_ in sorted(
