@@ -6,8 +6,11 @@ import pytest
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
 from lifelore.memory import open_memory, schema
+from lifelore.memory.studies import TABLES
+from lifelore.memory.study_rows import DecisionRow
 
 NOW = sorted(schema.MIGRATIONS)
+STUDIES = ("lifelore_studies", *TABLES)
 
 
 @pytest.fixture
@@ -27,6 +30,7 @@ def first_schema():
                     "ALTER TABLE lifelore_cells DROP COLUMN state",
                     "DROP TABLE lifelore_forgotten_records",
                     "DROP TABLE lifelore_leases",
+                    *(f"DROP TABLE {table}" for table in STUDIES),
                 ):
                     conn.execute(statement)
                 conn.execute("DELETE FROM lifelore_migrations WHERE number > 1")
@@ -78,6 +82,43 @@ def test_a_memory_of_the_first_schema_gets_states(where, first_schema):
         assert memory.recall("prior", "b7", 1).values.tolist() == [30, 10]
         assert memory.recall_state("prior", "b7", 1) == (0, None, {}, None)
         assert memory.check() == []
+
+
+def test_a_memory_of_the_sixth_schema_gets_studies(where, monkeypatch):
+    with monkeypatch.context() as before:
+        before.setattr(schema, "MIGRATIONS", {number: schema.MIGRATIONS[number] for number in range(1, 7)})
+        before.setattr(schema, "LATEST", 6)
+        with open_memory(where) as memory:
+            fill(memory)
+            assert (steps(memory), memory.show()["schema"]) == ([1, 2, 3, 4, 5, 6], 6)
+            with memory._store.reading() as conn, pytest.raises(Exception, match="lifelore_studies"):
+                conn.execute("SELECT * FROM lifelore_studies")
+    with open_memory(where) as memory:
+        assert steps(memory) == NOW
+        assert (memory.tasks("a"), memory.recall("prior", "b7", 1).values.tolist()) == (1, [30, 10])
+        assert memory.check() == []
+        number = memory.studies.keep("s", {"rule": "best"}, b"library").number
+        with memory.studies.writing(number) as rows:
+            rows.add_users([("eva", None, None)], 0)
+            person = rows.users(["eva"])["eva"].number
+            rows.add_decisions([DecisionRow(bytes(16), person, "dark", 0.25, False, 1, 0, None)])
+        with memory.studies.reading(number) as rows:
+            assert rows.decisions_of([person])[person][0].policy == "dark"
+    with open_memory(where) as memory:
+        assert (memory.studies.newest("s").content, memory.studies.states()) == (b"library", {"s": "active"})
+
+
+def test_a_memory_of_the_sixth_schema_is_read_as_it_is(file, monkeypatch):
+    with monkeypatch.context() as before:
+        before.setattr(schema, "MIGRATIONS", {number: schema.MIGRATIONS[number] for number in range(1, 7)})
+        before.setattr(schema, "LATEST", 6)
+        with open_memory(file) as memory:
+            fill(memory)
+    content = file.read_bytes()
+    with open_memory(file, read_only=True) as memory:
+        assert memory.recall("prior", "b7", 1).values.tolist() == [30, 10]
+        assert memory.check() == []
+    assert file.read_bytes() == content
 
 
 def test_a_memory_of_the_first_schema_is_read_and_checked_as_it_is(file, first_schema):

@@ -30,10 +30,9 @@ from lifelore.memory import Memory
 from lifelore.memory.byte_words import bytes_of
 from lifelore.memory.study_rows import DecisionRow, PastRow, StudyRows
 
-STUDY, USER, AVAILABLE, PAST, PANEL = (
-    "reuse_study", "reuse_user", "reuse_available", "reuse_past", "reuse_panel",
+STUDY, USER, AVAILABLE, PAST, PANEL, VERSION = (
+    "reuse_study", "reuse_user", "reuse_available", "reuse_past", "reuse_panel", 1
 )  # fmt: skip
-VERSION = 1
 _FIELDS, _WIDTH = 8, 1 << 16
 _POLICY, _PROBABILITY, _CONTROL, _CHOSEN, _ATTEMPT, _OUTCOME, _ENDED = range(7)
 _COLUMNS: dict[str, tuple[tuple[str, str], ...]] = {
