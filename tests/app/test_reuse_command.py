@@ -16,6 +16,7 @@ from lifelore.memory import open_memory
 NOBODY = "01900000-0000-7000-8000-000000000000"
 """An identifier of no decision."""
 
+
 @pytest.fixture(scope="module")
 def log(tmp_path_factory):
     """Two kinds of users, each best served by another policy."""

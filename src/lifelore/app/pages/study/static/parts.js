@@ -48,7 +48,7 @@ export function drawUplift(report) {
     ...(incumbent ? [[`Incumbent: ${incumbent.name}`, incumbent.outcome, incumbent.uplift]] : []),
   ];
   const ends = rows.flatMap(([, , gain]) => gain?.ci95 ?? []).concat(0);
-  $("uplift").replaceChildren(table(["Compared with", "Its mean outcome", "Uplift", "95 % interval of the uplift", ""], rows.map(([name, other, gain]) => [
+  $("uplift").replaceChildren(table(["Compared with", "Its mean outcome", "Uplift", "95 % interval of the uplift", "Drawn"], rows.map(([name, other, gain]) => [
     name, other ? estimate(other) : "no outcome yet", gain ? signed(gain.value) : "–",
     gain?.ci95 ? range(gain.ci95, signed) : "too few users", gain?.ci95 ? interval(gain, Math.min(...ends), Math.max(...ends)) : "",
   ])));
