@@ -1,9 +1,10 @@
 """`Store`: an open database with transactions for one writer at a time, and for readers on a snapshot."""
 
+import sqlite3
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import closing, contextmanager
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any, Literal
 
@@ -14,6 +15,9 @@ from lifelore.memory.location import Server, describe
 from lifelore.memory.refusal import BUSY_SECONDS, one_line_refusals
 from lifelore.memory.sqlite_file import connect, connect_source, is_writable, refuse_unless_ours
 
+REWRITTEN = 64 << 20
+"""Bytes of a file that is written anew after rows are forgotten, some 100 MB/s; of a larger file `VACUUM` is left
+to its owner."""
 CACHE_KIB = 32 * 1024
 """KiB of pages that a connection to an SQLite file keeps; more makes large studies faster."""
 # Any fixed number, the same for all processes that write to a database.
@@ -105,7 +109,8 @@ class Store:
         """Move the log of an SQLite file into the file and empty it; does nothing on a PostgreSQL server.
 
         SQLite overwrites deleted rows and freed pages by zeros (``secure_delete``), but the log has earlier copies
-        of these pages until it is emptied.
+        of these pages until it is emptied. Where rows have moved to other pages, copies of them may stay in the
+        unused parts of pages: a file of up to `REWRITTEN` bytes is written anew without them.
 
         Raises
         ------
@@ -118,6 +123,8 @@ class Store:
             self._own.log_to_empty = True
             return
         with one_line_refusals(self.location), self.pool.connection() as conn:
+            if conn.value("PRAGMA page_count") * conn.value("PRAGMA page_size") <= REWRITTEN:
+                _rewrite(conn)
             if conn.value("PRAGMA wal_checkpoint(TRUNCATE)"):
                 raise StoreError(
                     f"memory {self.location}: the content is deleted, but its bytes are still in the log, which "
@@ -173,6 +180,16 @@ class Store:
             raise StoreError(
                 f"memory {self.location} is of an older Lifelore (schema {found}); open it once by itself"
             )
+
+
+def _rewrite(conn: Connection) -> None:
+    """Write a file of SQLite anew, unless another connection is at work in it just now."""
+    conn.control("PRAGMA busy_timeout = 100")
+    try:
+        with suppress(sqlite3.OperationalError):
+            conn.control("VACUUM")
+    finally:
+        conn.control(f"PRAGMA busy_timeout = {1000 * BUSY_SECONDS}")
 
 
 def open_file(path: Path, *, durable: bool = False, journal: Literal["WAL", "DELETE"] = "WAL") -> Store:

@@ -12,6 +12,7 @@ Names of users in logs and batches were not stored, only their `user_key`: such 
 
 import hashlib
 import json
+import re
 import zlib
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -65,9 +66,13 @@ def take_earlier(memory: Memory, name: str) -> bool:
             raise StoreError(f"{what} is damaged ({error}); restore an export") from None
         with memory.studies.writing(study.number) as rows:
             _store(rows, study, people)
-        own = f"reuse {name}"
-        memory.forget_all([one for one in memory.robots() if one == own or one.startswith(f"{own}: ")])
+        memory.forget_all([robot for robot in memory.robots() if _wrote(robot, name)])
     return True
+
+
+def _wrote(robot: str, study: str) -> bool:
+    """Whether the contributor is one of the study, and not of another one whose name begins like its own."""
+    return re.fullmatch(rf"reuse {re.escape(study)}(: ([0-9a-f]{{16}}|past \d+|panel))?", robot) is not None
 
 
 def _study(name: str, record: Record) -> Study:
