@@ -22,7 +22,7 @@ def test_a_study_in_memory_goes_on_as_it_would_have(name, folder, tmp_path):
         assert_same(study.library.performance.mean.tolist(), told["mean"], "mean")
         assert_same(study.library.prior.tolist(), told["prior"], "prior")
         assert study.states == told["states"]
-        # Beliefs learn outcomes when they come, and draws of a seed are others; decisions and their sums are the same.
+        # Beliefs learn outcomes when they come, and draws of a seed are others; decisions and their sums stay.
         now = report(memory, study)
         for key in ("decisions", "pending", "control_gets"):
             assert now[key] == told["report"][key]
