@@ -229,7 +229,7 @@ def test_metrics_and_log_name_routes_and_not_users(serve, study, caplog):
     route = 'method="POST",route="/v1/studies/{study}/decisions",status="200"'
     assert f"lifelore_requests_total{{{route}}} 1.0" in metrics
     assert 'route="other",status="404"} 1.0' in metrics
-    assert "lifelore_decisions_total 1.0" in metrics
+    assert "lifelore_study_decisions_total{" in metrics
     assert "zoe" not in metrics
     fields = [record.fields for record in caplog.records if record.name == "lifelore.service"]
     assert [one["status"] for one in fields] == [200, 200, 404]
