@@ -393,18 +393,16 @@ class Memory:
                 named = ", ".join(known[:NAMED]) or "none"
                 more = f" and {len(known) - NAMED:,} more" if len(known) > NAMED else ""
                 raise NotFoundError(f"robot {robot!r} has contributed nothing here; known robots: {named}{more}")
-        return self.forget_all([robot])
+            count = _forget(conn, [robot])
+        self._store.empty_log()
+        return count
 
     def forget_all(self, robots: Sequence[str]) -> int:
         """`forget` several robots in one transaction; those that have contributed nothing are passed over."""
         with self._store.writing() as conn:
-            forgotten = [entry for robot in robots for entry in ledger.entries(conn, robot)]
-            ledger.add_tombstones(conn, [entry.identity for entry in forgotten])
-            for robot in robots:
-                leases.forget(conn, robot)
-            cache.rebuild(conn, merging.delete(conn, [entry.number for entry in forgotten]))
+            count = _forget(conn, robots)
         self._store.empty_log()
-        return len(forgotten)
+        return count
 
     def forget_records(self, names: Sequence[tuple[str, str, int]]) -> int:
         """Remove the records of some (kind, key, version) for ever; return the number of contributions concerned.
@@ -439,3 +437,13 @@ class Memory:
         """Check every byte; return one line for each problem, none if contributions and cache are sound."""
         with self._store.reading() as conn:
             return audit.problems(conn)
+
+
+def _forget(conn: Connection, robots: Sequence[str]) -> int:
+    """Delete the contributions of robots, and leave tombstones; the number of contributions."""
+    forgotten = [entry for robot in robots for entry in ledger.entries(conn, robot)]
+    ledger.add_tombstones(conn, [entry.identity for entry in forgotten])
+    for robot in robots:
+        leases.forget(conn, robot)
+    cache.rebuild(conn, merging.delete(conn, [entry.number for entry in forgotten]))
+    return len(forgotten)

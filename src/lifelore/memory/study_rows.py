@@ -262,12 +262,12 @@ class StudyRows:
         wanted = set(pairs)
         return {pair: row for row in found if (pair := (row.person, row.request)) in wanted}
 
-    def end_decisions(self, outcomes: Iterable[tuple[bytes, float]], ended: int) -> None:
-        """Store the outcomes of decisions that have none."""
+    def end_decisions(self, outcomes: Iterable[tuple[bytes, float, int]]) -> None:
+        """Store (identifier, outcome, time in milliseconds) of decisions that have no outcome."""
         self._conn.change(
-            "lifelore_decisions", f"outcome = {{outcome}}, ended = {int(ended)}",
+            "lifelore_decisions", "outcome = {outcome}, ended = {ended}",
             f"study = {int(self._study)} AND id = {{id}} AND outcome IS NULL",
-            {"id": "bytea", "outcome": "float8"}, list(outcomes),
+            {"id": "bytea", "outcome": "float8", "ended": "bigint"}, list(outcomes),
         )  # fmt: skip
 
     # ---- evidence ------------------------------------------------------------------------------------------

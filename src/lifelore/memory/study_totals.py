@@ -70,10 +70,14 @@ class StudyTotals:
         return n, n - int(self._conn.value(ended, (self._study,)))
 
     def first_decision(self) -> int | None:
-        """Time of the first decision, in milliseconds since 1970; None without one."""
-        query = "SELECT time FROM lifelore_decisions WHERE study = ? ORDER BY id LIMIT 1"
-        found = self._conn.first(query, (self._study,))
-        return None if found is None else int(found[0])
+        """Time of the first decision, in milliseconds since 1970; None without one.
+
+        Identifiers are in the order of their times, but for those of an earlier Lifelore, which have none.
+        """
+        earlier = "SELECT MIN(time) FROM lifelore_decisions WHERE study = ? AND id < ?"
+        first = "SELECT time FROM lifelore_decisions WHERE study = ? AND id >= ? ORDER BY id LIMIT 1"
+        found = [self._conn.first(query, (self._study, first_id(1))) for query in (earlier, first)]
+        return min((int(row[0]) for row in found if row is not None and row[0] is not None), default=None)
 
     def by_user(self, *, strangers: bool = False, since: int = 0) -> UserSums:
         """Outcomes of all users with one.
@@ -123,11 +127,6 @@ class StudyTotals:
         """Number of users, also of those whom a log alone names."""
         return int(self._conn.value("SELECT COUNT(*) FROM lifelore_study_users WHERE study = ?", (self._study,)))
 
-    def by_version(self) -> dict[int, int]:
-        """Number of decisions by version of the study."""
-        query = "SELECT version, COUNT(*) FROM lifelore_decisions WHERE study = ? GROUP BY version"
-        return dict(self._conn.execute(query, (self._study,)).fetchall())
-
     def counts(self, since: int, until: int) -> list[tuple[str, int, int, int, float]]:
         """(policy, control, decisions, outcomes, sum of outcomes) of decisions in [since, until), in milliseconds.
 
@@ -157,9 +156,7 @@ class StudyTotals:
             " GROUP BY person, control"
         )
         cut = [first_id(middle)] * 4
-        parts = self._conn.stream(query, (version, *cut, self._study, first_id(since)))
-        rows = np.array([row for part in parts for row in part], np.float64)
-        return UserHalves(*rows.reshape(-1, 7).T)
+        return UserHalves(*self._columns(query, (version, *cut, self._study, first_id(since)), 7))
 
     def log(
         self, columns: Sequence[str], after: bytes = b"", before: bytes | None = None, limit: int = MANY

@@ -476,7 +476,8 @@ def _observed(
             answers[place] = _or_error(_taken, study, found.get(id_), taken, id_, outcome)
         # Outcomes of one moment count in the order of their decisions, in a replay too.
         taken = dict(sorted(taken.items()))
-        rows.end_decisions(taken.items(), time.time_ns() // 10**6)
+        now = time.time_ns() // 10**6
+        rows.end_decisions((id_, outcome, now) for id_, outcome in taken.items())
         evidence = [(beliefs.row[found[id_].person], found[id_].policy, outcome) for id_, outcome in taken.items()]
         learn(beliefs.algorithm, study, evidence)
         rows.learn(_learnt(beliefs, found, taken), study.version)

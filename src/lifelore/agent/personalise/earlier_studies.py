@@ -212,10 +212,10 @@ def _store(rows: StudyRows, study: Study, people: People) -> None:
         decision._replace(person=numbers[key]) for key, own in people.items() for decision in own["decisions"]
     ]
     rows.add_decisions(decisions)
+    rows.end_decisions((one.id, one.outcome, one.ended or 0) for one in decisions if one.outcome is not None)
     sums: dict[int, list[Any]] = {}
     for one in decisions:
         if one.outcome is not None:
-            rows.end_decisions([(one.id, one.outcome)], one.ended or 0)
             own, place = sums.setdefault(one.person, [0, 0.0, 0, 0.0]), 2 * one.control
             own[place] += 1
             own[place + 1] += one.outcome
