@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator
 
 import pytest
 
-from lifelore.agent.personalise.decisions import _Clock
+from lifelore.agent.personalise.identifiers import _Clock
 from lifelore.memory import Memory, open_memory
 
 Places = Callable[[str], str]
@@ -33,7 +33,7 @@ def file_memory(new_place: Places) -> Iterator[Memory]:
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Nanoseconds since 1970, which go on by 10 ms at each look; set the first element to another time."""
-    monkeypatch.setattr("lifelore.agent.personalise.decisions._CLOCK", _Clock())
+    monkeypatch.setattr("lifelore.agent.personalise.identifiers._CLOCK", _Clock())
     now = [1_700_000_000 * 10**9]
 
     def look() -> int:

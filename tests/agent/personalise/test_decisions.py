@@ -11,14 +11,12 @@ from lifelore.agent.personalise.decisions import (
     choose,
     decide,
     forget,
-    identifier,
-    new_ids,
     observe,
-    parse_identifier,
     update,
 )
 from lifelore.agent.personalise.explanation import explain
 from lifelore.agent.personalise.fit.fit import FitSettings, fit
+from lifelore.agent.personalise.identifiers import identifier, new_ids, parse_identifier
 from lifelore.agent.personalise.policy_states import add
 from lifelore.agent.personalise.study import open_study
 from lifelore.core.errors import InputError, NotFoundError

@@ -15,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from lifelore.agent.personalise.decisions import parse_identifier
+from lifelore.agent.personalise.identifiers import parse_identifier
 from lifelore.agent.personalise.study import open_study
 from lifelore.memory import open_memory
 

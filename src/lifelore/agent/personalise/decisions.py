@@ -7,12 +7,7 @@ Each is one transaction: after a crash at any moment a decision or an outcome is
 Users are locked while their beliefs change, so that several programs may serve a study.
 """
 
-import hashlib
-import os
-import re
-import threading
 import time
-import uuid
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -23,26 +18,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.personalise.beliefs import Beliefs, learn, open_beliefs, stored_beliefs
+from lifelore.agent.personalise.identifiers import identifier, new_ids, parse_identifier
 from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.policy_states import checked_available
 from lifelore.agent.personalise.study import Study, known_users, share_of
 from lifelore.core.errors import InputError, LifeloreError, NotFoundError
 from lifelore.interaction.outcomes.outcome_model import LARGEST
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
+from lifelore.interaction.reuse.user_beliefs import blocks
 from lifelore.memory import Memory
 from lifelore.memory.refusal import RacedError
 from lifelore.memory.study_rows import DecisionRow, StudyRows, UserRow
 
 Answer = dict[str, Any]
-LARGEST_BLOCK = 1 << 22
-"""Numbers of the largest temporary array of a rule; more need more memory and are hardly faster."""
-EARLIER_IDENTIFIER = re.compile(r"[0-9a-f]{16}(-\d{1,9}(\.\d{1,9})?|\.\d+/\d+)")
 ATTEMPTS = 3
 """Number of times that a decision is tried again where another program is faster."""
-SET_BACK = 60_000
-"""Milliseconds by which a clock may run back without an effect on the order of identifiers."""
-BINS = 50
-"""Signals of a policy that a rule may tell apart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -273,9 +263,7 @@ def probabilities(
     mask = np.zeros((len(rows), library.n_policies), bool)
     mask[:, active] = may
     probs = np.empty(may.shape)
-    size = max(1, LARGEST_BLOCK // (library.n_types * library.n_policies * BINS))
-    for at in range(0, len(rows), size):
-        part = slice(at, at + size)
+    for part in blocks(len(rows), library, study.selection):
         probs[part] = algorithm.propensities(rows[part], study.selection, mask[part])[:, active]
     probs = (1 - study.explore) * probs + study.explore * may / may.sum(axis=1, keepdims=True)
     return probs / probs.sum(axis=1, keepdims=True)
@@ -329,35 +317,6 @@ def _for_control(study: Study, available: Sequence[str] | None) -> list[str]:
     return [one for one in policies if one in available] or [one for one in every if one in available]
 
 
-class _Clock:
-    """Times of identifiers: milliseconds, and a number that rises within one.
-
-    In a process they only rise, unless the machine's clock is set back by more than `SET_BACK`.
-    """
-
-    def __init__(self) -> None:
-        self._lock, self._ticks = threading.Lock(), 0
-
-    def tick(self, now: int) -> int:
-        """Milliseconds since 1970 · 2¹² + number."""
-        with self._lock:
-            following = self._ticks + 1 if now << 12 > self._ticks - (SET_BACK << 12) else 0
-            self._ticks = max(now << 12, following)
-            return self._ticks
-
-
-_CLOCK = _Clock()
-
-
-def new_ids(now: int, n: int) -> list[bytes]:
-    """Version 7 UUIDs of a time in milliseconds: those of a process are in the order in which they were made."""
-    milliseconds, number = divmod(_CLOCK.tick(now), 1 << 12)
-    head = (milliseconds << 16 | 0x7000 | number).to_bytes(8, "big")
-    drawn = np.frombuffer(os.urandom(8 * n), np.uint8).reshape(n, 8).copy()
-    drawn[:, 0] = 0x80 | drawn[:, 0] & 0x3F
-    return sorted(head + row.tobytes() for row in drawn)
-
-
 def _described(
     study: Study,
     users: Sequence[UserRow],
@@ -398,24 +357,6 @@ def _answer(request: Request, decision: DecisionRow, repeated: bool, about: Answ
         "repeated": repeated,
     }
     return answer | {"available": None if available is None else list(available)} | about if about else answer
-
-
-def identifier(id_: bytes) -> str:
-    """The text by which an outcome is given later."""
-    text = id_.hex()
-    return f"{text[:8]}-{text[8:12]}-{text[12:16]}-{text[16:20]}-{text[20:]}"
-
-
-def parse_identifier(text: str) -> bytes:
-    """The 16 bytes of a decision's identifier, also of one of an earlier Lifelore; InputError where it is none."""
-    try:
-        if len(text) == 36:
-            return bytes.fromhex(text.replace("-", ""))
-        if EARLIER_IDENTIFIER.fullmatch(text):
-            return bytes(6) + hashlib.sha256(text.encode()).digest()[:10]
-        return uuid.UUID(text).bytes
-    except (ValueError, AttributeError, TypeError):
-        raise InputError(f"decision must be the identifier that a choice gave, got {str(text)[:60]!r}") from None
 
 
 def update(memory: Memory, study: Study, decision: str, outcome: float) -> Answer:

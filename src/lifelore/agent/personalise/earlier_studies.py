@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.agent.personalise.decisions import parse_identifier
+from lifelore.agent.personalise.identifiers import parse_identifier
 from lifelore.agent.personalise.past import Line, identities
 from lifelore.agent.personalise.study import Study, earlier_name
 from lifelore.core.errors import InputError, StoreError

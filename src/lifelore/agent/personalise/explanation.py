@@ -6,7 +6,8 @@ from typing import Any
 import numpy as np
 
 from lifelore.agent.personalise.beliefs import start_at_priors
-from lifelore.agent.personalise.decisions import Request, identifier, probabilities
+from lifelore.agent.personalise.decisions import Request, probabilities
+from lifelore.agent.personalise.identifiers import identifier
 from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.study import Study, known_users
 from lifelore.core.errors import NotFoundError

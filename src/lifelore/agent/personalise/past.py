@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from lifelore.agent.personalise.decisions import parse_identifier
+from lifelore.agent.personalise.identifiers import parse_identifier
 from lifelore.agent.personalise.log.log import ReuseLog, read_log
 from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.log.log_format import LogFormat

@@ -4,17 +4,16 @@ import time
 from dataclasses import dataclass
 from typing import Any
 
-from lifelore.agent.personalise.earlier_studies import take_earlier
 from lifelore.agent.personalise.library_document import described
 from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.study import (
     ACTIVE,
     LEARNT,
-    PILOT,
-    RETIRED,
     Change,
     Study,
     check_study_name,
+    newest_version,
+    states_after,
 )
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -54,23 +53,17 @@ def register(memory: Memory, name: str, library: PolicyLibrary, settings: StudyS
             "library of a study must have the outcome as its signal; register a library with other signals for "
             "adaptation"
         )
-    earlier = memory.studies.newest(name)
-    if earlier is None and take_earlier(memory, name):
-        earlier = memory.studies.newest(name)
-    states = dict(earlier.about["states"]) if earlier else {}
-    known = {policy: RETIRED if states.get(policy) == RETIRED else ACTIVE for policy in library.policies}
-    if ACTIVE not in known.values():
+    earlier = newest_version(memory, name)
+    states = states_after(library.policies, earlier.about["states"] if earlier else {})
+    if ACTIVE not in states.values():
         raise InputError(
             "library must have a policy that is not retired, got none; use a retired policy again first"
         )
-    gone = {
-        policy: PILOT if state == PILOT else RETIRED for policy, state in states.items() if policy not in known
-    }
     # Computed once and stored with the library.
     getattr(library.performance, "spread", None)
     fitted = {"rows": 0, "users": 0, "found": False, "time": int(time.time())}
     by_key = bool(earlier and earlier.about["earlier"])
-    study = Study(name, library, known | gone, fitted=fitted, earlier=by_key, **vars(settings or StudySettings()))
+    study = Study(name, library, states, fitted=fitted, earlier=by_key, **vars(settings or StudySettings()))
     return study.keep(memory)
 
 

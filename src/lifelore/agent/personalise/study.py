@@ -243,14 +243,31 @@ def open_study(memory: Memory, name: str = "default") -> Study:
         It is damaged.
     """
     check_study_name(name)
+    found = newest_version(memory, name)
+    if found is None:
+        _refuse_unknown(memory, name)
+    return _study_of(name, found)
+
+
+def newest_version(memory: Memory, name: str) -> StudyVersion | None:
+    """The newest version of a study, which need not be readable; None where there is no such study."""
     found = memory.studies.newest(name)
     if found is None:
         from lifelore.agent.personalise.earlier_studies import take_earlier
 
         found = memory.studies.newest(name) if take_earlier(memory, name) else None
-    if found is None:
-        _refuse_unknown(memory, name)
-    return _study_of(name, found)
+    return found
+
+
+def states_after(policies: Sequence[str], earlier: Mapping[str, str]) -> dict[str, str]:
+    """The state of each policy where a study gets a library with `policies` in place of an earlier one.
+
+    A retired policy stays so. What the library does not know cannot be chosen: it is retired, unless it still
+    waits for its first outcomes.
+    """
+    known = {policy: RETIRED if earlier.get(policy) == RETIRED else ACTIVE for policy in policies}
+    gone = {policy: state for policy, state in earlier.items() if policy not in known}
+    return known | {policy: PILOT if state == PILOT else RETIRED for policy, state in gone.items()}
 
 
 def _study_of(name: str, found: StudyVersion) -> Study:

@@ -163,7 +163,7 @@ class UserBeliefs:
         """
         rows, rule = self._checked_users(users), rule_of(rule, self.library)
         mask, chosen = self._mask(available, len(rows)), np.empty(len(rows), np.int64)
-        for at in self._blocks(rows, rule):
+        for at in blocks(len(rows), self.library, rule):
             chosen[at] = self.algorithm.select(rows[at], rule, self.generator, mask[at], episodes_left)[0]
         return chosen
 
@@ -191,7 +191,7 @@ class UserBeliefs:
         if not 1 <= k <= most:
             raise InputError(f"k must be 1 to {most}, the number of policies available to every user, got {k}")
         best = np.empty((len(rows), k), np.int64)
-        for at in self._blocks(rows, rule):
+        for at in blocks(len(rows), self.library, rule):
             scores = self.algorithm.scores(rows[at], rule, self.generator, mask[at], episodes_left)
             best[at] = best_policies(scores, k, self.generator)
         return best
@@ -258,7 +258,7 @@ class UserBeliefs:
         """Probability that `select` takes each policy, (k, n_policies); log it beside the selected policy."""
         rows, rule = self._checked_users(users), rule_of(rule, self.library)
         mask, found = self._mask(available, len(rows)), np.empty((len(rows), self.library.n_policies))
-        for at in self._blocks(rows, rule):
+        for at in blocks(len(rows), self.library, rule):
             found[at] = self.algorithm.propensities(rows[at], rule, mask[at], episodes_left)
         return found
 
@@ -266,20 +266,9 @@ class UserBeliefs:
         """Set the beliefs about `users` back to the prior, and forget what they have shown."""
         self.algorithm.reset(np.unique(self._checked_users(users)))
 
-    def _blocks(self, rows: Numbers, rule: SelectionRule | None = None) -> Iterator[slice]:
-        """Blocks of users whose beliefs fit the cache, and whose scores by `rule` fit the memory."""
-        n_types, n_policies = self.library.n_types, self.library.n_policies
-        size = BLOCK // n_types
-        if rule is not None and not getattr(rule, "by_means", False):
-            n_bins = getattr(rule, "n_bins", 1)
-            size = min(size, LARGEST_BLOCK // (n_types * n_policies * n_bins))
-        size = max(size, 1)
-        for start in range(0, len(rows), size):
-            yield slice(start, min(start + size, len(rows)))
-
     def _distinct_blocks(self, rows: Numbers, rule: SelectionRule | None = None) -> Iterator[slice]:
-        """`_blocks` in none of which a user comes twice: a second signal needs what the first has changed."""
-        for at in self._blocks(rows, rule):
+        """`blocks` in none of which a user comes twice: a second signal needs what the first has changed."""
+        for at in blocks(len(rows), self.library, rule):
             own, start = rows[at].tolist(), at.start
             if len(set(own)) == len(own):
                 yield at
@@ -316,6 +305,17 @@ class UserBeliefs:
         if self.unknown == "add" and (new := self.names.unknown(named)):  # pyright: ignore[reportArgumentType]
             self.add_users(new)
         return self.names.rows(named)  # pyright: ignore[reportArgumentType]
+
+
+def blocks(n_users: int, library: PolicyLibrary, rule: SelectionRule | None = None) -> Iterator[slice]:
+    """Blocks of users whose beliefs fit the cache, and whose scores by `rule` fit the memory."""
+    size = BLOCK // library.n_types
+    if rule is not None and not getattr(rule, "by_means", False):
+        n_bins = getattr(rule, "n_bins", 1)
+        size = min(size, LARGEST_BLOCK // (library.n_types * library.n_policies * n_bins))
+    size = max(size, 1)
+    for start in range(0, n_users, size):
+        yield slice(start, min(start + size, n_users))
 
 
 def _checked(numbers: ArrayLike, n: int, what: str) -> Numbers:

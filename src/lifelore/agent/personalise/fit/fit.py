@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.earlier_studies import take_earlier
 from lifelore.agent.personalise.fit.fit_notes import fit_notes, personalised_by
 from lifelore.agent.personalise.fit.library_from_log import Fitted, TypedRows, library_of
 from lifelore.agent.personalise.fit.model_choice import Kind, chosen_model
@@ -21,11 +20,11 @@ from lifelore.agent.personalise.past import keep_fitted_past
 from lifelore.agent.personalise.study import (
     ACTIVE,
     LEARNT,
-    PILOT,
-    RETIRED,
     Change,
     Study,
     check_study_name,
+    newest_version,
+    states_after,
 )
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
@@ -166,10 +165,7 @@ def study_of_log(
 
 def _study(log: ReuseLog, found: Fitted, settings: FitSettings, earlier: dict[str, str]) -> Study:
     library, typed = found.library, found.typed
-    known = {policy: RETIRED if earlier.get(policy) == RETIRED else ACTIVE for policy in library.policies}
-    # What the logs do not know cannot be chosen; it goes, unless it still waits for its first outcomes.
-    gone = {policy: state for policy, state in earlier.items() if policy not in known}
-    states = known | {policy: PILOT if state == PILOT else RETIRED for policy, state in gone.items()}
+    states = states_after(library.policies, earlier)
     if ACTIVE not in states.values():
         raise InputError("the logs must hold a policy that is not retired, got none")
     fitted = {"rows": _used(log, typed), "users": len(typed.users(log)[0]), "found": typed.found}
@@ -197,9 +193,7 @@ def _feature_prior(log: ReuseLog, typed: TypedRows, prior: NDArray[np.float64], 
 
 def _earlier(memory: Memory, name: str) -> Mapping[str, Any]:
     """What the study was until now, empty where it is new; its library need not be readable."""
-    found = memory.studies.newest(name)
-    if found is None and take_earlier(memory, name):
-        found = memory.studies.newest(name)
+    found = newest_version(memory, name)
     return found.about if found else {}
 
 
