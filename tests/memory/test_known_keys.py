@@ -1,10 +1,9 @@
 """Contributions of a single *newest* record of a known key, which the cache takes in by one statement."""
 
 import numpy as np
-import pytest
 
 from lifelore.core.protocols import Record
-from lifelore.memory import KeyState, open_memory
+from lifelore.memory import open_memory
 
 NAME = "user", "ann", 1
 
@@ -14,15 +13,15 @@ def one(slots: dict[int, int], about: str = "x") -> Record:
     return Record(*NAME, "newest", cells[:, 0], cells[:, 1], {"note": about})
 
 
-def give(memory, seq, record, robot="r", state=None):
+def give(memory, seq, record, robot="r"):
     before = memory.statements
-    assert memory.contribute(robot, [record], process=f"p{seq}", seq=0, task={}, state=state)
+    assert memory.contribute(robot, [record], process=f"p{seq}", seq=0, task={})
     return memory.statements - before
 
 
 def test_only_the_first_contribution_and_another_description_cost_more(memory):
     costs = [give(memory, seq, one({seq: seq, 0: seq}, "xxyyx"[seq])) for seq in range(5)]
-    assert costs == [7, 2, 7, 2, 7]
+    assert costs == [5, 2, 5, 2, 5]
     found = memory.recall(*NAME)
     assert dict(zip(found.slots.tolist(), found.values.tolist(), strict=True)) == {0: 4, 1: 1, 2: 2, 3: 3, 4: 4}
     assert found.about == {"note": "x"}
@@ -43,30 +42,6 @@ def test_a_merged_contribution_from_in_between_does_not_give_the_description(mem
         memory.merge_from(other)
         assert memory.recall(*NAME).about == {"note": "later"}
         assert memory.check() == []
-
-
-@pytest.mark.parametrize("content", [b"", b"\0state"])
-def test_a_state_stays_until_somebody_else_changes_the_key(memory, content):
-    for seq in range(3):
-        known = memory.recall_state(*NAME)
-        give(memory, seq, one({seq: 1}), state=KeyState(NAME, known.token if known else None, content))
-        assert memory.recall_state(*NAME).content == content
-    known = memory.recall_state(*NAME)
-    give(memory, 3, one({3: 1}))
-    assert memory.recall_state(*NAME).content is None
-    give(memory, 4, one({4: 1}), state=KeyState(NAME, known.token, content))
-    assert memory.recall_state(*NAME).content is None
-    assert memory.check() == []
-
-
-def test_a_key_of_an_earlier_schema_gets_a_state(memory):
-    give(memory, 0, one({1: 1}))
-    with memory._store.writing() as conn:
-        conn.execute("DELETE FROM lifelore_cells WHERE lore < 0")
-    known = memory.recall_state(*NAME)
-    assert (known.token, known.content) == (0, None)
-    assert give(memory, 1, one({2: 1}), state=KeyState(NAME, known.token, b"state")) == 2
-    assert memory.recall_state(*NAME).content == b"state"
 
 
 def test_forgetting_and_rebuilding_find_every_contribution(memory):

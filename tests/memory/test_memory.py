@@ -9,7 +9,7 @@ import pytest
 import lifelore.memory
 from lifelore.core.errors import InputError, MissingExtraError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
-from lifelore.memory import KeyState, Memory, open_memory
+from lifelore.memory import Memory, open_memory
 from lifelore.memory.schema import LATEST
 
 LARGEST = 2**63 - 1
@@ -29,7 +29,7 @@ def cells(memory: Memory, key="b7", kind="prior", version=1) -> dict[int, int] |
 
 
 def test_all_names_can_be_imported():
-    assert lifelore.memory.__all__ == ["KeyState", "Memory", "open_memory"]
+    assert lifelore.memory.__all__ == ["Memory", "open_memory"]
     assert all(hasattr(lifelore.memory, name) for name in lifelore.memory.__all__)
 
 
@@ -49,71 +49,6 @@ def test_some_slots_of_a_record(memory):
     assert (found.slots.tolist(), found.values.tolist()) == ([2, 3, 4], [4, 9, 16])
     assert memory.recall("prior", "b7", 1, slots=(20, 30)).slots.tolist() == []
     assert memory.recall("prior", "none", 1, slots=(2, 4)) is None
-
-
-NAME = ("prior", "b7", 1)
-
-
-def give_with_state(memory: Memory, seq: int, token: int | None, content: bytes, name=NAME) -> bool:
-    offered = [record({seq: 1})]
-    return memory.contribute("a", offered, process="p", seq=seq, task={}, state=KeyState(name, token, content))
-
-
-def token_and_state(memory: Memory) -> tuple[int, bytes | None]:
-    found = memory.recall_state(*NAME)
-    assert found is not None
-    return found.token, found.content
-
-
-def test_a_state_comes_back_until_its_key_changes(memory):
-    assert memory.recall_state(*NAME) is None
-    give_with_state(memory, 0, None, b"one")
-    token, content = token_and_state(memory)
-    assert content == b"one"
-    give_with_state(memory, 1, token, b"two")
-    again, content = token_and_state(memory)
-    assert content == b"two"
-    assert again != token
-    # A replay changes nothing, another key's contribution neither.
-    assert not give_with_state(memory, 1, again, b"three")
-    give(memory, "a", 7, record({1: 1}, key="other"))
-    assert token_and_state(memory) == (again, b"two")
-    give(memory, "b", 0, record({1: 1}))
-    assert token_and_state(memory)[1] is None
-    assert memory.check() == []
-
-
-def test_a_state_of_earlier_cells_is_not_stored(memory):
-    give_with_state(memory, 0, None, b"one")
-    early, _ = token_and_state(memory)
-    give_with_state(memory, 1, early, b"two")
-    for wrong in (early, None, 5):
-        assert give_with_state(memory, 100 + memory.tasks("a"), wrong, b"late")
-        assert token_and_state(memory)[1] is None
-
-
-def test_merging_forgetting_and_rebuilding_delete_states(memory, new_place, back_end):
-    def set_state(seq):
-        give_with_state(memory, seq, token_and_state(memory)[0], b"kept")
-        assert token_and_state(memory)[1] == b"kept"
-
-    give(memory, "b", 0, record({9: 1}))
-    set_state(0)
-    with open_memory(new_place(back_end)) as other:
-        give(other, "c", 0, record({1: 1}))
-        memory.merge_from(other)
-        assert token_and_state(memory)[1] is None
-        set_state(1)
-        memory.merge_from(other)
-        assert token_and_state(memory)[1] == b"kept"
-    memory.forget("b")
-    assert token_and_state(memory)[1] is None
-    set_state(2)
-    early, _ = token_and_state(memory)
-    memory.rebuild()
-    assert token_and_state(memory)[1] is None
-    give_with_state(memory, 3, early, b"of the cells before")
-    assert token_and_state(memory)[1] is None
 
 
 def test_newest_keeps_the_last_value_of_each_slot(memory):

@@ -15,7 +15,7 @@ STUDIES = ("lifelore_studies", *TABLES)
 
 @pytest.fixture
 def first_schema():
-    """A memory as Lifelore wrote it before forgotten records and states."""
+    """A memory as Lifelore wrote it before forgotten records."""
 
     def make(where, fill):
         with open_memory(where) as memory:
@@ -26,8 +26,6 @@ def first_schema():
                     " WHERE lore IS NOT NULL",
                     "DROP INDEX lifelore_contributions_lore",
                     "ALTER TABLE lifelore_contributions DROP COLUMN lore",
-                    "DELETE FROM lifelore_cells WHERE lore < 0",
-                    "ALTER TABLE lifelore_cells DROP COLUMN state",
                     "DROP TABLE lifelore_forgotten_records",
                     "DROP TABLE lifelore_leases",
                     *(f"DROP TABLE {table}" for table in STUDIES),
@@ -76,11 +74,11 @@ def fill(memory):
     assert memory.contribute("a", [weights], process="p", seq=0, task={})
 
 
-def test_a_memory_of_the_first_schema_gets_states(where, first_schema):
+def test_a_memory_of_the_first_schema_takes_all_steps(where, first_schema):
     first_schema(where, fill)
     with open_memory(where) as memory:
         assert memory.recall("prior", "b7", 1).values.tolist() == [30, 10]
-        assert memory.recall_state("prior", "b7", 1) == (0, None, {}, None)
+        assert steps(memory) == NOW
         assert memory.check() == []
 
 
@@ -90,11 +88,17 @@ def test_a_memory_of_the_sixth_schema_gets_studies(where, monkeypatch):
         before.setattr(schema, "LATEST", 6)
         with open_memory(where) as memory:
             fill(memory)
+            with memory._store.writing() as conn:  # as a learner's state was stored
+                lore = conn.value("SELECT number FROM lifelore_lore")
+                state = "INSERT INTO lifelore_cells (lore, slot, value, origin, state) VALUES (?, 0, 7, 1, ?)"
+                conn.execute(state, (-lore, b"state"))
             assert (steps(memory), memory.show()["schema"]) == ([1, 2, 3, 4, 5, 6], 6)
             with memory._store.reading() as conn, pytest.raises(Exception, match="lifelore_studies"):
                 conn.execute("SELECT * FROM lifelore_studies")
     with open_memory(where) as memory:
         assert steps(memory) == NOW
+        with memory._store.reading() as conn:
+            assert conn.value("SELECT COUNT(*) FROM lifelore_cells WHERE lore < 0") == 0
         assert (memory.tasks("a"), memory.recall("prior", "b7", 1).values.tolist()) == (1, [30, 10])
         assert memory.check() == []
         number = memory.studies.keep("s", {"rule": "best"}, b"library").number
@@ -125,9 +129,9 @@ def test_a_memory_of_the_first_schema_is_read_and_checked_as_it_is(file, first_s
     first_schema(file, fill)
     before = file.read_bytes()
     with open_memory(file, read_only=True) as memory:
-        known, unknown = memory.recall_states([("prior", "b7", 1), ("prior", "b8", 1)], slots=(3, 9))
-        assert (known.token, known.content, known.about, unknown) == (0, None, {}, None)
-        assert (known.record.slots.tolist(), known.record.values.tolist()) == ([4], [10])
+        known = memory.recall("prior", "b7", 1, slots=(3, 9))
+        assert (known.slots.tolist(), known.values.tolist(), known.about) == ([4], [10], {})
+        assert memory.recall("prior", "b8", 1, slots=(3, 9)) is None
         assert memory.check() == []
         assert memory.show()["schema"] == 1
     assert file.read_bytes() == before

@@ -8,7 +8,7 @@ import pytest
 
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
-from lifelore.memory import KeyState, open_memory, store
+from lifelore.memory import open_memory, store
 
 ROBOTS, TASKS = 20, 200
 
@@ -19,13 +19,12 @@ def mark(label: str, seq: int) -> str:
 
 
 def contribute(memory, robot: str, seq: int) -> None:
-    """All that a contribution can carry: key, description, values, task and state, each with a mark."""
+    """All that a contribution can carry: key, description, values and task, each with a mark."""
     key = mark(f"key of {robot}", seq)
     newest = Record("place", key, 1, "newest", [1], [seq], {"note": mark(f"about of {robot}", seq)})
     shared = Record("prior", "shared", 1, "add", np.arange(50), np.full(50, number(robot, seq)))
-    state = KeyState(("place", key, 1), None, mark(f"state of {robot}", seq).encode())
     task = {"what": mark(f"task of {robot}", seq)}
-    assert memory.contribute(robot, [newest, shared], process="p", seq=seq, task=task, state=state)
+    assert memory.contribute(robot, [newest, shared], process="p", seq=seq, task=task)
 
 
 def number(robot: str, seq: int) -> int:
@@ -35,7 +34,7 @@ def number(robot: str, seq: int) -> int:
 def traces(file: Path, robot: str, seqs: range) -> dict[str, int]:
     """How often the marks of a robot occur in the file and its side files."""
     content = b"".join(side.read_bytes() for side in file.parent.iterdir() if side.name.startswith(file.name))
-    labels = ("key", "about", "state", "task")
+    labels = ("key", "about", "task")
     return {
         label: sum(content.count(mark(f"{label} of {robot}", seq).encode()) for seq in seqs) for label in labels
     }
@@ -79,7 +78,7 @@ def test_forgetting_records_leaves_only_their_keys(lived):
     with open_memory(lived) as memory:
         memory.forget_records([("place", mark("key of robot 3", 3), 1)])
         found = traces(lived, "robot 3", seqs)
-        assert (found["about"], found["state"]) == (0, 0)
+        assert found["about"] == 0
         assert found["key"] > 0  # so that no merge brings the record back
         assert found["task"] > 0
 

@@ -8,7 +8,6 @@ Read in this order: `memory`, `contribution`, `folding`, `ledger`, `cache`, `lea
 `store`, `connection`, `sqlite_file`, `schema`, `refusal` for the database.
 """
 
-from lifelore.memory.cache import KeyState
 from lifelore.memory.memory import Memory, open_memory
 
-__all__ = ["KeyState", "Memory", "open_memory"]
+__all__ = ["Memory", "open_memory"]

@@ -71,7 +71,7 @@ def _cache_problems(conn: Connection, numbers: list[int]) -> Iterator[str]:
 def _orphans(conn: Connection) -> Iterator[str]:
     tables = ["cells", "mentions", *(["contributions"] if schema.version(conn) >= schema.BESIDE else [])]
     for table in tables:
-        # The state of a key has the negative of its number.
+        # In an older memory that is only read, the state of a key has the negative of its number.
         known = "ABS(lore) IN (SELECT number FROM lifelore_lore)"
         if count := conn.value(f"SELECT COUNT(*) FROM lifelore_{table} WHERE lore IS NOT NULL AND NOT {known}"):
             yield f"{count} rows of lifelore_{table} belong to no key; rebuild the memory"

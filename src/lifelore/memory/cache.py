@@ -1,13 +1,8 @@
-"""The cache of merged records that `Memory.recall` reads, updated by additive upserts.
-
-The state of key number n is cell 0 of lore −n, and its value is the token: one statement writes state and cells.
-"""
+"""The cache of merged records that `Memory.recall` reads, updated by additive upserts."""
 
 import json
-import secrets
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from itertools import chain
-from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,83 +50,29 @@ _MENTION = "INSERT INTO lifelore_mentions (contribution, lore) VALUES (?, ?)"
 _MENTIONS = "SELECT contribution FROM lifelore_mentions WHERE lore = :lore"
 _BESIDE = " UNION SELECT number FROM lifelore_contributions WHERE lore = :lore"
 _NAMED = "kind = ? AND key = ? AND version = ?"
-# Cells of the newest contribution, and the state; a state stays only if its key has the token it was computed for.
-_ADD = (
-    "INSERT INTO lifelore_cells (lore, slot, value, origin, state) VALUES {} ON CONFLICT (lore, slot)"
-    " DO UPDATE SET value = excluded.value, origin = excluded.origin,"
-    " state = CASE WHEN lifelore_cells.value = ? THEN excluded.state END"
-)
-_ADDED = "(?, ?, ?, ?, ?)"
-_TOKEN = "SELECT value FROM lifelore_cells WHERE lore = ? AND slot = 0"
-_STATES = (
-    "SELECT kind, key, version, merge, COALESCE(own.value, 0), own.state, about, NULL, NULL FROM lifelore_lore"
-    " LEFT JOIN lifelore_cells AS own ON own.lore = -lifelore_lore.number AND own.slot = 0 WHERE {}"
-)
-_SLOTS = (
-    " UNION ALL SELECT NULL, NULL, NULL, NULL, NULL, NULL, NULL, slot, value FROM lifelore_cells"
-    f" WHERE lore = (SELECT number FROM lifelore_lore WHERE {_NAMED}) AND slot BETWEEN ? AND ?"
-)
+# Cells of the newest contribution.
+_REPLACE = _CELLS + "value = excluded.value, origin = excluded.origin"
 _FIND = f"SELECT number, merge, about FROM lifelore_lore WHERE {_NAMED}"
 _READ = "SELECT slot, value FROM lifelore_cells WHERE lore = ? AND slot BETWEEN ? AND ? ORDER BY slot"
 
 
-class KeyState(NamedTuple):
-    """A state that a learner computed from the cells of a key, stored beside them.
-
-    Every change of the key deletes the stored state, unless the change brings the state that follows it.
-
-    name : (kind, key, version)
-    token : of the cells that the state was computed from, see `StoredState`; None: the key did not exist
-    content : bytes, which memory does not interpret
-    """
-
-    name: LoreKey
-    token: int | None
-    content: bytes
-
-
-class StoredState(NamedTuple):
-    """The state of a key as it is stored.
-
-    token : another number after each change of the key's cells, whoever changes them
-    content : bytes, or None where the last change brought no state
-    about : the newest description of the key
-    record : with the slots that were asked for; None where none were
-    """
-
-    token: int
-    content: bytes | None
-    about: Mapping[str, Any]
-    record: Record | None = None
-
-
-def add(
-    conn: Connection, parts: dict[LoreKey, Folded], lore: int | None = None, state: KeyState | None = None
-) -> None:
+def add(conn: Connection, parts: dict[LoreKey, Folded], lore: int | None = None) -> None:
     """Merge the newest contribution into the cache; the ledger must hold it already.
 
-    `lore` is the number of its only key, see `ledger.Inserted`. `state` is stored if nobody else has changed its
-    key since it was computed.
+    `lore` is the number of its only key, see `ledger.Inserted`.
     """
-    if lore is None or len(parts) != 1:
-        return write(conn, parts, state)
-    ((name, part),) = parts.items()
-    if len(part.slots) >= _FEW_ROWS:
-        return write(conn, parts, state)
-    own = state if state is not None and state.name == name else None
+    (part, *others) = parts.values() or [None]
+    if lore is None or part is None or others or len(part.slots) > _FEW_ROWS:
+        return write(conn, parts)
     cells = zip(part.slots.tolist(), part.values.tolist(), strict=True)
-    token = -lore, 0, _new_token(), part.origin, own.content if own else None
-    rows = [token, *((lore, slot, value, part.origin, None) for slot, value in cells)]
-    values = [number for row in rows for number in row]
-    conn.execute(_ADD.format(", ".join([_ADDED] * len(rows))), [*values, own.token if own else None])
+    rows = [(lore, slot, value, part.origin) for slot, value in cells]
+    if rows:
+        conn.execute(_REPLACE.format(", ".join([_CELL] * len(rows))), list(chain.from_iterable(rows)))
     return None
 
 
-def write(conn: Connection, folded: dict[LoreKey, Folded], state: KeyState | None = None) -> None:
-    """Merge folded contributions of any age into the cache; the ledger must hold them already.
-
-    `state` as in `add`.
-    """
+def write(conn: Connection, folded: dict[LoreKey, Folded]) -> None:
+    """Merge folded contributions of any age into the cache; the ledger must hold them already."""
     for name, part in sorted(folded.items()):
         note = {**_named(name), "merge": part.merge, "about": described(part.about), "origin": part.origin}
         conn.execute(_NOTE, note)
@@ -139,48 +80,6 @@ def write(conn: Connection, folded: dict[LoreKey, Folded], state: KeyState | Non
         require_one_merge(name, {merge, part.merge})
         conn.execute_many(_MENTION, [(number, lore) for number in part.mentions])
         _write_cells(conn, lore, part)
-        token = conn.first(_TOKEN, (-lore,))
-        follows = state is not None and state.name == name and (state.token or 0) == (token[0] if token else 0)
-        content = state.content if follows and state is not None else None
-        conn.execute(
-            _ADD.format(_ADDED), [-lore, 0, _new_token(), part.origin, content, token[0] if token else None]
-        )
-
-
-def _new_token() -> int:
-    """A random number, because a key that is deleted and written again must not get an earlier token again."""
-    return secrets.randbits(62)
-
-
-def read_states(
-    conn: Connection, names: Sequence[LoreKey], slots: tuple[int, int] | None = None
-) -> list[StoredState | None]:
-    """The states of keys, and the cells of the first key within `slots`; None where there is no key."""
-    sql, parameters = _STATES.format(" OR ".join([f"({_NAMED})"] * len(names))), list(chain.from_iterable(names))
-    if slots is not None:
-        sql, parameters = sql + _SLOTS, [*parameters, *names[0], *slots]
-    rows = conn.execute(sql, parameters).fetchall()
-    cells = [(slot, value) for *_, slot, value in rows if slot is not None]
-    found: dict[LoreKey, StoredState] = {}
-    for kind, key, version, merge, token, state, about, slot, _ in rows:
-        if slot is None:
-            name, described = (kind, key, version), json.loads(about)
-            wanted = slots is not None and name == names[0]
-            record = Record(*name, merge, *_columns(sorted(cells)), described) if wanted else None
-            found[name] = StoredState(token, state, described, record)
-    return [found.get(name) for name in names]
-
-
-def read_without_states(
-    conn: Connection, names: Sequence[LoreKey], slots: tuple[int, int] | None = None
-) -> list[StoredState | None]:
-    """As `read_states` of a memory of an older schema that is only read: its states are left out."""
-    found = [read(conn, name, slots or (0, 0)) for name in names]
-    wanted = [slots is not None and place == 0 for place in range(len(names))]
-    return [
-        one and StoredState(0, None, one.about, one if asked else None)
-        for one, asked in zip(found, wanted, strict=True)
-    ]
 
 
 def _columns(cells: Iterable[tuple[int, int]]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -267,7 +166,7 @@ def _clear(conn: Connection, only: set[LoreKey]) -> set[int]:
         lore = found[:1]
         numbers |= mentions_of(conn, found[0])
         conn.execute("UPDATE lifelore_contributions SET lore = NULL WHERE lore = ?", lore)
-        conn.execute("DELETE FROM lifelore_cells WHERE lore IN (?, ?)", (found[0], -found[0]))
+        conn.execute("DELETE FROM lifelore_cells WHERE lore = ?", lore)
         conn.execute("DELETE FROM lifelore_mentions WHERE lore = ?", lore)
         conn.execute("DELETE FROM lifelore_lore WHERE number = ?", lore)
     return numbers

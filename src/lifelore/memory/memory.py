@@ -9,12 +9,12 @@ from typing import Any, Self
 
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
-from lifelore.memory import audit, cache, leases, ledger, merging, overview, schema
-from lifelore.memory.cache import EVERY_SLOT, KeyState, StoredState
+from lifelore.memory import audit, cache, leases, ledger, merging, overview
+from lifelore.memory.cache import EVERY_SLOT
 from lifelore.memory.connection import Connection
 from lifelore.memory.contribution import new_offer
 from lifelore.memory.export import export
-from lifelore.memory.folding import LoreKey, lift
+from lifelore.memory.folding import lift
 from lifelore.memory.location import Server, locate
 from lifelore.memory.record_rules import check_name, check_whole
 from lifelore.memory.store import Store, check_source, open_existing, open_file, open_postgresql, open_source
@@ -121,7 +121,6 @@ class Memory:
         process: str,
         seq: int,
         task: Mapping[str, Any],
-        state: KeyState | None = None,
         taken: int | None = None,
     ) -> bool:
         """Store the records of a robot about one finished task, all or none.
@@ -136,9 +135,6 @@ class Memory:
             Number of the task in the run, from 0.
         task : mapping of str to JSON values
             Description of the task for readers.
-        state : KeyState, optional
-            The state of one of the records' keys after this contribution, see `recall_state`. It is stored unless
-            another process has changed the key since the state was computed.
         taken : int, optional
             Number of the task, if the process took it by `take_task`. The contribution ends the lease.
 
@@ -161,7 +157,7 @@ class Memory:
                 return False
             row = ledger.insert(conn, offer)
             if row is not None:
-                cache.add(conn, lift(row.number, offer.records), row.lore, state)
+                cache.add(conn, lift(row.number, offer.records), row.lore)
         return row is not None
 
     def take_task(self, robot: str, *, process: str, seconds: int = leases.LEASE_SECONDS) -> int:
@@ -242,31 +238,6 @@ class Memory:
         """
         with self._store.reading() as conn:
             return cache.read(conn, (kind, key, version), slots)
-
-    def recall_state(self, kind: str, key: str, version: int) -> StoredState | None:
-        """The state that a learner stored with its last contribution to this key; None if there is no key.
-
-        A state saves the time to compute it again from the record. Merging, forgetting, rebuilding, and any
-        contribution without a state delete it.
-        """
-        return self.recall_states([(kind, key, version)])[0]
-
-    def recall_states(
-        self, names: Sequence[LoreKey], *, slots: tuple[int, int] | None = None
-    ) -> list[StoredState | None]:
-        """The states of several keys at the same moment, by one statement; None for a key that does not exist.
-
-        Parameters
-        ----------
-        names : sequence of (kind, key, version)
-        slots : (int, int), optional
-            First and last slot to read of the first key, see `StoredState.record`.
-        """
-        if self._store.schema < schema.BESIDE:
-            with self._store.reading() as conn:
-                return cache.read_without_states(conn, names, slots)
-        with self._store.looking() as conn:
-            return cache.read_states(conn, names, slots)
 
     def keys(self, kind: str) -> list[tuple[str, int, dict[str, Any]]]:
         """(key, version, about) of all records of a kind, sorted."""

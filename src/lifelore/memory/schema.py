@@ -97,6 +97,11 @@ CREATE INDEX lifelore_decisions_control ON lifelore_decisions (study, policy, pe
     WHERE control = 1
 """
 
+_NO_STATES = """
+DELETE FROM lifelore_cells WHERE lore < 0;
+ALTER TABLE lifelore_cells DROP COLUMN state
+"""
+
 MIGRATIONS = {
     1: ("contributions, tombstones and cache", _FIRST),
     2: ("forgotten records", _SECOND),
@@ -105,12 +110,13 @@ MIGRATIONS = {
     5: ("leases of tasks", _LEASES),
     6: ("the last stamp of forgotten records without a look at all of them", _STAMPS),
     7: ("studies: library versions, users, their past, decisions with outcomes", _STUDIES),
+    8: ("no states beside the cells, which only users of studies had", _NO_STATES),
 }
 LATEST = max(MIGRATIONS)
 FORGOTTEN_RECORDS = 2
 """The first schema that knows forgotten records."""
 BESIDE = 4
-"""The first schema with states beside the cells and keys beside contributions."""
+"""The first schema with keys beside contributions."""
 READABLE = 1
 """The oldest schema whose contributions, tombstones and cells are as now: such a source is read as it is."""
 

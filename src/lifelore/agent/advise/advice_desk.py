@@ -183,7 +183,7 @@ def register_desk(memory: Memory, name: str, document: Mapping[str, Any], maps: 
     _session(document, maps)
     content = zlib.compress(json.dumps(document, sort_keys=True).encode())
     digest = hashlib.sha256(content).hexdigest()[:32]
-    earlier = memory.recall_state(DESK, name, VERSION)
+    earlier = memory.recall(DESK, name, VERSION, slots=(0, 0))
     if earlier is None or earlier.about["digest"] != digest:
         values = words_of(content)
         about = {"bytes": len(content), "digest": digest, "id": f"{digest[:8]}-{time.time_ns()}"}

@@ -64,7 +64,7 @@ def register_adaptation(memory: Memory, name: str, library: PolicyLibrary, epsil
     rule_at(epsilon)
     content = library.to_bytes()
     digest = hashlib.sha256(content + repr(epsilon).encode()).hexdigest()[:32]
-    earlier = memory.recall_state(LIBRARY, name, VERSION)
+    earlier = memory.recall(LIBRARY, name, VERSION, slots=(0, 0))
     if earlier is not None and earlier.about["digest"] == digest:
         return open_adaptation(memory, name)
     values = words_of(content)
