@@ -73,11 +73,26 @@ def reuse() -> str:
 
 
 def serve() -> str:
-    value, ratio = measured("serve")
+    _, ratio = measured("serve")
     return (
-        f"{ratio['decision and outcome']:.2f} × the route, {value['decision and outcome']:.0f}/s; "
-        f"batches: {value['batches of decisions']:,.0f} decisions/s"
+        f"{ratio['decision and outcome']:.2f} × a route that commits each row, "
+        f"{ratio['decision and outcome, beside the other route']:.2f} × one that commits what waits"
     )
+
+
+def test_the_table_of_the_service_says_what_was_measured():
+    value, _ = measured("serve")
+    numbers = (
+        f"{value['decision and outcome']:,.0f}/s, "
+        f"{value['processor time of a decision and its outcome']:.2f} ms of processor time, "
+        f"p99 {value['99th percentile of a request, 32 connections']:.0f} ms",
+        f"bare route {value['bare route that commits what waits']:,.0f}/s",
+        f"| {value['batches of 1000 decisions']:,.0f} decisions/s |",
+        f"| {value['100000 decisions in a request']:.1f} s; ",
+        f"slowest single decision meanwhile {value['slowest single decision beside them']:.0f} ms",
+    )
+    for number in numbers:
+        assert number in PAGE
 
 
 def memory() -> str:
