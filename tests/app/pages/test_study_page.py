@@ -69,8 +69,10 @@ def test_a_study_is_shown_and_fits_its_window(
 def test_one_user_is_found_by_any_name(
     serve_pages: Callable[..., str], open_page: Callable[..., Page], where: Path
 ):
-    page = open_page(serve_pages(memory=where) + "/study?study=playlists")
+    page = open_page(serve_pages(memory=where) + "/study?study=playlists", PHONE)
     page.locator("#name").fill("<b>user/7</b>")
     page.locator("#ask button").click()
     expect(page.locator("#user")).to_contain_text("lively")
     expect(page.locator("#user b")).to_have_count(0)
+    found = Axe().run(page)
+    assert found.violations_count == 0, found.generate_report()

@@ -96,10 +96,10 @@ export function drawUser(user) {
   $("user").replaceChildren(
     make("p", {}, facts),
     make("h3", {}, "Belief over types"), make("div", { class: "beliefs" }, ...beliefs),
-    make("h3", {}, "Next choice"), make("div", { class: "scroll" }, table(["Policy", "Expected outcome", "Probability"], Object.entries(user.expected).map(([policy, value]) => [policy, number(value), user.probabilities ? percent(user.probabilities[policy]) : "by the control group"]))),
-    make("h3", {}, "Last decisions"), make("div", { class: "scroll" }, table(["Policy", "Time", "Probability", "Outcome"], last)),
+    make("h3", {}, "Next choice"), make("div", { class: "scroll", tabindex: "0" }, table(["Policy", "Expected outcome", "Probability"], Object.entries(user.expected).map(([policy, value]) => [policy, number(value), user.probabilities ? percent(user.probabilities[policy]) : "by the control group"]))),
+    make("h3", {}, "Last decisions"), make("div", { class: "scroll", tabindex: "0" }, table(["Policy", "Time", "Probability", "Outcome"], last)),
     make("h3", {}, "Evidence of the last outcomes"), make("p", { class: "quiet" }, "Log likelihood of each type less that of the best, in nats: 0 is the type that the outcome speaks for."),
-    make("div", { class: "scroll" }, table(["Policy", ...types], evidence)),
+    make("div", { class: "scroll", tabindex: "0" }, table(["Policy", ...types], evidence)),
   );
 }
 
