@@ -57,7 +57,7 @@ def warm(sources: Any, memory: Memory, study: Study, form: LogFormat | None = No
         ``study``; ``rows`` added, of ``users``; ``known``: rows that are in the past already; ``decisions``:
         rows left out because memory has them as decisions; ``unknown_policies``: rows whose policy the
         library does not know, which give no evidence; ``unknown_types``: types of users that it does not know;
-        ``by_time``: whether lines were told apart by their times or identifiers; ``pending``,
+        ``by_time``: whether every line has a time or an identifier; ``pending``,
         ``filled_outcomes``, ``filled_policies``, ``without_policy`` (see `ReuseLog`).
 
     Raises

@@ -90,7 +90,7 @@ def by_context(log: ReuseLog, typed: TypedRows, model: str) -> Fitted:
 
 
 def contexts_differ(log: ReuseLog) -> bool:
-    """Whether outcomes of policies differ between contexts beyond chance; False where it cannot be told."""
+    """Whether outcomes of policies differ between contexts beyond chance; False where there are too few users."""
     contexts = own_contexts(log, 1, len(log.policy.names))
     if not contexts:
         return False
