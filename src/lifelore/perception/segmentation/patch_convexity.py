@@ -26,6 +26,26 @@ def signed_angles(patches: Supervoxels) -> NDArray[np.float64]:
     return np.where(ridge, angle, -angle)
 
 
+def beyond_bend(patches: Supervoxels, angles: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(e,) degrees: angles less the concave bend of the surface on both sides.
+
+    The inside of a bowl bends inwards everywhere; where two objects meet, it bends in the crease alone. The bend of a
+    patch is the median of its angles, weighed by the length of the borders; the less concave of the two counts.
+    """
+    ends, again = patches.pairs.T.reshape(-1), np.concatenate([angles, angles])
+    weights = np.concatenate([patches.borders, patches.borders]).astype(float)
+    order = np.lexsort((again, ends))
+    ends, again, weights = ends[order], again[order], weights[order]
+    total = np.bincount(ends, weights, minlength=len(patches.counts))
+    upto = np.cumsum(weights)
+    before = np.concatenate([[0.0], np.cumsum(total)])[ends]
+    half = np.flatnonzero(upto - before >= total[ends] / 2)
+    bend = np.zeros(len(patches.counts))
+    first = np.unique(ends[half], return_index=True)
+    bend[first[0]] = again[half[first[1]]]
+    return angles - np.minimum(np.maximum(*bend[patches.pairs].T), 0.0)
+
+
 def evidence(angles: NDArray[np.float64]) -> NDArray[np.float64]:
     """(e,) log odds that two patches that meet at these angles belong to one object, −5 to 5."""
     return np.interp(angles, _ANGLES, _LOG_ODDS)

@@ -1,5 +1,6 @@
 """Flat patches of a cloud: planes found in turn among oriented voxels, each cut into connected pieces."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -135,6 +136,18 @@ def patches(voxels: OrientedVoxels, rng: np.random.Generator) -> list[Patch]:
         left[near] = False
         found += _pieces(voxels, plane, on_it)
     return found
+
+
+def united(pieces: Sequence[Patch]) -> Patch:
+    """One patch of pieces of the same plane, at least one."""
+    first = pieces[0]
+    return Patch(
+        first.plane,
+        np.concatenate([piece.voxels for piece in pieces]),
+        first.flat,
+        sum(piece.area for piece in pieces),
+        np.concatenate([piece.corners for piece in pieces]),
+    )
 
 
 def _best_plane(voxels: OrientedVoxels, places: NDArray[np.int64], rng: np.random.Generator) -> Plane:

@@ -19,6 +19,7 @@ from lifelore.perception.segmentation.surface_patches import (
     oriented_voxels,
     patches,
     plane_of,
+    united,
 )
 from lifelore.perception.segmentation.table_evidence import BELOW_SHARE, PARALLEL, Candidate, candidates_of
 
@@ -43,7 +44,7 @@ class Table:
     plane : Plane
         In the frame of the cloud; the normal is upward.
     patch : Patch
-        Its visible surface.
+        Its visible surface: all pieces of the plane, which objects and their shadows part.
     background : tuple of Patch
         Other patches of at least `BACKGROUND_AREA`.
     standing : int
@@ -101,9 +102,10 @@ def find_table(
     if chosen is None:
         tilted = None if up is None else _chosen(voxels, candidates, camera, None)
         return Search(None, tilted.plane.normal if tilted is not None and tilted.standing else None)
+    pieces = [patch for patch in found if patch.plane is chosen.patch.plane]
     table = _refined(points, camera, voxels, chosen)
-    others = tuple(patch for patch in large if patch is not chosen.patch)
-    return Search(Table(table, chosen.patch, others, chosen.standing))
+    others = tuple(patch for patch in large if patch.plane is not chosen.patch.plane)
+    return Search(Table(table, united(pieces), others, chosen.standing))
 
 
 def _chosen(
