@@ -15,13 +15,13 @@ from lifelore.perception.segmentation.surface_voxels import SurfaceVoxels
 
 _RIM = 0.012
 """Metres between the heights at which the two sides end; noise of a depth camera at the rim."""
-_TOUCH = 0.020
-"""Metres between the two sides where they are nearest, at the ends of the rim: about the wall and a voxel."""
+_TOUCH = 0.060
+"""Metres between the two sides where they are nearest, at the ends of the rim, which a camera often misses."""
 _UPRIGHT, _LEVEL = 0.80, 0.85
 """Vertical part of a normal: below `_UPRIGHT` it faces sideways, above `_LEVEL` the surface is level."""
 _HIGH = 0.020
 """Metres below the top that count as the rim."""
-_FACING, _MOST_LEVEL, _ROUND = 0.85, 0.2, 0.9
+_FACING, _MOST_LEVEL, _ROUND = 0.85, 0.3, 0.92
 """Least share of the sideways surface that faces the middle (or away from it); largest share of the rim that is level;
 largest mean length of the inside's horizontal unit normals, which is 1 for a flat face."""
 
