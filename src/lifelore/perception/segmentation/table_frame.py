@@ -15,8 +15,10 @@ from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.clouds.voxel import thinned
 from lifelore.perception.segmentation.cut_confidence import CutCloud
 from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, cut_cloud
+from lifelore.perception.segmentation.object_feet import with_feet
 from lifelore.perception.segmentation.outline import over_outline
 from lifelore.perception.segmentation.plane import NEAR, Plane, dominant_plane
+from lifelore.perception.segmentation.range_noise import band
 from lifelore.perception.segmentation.region import Region, inside, over_table, reaching_out
 from lifelore.perception.segmentation.table_evidence import REACH
 from lifelore.perception.segmentation.table_search import Search, Table, find_table, no_table
@@ -157,6 +159,8 @@ def _cut(
     colours = None if cloud.colours is None else cloud.colours[chosen]
     cut = cut_cloud(upright_points[chosen], colours, settings, camera)
     labels[chosen] = cut.labels
+    if table is not None:
+        labels = with_feet(labels, scene_points, band(points, cloud.camera))
     return CutCloud(labels, cut.confidence)
 
 
