@@ -6,6 +6,7 @@ from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.contacts.interface import Interface, interfaces
 from lifelore.perception.pairs.scene_pairs import scene_pairs
 from lifelore.perception.pairs.side_faces import pairs_beside
+from lifelore.perception.reasoning.raised_objects import off_the_table
 from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
@@ -45,7 +46,7 @@ def _core_scene(
     if not consistent or model.multi_label:
         return Scene(cloud, found, model.predict(cloud, found))
     pairs = scene_pairs(cloud, found, model.settings)
-    beliefs = model.beliefs_of(pairs)
+    beliefs = off_the_table(model.beliefs_of(pairs), cloud)
     decided = most_likely_scene(alternatives(beliefs), cloud.objects, beside=pairs_beside(pairs))
     return Scene(cloud, found, decided.relations, decided.optimal, beliefs)
 
