@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.clouds.voxel import voxelised
-from lifelore.perception.segmentation.outline import over_outline
+from lifelore.perception.segmentation.outline import convex_corners, over_outline
 from lifelore.perception.segmentation.plane import Plane
 from lifelore.perception.segmentation.range_noise import band
 
@@ -88,7 +88,13 @@ class Patch:
 
     def covers(self, points: NDArray[np.float64], margin: float = 0.0) -> NDArray[np.bool_]:
         """(n,) bool: whether points (n, 3) lie over or under its convex outline, grown by `margin` metres."""
-        return over_outline(points @ self.flat.T, self.corners, margin)
+        return over_outline(points @ self.flat.T, self._outline, margin)
+
+    @cached_property
+    def _outline(self) -> NDArray[np.float64]:
+        """(k, 2) corners of the convex hull; all voxels where they span no area."""
+        hull = convex_corners(self.corners)
+        return self.corners if hull is None else hull
 
 
 def oriented_voxels(
@@ -158,9 +164,9 @@ def _best_plane(voxels: OrientedVoxels, places: NDArray[np.int64], rng: np.rando
     offsets = -np.einsum("ij,ij->i", normals, voxels.points[starts])
     votes = _votes(voxels, sample, normals, offsets)
     best, best_votes = None, -1
-    for start in np.argsort(-votes, kind="stable")[:8]:
+    for start in np.argsort(-votes, kind="stable")[:3]:
         plane = Plane(normals[start], float(offsets[start]))
-        for _ in range(4):
+        for _ in range(3):
             plane = _fitted(voxels, sample, plane)
         agreed = int(_votes(voxels, sample, plane.normal[None], np.array([plane.offset]))[0])
         if agreed > best_votes:
