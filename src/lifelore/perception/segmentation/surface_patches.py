@@ -88,7 +88,7 @@ class Patch:
 
     def covers(self, points: NDArray[np.float64], margin: float = 0.0) -> NDArray[np.bool_]:
         """(n,) bool: whether points (n, 3) lie over or under its convex outline, grown by `margin` metres."""
-        return over_outline(points @ self.flat.T, self._outline, margin)
+        return over_outline(points @ np.ascontiguousarray(self.flat.T), self._outline, margin)
 
     @cached_property
     def _outline(self) -> NDArray[np.float64]:

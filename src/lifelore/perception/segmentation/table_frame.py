@@ -102,7 +102,7 @@ def segmented_scene(
     points = cloud.points.astype(np.float64)
     search = _search(points, cloud, up)
     rotation, shift = _pose(points, cloud, up, search.table)
-    scene_points = points @ rotation.T + shift
+    scene_points = points @ np.ascontiguousarray(rotation.T) + shift
     camera = None if cloud.camera is None else rotation @ cloud.camera + shift
     others = None if cloud.other_cameras is None else cloud.other_cameras @ rotation.T + shift
     labels = cloud.labels if cloud.labels is not None and cloud.is_labelled else None
@@ -144,7 +144,7 @@ def _cut(
 
     `camera` is in the scene's frame.
     """
-    labels = np.full(len(points), UNLABELLED, np.int64)
+    labels, bands = np.full(len(points), UNLABELLED, np.int64), band(points, cloud.camera)
     upright_points = scene_points.copy()
     if table is None:
         chosen = np.ones(len(points), bool)
@@ -152,16 +152,14 @@ def _cut(
         upright_points += lift
         camera = None if camera is None else camera + lift
     else:
-        on_it, over = over_table(points, cloud.camera, table)
-        chosen = on_it | over | reaching_out(points, cloud.camera, table, over)
+        on_it, over = over_table(points, bands, table)
+        chosen = on_it | over | reaching_out(points, bands, table, over)
         # The band of a far table is wider than that of the segmentation: its points are laid onto the plane.
         upright_points[on_it, 2] = 0.0
     colours = None if cloud.colours is None else cloud.colours[chosen]
     cut = cut_cloud(upright_points[chosen], colours, settings, camera)
     labels[chosen] = cut.labels
-    if table is not None:
-        labels = with_feet(labels, scene_points, band(points, cloud.camera))
-    return CutCloud(labels, cut.confidence)
+    return CutCloud(labels if table is None else with_feet(labels, scene_points, bands), cut.confidence)
 
 
 def table_plane(cloud: PointCloud) -> Plane:
@@ -244,7 +242,7 @@ def _pose(
     if _has_table_label(cloud.labels):
         height = float(np.median(heights[cloud.labels == TABLE]))
     elif table is not None:
-        height = float(np.median(heights[over_table(points, cloud.camera, table)[0]]))
+        height = float(np.median(heights[over_table(points, band(points, cloud.camera), table)[0]]))
     else:
         height = 0.0 if is_z else float(np.percentile(heights, 1))
     return np.eye(3) if is_z else upright(normal), np.array([0.0, 0.0, -height])
