@@ -1,8 +1,10 @@
 """`perceived_scene`: from labelled points to a consistent scene with relations (thesis §2.3, Algorithm 1)."""
 
 from collections.abc import Sequence
+from math import inf
 
 from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.core.relations import NONE
 from lifelore.perception.contacts.interface import Interface, interfaces
 from lifelore.perception.pairs.scene_pairs import scene_pairs
 from lifelore.perception.pairs.side_faces import pairs_beside
@@ -48,7 +50,8 @@ def _core_scene(
     pairs = scene_pairs(cloud, found, model.settings)
     beliefs = off_the_table(model.beliefs_of(pairs), cloud)
     decided = most_likely_scene(alternatives(beliefs), cloud.objects, beside=pairs_beside(pairs))
-    return Scene(cloud, found, decided.relations, decided.optimal, beliefs)
+    stated = tuple(r for r in decided.relations if r.relation != NONE or r.gap < inf)
+    return Scene(cloud, found, stated, decided.optimal, beliefs)
 
 
 def _stated_words(

@@ -1,8 +1,8 @@
 """Objects that cannot rest on the table: they begin above it, and the support or the air below them is seen.
 
-An object whose foot is hidden may reach down to the table, so a raised visible foot alone proves nothing. It proves
-that the object is not on the table where the top of another object ends right below it, or where the camera sees
-past its bottom edge to something farther away.
+An object whose foot is hidden may reach down to the table, so its raised visible foot alone proves nothing. The
+object is not on the table where the top of another object ends right below it, or where the camera sees past its
+bottom edge to something farther away.
 """
 
 from collections.abc import Iterable, Iterator, Mapping

@@ -18,17 +18,17 @@ _RIM = 0.012
 _TOUCH = 0.060
 """Metres between the two sides where they are nearest, at the ends of the rim, which a camera often misses."""
 _UPRIGHT, _LEVEL = 0.80, 0.85
-"""Vertical part of a normal: below `_UPRIGHT` it faces sideways, above `_LEVEL` the surface is level."""
+"""Vertical part of a normal: below the first it faces sideways, above the second the surface is level."""
 _HIGH = 0.020
 """Metres below the top that count as the rim."""
 _FACING, _MOST_LEVEL, _ROUND = 0.85, 0.3, 0.92
-"""Least share of the sideways surface that faces the middle (or away from it); largest share of the rim that is level;
-largest mean length of the inside's horizontal unit normals, which is 1 for a flat face."""
+"""Least share of the sideways surface that faces the middle (or away from it); largest share of the rim that is
+level; largest mean length of the inside's horizontal unit normals, which is 1 for a flat face."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Side:
-    """A region as one side of a hollow object; `normals` (k, 3), `middles` (k, 3), `weights` (k,) of its patches."""
+    """A region as one side of a hollow object: its patches, with their numbers of voxels."""
 
     middles: NDArray[np.float64]
     normals: NDArray[np.float64]
@@ -63,7 +63,7 @@ class _Side:
 def hollow_pairs(
     surface: SurfaceVoxels, patches: Supervoxels, regions: NDArray[np.int64], least: int
 ) -> Iterator[tuple[int, int]]:
-    """Pairs (outside, inside) of regions that are the two sides of a hollow object.
+    """Pairs (outside, inside) of regions that are the two sides of a hollow object; an inside has one outside.
 
     Parameters
     ----------
@@ -75,10 +75,14 @@ def hollow_pairs(
         Voxels of the smallest region that is looked at.
     """
     sides = list(_sides(surface, patches, regions, least))
-    for number, outside in sides:
-        for other, inside in sides:
-            if number != other and _are_two_sides(outside, inside):
-                yield number, other
+    for inside_number, inside in sides:
+        around = [
+            (_apart(outside, inside), number)
+            for number, outside in sides
+            if number != inside_number and _are_two_sides(outside, inside)
+        ]
+        if around:
+            yield min(around)[1], inside_number
 
 
 def _sides(
@@ -102,3 +106,8 @@ def _are_two_sides(outside: _Side, inside: _Side) -> bool:
     if inside.facing(middle) < _FACING or outside.facing(middle) > 1 - _FACING:
         return False
     return bool(KDTree(outside.voxels).query(inside.voxels, distance_upper_bound=_TOUCH)[0].min() <= _TOUCH)
+
+
+def _apart(first: _Side, second: _Side) -> float:
+    """Horizontal distance of the middles of two sides, metres."""
+    return float(np.linalg.norm(first.voxels[:, :2].mean(axis=0) - second.voxels[:, :2].mean(axis=0)))

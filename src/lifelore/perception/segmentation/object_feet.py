@@ -46,14 +46,12 @@ def with_feet(
     return labels
 
 
-def _beside(
-    points: NDArray[np.float64], others: NDArray[np.float64], distance: float
-) -> NDArray[np.bool_]:
-    """(n,) bool: points (n, 2) in a cell of side `distance` with one of the `others` (m, 2), or next to such a cell."""
+def _beside(points: NDArray[np.float64], others: NDArray[np.float64], distance: float) -> NDArray[np.bool_]:
+    """(n,) bool: points (n, 2) in a cell of side `distance` with one of `others` (m, 2), or beside such a cell."""
     corner = np.minimum(points.min(axis=0, initial=np.inf), others.min(axis=0)) - 2 * distance
     cells, filled = (np.floor((places - corner) / distance).astype(np.int64) for places in (points, others))
     grid = np.zeros(np.maximum(cells.max(axis=0, initial=0), filled.max(axis=0)) + 2, bool)
     for x in (-1, 0, 1):
         for y in (-1, 0, 1):
-            grid[tuple((filled + (x, y)).T)] = True
+            grid[tuple((filled + np.array([x, y])).T)] = True
     return grid[tuple(cells.T)]

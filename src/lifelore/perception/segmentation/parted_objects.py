@@ -1,7 +1,7 @@
 """Objects that a nearer object parts: their surface goes on behind it, in the same planes.
 
-Two patches continue each other if they lie in one plane and the camera sees a nearer object, and nothing behind the
-plane, between them. Two regions are one object if most of both continue.
+Two patches continue each other if they lie in one plane and the camera sees a nearer object, and nothing behind
+the plane, between them. Two regions are one object if much of both continues.
 """
 
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ _ALIKE = np.cos(np.radians(15.0))
 _APART = 0.010
 """Metres by which each of two patches may be off the plane of the other."""
 _FAR = 0.35
-"""Metres between two patches; more lets farther parts continue each other, through more that is not seen."""
+"""Metres between two patches; more joins farther parts, through more that is not seen."""
 _STEPS = np.linspace(0.1, 0.9, 9)
 """Where the line between two patches is looked at."""
 _BEFORE = 0.02
@@ -29,7 +29,7 @@ _CONTINUES = 0.4
 
 
 class _DepthImage:
-    """Distances of the nearest and the farthest point in each pixel, seen from the origin; rays are (n, 3) metres."""
+    """Distances of the nearest and the farthest point in each pixel, seen from the origin; metres."""
 
     def __init__(self, rays: NDArray[np.float64]) -> None:
         pixels, depths = _pixels(rays), np.linalg.norm(rays, axis=1)

@@ -32,9 +32,9 @@ def signed_angles(patches: Supervoxels) -> NDArray[np.float64]:
 def beyond_bend(patches: Supervoxels, angles: NDArray[np.float64]) -> NDArray[np.float64]:
     """(e,) degrees: angles less the concave bend of the surface on both sides.
 
-    The inside of a bowl bends inwards everywhere; where two objects meet, the surface bends in the crease alone. The
-    bend of a patch is the median of its angles, weighed by the length of the borders. The less concave of the two
-    counts, unless it is more than `_MOST_BEND`: such a patch lies in a crease.
+    The inside of a bowl bends inwards everywhere; where two objects meet, the surface bends in the crease alone.
+    The bend of a patch is the median of its angles, weighed by the length of the borders. The less concave of the
+    two counts, unless it is more than `_MOST_BEND`: such a patch lies in a crease.
     """
     ends, again = patches.pairs.T.reshape(-1), np.concatenate([angles, angles])
     weights = np.concatenate([patches.borders, patches.borders]).astype(float)

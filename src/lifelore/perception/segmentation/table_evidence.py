@@ -45,8 +45,8 @@ class Candidate:
     tall : int
         Points of clusters that stand on it and rise higher: a table's legs on the floor.
     hanging : int
-        Points of clusters over it that touch nothing and begin at least `HANGING` above it, with nothing under them
-        on which they may stand.
+        Points of clusters over it that touch nothing and begin at least `HANGING` above it, with nothing under
+        them on which they may stand.
     floating : int
         Points of clusters anywhere that touch neither it nor a large patch, and are not low over it: objects on a
         table of glass.

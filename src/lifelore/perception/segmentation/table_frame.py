@@ -14,8 +14,8 @@ from lifelore.perception.clouds.cloud_scale import FAR
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.clouds.voxel import thinned
 from lifelore.perception.segmentation.cut_confidence import CutCloud
-from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, cut_cloud
 from lifelore.perception.segmentation.object_feet import with_feet
+from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, cut_cloud
 from lifelore.perception.segmentation.outline import over_outline
 from lifelore.perception.segmentation.plane import NEAR, Plane, dominant_plane
 from lifelore.perception.segmentation.range_noise import band

@@ -28,6 +28,8 @@ BACKGROUND_AREA = 0.09
 _BARE_SHARE = 0.25
 _NOISE_SHARE = 0.01
 _INSIDE = 0.7
+_PARTED = 0.5
+"""Metres between pieces of one table; an object and its shadow part it. More takes other surfaces for it."""
 _REFINED = 10_000
 """Points that the plane is fitted to; more costs time, and moves it by less than a tenth of a millimetre."""
 _UNLIKELY = 0.25
@@ -104,10 +106,23 @@ def find_table(
     if chosen is None:
         tilted = None if up is None else _chosen(voxels, candidates, camera, None)
         return Search(None, tilted.plane.normal if tilted is not None and tilted.standing else None)
-    pieces = [patch for patch in found if patch.plane is chosen.patch.plane]
+    pieces = _pieces_near(chosen.patch, found)
     table = _refined(points, camera, voxels, chosen)
     others = tuple(patch for patch in large if patch.plane is not chosen.patch.plane)
     return Search(Table(table, united(pieces), others, chosen.standing))
+
+
+def _pieces_near(chosen: Patch, found: Sequence[Patch]) -> list[Patch]:
+    """The chosen piece, and the others of its plane that are at most `_PARTED` from it or from such a piece."""
+    from scipy.spatial import KDTree
+
+    near, far = [chosen], [p for p in found if p.plane is chosen.plane and p is not chosen]
+    for piece in near:
+        tree = KDTree(piece.corners)
+        met = [p for p in far if tree.query(p.corners, distance_upper_bound=_PARTED)[0].min() <= _PARTED]
+        near += met
+        far = [p for p in far if p not in met]
+    return near
 
 
 def _chosen(
