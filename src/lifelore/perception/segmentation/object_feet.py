@@ -42,7 +42,7 @@ def with_feet(
     distance, nearest = KDTree(points[low]).query(points[feet], distance_upper_bound=widest)
     near = distance <= _NEAR * bands[feet]
     labels = labels.copy()
-    labels[feet[near]] = labels[low[nearest[near]]]
+    labels[feet[near]] = labels[low[np.asarray(nearest)[near]]]
     return labels
 
 
