@@ -1,4 +1,4 @@
-"""`CloudOrigin`: where the points of a scene come from: the sensor's frame, the pose in it, and the source's points."""
+"""`CloudOrigin`: the frame, the pose and the pixels that the points of a scene come from."""
 
 from dataclasses import dataclass, field
 from typing import NamedTuple

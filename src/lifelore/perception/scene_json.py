@@ -1,32 +1,33 @@
 """A scene as JSON: the document that ``lifelore perceive --json`` prints.
 
-``{"frame": {"name", "stamp", "scene_from_camera", "camera_from_scene"}, "objects": [{"id", "n_points", "centroid",
-"centroid_camera", "box": {"centre", "axes", "size"}, "box_camera", "top", "support", "colour", "contact_points":
-[{"xyz", "normal", "xyz_camera", "normal_camera", "extent", "strength", "other"}], "edges", "grasp_seeds": [{"kind",
-"xyz", "approach", "closing", "xyz_camera", "approach_camera", "closing_camera", "width"}]}], "relations": [{"a", "b",
-"relation", "confidence", "gap", "stated"}], "facts": ["clear(3)", …], "unknown": [{"fact", "probability",
-"reason"}], "holes": [{"objects", "nodes", "xyz", "size", "opening", "centre", "outline"}], "contact_edges":
-[[[a, i], [b, j]]], "seconds"}``. `agent.perceive` adds ``"warnings": [{"code", "message"}]``, see
-`segmentation.scene_warnings`.
+``{"frame": {"name", "stamp", "scene_from_camera", "camera_from_scene"}, "objects": [{"id", "n_points",
+"centroid", "centroid_camera", "box": {"centre", "axes", "size"}, "box_camera", "top", "support", "colour",
+"contact_points": [{"xyz", "normal", "xyz_camera", "normal_camera", "extent", "strength", "other"}], "edges",
+"grasp_seeds": [{"kind", "xyz", "approach", "closing", "xyz_camera", "approach_camera", "closing_camera",
+"width"}]}], "relations": [{"a", "b", "relation", "confidence", "gap", "stated"}], "facts": ["clear(3)", …],
+"unknown": [{"fact", "probability", "reason"}], "holes": [{"objects", "nodes", "xyz", "size", "opening",
+"centre", "outline"}], "contact_edges": [[[a, i], [b, j]]], "seconds"}``. `agent.perceive` adds ``"warnings":
+[{"code", "message"}]``, see `segmentation.scene_warnings`.
 
-Metres. Places are in the scene's frame (z up, 0 at the table); those whose key ends with ``_camera`` are in the frame
-in which the cloud was read, of several views in the first view's. ``scene_from_camera`` and ``camera_from_scene`` are
-the 4 × 4 motions between the two; ``name`` is that frame's name (frame_id) and ``stamp`` its time in seconds, null
-where the source does not say. A ``box`` stands upright around the visible points (`upright_box`); the rows of its
-``axes`` are unit vectors, its ``size`` is along them. ``top`` is the height of the highest visible point, ``support``
-the height of what carries the object (`support_height`), ``colour`` the mean red, green and blue, 0 to 255. On
-request objects have a ``mask`` or ``points`` (`object_mask`).
+Metres. Places are in the scene's frame (z up, 0 at the table); those whose key ends with ``_camera`` are in the
+frame in which the cloud was read, of several views in the first view's. ``scene_from_camera`` and
+``camera_from_scene`` are the 4 × 4 motions between the two; ``name`` is that frame's name (frame_id) and
+``stamp`` its time in seconds, null where the source does not say. A ``box`` stands upright around the visible
+points (`upright_box`); the rows of its ``axes`` are unit vectors, its ``size`` is along them. ``top`` is the
+height of the highest visible point, ``support`` the height of what carries the object (`support_height`),
+``colour`` the mean red, green and blue, 0 to 255. On request objects have a ``mask`` or ``points``
+(`object_mask`).
 
 Objects are named by their numbers, the table ``"table"``; it is no entry of ``objects``. ``edges`` are pairs of
-numbers into ``contact_points``. A contact edge says that contact point i of a faces contact point j of b; a hole's
-``nodes`` are ends of the same kind in the order of the loop, ``xyz`` their positions, ``outline`` the border of its
-opening. An object that was cut automatically also has ``cut_confidence``, the probability that it is a true object
-(`cut_confidence.CutCloud`). A relation's ``gap`` is the mean of the five smallest distances between its two objects'
-visible points (`near_pairs.visible_gap`). Numbers are finite: an unknown gap is null.
+numbers into ``contact_points``. A contact edge says that contact point i of a faces contact point j of b; a
+hole's ``nodes`` are ends of the same kind in the order of the loop, ``xyz`` their positions, ``outline`` the
+border of its opening. An object that was cut automatically also has ``cut_confidence``, the probability that it
+is a true object (`cut_confidence.CutCloud`). A relation's ``gap`` is the mean of the five smallest distances
+between its two objects' visible points (`near_pairs.visible_gap`). Numbers are finite: an unknown gap is null.
 
-A relation with a confidence below the threshold stays in ``relations`` with ``stated`` false, and no fact follows
-from it. ``unknown`` lists facts of the most likely scene that are not stated: ``doubtful`` ones below the
-threshold, and ``clear`` of an object whose top other objects hide in part (``hidden``, at any threshold).
+A relation with a confidence below the threshold stays in ``relations`` with ``stated`` false, and no fact
+follows from it. ``unknown`` lists facts of the most likely scene that are not stated: ``doubtful`` ones below
+the threshold, and ``clear`` of an object whose top other objects hide in part (``hidden``, at any threshold).
 """
 
 import math
@@ -144,7 +145,11 @@ def _directions(origin: CloudOrigin, **directions: NDArray[np.float64]) -> dict:
 
 
 def _box(box: ObjectBox) -> dict:
-    return {"centre": _numbers(box.centre), "axes": [_numbers(row) for row in box.axes], "size": _numbers(box.size)}
+    return {
+        "centre": _numbers(box.centre),
+        "axes": [_numbers(row) for row in box.axes],
+        "size": _numbers(box.size),
+    }
 
 
 def _colour(cloud: LabelledCloud, label: int) -> list[int] | None:

@@ -26,8 +26,8 @@ def fused(views: Sequence[PointCloud], poses: NDArray[np.float64], size: float =
     Returns
     -------
     PointCloud
-        Not organised, with the name and time of the first view's frame. `camera` is that of the first view that names its camera, `other_cameras` are those of the
-        others. Labels and colours exist if every view has them.
+        Not organised; name and time of the frame are the first view's. `camera` is that of the first view that
+        names its camera, `other_cameras` are those of the others. Labels and colours exist if every view has them.
 
     Raises
     ------

@@ -166,7 +166,7 @@ class PointCloud:
         return self.labels is not None and bool(self.labels.any())
 
     def only(self, keep: NDArray) -> "PointCloud":
-        """The points that `keep` ((n,) bool, or indices) names; they keep their rows in the cloud that was read."""
+        """The points that `keep` ((n,) bool, or indices) names; they keep their rows in the source."""
         rows = np.flatnonzero(keep) if keep.dtype == bool else keep
         return replace(
             self,
