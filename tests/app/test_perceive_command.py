@@ -75,6 +75,13 @@ def test_objects_have_their_pixels_in_a_label_image_and_in_json(ask, tmp_path):
     assert sum(second["mask"]["counts"][1::2]) == second["n_points"] == 20 * 25
 
 
+def test_a_scene_is_logged_for_each_cloud(ask, cloud, tmp_path):
+    answer = ask("perceive", cloud(*two_cubes([0, 0, 0.06])), "--up", "z", "--log", tmp_path / "{name}-log.mcap")
+    assert answer.status == 0
+    assert (tmp_path / "cloud-log.mcap").read_bytes().startswith(b"\x89MCAP0")
+    assert "cloud-log.mcap" in answer.out
+
+
 def test_a_cloud_without_an_image_has_no_label_image(ask, cloud, tmp_path):
     options = ("perceive", cloud(*two_cubes([0, 0, 0.06])), "--up", "z")
     refused = ask(*options, "--masks-out", tmp_path / "numbers.png", "--dot", tmp_path / "s.dot")
@@ -152,6 +159,7 @@ def test_bad_clouds_are_one_line(ask, cloud, case):
         (["--model", "nobody", "--memory", "no/m.db"], "no relation model 'nobody': there is no memory at"),
         (["--model", "nobody", "--memory", "m" * 300], "there is no memory at"),
         (["--plot", "scene.svg"], "plot must name a PNG file"),
+        (["--log", "scene.bag"], "log must name a file that ends with .mcap or .rrd"),
         (["--masks-out", "numbers.jpg"], "masks_out must name a PNG file"),
         (["--plot", "p" * 300 + ".png"], "cannot write"),
         (["--dot", "a.png", "--plot", "a.png"], "'a.png' would be overwritten"),

@@ -101,6 +101,13 @@ def perceive(
     masks_out: Annotated[
         str | None, Option(metavar="FILE", help="File NAME.png for a 16-bit image of the objects' numbers.")
     ] = None,
+    log: Annotated[
+        str | None,
+        Option(
+            metavar="FILE",
+            help="File NAME.mcap or NAME.rrd for cloud, boxes, contacts and relations; extra ros or view.",
+        ),
+    ] = None,
     with_masks: Annotated[
         bool, Option("--with-masks", help="JSON also holds each object's pixels, or its points' numbers.")
     ] = False,
@@ -145,7 +152,12 @@ def perceive(
         _region(roi, max_range),
         with_masks,
     )
-    files = {"pddl": pddl, "dot": dot, "plot": plot, "masks_out": masks_out}
+    files: Files = {"pddl": pddl, "dot": dot, "plot": plot, "masks_out": masks_out}
+    if log is not None:
+        from lifelore.bridges.scene_log import check_log, write_scene_log
+
+        check_log(log)
+        files |= {"log": log, "recorder": write_scene_log}
     if watch is not None and (poses is not None or register):
         raise typer.BadParameter("--watch perceives each cloud alone: leave --poses and --register out")
     if poses is not None and register:
