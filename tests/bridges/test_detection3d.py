@@ -14,7 +14,7 @@ DOCUMENT = {
     "frame": {"name": "eye", "stamp": 1_700_000_000.25},
     "objects": [
         {"id": 2, "box_camera": {"centre": [1, 2, 3], "axes": QUARTER, "size": [3, 2, 1]}},
-        {"id": 3, "box_camera": {"centre": [0, 0, 1], "axes": np.eye(3), "size": [1, 1, 1]}} | {"cut_confidence": 0.7},
+        {"id": 3, "box_camera": {"centre": [0, 0, 1], "axes": np.eye(3), "size": [1] * 3}, "cut_confidence": 0.7},
     ],
     "relations": [
         {"a": 3, "b": 2, "relation": "on", "confidence": 0.9, "gap": 0.01, "stated": True},
