@@ -55,6 +55,8 @@ def test_no_turned_rectangle_is_smaller_and_all_points_are_inside(seed, n):
         ([[0, 0, 0], [0, 0, 2]], [0, 0, 2]),
         ([[0, 0, 0], [3, 4, 1]], [5, 0, 1]),
         ([[0, 0, 0], [3, 4, 1], [-3, -4, 0]], [10, 0, 1]),
+        ([[0, 5, 0], [0, 2, 1], [0, 4, 0], [0, 3, 3]], [3, 0, 3]),
+        ([[0, 0, 0], [3, 4, 1], [-3, -4, 0], [1.5, 2 + 1e-13, 0], [0.3, 0.4 - 1e-15, 0]], [10, 0, 1]),
     ],
 )
 def test_points_without_a_footprint_have_a_flat_box(points, size):

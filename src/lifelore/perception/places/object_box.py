@@ -7,9 +7,6 @@ from numpy.typing import NDArray
 
 from lifelore.core.cloud_origin import CloudOrigin
 
-_FLAT = 1e-6
-"""Metres: points this near to a line, seen from above, have no hull."""
-
 
 class ObjectBox(NamedTuple):
     """A box in space.
@@ -39,8 +36,7 @@ def upright_box(points: NDArray[np.float64]) -> ObjectBox:
     points : (n, 3) float64
         n ≥ 1, metres, z up.
     """
-    flat = points[:, :2]
-    corners = _hull(flat)
+    corners = _hull(np.ascontiguousarray(points[:, :2]))
     along = np.diff(corners, axis=0, append=corners[:1])
     length = np.hypot(*along.T)
     along = along[length > 0] / length[length > 0, None] if (length > 0).any() else np.eye(2)[:1]
@@ -50,18 +46,18 @@ def upright_box(points: NDArray[np.float64]) -> ObjectBox:
     x = along[best] if sides[best, 0] >= sides[best, 1] else across[best]
     x = -x if x[0] < 0 else x
     axes = np.array([[x[0], x[1], 0.0], [-x[1], x[0], 0.0], [0.0, 0.0, 1.0]])
-    within = np.column_stack([points @ axes[:2].T, points[:, 2]])
-    low, high = within.min(axis=0), within.max(axis=0)
+    within = corners @ axes[:2, :2].T
+    low = np.append(within.min(axis=0), points[:, 2].min())
+    high = np.append(within.max(axis=0), points[:, 2].max())
     return ObjectBox((low + high) / 2 @ axes, axes, high - low)
 
 
 def _hull(flat: NDArray[np.float64]) -> NDArray[np.float64]:
     """(k, 2) corners of the convex hull, in turn; the two ends of points on a line."""
-    centred = flat - flat.mean(axis=0)
-    direction = np.linalg.svd(centred.T @ centred)[0][:, 0]
-    along, beside = centred @ direction, centred @ [-direction[1], direction[0]]
-    if np.ptp(beside) <= _FLAT:
-        return flat[[int(np.argmin(along)), int(np.argmax(along))]]
-    from scipy.spatial import ConvexHull
+    from scipy.spatial import ConvexHull, QhullError
 
-    return flat[ConvexHull(flat).vertices]
+    try:
+        return flat[ConvexHull(flat).vertices]
+    except QhullError:  # fewer than three points, or all on a line
+        order = np.lexsort(flat.T[::-1])
+        return flat[order[[0, -1]]]
