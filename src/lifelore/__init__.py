@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from lifelore.agent.long_lived.task_family import TaskFamily as TaskFamily
     from lifelore.agent.perceive.perceive import PerceiveSettings as PerceiveSettings
     from lifelore.agent.perceive.perceive import perceive as perceive
+    from lifelore.core.cloud_origin import CloudOrigin as CloudOrigin
     from lifelore.core.errors import LifeloreError as LifeloreError
     from lifelore.core.labelled_cloud import LabelledCloud as LabelledCloud
     from lifelore.core.learning.q_learner import QLearning as QLearning
@@ -62,6 +63,7 @@ _HOME = {
     "BatchContexts": "lifelore.agent.external_world.stored_prior",
     "BayesianPolicyReuse": "lifelore.interaction.reuse.bayesian_policy_reuse",
     "Beat": "lifelore.interaction.adaptation.beat",
+    "CloudOrigin": "lifelore.core.cloud_origin",
     "Domain": "lifelore.core.mdp",
     "GymnasiumWorld": "lifelore.agent.external_world.gymnasium_world",
     "LabelledCloud": "lifelore.core.labelled_cloud",

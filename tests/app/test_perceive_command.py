@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 PROGRAM = Path(sys.executable).with_name("lifelore")
 CUBE = np.stack(np.meshgrid(*[np.arange(0, 0.06, 0.004)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -48,6 +49,48 @@ def test_a_person_sees_a_table_and_what_was_written(ask, cloud, tmp_path):
     assert "2 objects" in answer.out
     assert "written:" in answer.out
     assert (tmp_path / "s.dot").is_file()
+
+
+def test_objects_have_their_pixels_in_a_label_image_and_in_json(ask, tmp_path):
+    """A wall of two blocks, seen straight from above as an image of 40 × 60 pixels."""
+    heights = np.zeros((40, 60))
+    labels = np.ones((40, 60), int)
+    for number, columns, height in ((2, slice(10, 25), 0.05), (3, slice(25, 50), 0.08)):
+        heights[10:30, columns], labels[10:30, columns] = height, number
+    rows, columns = np.indices(heights.shape)
+    points = np.stack([0.004 * columns, -0.004 * rows, heights], axis=-1)
+    points[0, :5] = np.nan
+    np.savez(tmp_path / "wall.npz", points=points, labels=labels, camera=[0.1, -0.1, 1.0])
+    image = tmp_path / "numbers.png"
+    answer = ask(
+        "perceive", tmp_path / "wall.npz", "--up", "z", "--masks-out", image, "--with-masks", "--json"
+    )  # fmt: skip
+    assert answer.status == 0
+    with Image.open(image) as opened:
+        assert opened.mode.startswith("I;16")
+        assert (np.asarray(opened) == np.where(np.isnan(points[..., 0]), 0, labels)).all()
+    first, second = answer.document["objects"]
+    # From column 10 on: 10 pixels above, 20 of the block, 10 below and 10 above the next.
+    assert first["mask"] == {"size": [40, 60], "counts": [410, *[20] * 29, 1410]}
+    assert sum(second["mask"]["counts"][1::2]) == second["n_points"] == 20 * 25
+
+
+def test_a_scene_is_logged_for_each_cloud(ask, cloud, tmp_path):
+    answer = ask("perceive", cloud(*two_cubes([0, 0, 0.06])), "--up", "z", "--log", tmp_path / "{name}-log.mcap")
+    assert answer.status == 0
+    assert (tmp_path / "cloud-log.mcap").read_bytes().startswith(b"\x89MCAP0")
+    assert "cloud-log.mcap" in answer.out
+
+
+def test_a_cloud_without_an_image_has_no_label_image(ask, cloud, tmp_path):
+    options = ("perceive", cloud(*two_cubes([0, 0, 0.06])), "--up", "z")
+    refused = ask(*options, "--masks-out", tmp_path / "numbers.png", "--dot", tmp_path / "s.dot")
+    assert refused.status == 2
+    assert "is not organised" in refused.err
+    assert "--with-masks" in refused.err
+    assert not (tmp_path / "s.dot").exists()
+    answer = ask(*options, "--with-masks", "--json")
+    assert answer.document["objects"][1]["points"] == list(range(len(CUBE), 2 * len(CUBE)))
 
 
 def test_a_goal_and_a_least_confidence(ask, cloud, tmp_path):
@@ -116,6 +159,8 @@ def test_bad_clouds_are_one_line(ask, cloud, case):
         (["--model", "nobody", "--memory", "no/m.db"], "no relation model 'nobody': there is no memory at"),
         (["--model", "nobody", "--memory", "m" * 300], "there is no memory at"),
         (["--plot", "scene.svg"], "plot must name a PNG file"),
+        (["--log", "scene.bag"], "log must name a file that ends with .mcap or .rrd"),
+        (["--masks-out", "numbers.jpg"], "masks_out must name a PNG file"),
         (["--plot", "p" * 300 + ".png"], "cannot write"),
         (["--dot", "a.png", "--plot", "a.png"], "'a.png' would be overwritten"),
         (["--pddl", "a.pddl", "--dot", "a-domain.pddl"], "'a-domain.pddl' would be overwritten"),

@@ -66,6 +66,7 @@ def test_clouds_come_back_in_order(tmp_path, kind):
         assert cloud.colours.tolist() == [[10, 11, 12]] * 6
         assert cloud.grid == (2, 3)
     assert read_bag_cloud(path, "/points", 1).points[0, 0] == 1.0
+    assert all(cloud.frame == ("camera", 1.0) for _, cloud in clouds)
 
 
 @pytest.mark.slow

@@ -11,8 +11,8 @@ import typer
 from lifelore.bridges.rosbag import is_bag
 
 Option = typer.Option
-Files = dict[str, str | None]
-"""Files named by --pddl, --dot and --plot."""
+Files = dict[str, Any]
+"""Fields of `agent.perceive.scene_files.SceneFiles`, as the options name them."""
 
 
 def perceive(
@@ -98,6 +98,19 @@ def perceive(
     plot: Annotated[
         str | None, Option(metavar="FILE", help="File NAME.png for a picture of the scene from the camera.")
     ] = None,
+    masks_out: Annotated[
+        str | None, Option(metavar="FILE", help="File NAME.png for a 16-bit image of the objects' numbers.")
+    ] = None,
+    log: Annotated[
+        str | None,
+        Option(
+            metavar="FILE",
+            help="File NAME.mcap or NAME.rrd for cloud, boxes, contacts and relations; extra ros or view.",
+        ),
+    ] = None,
+    with_masks: Annotated[
+        bool, Option("--with-masks", help="JSON also holds each object's pixels, or its points' numbers.")
+    ] = False,
     watch: Annotated[
         str | None,
         Option(metavar="FOLDER", help="Perceive each new cloud of a folder until Ctrl-C."),
@@ -113,8 +126,8 @@ def perceive(
     faster than a call for each; --json then gives {"scenes": [{"source", ...}], "failed": [{"source", "error"}]}.
     With --poses or --register, the clouds are views of one scene and give one document.
     A cloud that cannot be perceived gives one line on stderr and exit status 2; the other clouds are still
-    perceived. In the FILE of --pddl, --dot and --plot, {name} stands for the name of the cloud without its suffix;
-    several clouds, and --watch, need it.
+    perceived. In each FILE that is written, {name} stands for the name of the cloud without its suffix; several
+    clouds, and --watch, need it.
     """
     if (watch is None) == (not clouds):
         raise typer.BadParameter(
@@ -137,8 +150,14 @@ def perceive(
         goal,
         beside,
         _region(roi, max_range),
+        with_masks,
     )
-    files = {"pddl": pddl, "dot": dot, "plot": plot}
+    files: Files = {"pddl": pddl, "dot": dot, "plot": plot, "masks_out": masks_out}
+    if log is not None:
+        from lifelore.bridges.scene_log import check_log, write_scene_log
+
+        check_log(log)
+        files |= {"log": log, "recorder": write_scene_log}
     if watch is not None and (poses is not None or register):
         raise typer.BadParameter("--watch perceives each cloud alone: leave --poses and --register out")
     if poses is not None and register:
@@ -165,14 +184,10 @@ def _one_thread_for_matrices() -> None:
 
 def _one(cloud: str, source: Callable[[str], Any], settings: Any, files: Files, as_json: bool) -> int:
     from lifelore.agent.perceive.perceive import perceive as look
-    from lifelore.agent.perceive.scene_files import named_files
     from lifelore.app.console import print_json, progress_bar
 
-    own = named_files(cloud, **files)
     with progress_bar("perceiving") as progress:
-        document = look(
-            source(cloud), settings, pddl=own.pddl, dot=own.dot, plot=own.plot, progress=progress, notice=to_stderr
-        )
+        document = look(source(cloud), settings, progress=progress, notice=to_stderr, **_named(cloud, files))
     print_json(document) if as_json else _print_scene(cloud, document, files)
     return 0
 
@@ -203,16 +218,14 @@ def _views(
     poses: str | None,
     as_json: bool,
 ) -> int:
-    from lifelore.agent.perceive.scene_files import named_files
     from lifelore.agent.perceive.views import perceive_views
     from lifelore.app.console import print_json, progress_bar
 
-    own = named_files(clouds[0], **files)
+    named = _named(clouds[0], files)
     with progress_bar("perceiving") as progress:
         document = perceive_views(
-            clouds, settings, poses=poses, pddl=own.pddl, dot=own.dot, plot=own.plot,
-            read=source, progress=progress, notice=to_stderr,
-        )  # fmt: skip
+            clouds, settings, poses=poses, read=source, progress=progress, notice=to_stderr, **named
+        )
     print_json(document) if as_json else _print_scene(clouds[0], document, files)
     return 0
 
@@ -245,11 +258,17 @@ def _print_titled(cloud: str, document: Mapping[str, Any], files: Files) -> None
 
 
 def _print_scene(cloud: str, document: Mapping[str, Any], files: Files) -> None:
-    from lifelore.agent.perceive.scene_files import named_files
+    from lifelore.agent.perceive.scene_files import SceneFiles
     from lifelore.app.scene_table import print_scene
 
-    own = named_files(cloud, **files)
-    print_scene(document, [path for path in (own.pddl, own.dot, own.plot) if path])
+    print_scene(document, list(SceneFiles(**files).of(cloud).options.values()))
+
+
+def _named(cloud: str, files: Files) -> Files:
+    """The files of a cloud, with its name in theirs."""
+    from lifelore.agent.perceive.scene_files import SceneFiles
+
+    return vars(SceneFiles(**files).of(cloud))
 
 
 def to_stderr(line: str) -> None:

@@ -70,6 +70,19 @@ def test_a_box_on_a_slab_and_one_apart(document):
 
 
 @pytest.mark.slow
+def test_the_boxes_are_where_the_boxes_stand(document):
+    places = {2: ([0.1, 0.075, 0.025], [0.2, 0.15, 0.05]), 3: ([0.09, 0.07, 0.11], [0.08, 0.06, 0.12])}
+    for number, (centre, size) in places.items():
+        one = document["objects"][number - 2]
+        assert one["box"]["centre"] == one["box_camera"]["centre"] == pytest.approx(centre, abs=0.002)
+        assert one["box"]["size"] == pytest.approx(size, abs=0.003)
+        assert np.abs(one["box"]["axes"]) == pytest.approx(np.eye(3), abs=0.02)
+        assert one["top"] == pytest.approx(centre[2] + size[2] / 2, abs=0.002)
+    supports = [one["support"] for one in document["objects"]]
+    assert supports == pytest.approx([0, 0.05, 0], abs=0.002)
+
+
+@pytest.mark.slow
 def test_the_contact_lies_between_the_two(document):
     upper = document["objects"][1]
     towards = [np.array(c["xyz"]) for c in upper["contact_points"] if c["other"] == 2]

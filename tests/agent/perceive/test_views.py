@@ -16,6 +16,7 @@ from lifelore.domains.tabletop.depth_camera import KINECT
 from lifelore.domains.tabletop.pose import Pose
 from lifelore.domains.tabletop.tabletop import sample_scene
 from lifelore.domains.tabletop.views import views_around
+from lifelore.perception.clouds.cloud_file import read_cloud
 
 pytest.importorskip("mujoco")
 
@@ -56,7 +57,7 @@ def test_settings_are_checked_before_anything_is_read(folder: Path) -> None:
 
 
 def test_two_views_give_one_scene(folder: Path) -> None:
-    document = perceive_views(names(folder), poses=str(folder / "poses.json"))
+    document = perceive_views(names(folder), PerceiveSettings(with_masks=True), poses=str(folder / "poses.json"))
     truth = {
         (label.a, "table" if label.b == TABLE else label.b)
         for label in sample_scene(5, 0).truth
@@ -69,6 +70,15 @@ def test_two_views_give_one_scene(folder: Path) -> None:
     first, second = np.array(json.loads((folder / "poses.json").read_text()))
     np.testing.assert_allclose(document["views"][1]["pose"], np.linalg.inv(first) @ second, atol=1e-6)
     assert all(view["points"] > 10_000 for view in document["views"])
+    assert all(one["points"] is None for one in document["objects"])
+    # The camera of the document is the first view's: in it, the truth of that view's scene is found.
+    first_view = read_cloud(names(folder)[0])
+    assert first_view.labels is not None
+    for one in document["objects"]:
+        seen = first_view.points[first_view.labels == one["id"]]
+        box = {key: np.array(value) for key, value in one["box_camera"].items()}
+        within = np.abs((seen - box["centre"]) @ box["axes"].T) <= box["size"] / 2 + 0.003
+        assert within.all(axis=1).mean() > 0.95
 
 
 def test_views_without_labels_are_registered(folder: Path) -> None:
@@ -108,6 +118,8 @@ def test_what_does_not_go_together_is_refused(folder: Path) -> None:
     both, poses = names(folder), str(folder / "poses.json")
     with pytest.raises(InputError, match="two or more clouds"):
         perceive_views(both[:1], poses=poses)
+    with pytest.raises(InputError, match="masks_out"):
+        perceive_views(both, poses=poses, masks_out="numbers.png")
     with pytest.raises(InputError, match="leave out --masks"):
         perceive_views(both, PerceiveSettings(beside=SourceFiles(masks="m.png")), poses=poses)
     with pytest.raises(InputError, match="must hold 3 poses"):

@@ -61,6 +61,8 @@ def test_a_cloud_becomes_a_scene_with_pddl(serve, cloud, tmp_path):
     from lifelore.agent.perceive.perceive import PerceiveSettings
 
     own = perceive(str(tmp_path / "cloud.npy"), PerceiveSettings(up="z"))
+    masked = ask(serve(), content, format="npy", with_masks=True).json()
+    assert all(len(one["points"]) == one["n_points"] for one in masked["objects"])
     for key in own.keys() - {"seconds", "source"}:
         assert document[key] == own[key], key
     assert "(define (problem" in document["pddl"]["problem"]
@@ -110,6 +112,13 @@ def test_a_depth_image_comes_with_the_file_of_its_camera_and_masks(serve, depth)
     asked = depth | {"intrinsics": camera, "masks": encoded(masks)}
     document = client.post("/v1/perceive/depth", json=asked).json()
     assert [one["id"] for one in document["objects"]] == [2, 3]
+    assert not any("mask" in one for one in document["objects"])
+    masked = client.post("/v1/perceive/depth", json=asked | {"with_masks": True}).json()
+    # Column 60 of 120 rows begins at pixel 7200; 40 rows of each of 20 columns are the first half.
+    assert masked["objects"][0]["mask"] == {"size": [120, 160], "counts": [7240, *[40, 80] * 19, 40, 9640]}
+    # The block lies 0.9 m in front of the camera, to the right of its axis or to the left.
+    assert [np.sign(one["centroid_camera"][0]) for one in document["objects"]] == [-1, 1]
+    assert all(one["centroid_camera"][2] == pytest.approx(0.9, abs=0.01) for one in document["objects"])
     body = client.post("/v1/perceive/depth/points", json=asked).content
     (n,) = struct.unpack("<I", body[:4])
     labels = np.frombuffer(body, "<i4", n, 4 + 12 * n)

@@ -8,11 +8,11 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from numpy.typing import NDArray
 
-from lifelore.agent.perceive.scene_files import SceneFiles, check_scene_files, write_scene_files
+from lifelore.agent.perceive.scene_files import FileNames, SceneFiles, check_scene_files, write_scene_files
 from lifelore.agent.perceive.source_files import NO_SOURCE_FILES, SourceFiles, read_source
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress
@@ -58,6 +58,8 @@ class PerceiveSettings:
         Files beside the cloud: intrinsics and colours of a depth image, masks of objects.
     region : Region, optional
         Where objects are looked for; by default everywhere.
+    with_masks : bool
+        Whether the document holds each object's pixels or point numbers, see `object_mask`.
 
     Raises
     ------
@@ -75,6 +77,7 @@ class PerceiveSettings:
     goal: str | None = None
     beside: SourceFiles = NO_SOURCE_FILES
     region: "Region | None" = None
+    with_masks: bool = False
 
     def __post_init__(self) -> None:
         if self.min_confidence is not None and not 0 <= self.min_confidence <= 1:
@@ -129,11 +132,9 @@ def perceive(
     source: Source,
     settings: PerceiveSettings = DEFAULT,
     *,
-    pddl: str | None = None,
-    dot: str | None = None,
-    plot: str | None = None,
     progress: Progress | None = None,
     notice: Callable[[str], None] | None = None,
+    **files: Unpack[FileNames],
 ) -> dict[str, Any]:
     """Perceive a scene.
 
@@ -143,13 +144,13 @@ def perceive(
         A source that `read_cloud` reads, a depth image (with `settings.beside.intrinsics`), or a cloud (for
         example from a rosbag).
     settings : PerceiveSettings
-    pddl, dot, plot : str, optional
-        Files to write: a planning problem (its domain beside it, as ``NAME-domain.pddl``), a graph for Graphviz,
-        a picture (``NAME.png``).
     progress : Progress, optional
         Called as each of the `STAGES` begins.
     notice : callable, optional
         Called with one line for the user if labels were interpreted as parts of objects.
+    pddl, dot, plot, masks_out, log, recorder : optional
+        Files to write, see `SceneFiles`: a planning problem (its domain beside it, as ``NAME-domain.pddl``), a
+        graph for Graphviz, a picture, a label image (both ``NAME.png``), a log.
 
     Returns
     -------
@@ -166,11 +167,11 @@ def perceive(
     StoreError
         A file cannot be written.
     """
-    files = SceneFiles(pddl, dot, plot)
-    check_goal(settings, pddl)
-    check_scene_files(files, files_read([source], settings))
+    asked = SceneFiles(**files)
+    check_goal(settings, asked.pddl)
+    check_scene_files(asked, files_read([source], settings))
     model = None if settings.model is None else model_of(settings, notice)
-    return perceived(source, model, settings, files, progress, notice)
+    return perceived(source, model, settings, asked, progress, notice)
 
 
 def perceived(
@@ -216,7 +217,10 @@ def scene_and_document(
     scene = perceived_scene(segmented.cloud, model).without_unrelated_contacts
     _report_stage(progress, 3)
     document = scene_document(
-        scene, min_confidence=settings.min_confidence or 0.0, cut_confidence=segmented.confidence
+        scene,
+        min_confidence=settings.min_confidence or 0.0,
+        cut_confidence=segmented.confidence,
+        with_masks=settings.with_masks,
     )
     document["warnings"] = [asdict(warning) for warning in scene_warnings(segmented)]
     document["seconds"] = round(time.perf_counter() - began, DIGITS)

@@ -31,6 +31,7 @@ class SceneOptions(BaseModel):
     up: Literal["table", "z"] = Field("table", description="Upward direction: the table's normal, or +z.")
     min_confidence: FiniteFloat | None = Field(None, description="Least probability of facts, in [0, 1].")
     goal: str | None = Field(None, max_length=1000, description="Goal of the planning problem, such as on(1,2).")
+    with_masks: bool = Field(False, description="Whether objects have their pixels, or their points' numbers.")
 
 
 class CloudOptions(SceneOptions):
@@ -81,13 +82,33 @@ class Planning(BaseModel):
     problem: str = Field(description="Problem in PDDL.")
 
 
+class SceneFrame(BaseModel):
+    """The camera's frame, in which the cloud was read, and the scene's."""
+
+    model_config = ConfigDict(extra="allow")
+    name: str | None = Field(description="Name of the camera's frame.")
+    stamp: float | None = Field(description="Seconds.")
+    scene_from_camera: list[list[float]] = Field(description="4 × 4 motion, metres.")
+    camera_from_scene: list[list[float]] = Field(description="Its inverse.")
+
+
+class Box(BaseModel):
+    """A box around the visible points of an object."""
+
+    centre: list[float] = Field(description="Metres.")
+    axes: list[list[float]] = Field(description="Three unit vectors.")
+    size: list[float] = Field(description="Metres along the axes.")
+
+
 class SceneObject(BaseModel):
     """An object of a scene."""
 
     model_config = ConfigDict(extra="allow")
     id: int
     n_points: int
-    centroid: list[float] = Field(description="Metres.")
+    centroid: list[float] = Field(description="Metres, in the scene's frame.")
+    box: Box
+    box_camera: Box = Field(description="The box in the camera's frame.")
     contact_points: list[dict[str, Any]] = Field(description="Places where it touches others.")
 
 
@@ -113,6 +134,7 @@ class SceneDocument(BaseModel):
     """A perceived scene."""
 
     model_config = ConfigDict(extra="allow")
+    frame: SceneFrame
     objects: list[SceneObject]
     relations: list[SceneRelation]
     facts: list[str] = Field(description="Relations that are stated, as logical facts.")

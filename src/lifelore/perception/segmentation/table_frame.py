@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lifelore.core.cloud_origin import CloudOrigin
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED, LabelledCloud
 from lifelore.core.streams import stream
@@ -82,7 +83,8 @@ def segmented_scene(
     Returns
     -------
     SegmentedScene
-        Measured points of the region only, z = 0 at the table. Under ``up="table"`` and a vector, x is the
+        Measured points of the region only, z = 0 at the table; `LabelledCloud.origin` leads back to the pixels and
+        the frame of the cloud. Under ``up="table"`` and a vector, x is the
         camera's right seen from above and y leads away from it; under ``"z"`` x and y stay. Without a visible
         table, z = 0 is the lowest point but for 1 % (a vector), or stays as it is (``"z"``).
 
@@ -105,14 +107,23 @@ def segmented_scene(
     scene_points = points @ np.ascontiguousarray(rotation.T) + shift
     camera = None if cloud.camera is None else rotation @ cloud.camera + shift
     others = None if cloud.other_cameras is None else cloud.other_cameras @ rotation.T + shift
+    origin = _origin(cloud, rotation, shift)
     labels = cloud.labels if cloud.labels is not None and cloud.is_labelled else None
     if labels is not None:
-        scene = LabelledCloud(scene_points, labels, cloud.colours, camera, others)
+        scene = LabelledCloud(scene_points, labels, cloud.colours, camera, others, origin)
         return SegmentedScene(scene, False, search.table, search.tilted)
     cut = _cut(points, scene_points, cloud, camera, search.table, segmentation or SegmentationSettings())
     _check_number(cut.labels, region, search)
-    scene = LabelledCloud(scene_points, cut.labels, cloud.colours, camera, others)
+    scene = LabelledCloud(scene_points, cut.labels, cloud.colours, camera, others, origin)
     return SegmentedScene(scene, True, search.table, search.tilted, cut.confidence)
+
+
+def _origin(cloud: PointCloud, rotation: NDArray[np.float64], shift: NDArray[np.float64]) -> CloudOrigin:
+    """Where the points of the scene come from; their rows are unknown where one is a mean of several."""
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = rotation, shift
+    rows = cloud.source_rows if cloud.source_rows is not None and cloud.source_rows.min() >= 0 else None
+    return CloudOrigin(pose, cloud.frame, rows, cloud.grid)
 
 
 def _check_camera(camera: NDArray[np.float64] | None) -> None:
