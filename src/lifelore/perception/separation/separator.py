@@ -125,7 +125,7 @@ def separate(
     >>> between.gradient([[0.05, 0.05, 0.005]])[0].argmax()  # up, out of the lower plate
     np.int64(2)
     """
-    a, b = _checked("first", first), _checked("second", second)
+    a, b = checked_points("first", first), checked_points("second", second)
     for name, value in (("length", length), ("cost", cost), ("tolerance", tolerance)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(f"{name} must be positive and finite, got {value}")
@@ -158,8 +158,14 @@ def _scaled(points: Array, length: float) -> Array:
     return scaled
 
 
-def _checked(name: str, cloud: ArrayLike) -> Array:
-    cloud = np.asarray(cloud, float)
+def checked_points(name: str, cloud: ArrayLike) -> Array:
+    """The argument `name` as a finite (n, 3) float64 array, n ≥ 1; raises InputError for anything else."""
+    try:
+        cloud = np.asarray(cloud, float)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"{name} must be a cloud of shape (n, 3), got rows of different lengths or no numbers"
+        ) from None
     if cloud.ndim != 2 or cloud.shape[1] != 3 or len(cloud) == 0:
         raise InputError(f"{name} must be a cloud of shape (n, 3) with n ≥ 1, got shape {cloud.shape}")
     if not np.isfinite(cloud).all():
