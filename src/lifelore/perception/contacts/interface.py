@@ -2,7 +2,8 @@
 
 Thesis: §2.3.4 for a pair (`pair_networks` for two bare clouds), §2.3.6 for a scene. A literal reading (hard
 margin, every contact of at least 7 support vectors) loses most contacts of a real depth camera; here a soft margin
-gives the contacts, and each separator also gives one *dipole*: the α-weighted centroids of all support vectors on either side, which always exist.
+gives the contacts, and each separator also gives one *dipole*: the α-weighted centroids of all support vectors on
+either side, which always exist.
 """
 
 from collections.abc import Sequence
