@@ -52,9 +52,9 @@ if TYPE_CHECKING:
     from lifelore.perception.contacts.contact_network import ContactPointNetwork as ContactPointNetwork
     from lifelore.perception.contacts.contact_settings import ContactSettings as ContactSettings
     from lifelore.perception.contacts.pair_networks import contact_networks as contact_networks
-    from lifelore.perception.perceived_scene import perceived_scene as perceived_scene
     from lifelore.perception.relations.relation_classifier import RelationClassifier as RelationClassifier
     from lifelore.perception.scene import Scene as Scene
+    from lifelore.perception.scene_perception import perceived_scene as perceived_scene
     from lifelore.perception.segmentation.table_frame import to_scene as to_scene
 
 __version__ = "0.1.0"
@@ -101,7 +101,7 @@ _HOME = {
     "make_world": "lifelore.domains.worlds",
     "open_memory": "lifelore.memory",
     "perceive": "lifelore.agent.perceive.perceive",
-    "perceived_scene": "lifelore.perception.perceived_scene",
+    "perceived_scene": "lifelore.perception.scene_perception",
     "plot_prior": "lifelore.figures.lives.prior_table",
     "prior_from_memory": "lifelore.agent.external_world.stored_prior",
     "read_cloud": "lifelore.perception.clouds.cloud_file",

@@ -1,7 +1,7 @@
 """Perception: point clouds in, relations between objects out (thesis ch. 2).
 
 The sub-packages stand in the order of the data: `clouds` → `segmentation` → `separation` → `contacts` → `pairs` →
-`trees` → `relations` → `reasoning` and `topology`. `scene` holds all layers of one scene, `perceived_scene` runs
+`trees` → `relations` → `reasoning` and `topology`. `scene` holds all layers of one scene, `scene_perception` runs
 all steps, `scene_json` and `scene_graph` write a scene, `peers` holds other methods for comparison.
 
 What users call can be imported from here, and is loaded when first used.
@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from lifelore.perception.contacts.contact_network import ContactPointNetwork
     from lifelore.perception.contacts.contact_settings import ContactSettings
     from lifelore.perception.contacts.pair_networks import contact_networks
-    from lifelore.perception.perceived_scene import perceived_scene
     from lifelore.perception.relations.relation_classifier import RelationClassifier
     from lifelore.perception.scene import Scene
+    from lifelore.perception.scene_perception import perceived_scene
     from lifelore.perception.segmentation.table_frame import to_scene
 
 __all__ = [
@@ -46,7 +46,7 @@ _HOME = {
     "RelationClassifier": "lifelore.perception.relations.relation_classifier",
     "Scene": "lifelore.perception.scene",
     "contact_networks": "lifelore.perception.contacts.pair_networks",
-    "perceived_scene": "lifelore.perception.perceived_scene",
+    "perceived_scene": "lifelore.perception.scene_perception",
     "read_cloud": "lifelore.perception.clouds.cloud_file",
     "to_scene": "lifelore.perception.segmentation.table_frame",
 }
