@@ -79,6 +79,6 @@ def _check_numbers(cloud: LabelledCloud) -> None:
     if height > FLAT * width:
         raise InputError(
             "labels must number objects from 2 (0 is no object, 1 is the table), got 0 and 1 alone, and the points"
-            f" labelled 1 are {100 * height:.0f} cm high and {100 * width:.0f} cm wide, which is no table: add 2 to"
-            " every label, or call contact_networks(points_a, points_b)"
+            f" labelled 1 are {100 * height:.0f} cm high and {100 * width:.0f} cm wide, which is no table: add 2"
+            " to every label, or call contact_networks(points_a, points_b)"
         )
