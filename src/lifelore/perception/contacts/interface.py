@@ -28,10 +28,10 @@ from lifelore.perception.separation.separator import MOST_WORK, Separator, separ
 
 STANDARD_VOXEL = 0.003
 """Spacing (metres) at which `ContactSettings.cost` and `min_support` are stated."""
-LEAST_SHARE = 1000.0
+LEAST_SHARE = 1500.0
 """Kernel evaluations per point that a separator may always use, also in large scenes; more cost time.
 
-On ordinary scenes half of the pairs need 160, one in a hundred 930, the worst 2100, and a scene's own share of
+On ordinary scenes half of the pairs need 240, one in a hundred 1440, the worst 1960, and a scene's own share of
 `separator.MOST_WORK` is 12,000 and more. Clouds that lie in each other never converge.
 """
 DEFAULT_CONTACT_SETTINGS = ContactSettings()

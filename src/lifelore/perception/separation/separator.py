@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.perception.separation.far_field import cell_order, far_field_cells
 from lifelore.perception.separation.gaussian import Array, kernel_sums
-from lifelore.perception.separation.nested_voxels import voxel_pyramid
 from lifelore.perception.separation.separator_descent import descend
+from lifelore.perception.separation.separator_dual import Dual
 
 MOST_STEPS = 500_000
 """Largest number of optimiser steps, some seconds; soft margins need hundreds to thousands."""
@@ -136,10 +137,13 @@ def separate(
     points = np.concatenate([a, b])
     n, n_first = len(points), len(a)
     side = np.where(np.arange(n) < n_first, 1.0, -1.0)
-    levels = voxel_pyramid(_scaled(points, length), side, cost)
-    dual, violation = descend(levels, tolerance, max_steps, max_work)
+    scaled = _scaled(points, length)
+    order, starts = cell_order(scaled)
+    scaled = np.ascontiguousarray(scaled[:, order])
+    dual = Dual(scaled, side[order], far_field_cells(scaled, starts), cost, max_work)
+    violation = descend(dual, tolerance, max_steps)
     beta = np.empty(n)
-    beta[levels.order] = dual.beta
+    beta[order] = dual.beta
     support = np.flatnonzero(beta)
     one, two = support[support < n_first], support[support >= n_first]
     return Separator(
