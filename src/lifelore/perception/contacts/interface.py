@@ -31,7 +31,7 @@ STANDARD_VOXEL = 0.003
 LEAST_SHARE = 1500.0
 """Kernel evaluations per point that a separator may always use, also in large scenes; more cost time.
 
-On ordinary scenes half of the pairs need 240, one in a hundred 1440, the worst 1960, and a scene's own share of
+On ordinary scenes half of the pairs need 230, one in a hundred 1140, the worst 1840, and a scene's own share of
 `separator.MOST_WORK` is 12,000 and more. Clouds that lie in each other never converge.
 """
 DEFAULT_CONTACT_SETTINGS = ContactSettings()

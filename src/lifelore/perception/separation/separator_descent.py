@@ -28,7 +28,7 @@ def descend(dual: Dual, tolerance: float, max_steps: int) -> float:
         Optimiser steps after which to stop. Where the dual's work runs out before, the returned violation is a
         bound, infinite where it was never evaluated.
     """
-    working = _thinned(dual.side)
+    working = np.concatenate([_even(np.flatnonzero(dual.side == sign), FIRST_WORKING) for sign in (1, -1)])
     if dual.affords(len(working)):
         *_, steps = _step(dual, working, tolerance, max_steps)
         max_steps -= steps
@@ -37,7 +37,7 @@ def descend(dual: Dual, tolerance: float, max_steps: int) -> float:
         most, least = dual.extremes(tolerance)
         if most - least <= tolerance or max_steps <= 0 or dual.spent:
             break
-        working = _working_set(dual, most, least)
+        working = _working_set(dual, most, least, tolerance)
         if not dual.affords(len(working)):
             break
         changed, before, steps = _step(dual, working, tolerance, max_steps)
@@ -63,30 +63,25 @@ def _step(dual: Dual, working: Indices, tolerance: float, max_steps: int) -> tup
     return working[changed], before[changed], steps
 
 
-def _working_set(dual: Dual, most: float, least: float) -> Indices:
-    """Free points, violators and near violators, ascending; the worst of either end if there are too many."""
+def _working_set(dual: Dual, most: float, least: float, tolerance: float) -> Indices:
+    """Free points, violators and near violators; of too many, an even subset with the worst of either end.
+
+    The points are sorted by place, so that an even subset violates all along the surface. The worst points lie
+    close together, and would be the next set's worst again.
+    """
     free = dual.free()
     bias = float(dual.slope[free].mean()) if len(free) else (most + least) / 2
     over = np.where(dual.beta < dual.upper, dual.slope - bias, -np.inf)
     under = np.where(dual.beta > dual.lower, bias - dual.slope, -np.inf)
-    excess = np.maximum(over, under) + dual.error + BAND * (most - least)
-    excess[free] = np.inf
-    chosen = np.flatnonzero(excess > 0)
-    if len(chosen) <= MOST_WORKING:
-        return chosen
-    half = MOST_WORKING // 2
-    over = np.argsort(np.where(dual.beta < dual.upper, -dual.slope, np.inf)[chosen], kind="stable")[:half]
-    under = np.argsort(np.where(dual.beta > dual.lower, dual.slope, np.inf)[chosen], kind="stable")[:half]
-    return chosen[np.union1d(over, under)]
+    excess = np.maximum(over, under) + dual.error
+    near = excess + BAND * (most - least) > 0
+    near[free] = True
+    if np.count_nonzero(near) <= MOST_WORKING:
+        return np.flatnonzero(near)
+    violators, ends = np.flatnonzero(excess > tolerance / 2), [over.argmax(), under.argmax()]
+    return np.union1d(ends, np.concatenate([_even(free, MOST_WORKING // 2), _even(violators, MOST_WORKING // 2)]))
 
 
-def _thinned(side: Array) -> Indices:
-    """All points, or an even subset of each side."""
-    parts = [np.flatnonzero(side == sign) for sign in (1, -1)]
-    sizes = [min(len(part), FIRST_WORKING) for part in parts]
-    return np.concatenate(
-        [
-            part[np.linspace(0, len(part) - 1, size).astype(np.int64)]
-            for part, size in zip(parts, sizes, strict=True)
-        ]
-    )
+def _even(points: Indices, size: int) -> Indices:
+    """At most `size` of the points, evenly spaced in order."""
+    return points[np.linspace(0, len(points) - 1, min(len(points), size)).astype(np.int64)]
