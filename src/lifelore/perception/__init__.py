@@ -2,7 +2,7 @@
 
 The sub-packages stand in the order of the data: `clouds` → `segmentation` → `separation` → `contacts` → `pairs` →
 `trees` → `relations` → `reasoning` and `topology`. `scene` holds all layers of one scene, `scene_perception` runs
-all steps, `scene_json` and `scene_graph` write a scene, `peers` holds other methods for comparison.
+all steps, `scene_json` and `scene_graph` write a scene.
 
 What users call can be imported from here, and is loaded when first used.
 """
