@@ -11,13 +11,13 @@ import pytest
 from lifelore.bridges.planner import Step, solve
 from lifelore.core.errors import InputError, MissingExtraError
 from lifelore.perception.clouds.cloud_file import read_cloud
-from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.reasoning.planning_domain import DOMAIN, planning_domain
 from lifelore.perception.reasoning.planning_problem import planning_problem, problem_text
 from lifelore.perception.reasoning.planning_state import planning_state
 from lifelore.perception.reasoning.scene_logic import contradictions
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.relations.words import Words
+from lifelore.perception.scene_perception import perceived_scene
 from lifelore.perception.segmentation.table_frame import to_scene
 
 pytestmark = pytest.mark.planning

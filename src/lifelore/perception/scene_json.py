@@ -27,7 +27,8 @@ between its two objects' visible points (`near_pairs.visible_gap`). Numbers are 
 
 A relation with a confidence below the threshold stays in ``relations`` with ``stated`` false, and no fact
 follows from it. ``unknown`` lists facts of the most likely scene that are not stated: ``doubtful`` ones below
-the threshold, and ``clear`` of an object whose top other objects hide in part (``hidden``, at any threshold).
+the threshold, ``clear`` of an object whose top other objects hide in part (``hidden``, at any threshold), and
+``on`` of an object and the table where the cloud has no table (``no table``).
 """
 
 import math

@@ -202,9 +202,9 @@ def scene_and_document(
     _report_stage(progress, 0)
     cloud = read_scene(source, settings)
     reading = time.perf_counter() - began
-    from lifelore.perception.perceived_scene import perceived_scene
     from lifelore.perception.relations.relation_classifier import shipped_model
     from lifelore.perception.scene_json import DIGITS, scene_document
+    from lifelore.perception.scene_perception import perceived_scene
     from lifelore.perception.segmentation.scene_warnings import scene_warnings
     from lifelore.perception.segmentation.table_frame import EVERYWHERE, segmented_scene
 

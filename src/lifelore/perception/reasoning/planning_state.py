@@ -3,20 +3,21 @@
 A pair's label is split into what a planner needs: *both* means *on* and *adjacent*, so the probability that a
 rests on b is the sum of those of *on* and *both*. The probability of *clear(b)* is that no object rests on b.
 Pairs count as independent. A fact of the most likely scene is stated if its probability is at least a threshold;
-otherwise it is unknown. *clear(b)* is also unknown if other objects hide a part of b's top from the camera.
+otherwise it is unknown. *clear(b)* is also unknown if other objects hide a part of b's top from the camera, and
+*on(b, table)* where no object carries b and the cloud has no point of a table.
 
 For a planner, a fact that is not stated is false. So an object on which something may rest unseen is marked:
 nothing is planned on it or with it, even when everything known has been taken off it.
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import prod
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, ON
-from lifelore.perception.reasoning.fact import Fact
+from lifelore.perception.reasoning.fact import Fact, objects_without_support
 from lifelore.perception.reasoning.hidden_tops import hidden_tops
 from lifelore.perception.reasoning.label_distribution import LabelDistribution, label_distributions
 from lifelore.perception.reasoning.scene_logic import alternatives
@@ -26,8 +27,9 @@ from lifelore.perception.scene import Scene
 CLEAR = "clear"
 PLAN_CONFIDENCE = 0.6
 """Default threshold of planning problems: a higher value gives fewer plans, of which more are valid."""
-DOUBTFUL, HIDDEN = "doubtful", "hidden"
-"""Reasons why a fact is unknown: its probability is below the threshold, or the place is out of sight."""
+DOUBTFUL, HIDDEN, NO_TABLE = "doubtful", "hidden", "no table"
+"""Reasons why a fact is unknown: its probability is below the threshold, the place is out of sight, or the cloud
+has no table."""
 
 
 @dataclass(frozen=True, order=True)
@@ -73,13 +75,24 @@ class PlanningState:
 def scene_state(scene: Scene, least: float = 0.0) -> PlanningState:
     """The state of a perceived scene at a threshold in [0, 1]; hidden tops are unknown at any threshold.
 
+    What no object carries in a scene without a table is unknown to be on the table. The probability of that fact
+    is that no object carries it.
+
     Raises
     ------
     InputError
         The threshold is outside [0, 1].
     """
     distributions = label_distributions(alternatives(scene.beliefs)) if scene.beliefs else None
-    return planning_state(scene.relations, scene.objects, least, distributions, hidden_tops(scene.cloud))
+    state = planning_state(scene.relations, scene.objects, least, distributions, hidden_tops(scene.cloud))
+    if scene.cloud.has_table:
+        return state
+    known = label_distributions(scene.relations) if distributions is None else distributions
+    unknown = {
+        UnknownFact(Fact(ON, (x, TABLE)), prod(1 - one.carried(x) for one in known if x in one.pair), NO_TABLE)
+        for x in objects_without_support(scene.relations, scene.objects)
+    }
+    return replace(state, unknown=tuple(sorted(unknown.union(state.unknown))))
 
 
 def planning_state(

@@ -17,6 +17,8 @@ from numpy.typing import NDArray
 from lifelore.core.compiled.jit import kernel
 from lifelore.perception.separation.gaussian import Array, exp_of_negative
 
+CELL = 0.5
+"""Edge of a cell in lengths of the kernel; smaller ones are more accurate, and cost more where there are many."""
 WIDEST = 0.5
 """Greatest radius of a cell for which the bound holds, in lengths of the kernel."""
 _FAR_SQUARED = 80.0
@@ -38,6 +40,14 @@ class Cells(NamedTuple):
     starts: NDArray[np.int64]
     centre: Array
     radius: Array
+
+
+def cell_order(points: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The order (n,) that sorts points (3, n) by cell, and where each cell begins among them, with n (c + 1,)."""
+    index = np.floor((points - points.min(axis=1, keepdims=True)) / CELL).astype(np.int64)
+    order = np.lexsort(index)
+    begins = np.flatnonzero((np.diff(index[:, order]) != 0).any(axis=0)) + 1
+    return order, np.concatenate([[0], begins, [len(order)]])
 
 
 def far_field_cells(points: Array, starts: NDArray[np.int64]) -> Cells:

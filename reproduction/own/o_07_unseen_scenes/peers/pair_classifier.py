@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.relations import SYMMETRIC, PairLabel
 from lifelore.perception.pairs.directed_label import mirrored
-from lifelore.perception.peers.peer import Describe, DescribedPair, Peer, labelled_pairs
 from lifelore.perception.relations.relation import Relation
+from reproduction.own.o_07_unseen_scenes.peers.peer import Describe, DescribedPair, Peer, labelled_pairs
 
 
 class PairClassifier(Peer):
@@ -25,11 +25,10 @@ class PairClassifier(Peer):
     ----------
     describe : callable
     estimator : callable
-        Given the number of training rows, a fresh scikit-learn classifier with ``predict_proba`` or, failing
-        that, ``decision_function``.
+        Makes a fresh scikit-learn classifier with ``predict_proba``.
     """
 
-    def __init__(self, describe: Describe, estimator: Callable[[int], Any]) -> None:
+    def __init__(self, describe: Describe, estimator: Callable[[], Any]) -> None:
         self.describe = describe
         self._new_estimator = estimator
         self._estimators: dict[bool, Any] = {}
@@ -52,7 +51,7 @@ class PairClassifier(Peer):
         for kind, model in self._estimators.items():
             places = [at for at, pair in enumerate(scene) if pair.with_table == kind]
             if places:
-                shares = _shares(model, np.concatenate([scene[at].rows for at in places]))
+                shares = model.predict_proba(np.concatenate([scene[at].rows for at in places]))
                 for at, both in zip(places, shares.reshape(len(places), 2, -1), strict=True):
                     judged[at] = _judged(scene[at], model.classes_.tolist(), both)
         return tuple(judged[at] for at in sorted(judged))
@@ -60,7 +59,7 @@ class PairClassifier(Peer):
     def _fitted(self, rows: list[NDArray], names: list[str]) -> Any:
         from sklearn.dummy import DummyClassifier
 
-        model = self._new_estimator(len(rows)) if len(set(names)) > 1 else DummyClassifier()
+        model = self._new_estimator() if len(set(names)) > 1 else DummyClassifier()
         return model.fit(np.array(rows), np.array(names))
 
 
@@ -73,21 +72,3 @@ def _judged(pair: DescribedPair, classes: list[str], both: NDArray[np.float64]) 
         votes[turned] = votes.get(turned, 0.0) + backward / 2
     best = max(sorted(votes), key=votes.__getitem__)
     return pair.relation(best, float(votes[best]))
-
-
-def _shares(model: Any, rows: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Share of each class, ``(n, n_classes)``, rows sum to 1."""
-    if hasattr(model, "predict_proba"):
-        return model.predict_proba(rows)
-    margins = model.decision_function(rows)
-    if margins.ndim == 1:
-        margins = np.stack([-margins, margins], axis=1)
-    shares = np.exp(margins - margins.max(axis=1, keepdims=True))
-    return shares / shares.sum(axis=1, keepdims=True)
-
-
-def neighbours(n_rows: int) -> Any:
-    """The thesis's k-nearest neighbours, k = 4, weighted by inverse distance so that votes seldom tie (§2.3.5)."""
-    from sklearn.neighbors import KNeighborsClassifier
-
-    return KNeighborsClassifier(min(4, n_rows), weights="distance")

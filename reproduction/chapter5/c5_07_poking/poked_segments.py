@@ -17,7 +17,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
-from lifelore.perception.segmentation.poked_patches import DECIDED, LEAST_DECIDED, PokedPatches
+from reproduction.chapter5.c5_07_poking.poked_patches import DECIDED, LEAST_DECIDED, PokedPatches
 
 SMALLEST = 100
 """Voxels of the smallest part that is split off: 25 cm²."""

@@ -9,7 +9,7 @@ from sklearn.cluster import KMeans
 from sklearn.metrics import adjusted_rand_score
 
 from lifelore.core.errors import InputError
-from lifelore.perception.relations.x_means import bayesian_criterion, x_means
+from reproduction.chapter2.c2_12_unlabelled_relations.x_means import bayesian_criterion, x_means
 
 LINE = np.array([[0.0], [2.0], [10.0], [12.0]])
 CENTRES = np.array([[1.0], [11.0]])
@@ -122,3 +122,17 @@ def test_equal_points_are_one_cluster():
 def test_refusals(points, least, most, match):
     with pytest.raises(InputError, match=match):
         x_means(points, np.random.default_rng(0), least=least, most=most)
+
+
+def test_a_ring_of_displacements_is_cut_at_random_and_a_relation_in_both_orders_is_two():
+    # Errata E22. Neighbours in every direction: one relation, but no sphere holds a ring.
+    turn = np.linspace(0, 2 * np.pi, 200, endpoint=False)
+    ring = 0.06 * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(200)])
+    ring += np.random.default_rng(0).normal(0, 0.004, ring.shape)
+    cuts = [x_means(ring, np.random.default_rng(seed), most=10).labels for seed in range(2)]
+    assert min(cut.max() for cut in cuts) >= 2
+    assert adjusted_rand_score(*cuts) < 0.9
+    # One object on another, named in either order.
+    above = np.random.default_rng(1).normal([0, 0, 0.05], 0.004, (60, 3))
+    both = x_means(np.concatenate([above, -above]), np.random.default_rng(0), most=10).labels
+    assert set(both[:60]).isdisjoint(both[60:])

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from networkx.algorithms.isomorphism import GraphMatcher
 
 from lifelore.core.errors import InputError
-from lifelore.perception.topology.substructure import find_substructure, skeleton
+from reproduction.chapter2.scenes.substructure import find_substructure, skeleton
 
 POINT = np.zeros((1, 3))
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.perception.peers.pair_classifier import PairClassifier
-from lifelore.perception.peers.peer import mean_of_voxels
+from reproduction.own.o_07_unseen_scenes.peers.pair_classifier import PairClassifier
+from reproduction.own.o_07_unseen_scenes.peers.peer import mean_of_voxels
 
 GRAIN = 0.015
 """Side of the voxels in metres; clouds are thinned first, since all pairs of points are counted."""
@@ -35,7 +35,7 @@ def orientation_histogram(first: NDArray[np.float64], second: NDArray[np.float64
 def orientation_trees(seed: int = 0) -> PairClassifier:
     """A classifier on the two-dimensional histogram alone."""
 
-    def estimator(n_rows: int) -> Any:
+    def estimator() -> Any:
         from sklearn.ensemble import ExtraTreesClassifier
 
         return ExtraTreesClassifier(TREES, random_state=seed)

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, NONE, ON, PairLabel
 from lifelore.perception.pairs.directed_label import REVERSED
-from lifelore.perception.peers.peer import DescribedPair, Peer
 from lifelore.perception.relations.relation import Relation
+from reproduction.own.o_07_unseen_scenes.peers.peer import DescribedPair, Peer
 
 TOLERANCE = 0.02
 """Metres by which an object may start below the top of its support, or above the table."""

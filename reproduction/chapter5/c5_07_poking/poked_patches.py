@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.perception.segmentation.motion_labels import motion_labels
-from lifelore.perception.segmentation.moved_surface import NEAR, VOXEL, ViewAfter
-from lifelore.perception.segmentation.rigid_motion import STILL, RigidMotion, registered, turned_about
 from lifelore.perception.segmentation.supervoxels import supervoxels
 from lifelore.perception.segmentation.surface_voxels import SurfaceVoxels, surface_voxels
+from reproduction.chapter5.c5_07_poking.motion_labels import motion_labels
+from reproduction.chapter5.c5_07_poking.moved_surface import NEAR, VOXEL, ViewAfter
+from reproduction.chapter5.c5_07_poking.rigid_motion import STILL, RigidMotion, registered, turned_about
 
 PATCH = 0.015
 """Metres between the seeds of patches: the resolution of a split."""

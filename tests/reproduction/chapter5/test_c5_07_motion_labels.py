@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.perception.segmentation.motion_labels import motion_labels
+from reproduction.chapter5.c5_07_poking.motion_labels import motion_labels
 
 
 def energy(costs, pairs, weights, labels):

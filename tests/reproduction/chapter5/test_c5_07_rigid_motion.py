@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import KDTree
 
-from lifelore.perception.segmentation.rigid_motion import STILL, registered, turned_about
+from reproduction.chapter5.c5_07_poking.rigid_motion import STILL, registered, turned_about
 
 SIDE = np.stack(np.meshgrid(np.arange(0, 0.1, 0.004), np.arange(0, 0.1, 0.004)), axis=-1).reshape(-1, 2)
 

@@ -5,8 +5,8 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.perception.segmentation.poked_patches import Poke
-from lifelore.perception.segmentation.poking import PokedSegments
+from reproduction.chapter5.c5_07_poking.poked_patches import Poke
+from reproduction.chapter5.c5_07_poking.poked_segments import PokedSegments
 from tests.perception.segmentation.boards import Board, cast_boards
 
 CAMERA = np.array([0.0, -0.7, 0.6])

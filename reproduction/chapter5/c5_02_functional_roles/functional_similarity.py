@@ -29,17 +29,6 @@ STEEP = np.sqrt(0.5)
 DISTANCES, BINS, FARTHEST = 20_000, 64, 3.0
 
 
-def functional_similarity(scene_a: Scene, a: int, scene_b: Scene, b: int) -> float:
-    """How alike object `a` of one scene and `b` of another are used, in [0, 1]; symmetric, 1 for equal roles.
-
-    Raises
-    ------
-    InputError
-        A scene has no such object.
-    """
-    return overlap(role(scene_a, a), role(scene_b, b))
-
-
 def overlap(first: Counter, second: Counter) -> float:
     """Σ min / Σ max of two bags, 1 for two empty ones."""
     together = (first | second).total()
@@ -67,22 +56,6 @@ def role(scene: Scene, label: int) -> Counter:
         beyond = (step for step in _neighbours(scene, other) if other != TABLE and step[1] != label)
         tokens.update(("steps", way, _kind(other), far, _kind(third)) for far, third in beyond)
     return tokens
-
-
-def shape_similarity(
-    points_a: NDArray[np.float64], points_b: NDArray[np.float64], rng: np.random.Generator
-) -> float:
-    """How alike two shapes are by their D2 distributions, in [0, 1]: 1 less half the histograms' L1 distance.
-
-    Parameters
-    ----------
-    points_a, points_b : (n, 3), (m, 3) float64
-        Metres, at least two different points each.
-    rng : numpy.random.Generator
-        Draws the pairs of points.
-    """
-    first, second = (shape_distribution(points, rng) for points in (points_a, points_b))
-    return float(1 - np.abs(first - second).sum() / 2)
 
 
 def shape_distribution(points: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
