@@ -23,7 +23,7 @@ def perceive(
     up: Annotated[
         str, Option(metavar="table|z|X,Y,Z", help="Upward direction: the table's normal, +z, or a vector.")
     ] = "table",
-    units: Annotated[str, Option(help="Unit of the coordinates: m or mm.")] = "m",
+    units: Annotated[str, Option(help="Unit of the coordinates: m, cm, mm or inch.")] = "m",
     labels: Annotated[str, Option(help="Label field: plain ids, parts (20–29 are one object), or auto.")] = "auto",
     topic: Annotated[str | None, Option(help="Topic of a rosbag's clouds; needed if it has several.")] = None,
     index: Annotated[int | None, Option(help="Number of a rosbag's cloud, from 0 [0].")] = None,
@@ -84,8 +84,11 @@ def perceive(
     ] = None,
     goal: Annotated[
         str | None,
-        Option(metavar="GOAL", help='Goal of the planning problem, such as "on(o2, o3) and not clear(o4)".'),
+        Option(metavar="GOAL", help='Goal to plan for, such as "on(o2, o3) and not clear(o4)".'),
     ] = None,
+    plan: Annotated[
+        bool, Option("--plan", help="Find a plan for the goal, with places (extra planning).")
+    ] = False,
     min_confidence: Annotated[
         float | None,
         Option(
@@ -112,6 +115,7 @@ def perceive(
     Use it to turn a cloud into facts for a planner, a graph or a picture. Several clouds in one call are much
     faster than a call for each; --json then gives {"scenes": [{"source", ...}], "failed": [{"source", "error"}]}.
     With --poses or --register, the clouds are views of one scene and give one document.
+    A goal without a plan is a result: --plan then says why, and the exit status stays 0.
     A cloud that cannot be perceived gives one line on stderr and exit status 2; the other clouds are still
     perceived. In the FILE of --pddl, --dot and --plot, {name} stands for the name of the cloud without its suffix;
     several clouds, and --watch, need it.
@@ -137,6 +141,7 @@ def perceive(
         goal,
         beside,
         _region(roi, max_range),
+        _planner() if plan else None,
     )
     files = {"pddl": pddl, "dot": dot, "plot": plot}
     if watch is not None and (poses is not None or register):
@@ -268,6 +273,13 @@ def _cut(segment: str | None, colours: int | None):
 
     default = SegmentationSettings.colours
     return SegmentationSettings(method=segment, colours=default if colours is None else colours)  # type: ignore[arg-type]
+
+
+def _planner():
+    from lifelore.bridges.planner import library, solve
+
+    library()  # refuse at once where the extra is missing
+    return solve
 
 
 def _region(roi: str | None, max_range: float | None):

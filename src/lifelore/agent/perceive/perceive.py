@@ -5,7 +5,7 @@ The cloud is read before the modules that perceive it are imported, so that a ba
 
 import os
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +21,7 @@ from lifelore.perception.clouds.point_cloud import PointCloud
 
 if TYPE_CHECKING:
     from lifelore.perception.reasoning.planning_goal import Statement
+    from lifelore.perception.reasoning.scene_plan import Solver
     from lifelore.perception.relations.relation_classifier import RelationClassifier
     from lifelore.perception.scene import Scene
     from lifelore.perception.segmentation.object_segmentation import SegmentationSettings
@@ -40,7 +41,7 @@ class PerceiveSettings:
     ----------
     up : "table", "z", or (3,) numbers
         Upward direction in the cloud's frame, see `to_scene`.
-    units : {"m", "mm"}
+    units : {"m", "cm", "mm", "inch"}
     labels : {"auto", "plain", "parts"}
         How a label field becomes objects, see `label_rule`.
     segmentation : SegmentationSettings, optional
@@ -58,11 +59,15 @@ class PerceiveSettings:
         Files beside the cloud: intrinsics and colours of a depth image, masks of objects.
     region : Region, optional
         Where objects are looked for; by default everywhere.
+    planner : Solver, optional
+        Solves the planning problem of the `goal`, such as `lifelore.bridges.planner.solve`; the document then has
+        the ``plan`` of `plan_json`. By default nothing is solved.
 
     Raises
     ------
     InputError
-        `memory` is given without the name of a model, `min_confidence` is no probability, or `goal` is no goal.
+        `memory` is given without the name of a model, `min_confidence` is no probability, `goal` is no goal, or
+        a planner has no goal.
     """
 
     up: "Up" = "table"
@@ -75,10 +80,13 @@ class PerceiveSettings:
     goal: str | None = None
     beside: SourceFiles = NO_SOURCE_FILES
     region: "Region | None" = None
+    planner: "Solver | None" = None
 
     def __post_init__(self) -> None:
         if self.min_confidence is not None and not 0 <= self.min_confidence <= 1:
             raise InputError(f"min_confidence must be a probability from 0 to 1, got {self.min_confidence!r}")
+        if self.planner is not None and self.goal is None:
+            raise InputError("plan (--plan) needs a goal (--goal GOAL), such as on(o2, o3)")
         _ = self.statements
         if self.memory is not None and (self.model is None or is_file_name(self.model)):
             raise InputError(
@@ -97,9 +105,9 @@ class PerceiveSettings:
 
 
 def check_goal(settings: PerceiveSettings, pddl: str | None) -> None:
-    """Raise InputError for a goal without a planning problem to write it to."""
-    if settings.goal is not None and pddl is None:
-        raise InputError("goal is written to the planning problem, but none is asked for: add pddl (--pddl FILE)")
+    """Raise InputError for a goal that is neither planned for nor written to a planning problem."""
+    if settings.goal is not None and pddl is None and settings.planner is None:
+        raise InputError("goal needs a plan (--plan), or a planning problem to write it to (--pddl FILE): add one")
 
 
 def check_settings(settings: PerceiveSettings, pddl: str | None) -> None:
@@ -155,7 +163,8 @@ def perceive(
     -------
     dict
         The document of `scene_json`, with the contact points of pairs that support or are adjacent to each other,
-        and ``warnings``.
+        and ``warnings``; with a planner ``plan``. A goal that no plan can reach is a warning, or the reason of the
+        plan.
 
     Raises
     ------
@@ -220,7 +229,25 @@ def scene_and_document(
     )
     document["warnings"] = [asdict(warning) for warning in scene_warnings(segmented)]
     document["seconds"] = round(time.perf_counter() - began, DIGITS)
+    if settings.statements:
+        _add_plan(document, scene, settings, segmented.confidence)
     return cloud, scene, document
+
+
+def _add_plan(
+    document: dict[str, Any], scene: "Scene", settings: PerceiveSettings, cut_confidence: Mapping[int, float]
+) -> None:
+    """Add the plan for the goal; without a planner a warning where no plan can reach it."""
+    from lifelore.agent.perceive.plan_json import plan_document
+    from lifelore.perception.reasoning.planning_state import PLAN_CONFIDENCE, scene_state
+    from lifelore.perception.reasoning.scene_plan import no_plan_reason, scene_plan
+
+    least = PLAN_CONFIDENCE if settings.min_confidence is None else settings.min_confidence
+    if settings.planner is not None:
+        plan = scene_plan(scene, settings.statements, settings.planner, least, cut_confidence)
+        document["plan"] = plan_document(plan, document["objects"])
+    elif reason := no_plan_reason(scene, scene_state(scene, least), settings.statements):
+        document["warnings"].append({"code": "goal_out_of_reach", "message": f"no plan reaches the goal: {reason}"})
 
 
 def files_read(sources: Iterable[Source], settings: PerceiveSettings) -> list[str | os.PathLike[str]]:
