@@ -126,7 +126,7 @@ def perceive(
             "give one or more clouds, or --watch FOLDER"
         )  # fmt: skip
     _one_thread_for_matrices()
-    from lifelore.agent.perceive.perceive import PerceiveSettings
+    from lifelore.agent.perceive.perceive import PerceiveSettings, read_region
     from lifelore.agent.perceive.source_files import SourceFiles
 
     beside = SourceFiles(intrinsics, colour, depth_scale, masks, table_mask)
@@ -140,7 +140,7 @@ def perceive(
         min_confidence,
         goal,
         beside,
-        _region(roi, max_range),
+        read_region(roi, max_range),
         _planner() if plan else None,
     )
     files = {"pddl": pddl, "dot": dot, "plot": plot}
@@ -280,19 +280,6 @@ def _planner():
 
     library()  # refuse at once where the extra is missing
     return solve
-
-
-def _region(roi: str | None, max_range: float | None):
-    if roi is None and max_range is None:
-        return None
-    from lifelore.core.errors import InputError
-    from lifelore.perception.segmentation.region import AXES, Region
-
-    try:
-        box = None if roi is None else tuple(float(part) for part in roi.split(","))
-    except ValueError:
-        raise InputError(f"roi must be {','.join(AXES)}, six numbers, got '{roi}'") from None
-    return Region(box, max_range)
 
 
 def _check_bag_options(cloud: str, topic: str | None, index: int | None) -> None:

@@ -69,6 +69,36 @@ def test_a_cloud_becomes_a_scene_with_pddl(serve, cloud, tmp_path):
 
 
 @pytest.fixture(scope="module")
+def pile(cloud):
+    """The same with the table labelled, so that the boxes are objects 2 and 3."""
+    file = io.BytesIO()
+    np.save(file, cloud[1] + [0, 0, 0, 1])
+    return file.getvalue()
+
+
+@pytest.mark.planning
+def test_a_goal_is_planned_for(serve, pile):
+    client = serve()
+    plan = ask(client, pile, format="npy", goal="holding(o2)", plan=True).json()["plan"]
+    named = [(step["action"], step["objects"][0]["id"]) for step in plan["steps"]]
+    assert (named[0], named[-1], len(named)) == (("pick-up", 3), ("pick-up", 2), 3)
+    assert plan["reason"] is None
+    refused = ask(client, pile, format="npy", plan=True)
+    assert refused.status_code == 422
+    assert "plan (--plan) needs a goal" in refused.text
+
+
+def test_a_region_is_cut_out(serve, pile):
+    client = serve()
+    (only,) = ask(client, pile, format="npy", roi="-1,1,-1,1,-1,0.09").json()["objects"]
+    assert only["id"] == 2
+    refused = ask(client, pile, format="npy", roi="1,2")
+    assert refused.status_code == 422
+    assert "roi must be six numbers" in refused.text
+    assert "max_range must be a positive number" in ask(client, pile, format="npy", max_range=-1).text
+
+
+@pytest.fixture(scope="module")
 def depth():
     """A block on a table seen from above, as the body of a question."""
     image = np.full((120, 160), 1000, np.uint16)

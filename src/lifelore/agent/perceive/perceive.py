@@ -104,6 +104,25 @@ class PerceiveSettings:
         return read_goal(self.goal)
 
 
+def read_region(roi: str | None, max_range: float | None) -> "Region | None":
+    """The region that a user writes: ``XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX`` and a range, metres; None where none is.
+
+    Raises
+    ------
+    InputError
+        A value breaks the rule of `Region`.
+    """
+    if roi is None and max_range is None:
+        return None
+    from lifelore.perception.segmentation.region import AXES, Region
+
+    try:
+        box = None if roi is None else tuple(float(part) for part in roi.split(","))
+    except ValueError:
+        raise InputError(f"roi must be {','.join(AXES)}, six numbers, got '{roi}'") from None
+    return Region(box, max_range)
+
+
 def check_goal(settings: PerceiveSettings, pddl: str | None) -> None:
     """Raise InputError for a goal that is neither planned for nor written to a planning problem."""
     if settings.goal is not None and pddl is None and settings.planner is None:

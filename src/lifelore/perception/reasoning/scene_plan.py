@@ -9,8 +9,8 @@ from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ON
 from lifelore.perception.reasoning.fact import Fact, objects_without_support
 from lifelore.perception.reasoning.goal_obstacles import goal_obstacles
-from lifelore.perception.reasoning.planning_domain import planning_domain
-from lifelore.perception.reasoning.planning_goal import Statement
+from lifelore.perception.reasoning.planning_domain import planning_domain, predicates
+from lifelore.perception.reasoning.planning_goal import Statement, pddl_goal
 from lifelore.perception.reasoning.planning_problem import pddl_names, state_problem
 from lifelore.perception.reasoning.planning_state import CLEAR, PLAN_CONFIDENCE, PlanningState, scene_state
 from lifelore.perception.scene import Scene, object_name
@@ -102,9 +102,8 @@ def scene_plan(
     if hanging := objects_without_support(scene.relations, scene.objects):
         return ScenePlan(reason=f"nothing tells what {', '.join(map(object_name, hanging))} rests on")
     state = scene_state(scene, least)
-    problem = state_problem(scene, state, goal)
     reason = no_plan_reason(scene, state, goal)
-    found = None if reason else solve(planning_domain(scene.words), problem)
+    found = None if reason else solve(planning_domain(scene.words), state_problem(scene, state, goal))
     if found is None:
         return ScenePlan(reason=reason or _unreachable(state))
     numbers = {name: number for number, name in pddl_names(scene.objects, words=scene.words).items()}
@@ -112,8 +111,16 @@ def scene_plan(
 
 
 def no_plan_reason(scene: Scene, state: PlanningState, goal: Sequence[Statement]) -> str | None:
-    """Why the state alone forbids every plan, see `goal_obstacles`; None where it does not."""
-    return "; ".join(goal_obstacles(state, goal, pddl_names(scene.objects, words=scene.words))) or None
+    """Why the state alone forbids every plan, see `goal_obstacles`; None where it does not.
+
+    Raises
+    ------
+    InputError
+        The goal names a predicate or an object that does not exist.
+    """
+    called = pddl_names(scene.objects, words=scene.words)
+    pddl_goal(goal, called, predicates(scene.words))
+    return "; ".join(goal_obstacles(state, goal, called)) or None
 
 
 def _unreachable(state: PlanningState) -> str:
