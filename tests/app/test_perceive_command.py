@@ -322,7 +322,7 @@ def test_one_cloud_of_a_pattern_has_its_name_too(ask, three, tmp_path):
         (["pair.npz", "alone.npz", "--register", "--poses", "p.json"], "leave one of them out"),
         (["pair.npz", "--register"], "joins two or more clouds, got 1"),
         (["pair.npz", "alone.npz", "--plot", "a.png"], "plot names one file for many clouds"),
-        (["pair.npz", "alone.npz", "--units", "inch"], "units must be m or mm"),
+        (["pair.npz", "alone.npz", "--units", "feet"], "units must be m, cm, mm or inch"),
         (["pair.npz", "alone.npz", "--topic", "/camera"], "is no rosbag: leave them out"),
         (["pair.npz", "sub/pair.npz", "--dot", "{name}.dot"], "rename one of them"),
     ],

@@ -46,7 +46,7 @@ def learn_relations(
         ),
     ] = None,
     labels: Annotated[str, Option(help="Label field: plain ids, parts (20–29 are one object), or auto.")] = "auto",
-    units: Annotated[str, Option(help="Unit of the coordinates: m or mm.")] = "m",
+    units: Annotated[str, Option(help="Unit of the coordinates: m, cm, mm or inch.")] = "m",
     up: Annotated[
         str | None,
         Option(
