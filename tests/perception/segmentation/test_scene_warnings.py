@@ -30,13 +30,28 @@ TABLE = np.random.default_rng(1).uniform([-0.5, -0.4, 0], [0.5, 0.4, 0], (12_000
 BOXES = [faces(-0.2, 0.0, 0.1, 0.15), faces(0.1, -0.1, 0.08, 0.08)]
 
 
+def is_visible(points):
+    """(n,) bool: whether no box stands between a point and the camera."""
+    free = np.ones(len(points), bool)
+    for box in BOXES:
+        low, high = box.min(axis=0) + 1e-6, box.max(axis=0) - 1e-6
+        with np.errstate(divide="ignore"):
+            ends = np.stack([low - points, high - points]) / (CAMERA - points)
+        enter, leave = ends.min(axis=0).max(axis=1), ends.max(axis=0).min(axis=1)
+        free &= (enter >= leave) | (leave <= 1e-6)
+    return free
+
+
 def labels_of(parts):
     return np.repeat(np.arange(1, len(parts) + 1), [len(part) for part in parts])
 
 
 def seen(points, labels=None):
-    """A cloud in the camera's frame."""
-    return PointCloud((points - CAMERA) @ AXES.T, labels, camera=np.zeros(3))
+    """A cloud in the camera's frame: the points that no box hides."""
+    free = is_visible(points)
+    return PointCloud(
+        (points[free] - CAMERA) @ AXES.T, None if labels is None else labels[free], camera=np.zeros(3)
+    )
 
 
 WHOLE = np.concatenate([TABLE, *BOXES])
@@ -75,7 +90,7 @@ def test_a_tilted_camera_is_told_the_up_direction_that_fits():
 def test_centimetres_and_inches_read_as_millimetres_are_doubted(per_metre):
     cloud = in_metres(PointCloud(seen(WHOLE).points * per_metre, camera=np.zeros(3)), "mm")
     assert codes(segmented_scene(cloud, up=TRUE_UP))[0] == "units"
-    with pytest.raises(InputError, match="check its units"):
+    with pytest.raises(InputError, match="--units cm"):
         segmented_scene(cloud)
 
 

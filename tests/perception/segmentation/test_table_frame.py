@@ -112,7 +112,7 @@ def test_another_up_is_refused(up):
 def test_objects_alone_do_not_tell_up():
     points, labels = table_top(np.random.default_rng(9))
     box = labels == 2
-    with pytest.raises(InputError, match="pass --up X,Y,Z"):
+    with pytest.raises(InputError, match="--up X,Y,Z"):
         to_scene(PointCloud(points[box], labels[box]))
 
 

@@ -230,6 +230,7 @@ def scene_and_document(
     cloud = read_scene(source, settings)
     reading = time.perf_counter() - began
     from lifelore.perception.perceived_scene import perceived_scene
+    from lifelore.perception.reasoning.support_warnings import support_warnings
     from lifelore.perception.relations.relation_classifier import shipped_model
     from lifelore.perception.scene_json import DIGITS, scene_document
     from lifelore.perception.segmentation.scene_warnings import scene_warnings
@@ -246,7 +247,8 @@ def scene_and_document(
     document = scene_document(
         scene, min_confidence=settings.min_confidence or 0.0, cut_confidence=segmented.confidence
     )
-    document["warnings"] = [asdict(warning) for warning in scene_warnings(segmented)]
+    warnings = (*scene_warnings(segmented), *support_warnings(scene))
+    document["warnings"] = [asdict(warning) for warning in warnings]
     document["seconds"] = round(time.perf_counter() - began, DIGITS)
     if settings.statements:
         _add_plan(document, scene, settings, segmented.confidence)
@@ -266,7 +268,9 @@ def _add_plan(
         plan = scene_plan(scene, settings.statements, settings.planner, least, cut_confidence)
         document["plan"] = plan_document(plan, document["objects"])
     elif reason := no_plan_reason(scene, scene_state(scene, least), settings.statements):
-        document["warnings"].append({"code": "goal_out_of_reach", "message": f"no plan reaches the goal: {reason}"})
+        document["warnings"].append(
+            {"code": "goal_out_of_reach", "message": f"no plan reaches the goal: {reason}"}
+        )
 
 
 def files_read(sources: Iterable[Source], settings: PerceiveSettings) -> list[str | os.PathLike[str]]:
