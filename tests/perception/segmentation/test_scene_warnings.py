@@ -1,5 +1,7 @@
 """Warnings: clouds that would be misunderstood without a word, and good clouds that give none."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -130,6 +132,34 @@ def test_a_table_of_few_points():
     assert codes(segmented_scene(seen(np.concatenate(parts), labels_of(parts)))) == ["few_table_points"]
 
 
+def test_an_object_of_few_points_is_named():
+    parts = [TABLE, BOXES[0], BOXES[1][:29]]
+    (warning,) = scene_warnings(segmented_scene(seen(np.concatenate(parts), labels_of(parts))))
+    assert warning.code == "few_object_points"
+    n = np.count_nonzero(is_visible(BOXES[1][:29]))
+    assert warning.message.endswith(f"a guess: 3 ({n})")
+
+
+def test_points_above_the_table_that_became_no_object():
+    scene = segmented_scene(seen(WHOLE))
+    is_second = scene.cloud.labels == 3
+    # The second box stands on the right of the table's middle as the camera sees it.
+    labels = np.where(is_second, 0, scene.cloud.labels)
+    left = replace(scene, cloud=replace(scene.cloud, labels=labels))
+    (warning,) = [one for one in scene_warnings(left) if one.code == "points_dropped"]
+    n, share = np.count_nonzero(is_second), is_second.sum() / (scene.cloud.labels > 1).sum()
+    assert 0.3 < share < 0.7
+    assert warning.message.startswith(f"{n:,} points above the table's plane, {100 * share:.0f} % of them")
+    assert " on the right of the table, x " in warning.message
+
+
+def test_a_table_that_faces_the_camera_may_be_a_wall():
+    overhead = PointCloud(np.concatenate([TABLE, BOXES[0][BOXES[0][:, 2] > 0.149]]) * [1, -1, -1] + [0, 0, 1.0])
+    overhead = replace(overhead, camera=np.zeros(3))
+    assert "table_faces_camera" in codes(segmented_scene(overhead))
+    assert "table_faces_camera" not in codes(segmented_scene(overhead, up=(0, 0, -1)))
+
+
 def test_tiny_objects():
     specks = [faces(0.1 * k, 0.0, 0.01, 0.01, n=200) for k in range(-3, 4)]
     parts = [TABLE, *specks]
@@ -137,4 +167,6 @@ def test_tiny_objects():
 
 
 def test_a_scene_in_inches_read_as_metres():
-    assert "units" in codes(segmented_scene(PointCloud(WHOLE * 15, labels_of([TABLE, *BOXES]))))
+    scene = segmented_scene(PointCloud(WHOLE * 15, labels_of([TABLE, *BOXES])))
+    (warning,) = [one for one in scene_warnings(scene) if one.code == "units"]
+    assert "pass --units inch (0.37 m wide)" in warning.message

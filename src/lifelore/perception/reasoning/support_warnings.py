@@ -1,5 +1,7 @@
 """Warnings of supports that no camera saw: an object far from what it is stated to rest on."""
 
+from math import inf
+
 from lifelore.core.relations import BOTH, ON
 from lifelore.perception.scene import Scene, object_name
 from lifelore.perception.segmentation.scene_warnings import SceneWarning
@@ -13,7 +15,7 @@ def support_warnings(scene: Scene) -> tuple[SceneWarning, ...]:
     far = [
         f"{r.a} on {object_name(r.b)} ({100 * r.gap:.0f} cm)"
         for r in scene.relations
-        if r.relation in (ON, BOTH) and r.gap is not None and r.gap > FAR_SUPPORT
+        if r.relation in (ON, BOTH) and FAR_SUPPORT < r.gap < inf
     ]
     if not far:
         return ()

@@ -111,18 +111,23 @@ def segmented_scene(
         doubt = camera_doubt(points, cloud.camera)
     if doubt is None:
         scene = _upright_scene(points, cloud, up, segmentation, region)
-        height = np.inf if scene.cloud.camera is None else scene.cloud.camera[2]
-        if height >= 0 or _middle_height(scene.cloud) < 0:
+        depth = _depth_below_table(scene.cloud)
+        if depth <= 0:
             return scene
-        doubt = f"it would be {-height:.2f} m below the table"
+        doubt = f"it would be {depth:.2f} m below the table"
     unseen = replace(cloud, camera=None, other_cameras=None)
     return replace(_upright_scene(points, unseen, up, segmentation, region), camera_doubt=doubt)
 
 
-def _middle_height(cloud: LabelledCloud) -> float:
-    """Median height of the objects' points over the table; below 0 it is rather up that is wrong."""
+def _depth_below_table(cloud: LabelledCloud) -> float:
+    """Metres that the camera of a scene is below its table; 0 without a table or a camera.
+
+    Also 0 where most of the objects are below the table: there it is rather up that is wrong.
+    """
     heights = cloud.points[cloud.labels > TABLE, 2]
-    return float(np.median(heights)) if len(heights) else 0.0
+    if cloud.camera is None or not (cloud.labels == TABLE).any() or (len(heights) and np.median(heights) < 0):
+        return 0.0
+    return max(0.0, -float(cloud.camera[2]))
 
 
 def _upright_scene(
