@@ -313,11 +313,12 @@ def test_a_damaged_file_is_one_line_and_clears_the_scene(serve_pages: Callable[.
         drop(page, "broken.pcd", b"no cloud")
         message = page.locator("#message")
         expect(message).to_have_class("message error")
-        expect(message).to_contain_text("cloud.pcd")
+        expect(message).to_contain_text("broken.pcd: PCD header has no DATA line")
         expect(message).not_to_contain_text("tmp")
         expect(page.locator("#example")).to_have_value("")
-        for cleared in ("#objects", "#relations", "#details", "#warnings", "#summary"):
+        for cleared in ("#objects", "#relations", "#details", "#warnings"):
             expect(page.locator(cleared)).to_have_text("")
+        shown(page, "No scene")
         assert pixels(page, (230, 159, 0)) == 0
         expect(page.get_by_role("button", name="Save the graph")).to_be_disabled()
         page.select_option("#example", "tower")

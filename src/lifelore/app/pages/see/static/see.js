@@ -107,7 +107,7 @@ function clear() {
   state.scene = null;
   state.selected = null;
   for (const id of ["warnings", "objects", "details", "relations"]) $(id).replaceChildren();
-  $("summary").textContent = "";
+  $("summary").textContent = "No scene: see the message above the picture.";
   view.show(NOTHING, true);
   allowSaving(false);
 }
@@ -133,7 +133,9 @@ async function analyse() {
   } catch (error) {
     if (asked !== state.asked) return;
     clear();
-    say($("message"), error.message, "error");
+    // The service gives an uploaded cloud a name of its own.
+    const name = (state.source.get("cloud") ?? state.source.get("depth")).name;
+    say($("message"), `${name}: ${error.message.replace(/^(cloud|depth)\.\w+: /, "")}`, "error");
   }
 }
 
