@@ -26,7 +26,8 @@ def print_scene(document: Mapping, written: Sequence[str]) -> None:
     console.print(f"{_many(n_objects, 'object')}, {_many(n_holes, 'hole')}, {document['seconds']:.2f} s")
     hidden = [one["fact"] for one in document["unknown"] if one["reason"] == "hidden"]
     if hidden:
-        console.print(f"not seen, since other objects hide a part of their tops: {', '.join(hidden)}", highlight=False)
+        text = f"unknown, since other objects hide a part of the top: {', '.join(hidden)}"
+        console.print(text, highlight=False, soft_wrap=True)
     if "plan" in document:
         _print_plan(document["plan"], console)
     for warning in document["warnings"]:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
+from lifelore.perception.reasoning.goal_obstacles import goal_obstacles
 from lifelore.perception.reasoning.planning_goal import read_goal
 from lifelore.perception.reasoning.planning_problem import pddl_names
-from lifelore.perception.reasoning.goal_obstacles import goal_obstacles
 from lifelore.perception.reasoning.planning_state import planning_state
 from lifelore.perception.reasoning.scene_plan import scene_plan
 from lifelore.perception.relations.relation import Relation
@@ -20,11 +20,12 @@ class Step:
     arguments: tuple[str, ...]
 
 
-def planner(*steps):
-    """A planner that answers with these steps, and keeps the problem it was given."""
+def planner(*steps, problems=None):
+    """A planner that answers with these steps, and adds the problem that it is given to `problems`."""
 
     def solve(domain, problem):
-        solve.problem = problem
+        if problems is not None:
+            problems.append(problem)
         return None if steps == (None,) else [Step(action, tuple(names)) for action, *names in steps]
 
     return solve
@@ -39,9 +40,11 @@ def pile(make_scene):
 
 
 def test_confidences_are_products_of_what_the_steps_rely_on(pile):
-    solve = planner(("pick-up", "o4"), ("put-beside", "o4", "o2"), ("pick-up", "o3"), ("put-on", "o3", "o4"))
+    steps = (("pick-up", "o4"), ("put-beside", "o4", "o2"), ("pick-up", "o3"), ("put-on", "o3", "o4"))
+    problems = []
+    solve = planner(*steps, problems=problems)
     plan = scene_plan(pile, read_goal("on(o3, o4)"), solve, least=0.5, cut_confidence={3: 0.75, 4: 0.5})
-    assert "(:goal (on o3 o4))" in solve.problem
+    assert "(:goal (on o3 o4))" in problems[0]
     assert [step.objects for step in plan.steps] == [(4,), (4, 2), (3,), (3, 4)]
     state = planning_state(pile.relations, pile.objects, 0.5)
     p = {str(fact): probability for fact, probability in state.probability.items()}

@@ -1,4 +1,4 @@
-"""Cameras that cannot be where they are said to be: clouds moved to a robot's frame, and clouds as a camera saw them."""
+"""Cameras that cannot be where they are said to be, as of clouds in a robot's frame, and cameras that can."""
 
 import os
 from dataclasses import replace
@@ -43,7 +43,7 @@ def test_a_camera_among_its_points_is_doubted():
 
 def test_a_camera_below_the_table_counts_as_unknown():
     table = wall(0.0, step=0.008)
-    block = wall(0.1, side=0.05) + [0.5, 0, 0]
+    block = wall(0.1, side=0.05) + np.array([0.5, 0, 0])
     labels = np.repeat([1, 2], [len(table), len(block)])
     scene = segmented_scene(
         PointCloud(np.concatenate([table, block]), labels, camera=np.array([1.5, 0.0, -0.3])), up="z"

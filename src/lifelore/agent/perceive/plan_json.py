@@ -1,9 +1,9 @@
 """The plan of a perceived scene as JSON data.
 
-``{"steps": [{"action", "objects": [{"id", "moved", …}], "confidence"}], "confidence", "reason"}``. An object has the
-places that the document gives it (`PLACES`), in the scene's frame and in the camera's: where it was seen. ``moved``
-says that an earlier step has moved it from there. ``reason`` says why there is no plan; it is null where there is
-one, also an empty one, whose goal holds already. See `scene_plan` for the confidences.
+``{"steps": [{"action", "objects": [{"id", "moved", …}], "confidence"}], "confidence", "reason"}``. An object has
+the places that the document gives it (`PLACES`), in the scene's frame and in the camera's: where it was seen.
+``moved`` says that an earlier step has moved it from there. ``reason`` says why there is no plan; it is null where
+there is one, also an empty one, whose goal holds already. See `scene_plan` for the confidences.
 """
 
 from collections.abc import Mapping, Sequence

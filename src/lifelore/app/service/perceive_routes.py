@@ -36,7 +36,7 @@ class SceneOptions(BaseModel):
     roi: str | None = Field(
         None, max_length=300, description="Use only points in this box: XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX in metres."
     )
-    max_range: FiniteFloat | None = Field(None, description="Use only points within this many metres of the camera.")
+    max_range: FiniteFloat | None = Field(None, description="Use only points within so many metres of the camera.")
     plan: bool = Field(False, description="Also find a plan for the goal (extra planning).")
 
     def settings(self, fields: Iterable[str]) -> dict[str, Any]:
@@ -126,7 +126,9 @@ class PlanStep(BaseModel):
     """A step of a plan."""
 
     action: str = Field(description="pick-up, put-on, put-on-table or put-beside.")
-    objects: list[dict[str, Any]] = Field(description="The object that is moved, then its new place: id and where seen.")
+    objects: list[dict[str, Any]] = Field(
+        description="The object that is moved, then its new place: id and where seen."
+    )
     confidence: float = Field(description="Probability that what the step relies on is true.")
 
 

@@ -13,7 +13,7 @@ UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
 MAX_SPAN = 20.0
 """Metres. No table-top scene, and no room a depth camera sees, is wider; 20 mm in millimetres is."""
 USUAL_SPAN = 1.0
-"""Metres: width of a table that a depth camera sees; of several units the one that comes nearest to it is meant."""
+"""Metres: width of a table that a depth camera sees; the unit that comes nearest to it is the likely one."""
 MIN_SPAN = 0.002
 """Metres. A cloud narrower than this after ``units=mm`` was in metres before."""
 STRAY = 50.0
@@ -67,9 +67,8 @@ def unit_hint(span: float) -> str:
     if span > USUAL_SPAN:
         return f"if its numbers are inches, pass --units inch ({span * UNITS['inch']:.2g} m wide)"
     cm, inch = (span * UNITS[unit] / UNITS["mm"] for unit in ("cm", "inch"))
-    return (
-        f"if numbers in cm or inch were read as mm, pass --units cm ({cm:.2g} m wide) or --units inch ({inch:.2g} m)"
-    )
+    choice = f"--units cm ({cm:.2g} m wide) or --units inch ({inch:.2g} m)"
+    return f"if numbers in cm or inch were read as mm, pass {choice}"
 
 
 def _sample(points: NDArray[np.floating], measured: NDArray[np.bool_]) -> NDArray[np.floating]:
@@ -83,14 +82,10 @@ def _check_span(span: float, units: str) -> None:
         likely = min(widths, key=lambda unit: abs(np.log(widths[unit] / USUAL_SPAN)))
         each = ", ".join(f"{width:.2g} m in {unit}" for unit, width in widths.items())
         raise InputError(
-            f"looks like {likely}: the cloud spans {span:,.0f} m where at most {MAX_SPAN:.0f} m are read (it would be"
-            f" {each}); pass units={likely} (--units {likely}), or crop the cloud"
+            f"looks like {likely}: the cloud spans {span:,.0f} m where at most {MAX_SPAN:.0f} m are read (it would"
+            f" be {each}); pass units={likely} (--units {likely}), or crop the cloud"
         )
     if span > MAX_SPAN:
-        raise InputError(
-            f"spans {span:,.0f} m in {units} where at most {MAX_SPAN:.0f} m are read; crop the cloud"
-        )
+        raise InputError(f"spans {span:,.0f} m in {units} where at most {MAX_SPAN:.0f} m are read; crop the cloud")
     if units == "mm" and 0 < span < MIN_SPAN:
-        raise InputError(
-            f"spans {span * 1000:.3g} mm in mm, so it is in metres already; pass units=m (--units m)"
-        )
+        raise InputError(f"spans {span * 1000:.3g} mm in mm, so it is in metres already; pass units=m (--units m)")

@@ -9,9 +9,7 @@ from lifelore.perception.reasoning.planning_goal import TABLE_WORD, Statement
 from lifelore.perception.reasoning.planning_state import CLEAR, HIDDEN, PlanningState
 
 
-def goal_obstacles(
-    state: PlanningState, goal: Iterable[Statement], called: Mapping[int, str]
-) -> tuple[str, ...]:
+def goal_obstacles(state: PlanningState, goal: Iterable[Statement], called: Mapping[int, str]) -> tuple[str, ...]:
     """One reason for each object that stands in the way; empty where the state alone does not forbid a plan.
 
     An object must become clear to be taken, or to carry another one. It never does if something may rest on it
@@ -41,7 +39,7 @@ def goal_obstacles(
 
 
 def _must_be_clear(statement: Statement, places: tuple[int, ...], state: PlanningState) -> list[tuple[int, ...]]:
-    """Objects that must become clear before the statement can hold, for each way to reach it; none where it holds."""
+    """For each way to reach the statement, the objects that must become clear before; no way where it holds."""
     name = statement.name.removesuffix(f"-{TABLE_WORD}")
     places = (*places, TABLE) if name != statement.name else places
     known = tuple(sorted(places)) if name == ADJACENT else places
@@ -59,9 +57,7 @@ def _must_be_clear(statement: Statement, places: tuple[int, ...], state: Plannin
 def _covered(thing: int, state: PlanningState) -> set[int]:
     """Of an object and the pile on it, those on which something may rest unseen."""
     pile = {thing}
-    while above := {
-        f.arguments[0] for f in state.stated if f.name == ON and f.arguments[1] in pile
-    } - pile:
+    while above := {f.arguments[0] for f in state.stated if f.name == ON and f.arguments[1] in pile} - pile:
         pile |= above
     return pile & set(state.may_be_covered)
 

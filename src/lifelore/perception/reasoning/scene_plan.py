@@ -54,9 +54,9 @@ class ScenePlan:
     """A plan for a goal in a scene.
 
     A step relies on perceived facts, as far as no earlier step made them true: that nothing unknown rests on the
-    object that is picked up or put upon, that an object beside which another is put rests on the table, and that an
-    object that was cut automatically is one object. Its confidence is the product of their probabilities, which
-    count as independent.
+    object that is picked up or put upon, that an object beside which another is put rests on the table, and that
+    an object that was cut automatically is one object. Its confidence is the product of their probabilities,
+    which count as independent.
 
     Parameters
     ----------
@@ -107,7 +107,8 @@ def scene_plan(
     if found is None:
         return ScenePlan(reason=reason or _unreachable(state))
     numbers = {name: number for number, name in pddl_names(scene.objects, words=scene.words).items()}
-    return _judged([(s.action, tuple(numbers[x] for x in s.arguments)) for s in found], state, cut_confidence or {})
+    actions = [(step.action, tuple(numbers[name] for name in step.arguments)) for step in found]
+    return _judged(actions, state, cut_confidence or {})
 
 
 def no_plan_reason(scene: Scene, state: PlanningState, goal: Sequence[Statement]) -> str | None:
