@@ -69,9 +69,9 @@ def agreement(target: TabletopView, source: TabletopView, motion: NDArray[np.flo
 def _moved(own: HeightMap, against: NDArray[np.bool_]) -> tuple[int, NDArray[np.float64] | None]:
     """Number of cells and middle (3,) of the largest contradicting place; 0 and None where all are thin."""
     thick = ndimage.binary_opening(against, np.ones((MOVED, MOVED)))
-    numbers, n_places = ndimage.label(thick, np.ones((3, 3)))
-    if n_places == 0:
+    if not thick.any():
         return 0, None
+    numbers = np.asarray(ndimage.label(thick, np.ones((3, 3)))[0], np.int64)  # type: ignore[index]
     sizes = np.bincount(numbers.ravel())[1:]
     cells = np.argwhere(numbers == sizes.argmax() + 1)
     height = float(own.heights[tuple(cells.T)].mean()) / 2
