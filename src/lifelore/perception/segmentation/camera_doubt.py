@@ -36,11 +36,12 @@ def share_behind(points: NDArray[np.float64], camera: NDArray[np.float64]) -> fl
     """Share of the points that lie behind another one, seen from `camera`, by more than `BEHIND`."""
     rays = (points - camera).astype(np.float32)
     ranges = np.sqrt(np.einsum("ij,ij->i", rays, rays))
-    cells = np.floor(rays / (CELL * np.maximum(ranges, 1e-6)[:, None])).astype(np.int64) + 256
-    chosen = np.flatnonzero((cells[:, 0] + cells[:, 1]) % _ONE_IN == 0)
+    size = CELL * np.maximum(ranges, 1e-6)
+    chosen = np.flatnonzero(np.floor(rays[:, 0] / size) % _ONE_IN == 0)
     if not len(chosen):
         return 0.0
-    cells, ranges = cells[chosen], ranges[chosen].astype(np.float64)
+    ranges = ranges[chosen].astype(np.float64)
+    cells = np.floor(rays[chosen] / size[chosen, None]).astype(np.int64) + 256
     keys = (cells[:, 0] << 20) + (cells[:, 1] << 10) + cells[:, 2]
     order = np.lexsort((ranges, keys))
     keys, ranges = keys[order], ranges[order]
