@@ -93,8 +93,7 @@ def perceive(
         float | None,
         Option(
             metavar="P",
-            help="Least probability, 0 to 1, of facts in JSON, graph and planning problem"
-            " [0; for the planning problem 0.6].",
+            help="Least probability, 0 to 1, of facts in JSON, graph and planning problem [0; for planning 0.6].",
         ),
     ] = None,
     dot: Annotated[str | None, Option(metavar="FILE", help="File for the relations as a Graphviz graph.")] = None,

@@ -5,12 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.labelled_cloud import TABLE, UNLABELLED
+from lifelore.core.labelled_cloud import TABLE
 from lifelore.perception.clouds.cloud_scale import unit_hint
-from lifelore.perception.segmentation.outline import over_outline
+from lifelore.perception.segmentation.dropped_points import dropped_points
 from lifelore.perception.segmentation.range_noise import band
-from lifelore.perception.segmentation.region import OVERHANG
-from lifelore.perception.segmentation.table_evidence import REACH
 from lifelore.perception.segmentation.table_frame import SegmentedScene
 
 TINY = 0.02
@@ -31,7 +29,6 @@ FACING = 25.0
 51° on tables that a camera looks at from the side."""
 FEW_POINTS = 30
 """Points of an object; with fewer its contacts and relations are a guess."""
-_FEW_DROPPED, _DROPPED_SHARE = 100, 0.05
 
 
 @dataclass(frozen=True)
@@ -49,7 +46,9 @@ def scene_warnings(scene: SegmentedScene) -> tuple[SceneWarning, ...]:
     ``few_table_points``, ``table_gap``, ``points_dropped``, ``tiny_objects``, ``few_object_points``,
     ``automatic_objects``.
     """
-    found = [*_units(scene), *_camera(scene), *_table(scene), *_dropped(scene), *_objects(scene)]
+    dropped = dropped_points(scene)
+    found = [*_units(scene), *_camera(scene), *_table(scene)]
+    found += ([] if dropped is None else [("points_dropped", dropped)]) + _objects(scene)
     return tuple(SceneWarning(code, message) for code, message in found)
 
 
@@ -147,38 +146,6 @@ def _band(scene: SegmentedScene) -> float:
     """Median half width of the table's band over the points of objects, metres."""
     objects = scene.cloud.points[scene.cloud.labels > TABLE]
     return float(np.median(band(objects[::50], scene.cloud.camera)))
-
-
-def _dropped(scene: SegmentedScene) -> list[tuple[str, str]]:
-    """A warning where many points over the table, or beside it, became no object."""
-    points, labels, camera = scene.cloud.points, scene.cloud.labels, scene.cloud.camera
-    if not scene.automatic or scene.table is None:
-        return []
-    above = (labels == UNLABELLED) & (points[:, 2] > band(points, camera)) & (points[:, 2] < REACH)
-    known = points[labels >= TABLE, :2]
-    above[above] = over_outline(points[above, :2], known[:: max(1, len(known) // 5000)], OVERHANG)
-    dropped = points[above]
-    share = len(dropped) / max(1, len(dropped) + int(np.count_nonzero(labels > TABLE)))
-    if len(dropped) < _FEW_DROPPED or share < _DROPPED_SHARE:
-        return []
-    low, high = np.percentile(dropped, (5, 95), axis=0)
-    place = ", ".join(f"{axis} {a:.2f} to {b:.2f}" for axis, a, b in zip("xyz", low, high, strict=True))
-    side = "" if camera is None else f"{_side(dropped.mean(axis=0), known.mean(axis=0), camera)} of the table, "
-    text = (
-        f"{len(dropped):,} points above the table's plane, {100 * share:.0f} % of them, belong to no object:"
-        f" {side}{place} m in the scene's frame; if objects stand there, pass --up X,Y,Z or crop the cloud (--roi)"
-    )
-    return [("points_dropped", text)]
-
-
-def _side(place: NDArray[np.float64], middle: NDArray[np.float64], camera: NDArray[np.float64]) -> str:
-    """Where a place (3,) lies from the `middle` (2,) of the table, as the camera sees it."""
-    forward = (middle - camera[:2]) / max(float(np.linalg.norm(middle - camera[:2])), 1e-9)
-    offset = place[:2] - middle
-    away, right = float(offset @ forward), float(offset @ [forward[1], -forward[0]])
-    if abs(away) > abs(right):
-        return "at the back" if away > 0 else "at the front"
-    return "on the right" if right > 0 else "on the left"
 
 
 def _objects(scene: SegmentedScene) -> list[tuple[str, str]]:
