@@ -45,7 +45,7 @@ def _print_plan(plan: Mapping, console: "Console") -> None:
         lines = [f"plan with a confidence of {plan['confidence']:.2f}; places of the centres as x, y, z in m:"]
         for number, step in enumerate(plan["steps"], start=1):
             objects = ", ".join(_placed(one) for one in step["objects"])
-            lines.append(f"{number}. {step['action']} {objects}: {step['confidence']:.2f}")
+            lines.append(f"{number}. {step['action']} {objects}: confidence {step['confidence']:.2f}")
     for line in lines:
         console.print(line, highlight=False, soft_wrap=True, markup=False)
 

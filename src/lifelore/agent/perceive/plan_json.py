@@ -2,8 +2,9 @@
 
 ``{"steps": [{"action", "objects": [{"id", "moved", …}], "confidence"}], "confidence", "reason"}``. An object has
 the places that the document gives it (`PLACES`), in the scene's frame and in the camera's: where it was seen.
-``moved`` says that an earlier step has moved it from there. ``reason`` says why there is no plan; it is null where
-there is one, also an empty one, whose goal holds already. See `scene_plan` for the confidences.
+``moved`` says that an earlier step has moved it from there. ``reason`` says why there is no plan, whose
+``confidence`` then is null; it is null where there is one, also an empty one, whose goal holds already. See
+`scene_plan` for the confidences.
 """
 
 from collections.abc import Mapping, Sequence
@@ -24,4 +25,5 @@ def plan_document(plan: ScenePlan, objects: Sequence[Mapping[str, Any]]) -> dict
         named = [{"id": thing, "moved": thing in moved, **places[thing]} for thing in step.objects]
         steps.append({"action": step.action, "objects": named, "confidence": round(step.confidence, DIGITS)})
         moved.add(step.objects[0])
-    return {"steps": steps, "confidence": round(plan.confidence, DIGITS), "reason": plan.reason}
+    confidence = round(plan.confidence, DIGITS) if plan.reason is None else None
+    return {"steps": steps, "confidence": confidence, "reason": plan.reason}

@@ -136,7 +136,7 @@ class Plan(BaseModel):
     """A plan for the goal."""
 
     steps: list[PlanStep]
-    confidence: float = Field(description="Probability that what all steps rely on is true.")
+    confidence: float | None = Field(description="Probability that what all steps rely on is true.")
     reason: str | None = Field(description="Why there is no plan; null where there is one.")
 
 

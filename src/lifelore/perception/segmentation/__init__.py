@@ -2,7 +2,7 @@
 
 Read in this order: `plane`, `range_noise`, `surface_patches`, `table_evidence`, `table_search`, `region`,
 `camera_doubt`, `table_frame`, `table_labels`, `dropped_points`, `scene_warnings`; `object_segmentation`,
-`distance_segmentation`, `colour_segmentation`; then segmentation by convexity: `surface_voxels`, `supervoxels`, `patch_convexity`,
-`patch_merging`, `cut_confidence`, `convexity_segmentation`; then segments corrected by pushes: `rigid_motion`,
-`moved_surface`, `motion_labels`, `poked_patches`, `poking`.
+`distance_segmentation`, `colour_segmentation`; then segmentation by convexity: `surface_voxels`, `supervoxels`,
+`patch_convexity`, `patch_merging`, `cut_confidence`, `convexity_segmentation`; then segments corrected by pushes:
+`rigid_motion`, `moved_surface`, `motion_labels`, `poked_patches`, `poking`.
 """
