@@ -63,10 +63,11 @@ def learn_relations(
     """
     from lifelore.agent.perceive.learn_relations import LearnRelationsSettings
     from lifelore.agent.perceive.learn_relations import learn_relations as learn
+    from lifelore.agent.perceive.perceive import read_up
     from lifelore.app.console import print_json, progress_bar
-    from lifelore.app.perceive_command import direction, to_stderr
+    from lifelore.app.perceive_command import to_stderr
 
-    upwards = None if up is None else direction(up)
+    upwards = None if up is None else read_up(up)
     declared = None if symmetric is None else tuple(symmetric)
     settings = LearnRelationsSettings(
         folder, truth, name, method, adjacent_gap, several, declared, labels, units, upwards, anew

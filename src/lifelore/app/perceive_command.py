@@ -125,12 +125,12 @@ def perceive(
             "give one or more clouds, or --watch FOLDER"
         )  # fmt: skip
     _one_thread_for_matrices()
-    from lifelore.agent.perceive.perceive import PerceiveSettings, read_region
+    from lifelore.agent.perceive.perceive import PerceiveSettings, read_region, read_up
     from lifelore.agent.perceive.source_files import SourceFiles
 
     beside = SourceFiles(intrinsics, colour, depth_scale, masks, table_mask)
     settings = PerceiveSettings(
-        direction(up),
+        read_up(up),
         units,
         labels,
         _cut(segment, colours),
@@ -292,15 +292,3 @@ def _out_of_bag(path: str, topic: str | None, index: int, units: str, labels: st
     from lifelore.bridges.rosbag_cloud import read_bag_cloud
 
     return read_bag_cloud(path, topic, index, units=units, labels=labels)
-
-
-def direction(text: str):
-    """Parse the upward direction: table, z or X,Y,Z."""
-    if "," not in text:
-        return text
-    from lifelore.core.errors import InputError
-
-    try:
-        return tuple(float(part) for part in text.split(","))
-    except ValueError:
-        raise InputError(f"up must be table, z or X,Y,Z, three numbers, got '{text}'") from None

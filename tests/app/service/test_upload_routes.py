@@ -47,7 +47,7 @@ def cloud():
 
 def ask(client, content, **options):
     return client.post(
-        "/v1/perceive/cloud", content=content, params={"up": "z", **options},
+        "/v1/perceive/cloud", content=content, params={"up": "z"} | options,
         headers=FILE,
     )  # fmt: skip
 
@@ -86,6 +86,19 @@ def test_a_goal_is_planned_for(serve, pile):
     refused = ask(client, pile, format="npy", plan=True)
     assert refused.status_code == 422
     assert "plan (--plan) needs a goal" in refused.text
+
+
+def test_up_is_a_direction(serve, pile):
+    client = serve()
+    stated = {
+        up: {(r["relation"], r["a"], r["b"]) for r in ask(client, pile, format="npy", up=up).json()["relations"]}
+        for up in ("z", "0,0,2")
+    }
+    assert stated["z"] == stated["0,0,2"] >= {("on", 3, 2)}
+    for wrong in ("0,0", "a,b,c", "sideways"):
+        refused = ask(client, pile, format="npy", up=wrong)
+        assert refused.status_code == 422
+        assert "up must be" in refused.text
 
 
 def test_a_region_is_cut_out(serve, pile):

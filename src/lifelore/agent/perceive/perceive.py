@@ -104,6 +104,22 @@ class PerceiveSettings:
         return read_goal(self.goal)
 
 
+def read_up(text: str) -> "Up":
+    """The upward direction that a user writes: ``table``, ``z`` or ``X,Y,Z``; see `segmented_scene`.
+
+    Raises
+    ------
+    InputError
+        The text has a comma, but is not of numbers.
+    """
+    if "," not in text:
+        return text  # type: ignore[return-value]  # other words are refused where the scene is made
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(f"up must be table, z or X,Y,Z, three numbers, got '{text}'") from None
+
+
 def read_region(roi: str | None, max_range: float | None) -> "Region | None":
     """The region that a user writes: ``XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX`` and a range, metres; None where none is.
 

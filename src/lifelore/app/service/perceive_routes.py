@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 from starlette.concurrency import run_in_threadpool
 
-from lifelore.agent.perceive.perceive import read_region
+from lifelore.agent.perceive.perceive import read_region, read_up
 from lifelore.agent.perceive.perceive_upload import perceive_upload, perceive_upload_with_points
 from lifelore.app.service.bodies import BYTES, JsonRoute, body_of, file_of
 from lifelore.app.service.service_state import Service
@@ -30,7 +30,11 @@ class SceneOptions(BaseModel):
     """How a scene is read."""
 
     model_config = ConfigDict(extra="forbid")
-    up: Literal["table", "z"] = Field("table", description="Upward direction: the table's normal, or +z.")
+    up: str = Field(
+        "table",
+        max_length=100,
+        description="Upward direction: table (its normal), z, or X,Y,Z in the cloud's frame.",
+    )
     min_confidence: FiniteFloat | None = Field(None, description="Least probability of facts, in [0, 1].")
     goal: str | None = Field(None, max_length=1000, description="Goal to plan for, such as on(2,3).")
     roi: str | None = Field(
@@ -41,7 +45,8 @@ class SceneOptions(BaseModel):
 
     def settings(self, fields: Iterable[str]) -> dict[str, Any]:
         """Those of the fields that are given, as fields of `PerceiveSettings`."""
-        given = self.model_dump(include=set(fields) - {"plan", "roi", "max_range"}, exclude_none=True)
+        given = self.model_dump(include=set(fields) - {"up", "plan", "roi", "max_range"}, exclude_none=True)
+        given["up"] = read_up(self.up)
         given["region"] = read_region(self.roi, self.max_range)
         return given | {"planner": solve} if self.plan else given
 

@@ -15,7 +15,7 @@ async function start() {
   view = await openView();
   $("example").addEventListener("change", openExample);
   $("file").addEventListener("change", () => openOwn($("file").files));
-  for (const id of ["up", "units", "scale", "range", "roi"]) $(id).addEventListener("change", analyse);
+  for (const id of ["up", "vector", "units", "scale", "range", "roi"]) $(id).addEventListener("change", analyse);
   for (const id of [...BOXES.map((box) => `show-${box}`), "colours"]) $(id).addEventListener("change", () => draw());
   $("least").addEventListener("input", () => draw());
   $("plan").addEventListener("click", () => save("problem.pddl", (document) => document.pddl.problem, "domain.pddl", (document) => document.pddl.domain));
@@ -91,7 +91,8 @@ function dropping(area) {
 
 /** Ask for the scene of the source: its document, or with `points` an answer in bytes. */
 async function question(points, options = {}) {
-  const read = { up: $("up").value, units: $("units").value, scale: $("scale").value, ...region(), ...options };
+  const up = $("up").value === "vector" ? $("vector").value : $("up").value;
+  const read = { up, units: $("units").value, scale: $("scale").value, ...region(), ...options };
   const [route, asked] = await questionOf(state.source, read, points);
   return ask(`/v1/perceive/${route}`, { ...asked, raw: points });
 }
@@ -118,6 +119,7 @@ function allowSaving(allowed) {
 
 async function analyse() {
   const asked = (state.asked += 1);
+  $("vector-label").hidden = $("up").value !== "vector";
   const lack = lackOf(state.source);
   say($("message"), lack || `Looking at ${[...state.source.values()].map(({ name }) => name).join(", ")} …`, lack ? "warning" : "");
   if (lack) return;
