@@ -99,7 +99,7 @@ def test_what_is_no_bag_is_one_line(tmp_path):
 def test_a_cloud_that_breaks_a_rule_names_its_bag(tmp_path):
     path = recorded(tmp_path, "mcap")
     with pytest.raises(InputError, match=f"^{path}: units must be"):
-        read_bag_cloud(path, units="cm")
+        read_bag_cloud(path, units="feet")
 
 
 def test_without_rosbags_the_extra_is_named(tmp_path, monkeypatch):

@@ -52,7 +52,8 @@ def solve(domain: str, problem: str, *, timeout: float = 60.0) -> tuple[Step, ..
     """
     if not timeout > 0:
         raise InputError(f"timeout must be above 0 seconds, got {timeout}")
-    shortcuts, task = _read(domain, problem)
+    shortcuts, reader = library()
+    task = _read(reader, domain, problem)
     with shortcuts.OneshotPlanner(name=ENGINE) as planner:
         result = planner.solve(task, timeout=timeout)
     if result.status.name in ("UNSOLVABLE_PROVEN", "UNSOLVABLE_INCOMPLETELY"):
@@ -65,8 +66,14 @@ def solve(domain: str, problem: str, *, timeout: float = 60.0) -> tuple[Step, ..
     )
 
 
-def _read(domain: str, problem: str) -> tuple[Any, Any]:
-    """The library's entry and the problem as an object of it."""
+def library() -> tuple[Any, Any]:
+    """The library's shortcuts and its reader of PDDL.
+
+    Raises
+    ------
+    MissingExtraError
+        unified-planning or the engine is not installed.
+    """
     try:
         import up_fast_downward  # noqa: F401  the engine, found by name
         from unified_planning import shortcuts
@@ -76,11 +83,16 @@ def _read(domain: str, problem: str) -> tuple[Any, Any]:
             f"planning needs the extra planning: pip install 'lifelore[planning]' ({error})"
         ) from None
     shortcuts.get_environment().credits_stream = None  # the library otherwise prints the engine's authors
+    return shortcuts, PDDLReader
+
+
+def _read(reader: Any, domain: str, problem: str) -> Any:
+    """The problem as an object of the library."""
     try:
         with warnings.catch_warnings():
             # The library's reader uses old names of its parser.
             warnings.simplefilter("ignore", DeprecationWarning)
-            return shortcuts, PDDLReader().parse_problem_string(domain, problem)
+            return reader().parse_problem_string(domain, problem)
     except Exception as error:  # the reader raises its parsers' errors of many kinds
         text = " ".join(str(error).split())
         raise InputError(f"domain and problem must be PDDL: {text[:300]}") from None

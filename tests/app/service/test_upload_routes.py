@@ -47,7 +47,7 @@ def cloud():
 
 def ask(client, content, **options):
     return client.post(
-        "/v1/perceive/cloud", content=content, params={"up": "z", **options},
+        "/v1/perceive/cloud", content=content, params={"up": "z"} | options,
         headers=FILE,
     )  # fmt: skip
 
@@ -68,6 +68,49 @@ def test_a_cloud_becomes_a_scene_with_pddl(serve, cloud, tmp_path):
     assert "(define (problem" in document["pddl"]["problem"]
     assert "(define (domain" in document["pddl"]["domain"]
     assert document["dot"].startswith("digraph")
+
+
+@pytest.fixture(scope="module")
+def pile(cloud):
+    """The same with the table labelled, so that the boxes are objects 2 and 3."""
+    file = io.BytesIO()
+    np.save(file, cloud[1] + [0, 0, 0, 1])
+    return file.getvalue()
+
+
+@pytest.mark.planning
+def test_a_goal_is_planned_for(serve, pile):
+    client = serve()
+    plan = ask(client, pile, format="npy", goal="holding(o2)", plan=True).json()["plan"]
+    named = [(step["action"], step["objects"][0]["id"]) for step in plan["steps"]]
+    assert (named[0], named[-1], len(named)) == (("pick-up", 3), ("pick-up", 2), 3)
+    assert plan["reason"] is None
+    refused = ask(client, pile, format="npy", plan=True)
+    assert refused.status_code == 422
+    assert "plan (--plan) needs a goal" in refused.text
+
+
+def test_up_is_a_direction(serve, pile):
+    client = serve()
+    stated = {
+        up: {(r["relation"], r["a"], r["b"]) for r in ask(client, pile, format="npy", up=up).json()["relations"]}
+        for up in ("z", "0,0,2")
+    }
+    assert stated["z"] == stated["0,0,2"] >= {("on", 3, 2)}
+    for wrong in ("0,0", "a,b,c", "sideways"):
+        refused = ask(client, pile, format="npy", up=wrong)
+        assert refused.status_code == 422
+        assert "up must be" in refused.text
+
+
+def test_a_region_is_cut_out(serve, pile):
+    client = serve()
+    (only,) = ask(client, pile, format="npy", roi="-1,1,-1,1,-1,0.09").json()["objects"]
+    assert only["id"] == 2
+    refused = ask(client, pile, format="npy", roi="1,2")
+    assert refused.status_code == 422
+    assert "roi must be six numbers" in refused.text
+    assert "max_range must be a positive number" in ask(client, pile, format="npy", max_range=-1).text
 
 
 @pytest.fixture(scope="module")

@@ -142,7 +142,7 @@ def test_another_up_is_refused(up):
 def test_objects_alone_do_not_tell_up():
     points, labels = table_top(np.random.default_rng(9))
     box = labels == 2
-    with pytest.raises(InputError, match="give up as a vector or 'z'"):
+    with pytest.raises(InputError, match="--up X,Y,Z"):
         to_scene(PointCloud(points[box], labels[box]))
 
 

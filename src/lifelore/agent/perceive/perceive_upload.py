@@ -31,7 +31,7 @@ def perceive_upload(
         ``cloud``; or ``depth`` with ``intrinsics`` (JSON or YAML) and, if known, ``colour`` and ``masks``.
     options : mapping
         Fields of `PerceiveSettings`: ``up``, ``units``, ``labels``, ``min_confidence``, ``goal``,
-        ``with_masks``.
+        ``with_masks``, ``planner``, ``region``.
     depth_scale : float, optional
         Metres for each unit of depth.
 

@@ -3,16 +3,18 @@
 import base64
 import binascii
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 from starlette.concurrency import run_in_threadpool
 
+from lifelore.agent.perceive.perceive import read_region, read_up
 from lifelore.agent.perceive.perceive_upload import perceive_upload, perceive_upload_with_points
 from lifelore.app.service.bodies import BYTES, JsonRoute, body_of, file_of
 from lifelore.app.service.service_state import Service
+from lifelore.bridges.planner import solve
 from lifelore.core.errors import InputError
 
 LONGEST_CAMERA = 20_000
@@ -28,17 +30,33 @@ class SceneOptions(BaseModel):
     """How a scene is read."""
 
     model_config = ConfigDict(extra="forbid")
-    up: Literal["table", "z"] = Field("table", description="Upward direction: the table's normal, or +z.")
+    up: str = Field(
+        "table",
+        max_length=100,
+        description="Upward direction: table (its normal), z, or X,Y,Z in the cloud's frame.",
+    )
     min_confidence: FiniteFloat | None = Field(None, description="Least probability of facts, in [0, 1].")
-    goal: str | None = Field(None, max_length=1000, description="Goal of the planning problem, such as on(1,2).")
+    goal: str | None = Field(None, max_length=1000, description="Goal to plan for, such as on(2,3).")
+    roi: str | None = Field(
+        None, max_length=300, description="Use only points in this box: XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX in metres."
+    )
+    max_range: FiniteFloat | None = Field(None, description="Use only points within so many metres of the camera.")
     with_masks: bool = Field(False, description="Whether objects have their pixels, or their points' numbers.")
+    plan: bool = Field(False, description="Also find a plan for the goal (extra planning).")
+
+    def settings(self, fields: Iterable[str]) -> dict[str, Any]:
+        """Those of the fields that are given, as fields of `PerceiveSettings`."""
+        given = self.model_dump(include=set(fields) - {"up", "plan", "roi", "max_range"}, exclude_none=True)
+        given["up"] = read_up(self.up)
+        given["region"] = read_region(self.roi, self.max_range)
+        return given | {"planner": solve} if self.plan else given
 
 
 class CloudOptions(SceneOptions):
     """How a cloud is read."""
 
     format: Literal["pcd", "ply", "npz", "npy"] = Field("pcd", description="Kind of the file.")
-    units: Literal["m", "mm"] = Field("m", description="Unit of the coordinates.")
+    units: Literal["m", "cm", "mm", "inch"] = Field("m", description="Unit of the coordinates.")
     labels: Literal["auto", "plain", "parts"] = Field("auto", description="How labels become objects.")
 
 
@@ -130,6 +148,24 @@ class SceneWarning(BaseModel):
     message: str
 
 
+class PlanStep(BaseModel):
+    """A step of a plan."""
+
+    action: str = Field(description="pick-up, put-on, put-on-table or put-beside.")
+    objects: list[dict[str, Any]] = Field(
+        description="The object that is moved, then its new place: id and where seen."
+    )
+    confidence: float = Field(description="Probability that what the step relies on is true.")
+
+
+class Plan(BaseModel):
+    """A plan for the goal."""
+
+    steps: list[PlanStep]
+    confidence: float | None = Field(description="Probability that what all steps rely on is true.")
+    reason: str | None = Field(description="Why there is no plan; null where there is one.")
+
+
 class SceneDocument(BaseModel):
     """A perceived scene."""
 
@@ -140,6 +176,7 @@ class SceneDocument(BaseModel):
     facts: list[str] = Field(description="Relations that are stated, as logical facts.")
     warnings: list[SceneWarning]
     pddl: Planning
+    plan: Plan | None = Field(None, description="Asked for by `plan`.")
     dot: str = Field(description="The scene graph for Graphviz.")
     seconds: float = Field(description="Time to perceive it.")
 
@@ -150,7 +187,7 @@ def router(service: Service) -> APIRouter:
 
     async def of_cloud(function: Callable[..., Any], request: Request, options: CloudOptions) -> Any:
         content = await file_of(request)
-        given = options.model_dump(exclude={"format"}, exclude_none=True)
+        given = options.settings(set(CloudOptions.model_fields) - {"format"})
         return await service.worker.run(request, function, options.format, {"cloud": content}, given)
 
     @routes.post(
@@ -169,7 +206,7 @@ def router(service: Service) -> APIRouter:
 
     async def of_depth(function: Callable[..., Any], request: Request, document: DepthImage) -> Any:
         parts = await run_in_threadpool(_parts, document)
-        given = document.model_dump(include=set(SceneOptions.model_fields), exclude_none=True)
+        given = document.settings(SceneOptions.model_fields)
         return await service.worker.run(request, function, "depth", parts, given, document.depth_scale)
 
     @routes.post(

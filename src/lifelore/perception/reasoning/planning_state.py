@@ -10,8 +10,8 @@ For a planner, a fact that is not stated is false. So an object on which somethi
 nothing is planned on it or with it, even when everything known has been taken off it.
 """
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from math import prod
 
 from lifelore.core.errors import InputError
@@ -64,12 +64,16 @@ class PlanningState:
         Sorted.
     may_be_covered : tuple of int
         Objects on which something may rest beside what is stated, ascending.
+    probability : mapping of Fact to float
+        Of every fact of the most likely scene, stated or not. That of ``clear(a)``, which every object has, is the
+        probability that nothing rests on a beside what is stated, as far as the camera sees.
     """
 
     objects: tuple[int, ...]
     stated: tuple[Fact, ...]
     unknown: tuple[UnknownFact, ...] = ()
     may_be_covered: tuple[int, ...] = ()
+    probability: Mapping[Fact, float] = field(default_factory=dict, compare=False)
 
 
 def scene_state(scene: Scene, least: float = 0.0) -> PlanningState:
@@ -132,10 +136,12 @@ def planning_state(
     stated = {fact for fact, probability in likely.items() if probability >= least}
     unknown = {UnknownFact(fact, likely[fact], DOUBTFUL) for fact in set(likely) - stated}
     covered = []
+    clear: dict[Fact, float] = {}
     for thing in things:
         on_it = {fact.arguments[0] for fact in likely if fact.name == ON and fact.arguments[1] == thing}
         stated_on_it = {a for a in on_it if Fact(ON, (a, thing)) in stated}
         free = prod(1 - one.carried(x) for one in known for x in _others(one, thing) if x not in stated_on_it)
+        clear[Fact(CLEAR, (thing,))] = free
         # At threshold 0 the most likely scene counts as it is.
         doubtful = least > 0 and (on_it != stated_on_it or free < least)
         unseen = thing in set(hidden) and not on_it
@@ -145,7 +151,7 @@ def planning_state(
             unknown.add(UnknownFact(Fact(CLEAR, (thing,)), free, DOUBTFUL if doubtful else HIDDEN))
         elif not on_it:
             stated.add(Fact(CLEAR, (thing,)))
-    return PlanningState(things, tuple(sorted(stated)), tuple(sorted(unknown)), tuple(covered))
+    return PlanningState(things, tuple(sorted(stated)), tuple(sorted(unknown)), tuple(covered), likely | clear)
 
 
 def _others(one: LabelDistribution, thing: int) -> list[int]:

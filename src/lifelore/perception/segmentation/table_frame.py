@@ -1,7 +1,7 @@
 """The frame of a scene: z up, z = 0 at the table, x to the camera's right."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -11,9 +11,10 @@ from lifelore.core.cloud_origin import CloudOrigin
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED, LabelledCloud
 from lifelore.core.streams import stream
-from lifelore.perception.clouds.cloud_scale import FAR
+from lifelore.perception.clouds.cloud_scale import FAR, unit_hint
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.clouds.voxel import thinned
+from lifelore.perception.segmentation.camera_doubt import camera_doubt
 from lifelore.perception.segmentation.cut_confidence import CutCloud
 from lifelore.perception.segmentation.object_feet import with_feet
 from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, cut_cloud
@@ -44,6 +45,10 @@ class SegmentedScene:
         In the frame of the cloud; see `table_search.Search`.
     confidence : mapping of int to float
         How surely each object was cut, see `CutCloud`; empty for a cloud with labels.
+    camera_doubt : str, optional
+        Why the camera of the cloud cannot be where it is said to be; it then counts as unknown.
+    up_given : bool
+        Whether the upward direction was given, so that it is no result of the search for the table.
     """
 
     cloud: LabelledCloud
@@ -51,6 +56,8 @@ class SegmentedScene:
     table: Table | None = None
     tilted: NDArray[np.float64] | None = None
     confidence: Mapping[int, float] = field(default_factory=dict)
+    camera_doubt: str | None = None
+    up_given: bool = False
 
 
 def to_scene(
@@ -86,7 +93,8 @@ def segmented_scene(
         Measured points of the region only, z = 0 at the table; `LabelledCloud.origin` leads back to the pixels and
         the frame of the cloud. Under ``up="table"`` and a vector, x is the
         camera's right seen from above and y leads away from it; under ``"z"`` x and y stay. Without a visible
-        table, z = 0 is the lowest point but for 1 % (a vector), or stays as it is (``"z"``).
+        table, z = 0 is the lowest point but for 1 % (a vector), or stays as it is (``"z"``). A camera that cannot
+        be where it is said to be counts as unknown (see `camera_doubt`).
 
     Raises
     ------
@@ -102,6 +110,39 @@ def segmented_scene(
         raise InputError(f"the cloud holds no finite point among {len(cloud.points)}")
     cloud = cloud.only(measured)
     points = cloud.points.astype(np.float64)
+    doubt = None
+    if cloud.camera is not None and cloud.other_cameras is None:
+        doubt = camera_doubt(points, cloud.camera)
+    if doubt is None:
+        scene = _upright_scene(points, cloud, up, segmentation, region)
+        depth = _depth_below_table(scene.cloud)
+        if depth <= 0:
+            return scene
+        doubt = f"it would be {depth:.2f} m below the table"
+    unseen = replace(cloud, camera=None, other_cameras=None)
+    return replace(_upright_scene(points, unseen, up, segmentation, region), camera_doubt=doubt)
+
+
+def _depth_below_table(cloud: LabelledCloud) -> float:
+    """Metres that the camera of a scene is below its table; 0 without a table or a camera.
+
+    Also 0 where most of the objects are below the table: there it is rather up that is wrong.
+    """
+    heights = cloud.points[cloud.labels > TABLE, 2]
+    if cloud.camera is None or not (cloud.labels == TABLE).any() or (len(heights) and np.median(heights) < 0):
+        return 0.0
+    return max(0.0, -float(cloud.camera[2]))
+
+
+def _upright_scene(
+    points: NDArray[np.float64],
+    cloud: PointCloud,
+    up: Up,
+    segmentation: SegmentationSettings | None,
+    region: Region,
+) -> SegmentedScene:
+    """The scene of a cloud whose points are measured and within the region."""
+    up_given = not (isinstance(up, str) and up == "table")
     search = _search(points, cloud, up)
     rotation, shift = _pose(points, cloud, up, search.table)
     scene_points = points @ np.ascontiguousarray(rotation.T) + shift
@@ -111,11 +152,11 @@ def segmented_scene(
     labels = cloud.labels if cloud.labels is not None and cloud.is_labelled else None
     if labels is not None:
         scene = LabelledCloud(scene_points, labels, cloud.colours, camera, others, origin)
-        return SegmentedScene(scene, False, search.table, search.tilted)
+        return SegmentedScene(scene, False, search.table, search.tilted, up_given=up_given)
     cut = _cut(points, scene_points, cloud, camera, search.table, segmentation or SegmentationSettings())
     _check_number(cut.labels, region, search)
     scene = LabelledCloud(scene_points, cut.labels, cloud.colours, camera, others, origin)
-    return SegmentedScene(scene, True, search.table, search.tilted, cut.confidence)
+    return SegmentedScene(scene, True, search.table, search.tilted, cut.confidence, up_given=up_given)
 
 
 def _origin(cloud: PointCloud, rotation: NDArray[np.float64], shift: NDArray[np.float64]) -> CloudOrigin:
@@ -207,7 +248,7 @@ def _search(points: NDArray[np.float64], cloud: PointCloud, up: Up) -> Search:
 
 def _size_hint(points: NDArray[np.float64]) -> str:
     span = float(np.ptp(points, axis=0).max())
-    return "" if span > 0.25 else f" (it spans {100 * span:.1f} cm: check its units)"
+    return "" if span > 0.25 else f" (it spans {100 * span:.1f} cm: {unit_hint(span)})"
 
 
 def _labelled_plane(points: NDArray[np.float64], cloud: PointCloud) -> Plane:

@@ -210,6 +210,6 @@ def _refined(
 def no_table(reason: str = "") -> InputError:
     """The error of a cloud in which no table is found, with `reason` in front of what to do."""
     return InputError(
-        f"no table was found in the cloud{reason}; give up as a vector or 'z' (--up X,Y,Z), crop the cloud to the"
+        f"no table was found in the cloud{reason}; pass the upward direction (--up X,Y,Z), crop the cloud to the"
         " table (--roi, --max-range), or label the table"
     )
