@@ -155,9 +155,8 @@ def model_from_bytes(content: bytes, where: str = "the model") -> RelationModel:
 
 def _contact_settings(settings: Mapping[str, Any]) -> ContactSettings:
     """Settings from a header; numbers may be whole."""
-    return ContactSettings(
-        **{n: value if isinstance(value, bool) else float(value) for n, value in settings.items()}
-    )
+    numbers = {name: float(value) for name, value in settings.items() if not isinstance(value, bool)}
+    return ContactSettings(**{**settings, **numbers})
 
 
 def _neighbours(header: Mapping[str, Any]) -> NeighbourSettings:

@@ -1,7 +1,7 @@
 """Inside and outside of hollow objects: bowls, mugs and pots of which the camera sees both sides at the rim.
 
 The near wall hides where the inside meets it, so the two are separate surfaces. They belong together if both end
-at the same height, without a level top, where one faces the middle between them and the other faces away from it.
+at one height, without a level top, on one circle, and one faces the middle while the other faces away from it.
 """
 
 from collections.abc import Iterator
@@ -21,9 +21,12 @@ _UPRIGHT, _LEVEL = 0.80, 0.85
 """Vertical part of a normal: below the first it faces sideways, above the second the surface is level."""
 _HIGH = 0.020
 """Metres below the top that count as the rim."""
-_FACING, _MOST_LEVEL, _ROUND = 0.85, 0.3, 0.92
+_FACING, _MOST_LEVEL = 0.85, 0.3
 """Least share of the sideways surface that faces the middle (or away from it); largest share of the rim that is
-level; largest mean length of the inside's horizontal unit normals, which is 1 for a flat face."""
+level."""
+_ROUND = 0.12
+"""Largest distance of the rim from a circle, in radii: bowls, mugs and pots have at most 0.07, boxes that stand
+behind each other at least 0.3."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,13 +54,9 @@ class _Side:
         return float(self.weights[sideways & towards].sum() / self.weights[sideways].sum())
 
     @property
-    def is_round(self) -> bool:
-        """Whether it faces more than one direction."""
-        sideways = np.abs(self.normals[:, 2]) < _UPRIGHT
-        flat = self.normals[sideways, :2]
-        flat = flat / np.linalg.norm(flat, axis=1, keepdims=True)
-        weights = self.weights[sideways]
-        return bool(np.linalg.norm(weights @ flat) <= _ROUND * weights.sum())
+    def rim(self) -> NDArray[np.float64]:
+        """(m, 2) places of its highest voxels, seen from above."""
+        return self.voxels[self.voxels[:, 2] > self.top - _HIGH, :2]
 
 
 def hollow_pairs(
@@ -100,12 +99,23 @@ def _sides(
 def _are_two_sides(outside: _Side, inside: _Side) -> bool:
     from scipy.spatial import KDTree
 
-    if abs(outside.top - inside.top) > _RIM or not inside.is_round:
+    if abs(outside.top - inside.top) > _RIM:
         return False
     middle = (outside.voxels[:, :2].mean(axis=0) + inside.voxels[:, :2].mean(axis=0)) / 2
     if inside.facing(middle) < _FACING or outside.facing(middle) > 1 - _FACING:
         return False
+    if _off_a_circle(np.concatenate([outside.rim, inside.rim])) > _ROUND:
+        return False
     return bool(KDTree(outside.voxels).query(inside.voxels, distance_upper_bound=_TOUCH)[0].min() <= _TOUCH)
+
+
+def _off_a_circle(places: NDArray[np.float64]) -> float:
+    """Root mean square distance of places (m, 2) from the circle that fits them best, in radii."""
+    columns = np.column_stack([places, np.ones(len(places))])
+    x, y, rest = np.linalg.lstsq(columns, (places**2).sum(axis=1), rcond=None)[0]
+    centre = np.array([x, y]) / 2
+    radius = np.sqrt(max(float(rest + centre @ centre), 1e-9))
+    return float(np.sqrt(np.mean((np.linalg.norm(places - centre, axis=1) - radius) ** 2)) / radius)
 
 
 def _apart(first: _Side, second: _Side) -> float:
