@@ -10,6 +10,7 @@ import pytest
 from lifelore.agent.perceive.perceive import STAGES, PerceiveSettings, perceive
 from lifelore.agent.perceive.relation_memory import store_model
 from lifelore.agent.perceive.scene_files import domain_path
+from lifelore.bridges.planner import Step
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import open_memory
 from lifelore.perception.clouds.point_cloud import PointCloud
@@ -197,3 +198,22 @@ def test_an_output_that_cannot_be_written_is_told_before_the_work(tmp_path, outp
         perceive("no such cloud.pcd", **{output: str(tmp_path)})
     with pytest.raises(InputError, match="cannot be written"):
         perceive("no such cloud.pcd", **{output: str(tmp_path / "no" / "file")})
+
+
+def test_a_planner_of_your_own_plans_in_the_scene(pile):
+    asked = []
+
+    def solve(domain, problem):
+        asked.append((domain, problem))
+        return [Step("pick-up", ("o3",)), Step("put-on", ("o3", "o4"))]
+
+    plan = perceive(pile, PerceiveSettings(up="z", goal="on(o3, o4)", planner=solve))["plan"]
+    ((domain, problem),) = asked
+    assert domain.startswith("(define (domain")
+    assert "(:goal (on o3 o4))" in problem
+    assert [[one["id"] for one in step["objects"]] for step in plan["steps"]] == [[3], [3, 4]]
+    (first,) = plan["steps"][0]["objects"]
+    np.testing.assert_allclose(first["centroid"][:2], [0.09, 0.07], atol=0.03)
+    assert plan["reason"] is None
+    with pytest.raises(InputError, match="needs a goal"):
+        PerceiveSettings(planner=solve)

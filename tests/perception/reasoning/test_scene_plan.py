@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
+from lifelore.core.errors import InputError, LifeloreError, MissingExtraError
 from lifelore.perception.reasoning.goal_obstacles import goal_obstacles
 from lifelore.perception.reasoning.planning_goal import read_goal
 from lifelore.perception.reasoning.planning_problem import pddl_names
@@ -66,6 +66,19 @@ def test_a_planner_without_a_plan_is_told_with_what_is_unknown(pile):
     assert reason is not None
     assert reason.startswith("no order of picking up and putting down brings the goal about; unknown facts")
     assert "adjacent(2, 3) (0.82, doubtful)" in reason
+
+
+def test_a_planner_out_of_time_is_a_reason_and_its_other_errors_stay(pile):
+    def fail(error):
+        def solve(domain, problem):
+            raise error
+
+        return solve
+
+    late = LifeloreError("the planner found no plan in 60 s: TIMEOUT")
+    assert scene_plan(pile, read_goal("on(o2, o4)"), fail(late)).reason == str(late)
+    with pytest.raises(MissingExtraError):
+        scene_plan(pile, read_goal("on(o2, o4)"), fail(MissingExtraError("pip install")))
 
 
 def test_without_support_there_is_no_plan(make_scene):

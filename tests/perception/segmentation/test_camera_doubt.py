@@ -24,14 +24,19 @@ def wall(depth, side=0.4, step=0.004):
     return np.stack(np.meshgrid(across, across, [depth]), axis=-1).reshape(-1, 3)
 
 
+def behind(points):
+    rays = points.astype(np.float32)
+    return share_behind(rays, np.linalg.norm(rays, axis=1))
+
+
 def test_a_wall_behind_half_of_a_wall():
     """The far wall's points behind the near half are half of its points in a cell with a nearer one."""
     front = wall(1.0, step=0.002)
     back = wall(1.2, step=0.002) * [1.2, 1.2, 1.0]
-    share = share_behind(np.concatenate([front[front[:, 0] < 0], back]), np.zeros(3))
+    share = behind(np.concatenate([front[front[:, 0] < 0], back]))
     expected = np.mean(back[:, 0] < 0) * len(back) / (len(back) + len(front) / 2)
     assert share == pytest.approx(expected, abs=0.03)
-    assert share_behind(np.concatenate([front[front[:, 0] < 0], back[back[:, 0] >= 0]]), np.zeros(3)) < 0.01
+    assert behind(np.concatenate([front[front[:, 0] < 0], back[back[:, 0] >= 0]])) < 0.01
 
 
 def test_a_camera_among_its_points_is_doubted():

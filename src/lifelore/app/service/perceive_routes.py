@@ -4,6 +4,7 @@ import base64
 import binascii
 import json
 from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Query, Request, Response
@@ -17,6 +18,8 @@ from lifelore.app.service.service_state import Service
 from lifelore.bridges.planner import solve
 from lifelore.core.errors import InputError
 
+PLAN_SECONDS = 10.0
+"""Seconds for the planner of a request; goals over a table's objects take less than one."""
 LONGEST_CAMERA = 20_000
 """Characters of the file of a camera; files of ROS have some hundred."""
 BODY = body_of(BYTES)
@@ -49,7 +52,7 @@ class SceneOptions(BaseModel):
         given = self.model_dump(include=set(fields) - {"up", "plan", "roi", "max_range"}, exclude_none=True)
         given["up"] = read_up(self.up)
         given["region"] = read_region(self.roi, self.max_range)
-        return given | {"planner": solve} if self.plan else given
+        return given | {"planner": partial(solve, timeout=PLAN_SECONDS)} if self.plan else given
 
 
 class CloudOptions(SceneOptions):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from math import prod
 from typing import Protocol
 
+from lifelore.core.errors import LifeloreError
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ON
 from lifelore.perception.reasoning.fact import Fact, objects_without_support
@@ -102,10 +103,16 @@ def scene_plan(
     if hanging := objects_without_support(scene.relations, scene.objects):
         return ScenePlan(reason=f"nothing tells what {', '.join(map(object_name, hanging))} rests on")
     state = scene_state(scene, least)
-    reason = no_plan_reason(scene, state, goal)
-    found = None if reason else solve(planning_domain(scene.words), state_problem(scene, state, goal))
+    if reason := no_plan_reason(scene, state, goal):
+        return ScenePlan(reason=reason)
+    try:
+        found = solve(planning_domain(scene.words), state_problem(scene, state, goal))
+    except LifeloreError as error:
+        if type(error) is not LifeloreError:
+            raise
+        return ScenePlan(reason=str(error))  # out of time or memory
     if found is None:
-        return ScenePlan(reason=reason or _unreachable(state))
+        return ScenePlan(reason=_unreachable(state))
     numbers = {name: number for number, name in pddl_names(scene.objects, words=scene.words).items()}
     actions = [(step.action, tuple(numbers[name] for name in step.arguments)) for step in found]
     return _judged(actions, state, cut_confidence or {})

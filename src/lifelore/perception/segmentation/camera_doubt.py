@@ -23,24 +23,23 @@ _ONE_IN = 8
 
 def camera_doubt(points: NDArray[np.float64], camera: NDArray[np.float64]) -> str | None:
     """Why the points (n, 3) cannot have been seen from `camera` (3,), both in metres; None without a doubt."""
-    rays = points - camera
-    near = np.einsum("ij,ij->i", rays, rays) < NEAREST**2
+    rays = (points - camera).astype(np.float32)
+    ranges = np.sqrt(np.einsum("ij,ij->i", rays, rays))
+    near = float(np.mean(ranges < NEAREST))
     # A scene that is near as a whole may be in other units.
-    if _MOST_NEAR < np.mean(near) < 0.5:
-        return f"{100 * np.mean(near):.0f} % of the points lie within {100 * NEAREST:.0f} cm of it"
-    share = share_behind(points, camera)
+    if _MOST_NEAR < near < 0.5:
+        return f"{100 * near:.0f} % of the points lie within {100 * NEAREST:.0f} cm of it"
+    share = share_behind(rays, ranges)
     return f"{100 * share:.0f} % of the points would lie behind others" if share > MOST_BEHIND else None
 
 
-def share_behind(points: NDArray[np.float64], camera: NDArray[np.float64]) -> float:
-    """Share of the points that lie behind another one, seen from `camera`, by more than `BEHIND`."""
-    rays = (points - camera).astype(np.float32)
-    ranges = np.sqrt(np.einsum("ij,ij->i", rays, rays))
+def share_behind(rays: NDArray[np.float32], ranges: NDArray[np.float32]) -> float:
+    """Share of the points that lie behind another one by more than `BEHIND`; rays (n, 3) lead from the camera."""
     size = CELL * np.maximum(ranges, 1e-6)
     chosen = np.flatnonzero(np.floor(rays[:, 0] / size) % _ONE_IN == 0)
     if not len(chosen):
         return 0.0
-    ranges = ranges[chosen].astype(np.float64)
+    ranges = ranges[chosen]
     cells = np.floor(rays[chosen] / size[chosen, None]).astype(np.int64) + 256
     keys = (cells[:, 0] << 20) + (cells[:, 1] << 10) + cells[:, 2]
     order = np.lexsort((ranges, keys))

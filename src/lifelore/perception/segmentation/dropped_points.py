@@ -24,10 +24,12 @@ def dropped_points(scene: SegmentedScene) -> str | None:
     points, labels, camera = scene.cloud.points, scene.cloud.labels, scene.cloud.camera
     if not scene.automatic or scene.table is None:
         return None
-    above = (labels == UNLABELLED) & (points[:, 2] > band(points, camera)) & (points[:, 2] < REACH)
+    above = points[(labels == UNLABELLED) & (points[:, 2] > 0) & (points[:, 2] < REACH)]
+    above = above[above[:, 2] > band(above, camera)]
+    if len(above) < _FEW:
+        return None
     known = points[labels >= TABLE, :2]
-    above[above] = over_outline(points[above, :2], known[:: max(1, len(known) // 5000)], OVERHANG)
-    dropped = points[above]
+    dropped = above[over_outline(above[:, :2], known[:: max(1, len(known) // 5000)], OVERHANG)]
     n_above = len(dropped) + int(np.count_nonzero(labels > TABLE))
     if len(dropped) < max(_FEW, _FEW_SHARE * n_above):
         return None

@@ -157,8 +157,8 @@ def _objects(scene: SegmentedScene) -> list[tuple[str, str]]:
             f"{tiny} of {len(sizes)} objects are smaller than {100 * TINY:.0f} cm; check the units and the labels"
         )
         found.append(("tiny_objects", text))
-    few = {label: len(scene.cloud.of(label)) for label in scene.cloud.objects}
-    few = {label: n for label, n in few.items() if n < FEW_POINTS}
+    counts = np.bincount(scene.cloud.labels)
+    few = {label: int(counts[label]) for label in scene.cloud.objects if counts[label] < FEW_POINTS}
     if few:
         named = ", ".join(f"{label} ({n})" for label, n in few.items())
         text = f"objects with fewer than {FEW_POINTS} points, whose relations are a guess: {named}"
