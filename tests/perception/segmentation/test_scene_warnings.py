@@ -117,6 +117,14 @@ def test_a_bare_table_is_empty():
     assert codes(segmented_scene(seen(TABLE))) == ["table_empty"]
 
 
+def test_a_book_and_a_box_labelled_0_and_1_are_told_how_objects_are_numbered():
+    parts = [faces(-0.1, -0.1, 0.2, 0.02, n=8000), faces(-0.05, -0.05, 0.08, 0.1, bottom=0.022)]
+    scene = segmented_scene(seen(np.concatenate(parts), 1 - labels_of(parts) // 2), up=TRUE_UP)
+    assert not scene.cloud.objects
+    told = {warning.code: warning.message for warning in scene_warnings(scene)}
+    assert "objects are numbered from 2 (0 is no object, 1 is the table)" in told["table_empty"]
+
+
 def test_objects_over_the_labelled_table_are_far_from_it():
     parts = [TABLE, faces(-0.2, 0.0, 0.1, 0.1, bottom=0.2)]
     assert codes(segmented_scene(seen(np.concatenate(parts), labels_of(parts)))) == ["table_gap"]

