@@ -3,9 +3,9 @@
 import numpy as np
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.reasoning.raised_objects import off_the_table, raised_objects
 from lifelore.perception.relations.relation import PairBelief
+from lifelore.perception.scene_perception import perceived_scene
 
 CAMERA = np.array([0.0, -0.9, 0.5])
 TABLE_POINTS = np.array([(x, y, 0.0) for x in np.arange(-0.4, 0.4, 0.01) for y in np.arange(-0.3, 0.6, 0.01)])
