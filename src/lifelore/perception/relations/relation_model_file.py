@@ -154,9 +154,9 @@ def model_from_bytes(content: bytes, where: str = "the model") -> RelationModel:
 
 
 def _contact_settings(settings: Mapping[str, Any]) -> ContactSettings:
-    """Settings from a header; numbers may be whole, and files of the first models lack `as_printed`."""
-    numbers = {name: float(value) for name, value in settings.items() if name != "as_printed"}
-    return ContactSettings(**numbers, as_printed=settings.get("as_printed", False))
+    """Settings from a header; numbers may be whole."""
+    numbers = {name: float(value) for name, value in settings.items() if not isinstance(value, bool)}
+    return ContactSettings(**{**settings, **numbers})
 
 
 def _neighbours(header: Mapping[str, Any]) -> NeighbourSettings:
