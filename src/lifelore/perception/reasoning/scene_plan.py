@@ -100,7 +100,7 @@ def scene_plan(
     InputError
         The goal names a predicate or an object that does not exist; the threshold is outside [0, 1].
     """
-    if hanging := objects_without_support(scene.relations, scene.objects):
+    if scene.cloud.has_table and (hanging := objects_without_support(scene.relations, scene.objects)):
         return ScenePlan(reason=f"nothing tells what {', '.join(map(object_name, hanging))} rests on")
     state = scene_state(scene, least)
     if reason := no_plan_reason(scene, state, goal):
