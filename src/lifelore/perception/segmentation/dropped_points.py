@@ -24,13 +24,13 @@ def dropped_points(scene: SegmentedScene) -> str | None:
     points, labels, camera = scene.cloud.points, scene.cloud.labels, scene.cloud.camera
     if not scene.automatic or scene.table is None:
         return None
-    above = points[(labels == UNLABELLED) & (points[:, 2] > 0) & (points[:, 2] < REACH)]
-    above = above[above[:, 2] > band(above, camera)]
+    is_above = points[:, 2] > band(points, camera)
+    above = points[is_above & (labels == UNLABELLED) & (points[:, 2] < REACH)]
     if len(above) < _FEW:
         return None
     known = points[labels >= TABLE, :2]
     dropped = above[over_outline(above[:, :2], known[:: max(1, len(known) // 5000)], OVERHANG)]
-    n_above = len(dropped) + int(np.count_nonzero(labels > TABLE))
+    n_above = len(dropped) + int(np.count_nonzero(is_above & (labels > TABLE)))
     if len(dropped) < max(_FEW, _FEW_SHARE * n_above):
         return None
     low, high = np.percentile(dropped, (5, 95), axis=0)
