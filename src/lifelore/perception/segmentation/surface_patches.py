@@ -20,7 +20,7 @@ LEAST_AREA = 0.004
 _MOST_PLANES = 16
 _HYPOTHESES = 200
 _SAMPLE = 3000
-_NEIGHBOURS = 20
+_NEIGHBOURS = 12
 _ALIKE = np.cos(np.radians(30.0))
 """A voxel is part of a plane only if its own normal is within 30° of the plane's."""
 _MOST_VOXELS = 25_000
