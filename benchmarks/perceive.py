@@ -57,7 +57,7 @@ from lifelore.app import command_line, console
 from lifelore.app.perceive_command import _one_thread_for_matrices
 _one_thread_for_matrices()
 from lifelore.agent.perceive import perceive
-from lifelore.perception import perceived_scene, scene_json
+from lifelore.perception import scene_json, scene_perception
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene

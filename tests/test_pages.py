@@ -36,6 +36,11 @@ EXPECTED = {
     ],
     "start/personalisation": ["3 types found", "probability", "uplift"],
     "perception": [
+        "objects 2 3 4 5",
+        "on(3, 4) 0.",
+        "contact points",
+        "as the thesis prints it",
+        "'on(3, 4)'",
         "4 objects, 0 holes",
         '"contact_points"',
         "2 objects, 0 holes",

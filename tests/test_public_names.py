@@ -14,9 +14,22 @@ def test_every_public_name_exists_and_is_documented():
     assert set(dir(lifelore)) == set(lifelore.__all__)
 
 
+def test_what_perception_exports_exists_is_documented_and_is_what_the_package_exports():
+    from lifelore import perception
+
+    assert {"LabelledCloud", "perceived_scene", "contact_networks", "RelationClassifier", "read_cloud"} <= set(
+        perception.__all__
+    )
+    assert set(perception.__all__) == set(perception._HOME)
+    for name in perception.__all__:
+        assert inspect.getdoc(getattr(perception, name)), name
+        assert getattr(lifelore, name, getattr(perception, name)) is getattr(perception, name), name
+    assert set(perception.__all__) <= set(dir(perception))
+
+
 def test_importing_the_package_imports_nothing_heavy():
     heavy = ("numba", "numpy", "matplotlib", "sqlite3", "gymnasium", "scipy", "typer")
-    code = f"import sys, lifelore; print([name for name in {heavy} if name in sys.modules])"
+    code = f"import sys, lifelore.perception; print([name for name in {heavy} if name in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "[]"
 
 

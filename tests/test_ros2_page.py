@@ -20,11 +20,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 pytest.importorskip("rosbags", reason="needs the extra ros")
 
-from rosbags.typesys import Stores, get_typestore
+from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from lifelore.bridges.mcap_file import message_of
+from lifelore.bridges.scene_mcap import DEFINITIONS
 from lifelore.domains.buildings.building import building_from_map
 from lifelore.domains.buildings.floor import floor_of
 from lifelore.domains.buildings.occupancy_map import read_occupancy_map, write_occupancy_map
@@ -34,6 +37,8 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "examples" / "ros2" / "lifelore_node"
 PAGE = (ROOT / "docs" / "ros2.md").read_text(encoding="utf-8")
 STORE = get_typestore(Stores.ROS2_HUMBLE)
+for definition, text in DEFINITIONS.items():
+    STORE.register(get_types_from_msg(text, definition))
 PROGRAM = [sys.executable, "-m", "lifelore.app.command_line"]
 
 
@@ -61,24 +66,8 @@ def exports(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def message(name: str, fields: dict[str, Any]) -> Any:
-    """A message of ROS 2 Humble with these fields, zero elsewhere."""
-    values: dict[str, Any] = {}
-    defined = dict(STORE.fielddefs[name][1])
-    assert set(fields) <= set(defined), f"{name} has no {set(fields) - set(defined)}"
-    for field, (kind, detail) in defined.items():
-        given = fields.get(field)
-        if kind.name == "NAME":
-            values[field] = message(detail, given or {})
-        elif kind.name == "BASE":
-            base = detail[0]
-            values[field] = given if given is not None else "" if base == "string" else base == "bool" and False
-        else:
-            (inner_kind, inner), _ = detail
-            if inner_kind.name == "NAME":
-                values[field] = [message(inner, one) for one in given or []]
-            else:
-                values[field] = np.array(given or [], inner[0])
-    return STORE.types[name](**values)
+    """A message of ROS 2 Humble with these fields, zero elsewhere; a field that does not exist fails."""
+    return message_of(STORE, name, fields)
 
 
 def sent(name: str, fields: dict[str, Any]) -> Any:
@@ -101,6 +90,7 @@ def cloud_message(points: np.ndarray, padding: int = 4, big: bool = False) -> An
     return sent(
         "sensor_msgs/msg/PointCloud2",
         {
+            "header": {"frame_id": "eye", "stamp": {"sec": 3, "nanosec": 4}},
             "height": 2, "width": rows.shape[1], "fields": fields, "is_bigendian": big, "point_step": step,
             "row_step": rows.shape[1] * step + 8, "data": np.concatenate(data).tolist(), "is_dense": False,
         },
@@ -258,6 +248,8 @@ def node_module(monkeypatch: pytest.MonkeyPatch) -> Any:
         "nav_msgs": ["OccupancyGrid", "Path"],
         "sensor_msgs": ["PointCloud2"],
         "std_msgs": ["String"],
+        "vision_msgs": ["Detection3DArray"],
+        "lifelore_msgs": ["SpatialRelationArray"],
     }.items():
         stand_ins[name] = module(name)
         stand_ins[f"{name}.msg"] = module(f"{name}.msg", **{one: kind(f"{name}/msg/{one}") for one in kinds})
@@ -280,10 +272,23 @@ def test_the_node_publishes_exports_and_answers_a_cloud_with_relations(node_modu
     points = np.asarray(cloud.points, np.float32)
     node.subscribed["points"](cloud_message(points[: len(points) // 2 * 2]))
     assert node.arrived.wait(60)
-    (text,) = [message.data for topic, message in node.published if topic == "lifelore/relations"]
-    found = json.loads(text)
-    assert "on" in {relation["relation"] for relation in found["relations"]}
-    assert any(fact.startswith("on(") for fact in found["facts"])
+    answers = {topic: answer for topic, answer in node.published if topic not in topics}
+    assert set(answers) == {"lifelore/facts", "lifelore/detections", "lifelore/relations"}
+    assert any(fact.startswith("on(") for fact in json.loads(answers["lifelore/facts"].data)["facts"])
+    relations = answers["lifelore/relations"].relations
+    assert "on" in {relation.relation for relation in relations}
+    detections = answers["lifelore/detections"]
+    assert {relation.a for relation in relations} <= {one.id for one in detections.detections}
+    for answer in (detections, answers["lifelore/relations"], detections.detections[0]):
+        header = answer.header
+        assert (header.frame_id, header.stamp.sec, header.stamp.nanosec) == ("eye", 3, 4)
+    # Each box holds points of the cloud that was sent, in that cloud's frame.
+    for one in detections.detections:
+        turn, at = one.bbox.center.orientation, one.bbox.center.position
+        axes = Rotation.from_quat([turn.x, turn.y, turn.z, turn.w]).as_matrix()
+        within = np.abs((points - [at.x, at.y, at.z]) @ axes)
+        size = one.bbox.size
+        assert (within <= np.array([size.x, size.y, size.z]) / 2 + 1e-4).all(axis=1).sum() > 20
 
 
 @pytest.mark.slow
@@ -313,7 +318,8 @@ def test_its_python_runs_in_the_checkout(exports):
 def test_its_topics_and_parameters_are_those_of_the_node():
     source = (PACKAGE / "lifelore_node" / "node.py").read_text(encoding="utf-8")
     ast.parse(source)
-    for topic in ("keepout_mask", "cost_mask", "lifelore/path", "lifelore/relations"):
+    answers = ("lifelore/facts", "lifelore/detections", "lifelore/relations")
+    for topic in ("keepout_mask", "cost_mask", "lifelore/path", *answers):
         assert f'"{topic}"' in source
         assert f"/{topic}`" in PAGE
     for parameter in re.findall(r'declare_parameter\("(\w+)"', source):
@@ -322,4 +328,5 @@ def test_its_topics_and_parameters_are_those_of_the_node():
 
 def test_the_page_and_the_package_say_that_no_robot_has_run_it():
     assert "tested on a robot" in PAGE.split("## ")[0]
-    assert "Untested on a robot" in (PACKAGE / "package.xml").read_text(encoding="utf-8")
+    for package in (PACKAGE, PACKAGE.parent / "lifelore_msgs"):
+        assert "Untested on a robot" in (package / "package.xml").read_text(encoding="utf-8")

@@ -76,8 +76,8 @@ def _summary(cloud: LabelledCloud, document: Mapping, layers: tuple[str, ...]) -
 def simulated_scene(seed: int = 3, objects: int = 4) -> tuple[LabelledCloud, dict]:
     """A simulated cloud of some objects, and its perceived scene as a document."""
     from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
-    from lifelore.perception.perceived_scene import perceived_scene
     from lifelore.perception.scene_json import scene_document
+    from lifelore.perception.scene_perception import perceived_scene
 
     cloud = sample_scene(seed, 0, TabletopSettings(n_objects=(objects, objects), shapes="all")).cloud
     return cloud, scene_document(perceived_scene(cloud).without_unrelated_contacts)

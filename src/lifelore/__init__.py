@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from lifelore.agent.long_lived.task_family import TaskFamily as TaskFamily
     from lifelore.agent.perceive.perceive import PerceiveSettings as PerceiveSettings
     from lifelore.agent.perceive.perceive import perceive as perceive
+    from lifelore.core.cloud_origin import CloudOrigin as CloudOrigin
     from lifelore.core.errors import LifeloreError as LifeloreError
     from lifelore.core.labelled_cloud import LabelledCloud as LabelledCloud
     from lifelore.core.learning.q_learner import QLearning as QLearning
@@ -49,9 +50,12 @@ if TYPE_CHECKING:
     from lifelore.memory import Memory as Memory
     from lifelore.memory import open_memory as open_memory
     from lifelore.perception.clouds.cloud_file import read_cloud as read_cloud
-    from lifelore.perception.perceived_scene import perceived_scene as perceived_scene
+    from lifelore.perception.contacts.contact_network import ContactPointNetwork as ContactPointNetwork
+    from lifelore.perception.contacts.contact_settings import ContactSettings as ContactSettings
+    from lifelore.perception.contacts.pair_networks import contact_networks as contact_networks
     from lifelore.perception.relations.relation_classifier import RelationClassifier as RelationClassifier
     from lifelore.perception.scene import Scene as Scene
+    from lifelore.perception.scene_perception import perceived_scene as perceived_scene
     from lifelore.perception.segmentation.table_frame import to_scene as to_scene
 
 __version__ = "0.1.0"
@@ -62,6 +66,9 @@ _HOME = {
     "BatchContexts": "lifelore.agent.external_world.stored_prior",
     "BayesianPolicyReuse": "lifelore.interaction.reuse.bayesian_policy_reuse",
     "Beat": "lifelore.interaction.adaptation.beat",
+    "CloudOrigin": "lifelore.core.cloud_origin",
+    "ContactPointNetwork": "lifelore.perception.contacts.contact_network",
+    "ContactSettings": "lifelore.perception.contacts.contact_settings",
     "Domain": "lifelore.core.mdp",
     "GymnasiumWorld": "lifelore.agent.external_world.gymnasium_world",
     "LabelledCloud": "lifelore.core.labelled_cloud",
@@ -89,13 +96,14 @@ _HOME = {
     "World": "lifelore.core.protocols",
     "check_family": "lifelore.agent.long_lived.check_family",
     "compare_agents": "lifelore.agent.any_tasks.comparison",
+    "contact_networks": "lifelore.perception.contacts.pair_networks",
     "live": "lifelore.agent.live.life",
     "live_in": "lifelore.agent.external_world.live_in",
     "live_long": "lifelore.agent.long_lived.long_life",
     "make_world": "lifelore.domains.worlds",
     "open_memory": "lifelore.memory",
     "perceive": "lifelore.agent.perceive.perceive",
-    "perceived_scene": "lifelore.perception.perceived_scene",
+    "perceived_scene": "lifelore.perception.scene_perception",
     "plot_prior": "lifelore.figures.lives.prior_table",
     "prior_from_memory": "lifelore.agent.external_world.stored_prior",
     "read_cloud": "lifelore.perception.clouds.cloud_file",

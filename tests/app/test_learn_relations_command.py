@@ -62,7 +62,7 @@ def test_mistakes_are_one_line(ask, folder):
         (*truth, "--out", folder / "m.foo"),
         (*truth, "--name", "m.npz"),
         (*truth, "--labels", "odd"),
-        (*truth, "--units", "inch"),
+        (*truth, "--units", "feet"),
         (*truth, "--up", "down"),
     ):
         answer = ask("learn-relations", folder, *options, "--memory", folder / "m.db")

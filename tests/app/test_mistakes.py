@@ -224,7 +224,7 @@ SCENES = {
     f"{LEARN} --out {{folder}}/m.foo": "out must end in .npz",
     f"{LEARN} --name m.npz": "name must not end in .npz",
     f"{LEARN} --labels odd": "labels must be one of",
-    f"{LEARN} --units inch --memory {{new}}": "units must be m or mm",
+    f"{LEARN} --units feet --memory {{new}}": "units must be m, cm, mm or inch",
     f"{LEARN} --up 1,2": "up must be three finite numbers",
     f"{LEARN} --up 1,2,x": "up must be table, z or X,Y,Z",
 }

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 PROGRAM = Path(sys.executable).with_name("lifelore")
 CUBE = np.stack(np.meshgrid(*[np.arange(0, 0.06, 0.004)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -50,6 +51,48 @@ def test_a_person_sees_a_table_and_what_was_written(ask, cloud, tmp_path):
     assert (tmp_path / "s.dot").is_file()
 
 
+def test_objects_have_their_pixels_in_a_label_image_and_in_json(ask, tmp_path):
+    """A wall of two blocks, seen straight from above as an image of 40 × 60 pixels."""
+    heights = np.zeros((40, 60))
+    labels = np.ones((40, 60), int)
+    for number, columns, height in ((2, slice(10, 25), 0.05), (3, slice(25, 50), 0.08)):
+        heights[10:30, columns], labels[10:30, columns] = height, number
+    rows, columns = np.indices(heights.shape)
+    points = np.stack([0.004 * columns, -0.004 * rows, heights], axis=-1)
+    points[0, :5] = np.nan
+    np.savez(tmp_path / "wall.npz", points=points, labels=labels, camera=[0.1, -0.1, 1.0])
+    image = tmp_path / "numbers.png"
+    answer = ask(
+        "perceive", tmp_path / "wall.npz", "--up", "z", "--masks-out", image, "--with-masks", "--json"
+    )  # fmt: skip
+    assert answer.status == 0
+    with Image.open(image) as opened:
+        assert opened.mode.startswith("I;16")
+        assert (np.asarray(opened) == np.where(np.isnan(points[..., 0]), 0, labels)).all()
+    first, second = answer.document["objects"]
+    # From column 10 on: 10 pixels above, 20 of the block, 10 below and 10 above the next.
+    assert first["mask"] == {"size": [40, 60], "counts": [410, *[20] * 29, 1410]}
+    assert sum(second["mask"]["counts"][1::2]) == second["n_points"] == 20 * 25
+
+
+def test_a_scene_is_logged_for_each_cloud(ask, cloud, tmp_path):
+    answer = ask("perceive", cloud(*two_cubes([0, 0, 0.06])), "--up", "z", "--log", tmp_path / "{name}-log.mcap")
+    assert answer.status == 0
+    assert (tmp_path / "cloud-log.mcap").read_bytes().startswith(b"\x89MCAP0")
+    assert "cloud-log.mcap" in answer.out
+
+
+def test_a_cloud_without_an_image_has_no_label_image(ask, cloud, tmp_path):
+    options = ("perceive", cloud(*two_cubes([0, 0, 0.06])), "--up", "z")
+    refused = ask(*options, "--masks-out", tmp_path / "numbers.png", "--dot", tmp_path / "s.dot")
+    assert refused.status == 2
+    assert "is not organised" in refused.err
+    assert "--with-masks" in refused.err
+    assert not (tmp_path / "s.dot").exists()
+    answer = ask(*options, "--with-masks", "--json")
+    assert answer.document["objects"][1]["points"] == list(range(len(CUBE), 2 * len(CUBE)))
+
+
 def test_a_goal_and_a_least_confidence(ask, cloud, tmp_path):
     problem = tmp_path / "s.pddl"
     options = ("perceive", cloud(*two_cubes([0, 0, 0.06])), "--up", "z", "--json", "--pddl", problem)
@@ -61,6 +104,68 @@ def test_a_goal_and_a_least_confidence(ask, cloud, tmp_path):
     assert "on(3, 2)" in [one["fact"] for one in answer.document["unknown"]]
     assert "(on o3 o2)" not in problem.read_text().split(":init")[1]
     assert "(clear-unknown o2)" in problem.read_text()
+
+
+@pytest.mark.planning
+def test_a_goal_is_planned_for_with_places(ask, cloud):
+    options = ("perceive", cloud(*two_cubes([0, 0, 0.06])), "--up", "z", "--goal", "holding(o2)", "--plan")
+    document = ask(*options, "--json").document
+    plan, centroids = document["plan"], {one["id"]: one["centroid"] for one in document["objects"]}
+    first, last = plan["steps"][0], plan["steps"][-1]
+    assert (plan["reason"], len(plan["steps"])) == (None, 3)
+    assert (first["action"], first["objects"][0]["id"]) == ("pick-up", 3)
+    assert (last["action"], last["objects"][0]["id"]) == ("pick-up", 2)
+    assert first["objects"][0]["centroid"] == centroids[3]
+    assert [one["moved"] for step in plan["steps"][:2] for one in step["objects"][:1]] == [False, True]
+    assert 0 < plan["confidence"] <= first["confidence"] <= 1
+    shown = ask(*options).out
+    assert "1. pick-up 3 at (0.028, 0.028, " in shown
+    assert "3. pick-up 2 at " in shown
+
+
+@pytest.mark.planning
+def test_no_plan_is_a_result_with_its_reason(ask, cloud):
+    path = cloud(*two_cubes([0, 0, 0.06]))
+    answer = ask("perceive", path, "--up", "z", "--goal", "on(o2, o3) and on(o3, o2)", "--plan", "--json")
+    assert answer.status == 0
+    assert (answer.document["plan"]["steps"], answer.document["plan"]["confidence"]) == ([], None)
+    assert "no order of picking up and putting down" in answer.document["plan"]["reason"]
+    held = ask("perceive", path, "--up", "z", "--goal", "on(o3, o2)", "--plan")
+    assert "the goal holds already" in held.out
+    assert (
+        "objects of the scene (o2, o3), got 'o7'"
+        in ask("perceive", path, "--up", "z", "--goal", "clear(o7)", "--plan").refusal
+    )
+
+
+def test_without_the_extra_a_plan_is_refused_in_one_line(ask, cloud, monkeypatch):
+    monkeypatch.setitem(sys.modules, "unified_planning", None)
+    options = ("--up", "z", "--goal", "clear(o2)", "--plan")
+    assert "pip install 'lifelore[planning]'" in ask("perceive", cloud(CUBE), *options).refusal
+
+
+def visible(points, labels, camera):
+    """The points that no other point hides by more than 2 cm, in cells of 12 mrad, and their labels."""
+    rays = points - camera
+    ranges = np.linalg.norm(rays, axis=1)
+    _, cells = np.unique(np.floor(rays / ranges[:, None] / 0.012), axis=0, return_inverse=True)
+    nearest = np.full(cells.max() + 1, np.inf)
+    np.minimum.at(nearest, cells.reshape(-1), ranges)
+    free = ranges < nearest[cells.reshape(-1)] + 0.02
+    return points[free], labels[free]
+
+
+def test_a_hidden_top_is_named_beside_the_planning_problem(ask, tmp_path):
+    """A tall block hides the middle of a low one, which the goal wants in the hand."""
+    low = np.concatenate([CUBE + np.array([x, 0.12, 0]) for x in (-0.05, 0.05)])
+    tall = np.concatenate([CUBE + np.array([0, 0, 0.06 * floor]) for floor in range(3)])
+    camera = np.array([0.03, -0.8, 0.3])
+    points, labels = visible(np.concatenate([low, tall]), np.repeat([2, 3], [len(low), len(tall)]), camera)
+    np.savez(tmp_path / "c.npz", points=points, labels=labels, camera=camera)
+    options = ("perceive", tmp_path / "c.npz", "--up", "z", "--pddl", tmp_path / "p.pddl")
+    shown = ask(*options, "--goal", "holding(o2)").out
+    assert "warning: no plan reaches the goal: other objects hide a part of the top of o2" in shown
+    assert "no plan" not in ask(*options, "--goal", "holding(o3)").out
 
 
 @pytest.mark.parametrize(
@@ -101,7 +206,7 @@ def test_bad_clouds_are_one_line(ask, cloud, case):
         (["--up", "a,b,c"], "X,Y,Z"),
         (["--up", "0,0,0"], "up must be"),
         (["--up", "sideways"], "up must be"),
-        (["--units", "inch"], "units"),
+        (["--units", "feet"], "units must be m, cm, mm or inch"),
         (["--labels", "odd"], "labels"),
         (["--segment", "magic"], "method must be"),
         (["--segment", "clusters"], "needs a cloud without labels"),
@@ -116,6 +221,8 @@ def test_bad_clouds_are_one_line(ask, cloud, case):
         (["--model", "nobody", "--memory", "no/m.db"], "no relation model 'nobody': there is no memory at"),
         (["--model", "nobody", "--memory", "m" * 300], "there is no memory at"),
         (["--plot", "scene.svg"], "plot must name a PNG file"),
+        (["--log", "scene.bag"], "log must name a file that ends with .mcap or .rrd"),
+        (["--masks-out", "numbers.jpg"], "masks_out must name a PNG file"),
         (["--plot", "p" * 300 + ".png"], "cannot write"),
         (["--dot", "a.png", "--plot", "a.png"], "'a.png' would be overwritten"),
         (["--pddl", "a.pddl", "--dot", "a-domain.pddl"], "'a-domain.pddl' would be overwritten"),
@@ -123,7 +230,8 @@ def test_bad_clouds_are_one_line(ask, cloud, case):
         (["--model", "missing.npz"], "missing.npz"),
         (["--plot", "no/such/folder.png"], "folder"),
         (["--pddl", ""], "must be a file"),
-        (["--goal", "clear(o2)"], "add pddl (--pddl FILE)"),
+        (["--goal", "clear(o2)"], "goal needs a plan (--plan), or a planning problem"),
+        (["--pddl", "s.pddl", "--plan"], "plan (--plan) needs a goal"),
         (["--pddl", "s.pddl", "--goal", "clear o2"], "goal must be statements, got 'clear o2'"),
         (["--pddl", "s.pddl", "--goal", "on(o2, o7)"], "objects of the scene (o2), got 'o7'"),
         (["--pddl", "s.pddl", "--goal", "under(o2, o2)"], "goal must state one of on, adjacent"),
@@ -273,7 +381,7 @@ def test_one_cloud_of_a_pattern_has_its_name_too(ask, three, tmp_path):
         (["pair.npz", "alone.npz", "--register", "--poses", "p.json"], "leave one of them out"),
         (["pair.npz", "--register"], "joins two or more clouds, got 1"),
         (["pair.npz", "alone.npz", "--plot", "a.png"], "plot names one file for many clouds"),
-        (["pair.npz", "alone.npz", "--units", "inch"], "units must be m or mm"),
+        (["pair.npz", "alone.npz", "--units", "feet"], "units must be m, cm, mm or inch"),
         (["pair.npz", "alone.npz", "--topic", "/camera"], "is no rosbag: leave them out"),
         (["pair.npz", "sub/pair.npz", "--dot", "{name}.dot"], "rename one of them"),
     ],

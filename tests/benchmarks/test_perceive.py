@@ -10,9 +10,9 @@ from benchmarks.perceive import AGAIN, PARTS, bench_perceive, process_parts
 from benchmarks.process import Cost, installed_environment, process_cost
 from lifelore.core.errors import LifeloreError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene_json import scene_document
+from lifelore.perception.scene_perception import perceived_scene
 from reproduction.chapter2.scoring import perception_stages
 from reproduction.chapter2.scoring.perception_stages import STAGES, timed_stages
 from tests.benchmarks.contract import checked

@@ -61,7 +61,7 @@ def test_voxels_are_centroids():
 @pytest.mark.parametrize("setting", [FINE, WIDE])
 def test_real_pairs_have_the_support_vectors_of_libsvm(name, setting):
     first, second = cloud_pair(name, 4000)
-    found = separator.separate(first, second, length=setting.length, cost=setting.cost, tolerance=1e-5)
+    found = separator.separate(first, second, length=setting.length, cost=setting.cost, tolerance=1e-6)
     twin = separator._libsvm(first, second, setting.length, setting.cost, 1e-7)
     support = np.concatenate([found.support_first, found.support_second + len(first)])
     assert np.array_equal(support, np.sort(twin.support_))

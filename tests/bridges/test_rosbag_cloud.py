@@ -66,6 +66,7 @@ def test_clouds_come_back_in_order(tmp_path, kind):
         assert cloud.colours.tolist() == [[10, 11, 12]] * 6
         assert cloud.grid == (2, 3)
     assert read_bag_cloud(path, "/points", 1).points[0, 0] == 1.0
+    assert all(cloud.frame == ("camera", 1.0) for _, cloud in clouds)
 
 
 @pytest.mark.slow
@@ -98,7 +99,7 @@ def test_what_is_no_bag_is_one_line(tmp_path):
 def test_a_cloud_that_breaks_a_rule_names_its_bag(tmp_path):
     path = recorded(tmp_path, "mcap")
     with pytest.raises(InputError, match=f"^{path}: units must be"):
-        read_bag_cloud(path, units="cm")
+        read_bag_cloud(path, units="feet")
 
 
 def test_without_rosbags_the_extra_is_named(tmp_path, monkeypatch):

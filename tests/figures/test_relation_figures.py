@@ -1,7 +1,6 @@
 """Colours of relations, objects and methods are fixed, and different."""
 
 from lifelore.figures.scenes.object_palette import method_palette, mixed, object_palette, relation_palette
-from lifelore.perception.peers import PEERS
 
 
 def test_colours_are_fixed_and_differ():
@@ -12,5 +11,5 @@ def test_colours_are_fixed_and_differ():
     assert palette["lifelore"] == method_palette(["lifelore"])["lifelore"]
     assert len(set(palette.values())) == 3
     assert method_palette(["thesis", "mine"])["mine"] != method_palette(["thesis"])["thesis"]
-    everybody = [*PEERS, "thesis", "lifelore"]
+    everybody = ["bounding-box rule", "orientation histogram", "thesis", "lifelore"]
     assert len(set(method_palette(everybody).values())) == len(everybody)

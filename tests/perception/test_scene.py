@@ -72,7 +72,7 @@ def test_an_unproven_scene_stays_unproven(make_scene, meet):
 
 @pytest.mark.parametrize("optimal", [True, False])
 def test_perception_says_whether_its_scene_is_proven(monkeypatch, make_scene, box, optimal):
-    from lifelore.perception import perceived_scene as module
+    from lifelore.perception import scene_perception as module
 
     decide = module.most_likely_scene
     monkeypatch.setattr(

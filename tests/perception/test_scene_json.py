@@ -4,7 +4,9 @@ import json
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
+from lifelore.core.cloud_origin import CloudOrigin, SensorFrame
 from lifelore.perception.scene_json import scene_document
 
 
@@ -17,7 +19,8 @@ def test_every_key_of_the_contract(make_scene, box, meet):
     parts = [meet(2, 30, [[0.01, 0, 0.02], [0.09, 0, 0.02]]), meet(2, 1, [[0.05, 0, 0]])]
     scene = make_scene(clouds, parts, [(30, 2, "on", 0.75), (2, 1, "on", 0.5)])
     found = document(scene, seconds=0.25)
-    assert list(found) == ["objects", "relations", "facts", "unknown", "holes", "contact_edges", "seconds"]
+    keys = ["frame", "objects", "relations", "facts", "unknown", "holes", "contact_edges", "seconds"]
+    assert list(found) == keys
     below, above = found["objects"]
     assert [below["id"], above["id"]] == [2, 30]
     assert below["n_points"] == len(clouds[2])
@@ -26,7 +29,11 @@ def test_every_key_of_the_contract(make_scene, box, meet):
     assert below["contact_points"][0]["xyz"] == [0.01, 0, 0.02]
     assert {"xyz", "normal", "extent", "strength"} <= set(below["contact_points"][0])
     assert above["edges"] == [[0, 1]]
-    assert {"kind", "xyz", "approach", "closing", "width"} == set(above["grasp_seeds"][0])
+    both = {f"{key}{frame}" for key in ("xyz", "approach", "closing") for frame in ("", "_camera")}
+    assert {"kind", "width", *both} == set(above["grasp_seeds"][0])
+    assert above["box"]["size"] == above["box_camera"]["size"] == pytest.approx([0.1, 0.05, 0.02])
+    assert [above["top"], above["support"], below["support"]] == pytest.approx([0.04, 0.02, 0])
+    assert above["colour"] is None
     assert found["relations"] == [
         {"a": 30, "b": 2, "relation": "on", "confidence": 0.75, "gap": 0, "stated": True},
         {"a": 2, "b": "table", "relation": "on", "confidence": 0.5, "gap": 0, "stated": True},
@@ -35,6 +42,28 @@ def test_every_key_of_the_contract(make_scene, box, meet):
     assert len(found["facts"]) == len(set(found["facts"]))
     assert found["holes"] == []
     assert found["seconds"] == 0.25
+
+
+def test_places_are_in_the_frame_of_the_camera_too(make_scene, box, meet):
+    made = make_scene({2: box([0, 0, 0], [0.1, 0.05, 0.02])}, [meet(2, 1, [[0.05, 0, 0]])])
+    # The camera stands at (1, 2, 3); its x is the scene's y, its y the scene's -x, its z the scene's z.
+    pose = np.array([[0.0, -1, 0, 1], [1, 0, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]])
+    colours = np.tile(np.array([10, 20, 31], np.uint8), (len(made.cloud.points), 1))
+    origin = CloudOrigin(pose, SensorFrame("eye", 7.5), np.arange(len(colours))[::-1].copy())
+    found = document(replace(made, cloud=replace(made.cloud, origin=origin, colours=colours)), with_masks=True)
+    assert (found["frame"]["name"], found["frame"]["stamp"]) == ("eye", 7.5)
+    assert found["frame"]["scene_from_camera"] == pose.tolist()
+    assert np.allclose(pose @ found["frame"]["camera_from_scene"], np.eye(4))
+    (one,) = found["objects"]
+    assert one["colour"] == [10, 20, 31]
+    # x: 0.025 - 2, y: -(0.05 - 1), z: 0.01 - 3
+    assert one["centroid_camera"] == one["box_camera"]["centre"] == pytest.approx([-1.975, 0.95, -2.99])
+    assert one["box_camera"]["axes"][0] == [0, -1, 0]
+    (contact,) = one["contact_points"]
+    assert contact["xyz_camera"] == pytest.approx([-2, 0.95, -3])
+    assert contact["normal_camera"] == contact["normal"] == [0, 0, 1]
+    # The first point is the table's; the object's rows in the source count down to 0.
+    assert one["points"] == list(range(len(colours) - 2, -1, -1))
 
 
 def test_a_hole_names_its_contact_points(make_scene, box, meet):
@@ -60,7 +89,9 @@ def test_unknown_numbers_are_null_and_none_is_listed_but_no_fact(make_scene):
 
 
 def test_an_empty_scene(make_scene):
+    frame = {"name": None, "stamp": None, "scene_from_camera": np.eye(4).tolist()}
     assert document(make_scene({})) == {
+        "frame": {**frame, "camera_from_scene": np.eye(4).tolist()},
         "objects": [],
         "relations": [],
         "facts": [],

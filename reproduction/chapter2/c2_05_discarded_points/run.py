@@ -102,7 +102,7 @@ def strong_places(
     points: NDArray[np.float64], alpha: NDArray[np.float64], linkage: float, least: float = THRESHOLD
 ) -> NDArray[np.float64]:
     """Contact points of at least `least` support vectors, ``(m, 3)``, none where there are none."""
-    clusters = [rows for rows in contact_clusters(points, alpha, linkage, least) if len(rows) >= least]
+    clusters = contact_clusters(points, alpha, linkage, least)
     return np.array([alpha[rows] @ points[rows] / alpha[rows].sum() for rows in clusters]).reshape(-1, 3)
 
 

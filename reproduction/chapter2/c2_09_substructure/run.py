@@ -8,11 +8,11 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from lifelore.core.metrics import Estimate
 from lifelore.perception.scene import Scene
-from lifelore.perception.topology.substructure import Reading, find_substructure
 from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.scene_example import scene_row
 from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of
 from reproduction.chapter2.scenes.skeletons import perceived, reading
+from reproduction.chapter2.scenes.substructure import Reading, find_substructure
 from reproduction.engine.estimates import exact_share
 
 LOT = 10

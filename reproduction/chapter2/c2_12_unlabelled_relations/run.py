@@ -14,7 +14,7 @@ from threadpoolctl import threadpool_limits
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, ON
 from lifelore.core.streams import stream
-from lifelore.perception.relations.x_means import x_means
+from reproduction.chapter2.c2_12_unlabelled_relations.x_means import x_means
 from reproduction.chapter2.scenes import tabletop_pairs
 from reproduction.chapter2.scenes.tabletop_pairs import Row, simulated_sets
 from reproduction.chapter2.scoring.pair_validation import (

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON, PairLabel
-from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene import Scene
+from lifelore.perception.scene_perception import perceived_scene
 from reproduction.chapter2.scenes.perturbation import only
 from reproduction.chapter2.scenes.real_scenes import real_scenes
 

@@ -15,10 +15,10 @@ from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ADJACENT, NONE
 from lifelore.core.streams import stream
 from lifelore.perception.scene import Scene
-from lifelore.perception.topology.functional_similarity import overlap, role, shape_distribution
 from reproduction.chapter2.scenes.scene_example import scene_row
 from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of
 from reproduction.chapter2.scenes.skeletons import perceived, reading
+from reproduction.chapter5.c5_02_functional_roles.functional_similarity import overlap, role, shape_distribution
 from reproduction.chapter5.ranking import average_precision, mean_by_cluster
 from reproduction.chapter5.role_scenes import PARTS, POOLS, role_scene
 
@@ -102,7 +102,7 @@ def judged_queries(results: Sequence[Mapping]) -> list[dict]:
             scores: dict[str, ArrayLike] = {
                 name: [overlap(Counter(item[name]), bag) for bag in bags[name]] for name in BAGS
             }
-            # As `functional_similarity.shape_similarity`, from two histograms.
+            # 1 less half the L1 distance of two histograms.
             scores["shape"] = 1 - np.abs(shapes - np.array(item["shape"])).sum(axis=1) / 2
             scores["chance"] = np.zeros(len(others))
             precision = {name: average_precision(scores[name], relevant) for name in METHODS}

@@ -22,10 +22,10 @@ from lifelore.domains.tabletop.pose import about
 from lifelore.domains.tabletop.settings import TabletopScene, TabletopSettings
 from lifelore.domains.tabletop.shapes import box
 from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, segmented
-from lifelore.perception.segmentation.poking import PokedSegments
 from reproduction.chapter2.scenes.arranged_scenes import Placement, arranged, settled, turned
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scoring.segmentation_scoring import FOUND, overlaps
+from reproduction.chapter5.c5_07_poking.poked_segments import PokedSegments
 from reproduction.engine.estimates import UNMEASURED
 
 LOT = 2

@@ -16,11 +16,11 @@ from lifelore.domains.tabletop.photograph import FIRST_OBJECT
 from lifelore.domains.tabletop.settings import TabletopScene
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.grasp_seeds import grasp_seeds
-from lifelore.perception.topology.substructure import Substructure, find_substructure, skeleton
 from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.scene_example import scene_row
 from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of
 from reproduction.chapter2.scenes.skeletons import perceived, reading
+from reproduction.chapter2.scenes.substructure import Substructure, find_substructure, skeleton
 from reproduction.chapter5.c5_08_grasps.searches import (
     anywhere,
     around,

@@ -15,15 +15,15 @@ from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
 from lifelore.perception.pairs.scene_pairs import ScenePairs, scene_pairs
 from lifelore.perception.pairs.side_faces import pairs_beside
-from lifelore.perception.peers import PEERS
 from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from reproduction.chapter2.scoring.relation_scoring import judged_scene
+from reproduction.own.o_07_unseen_scenes.peers import PEERS
 
 OURS, SHIPPED, THESIS, HISTOGRAM, RULE = METHODS = ("contacts", "shipped", "thesis", "histogram", "rule")
 PEER = {HISTOGRAM: "orientation histogram", RULE: "bounding-box rule"}
-"""Name of a peer of `lifelore.perception.peers`."""
+"""Name of a peer of `reproduction.own.o_07_unseen_scenes.peers`."""
 MODELS: dict[str, Callable[[], Any]] = {
     OURS: RelationClassifier,
     THESIS: lambda: RelationClassifier("displacement"),

@@ -21,10 +21,10 @@ from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 from lifelore.domains.tabletop.views import true_contacts, views_around
 from lifelore.perception.clouds.fused_views import fused
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.registration.registered_views import registered_views
 from lifelore.perception.registration.tabletop_view import tabletop_view
 from lifelore.perception.relations.relation_classifier import shipped_model
+from lifelore.perception.scene_perception import perceived_scene
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.engine.estimates import UNMEASURED, exact_share
 

@@ -35,6 +35,7 @@ PACKAGES = {
     "mujoco": "simulated tabletop scenes (extra sim)",
     "unified-planning": "solving scenes as planning problems (extra planning)",
     "rosbags": "clouds from rosbags (extra ros)",
+    "rerun-sdk": "logs of scenes for Rerun (extra view)",
     "stable-baselines3": "priors in deep Q-learning (extra deep)",
     "mabwiser": "a peer in benchmarks (extra peers)",
     "vowpalwabbit": "a peer in benchmarks (extra peers)",

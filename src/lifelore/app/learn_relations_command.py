@@ -46,7 +46,7 @@ def learn_relations(
         ),
     ] = None,
     labels: Annotated[str, Option(help="Label field: plain ids, parts (20–29 are one object), or auto.")] = "auto",
-    units: Annotated[str, Option(help="Unit of the coordinates: m or mm.")] = "m",
+    units: Annotated[str, Option(help="Unit of the coordinates: m, cm, mm or inch.")] = "m",
     up: Annotated[
         str | None,
         Option(
@@ -63,10 +63,11 @@ def learn_relations(
     """
     from lifelore.agent.perceive.learn_relations import LearnRelationsSettings
     from lifelore.agent.perceive.learn_relations import learn_relations as learn
+    from lifelore.agent.perceive.perceive import read_up
     from lifelore.app.console import print_json, progress_bar
-    from lifelore.app.perceive_command import direction, to_stderr
+    from lifelore.app.perceive_command import to_stderr
 
-    upwards = None if up is None else direction(up)
+    upwards = None if up is None else read_up(up)
     declared = None if symmetric is None else tuple(symmetric)
     settings = LearnRelationsSettings(
         folder, truth, name, method, adjacent_gap, several, declared, labels, units, upwards, anew

@@ -11,8 +11,8 @@ import typer
 from lifelore.bridges.rosbag import is_bag
 
 Option = typer.Option
-Files = dict[str, str | None]
-"""Files named by --pddl, --dot and --plot."""
+Files = dict[str, Any]
+"""Fields of `agent.perceive.scene_files.SceneFiles`, as the options name them."""
 
 
 def perceive(
@@ -23,7 +23,7 @@ def perceive(
     up: Annotated[
         str, Option(metavar="table|z|X,Y,Z", help="Upward direction: the table's normal, +z, or a vector.")
     ] = "table",
-    units: Annotated[str, Option(help="Unit of the coordinates: m or mm.")] = "m",
+    units: Annotated[str, Option(help="Unit of the coordinates: m, cm, mm or inch.")] = "m",
     labels: Annotated[str, Option(help="Label field: plain ids, parts (20–29 are one object), or auto.")] = "auto",
     topic: Annotated[str | None, Option(help="Topic of a rosbag's clouds; needed if it has several.")] = None,
     index: Annotated[int | None, Option(help="Number of a rosbag's cloud, from 0 [0].")] = None,
@@ -84,20 +84,35 @@ def perceive(
     ] = None,
     goal: Annotated[
         str | None,
-        Option(metavar="GOAL", help='Goal of the planning problem, such as "on(o2, o3) and not clear(o4)".'),
+        Option(metavar="GOAL", help='Goal to plan for, such as "on(o2, o3) and not clear(o4)".'),
     ] = None,
+    plan: Annotated[
+        bool, Option("--plan", help="Find a plan for the goal, with places (extra planning).")
+    ] = False,
     min_confidence: Annotated[
         float | None,
         Option(
             metavar="P",
-            help="Least probability, 0 to 1, of facts in JSON, graph and planning problem"
-            " [0; for the planning problem 0.6].",
+            help="Least probability, 0 to 1, of facts in JSON, graph and planning problem [0; for planning 0.6].",
         ),
     ] = None,
     dot: Annotated[str | None, Option(metavar="FILE", help="File for the relations as a Graphviz graph.")] = None,
     plot: Annotated[
         str | None, Option(metavar="FILE", help="File NAME.png for a picture of the scene from the camera.")
     ] = None,
+    masks_out: Annotated[
+        str | None, Option(metavar="FILE", help="File NAME.png for a 16-bit image of the objects' numbers.")
+    ] = None,
+    log: Annotated[
+        str | None,
+        Option(
+            metavar="FILE",
+            help="File NAME.mcap or NAME.rrd for cloud, boxes, contacts and relations; extra ros or view.",
+        ),
+    ] = None,
+    with_masks: Annotated[
+        bool, Option("--with-masks", help="JSON also holds each object's pixels, or its points' numbers.")
+    ] = False,
     watch: Annotated[
         str | None,
         Option(metavar="FOLDER", help="Perceive each new cloud of a folder until Ctrl-C."),
@@ -112,9 +127,10 @@ def perceive(
     Use it to turn a cloud into facts for a planner, a graph or a picture. Several clouds in one call are much
     faster than a call for each; --json then gives {"scenes": [{"source", ...}], "failed": [{"source", "error"}]}.
     With --poses or --register, the clouds are views of one scene and give one document.
+    A goal without a plan is a result: --plan then says why, and the exit status stays 0.
     A cloud that cannot be perceived gives one line on stderr and exit status 2; the other clouds are still
-    perceived. In the FILE of --pddl, --dot and --plot, {name} stands for the name of the cloud without its suffix;
-    several clouds, and --watch, need it.
+    perceived. In each FILE that is written, {name} stands for the name of the cloud without its suffix; several
+    clouds, and --watch, need it.
     """
     if (watch is None) == (not clouds):
         raise typer.BadParameter(
@@ -122,12 +138,12 @@ def perceive(
             "give one or more clouds, or --watch FOLDER"
         )  # fmt: skip
     _one_thread_for_matrices()
-    from lifelore.agent.perceive.perceive import PerceiveSettings
+    from lifelore.agent.perceive.perceive import PerceiveSettings, read_region, read_up
     from lifelore.agent.perceive.source_files import SourceFiles
 
     beside = SourceFiles(intrinsics, colour, depth_scale, masks, table_mask)
     settings = PerceiveSettings(
-        direction(up),
+        read_up(up),
         units,
         labels,
         _cut(segment, colours),
@@ -136,9 +152,16 @@ def perceive(
         min_confidence,
         goal,
         beside,
-        _region(roi, max_range),
+        read_region(roi, max_range),
+        with_masks,
+        _planner() if plan else None,
     )
-    files = {"pddl": pddl, "dot": dot, "plot": plot}
+    files: Files = {"pddl": pddl, "dot": dot, "plot": plot, "masks_out": masks_out}
+    if log is not None:
+        from lifelore.bridges.scene_log import check_log, write_scene_log
+
+        check_log(log)
+        files |= {"log": log, "recorder": write_scene_log}
     if watch is not None and (poses is not None or register):
         raise typer.BadParameter("--watch perceives each cloud alone: leave --poses and --register out")
     if poses is not None and register:
@@ -165,14 +188,10 @@ def _one_thread_for_matrices() -> None:
 
 def _one(cloud: str, source: Callable[[str], Any], settings: Any, files: Files, as_json: bool) -> int:
     from lifelore.agent.perceive.perceive import perceive as look
-    from lifelore.agent.perceive.scene_files import named_files
     from lifelore.app.console import print_json, progress_bar
 
-    own = named_files(cloud, **files)
     with progress_bar("perceiving") as progress:
-        document = look(
-            source(cloud), settings, pddl=own.pddl, dot=own.dot, plot=own.plot, progress=progress, notice=to_stderr
-        )
+        document = look(source(cloud), settings, progress=progress, notice=to_stderr, **_named(cloud, files))
     print_json(document) if as_json else _print_scene(cloud, document, files)
     return 0
 
@@ -203,16 +222,14 @@ def _views(
     poses: str | None,
     as_json: bool,
 ) -> int:
-    from lifelore.agent.perceive.scene_files import named_files
     from lifelore.agent.perceive.views import perceive_views
     from lifelore.app.console import print_json, progress_bar
 
-    own = named_files(clouds[0], **files)
+    named = _named(clouds[0], files)
     with progress_bar("perceiving") as progress:
         document = perceive_views(
-            clouds, settings, poses=poses, pddl=own.pddl, dot=own.dot, plot=own.plot,
-            read=source, progress=progress, notice=to_stderr,
-        )  # fmt: skip
+            clouds, settings, poses=poses, read=source, progress=progress, notice=to_stderr, **named
+        )
     print_json(document) if as_json else _print_scene(clouds[0], document, files)
     return 0
 
@@ -245,11 +262,17 @@ def _print_titled(cloud: str, document: Mapping[str, Any], files: Files) -> None
 
 
 def _print_scene(cloud: str, document: Mapping[str, Any], files: Files) -> None:
-    from lifelore.agent.perceive.scene_files import named_files
+    from lifelore.agent.perceive.scene_files import SceneFiles
     from lifelore.app.scene_table import print_scene
 
-    own = named_files(cloud, **files)
-    print_scene(document, [path for path in (own.pddl, own.dot, own.plot) if path])
+    print_scene(document, list(SceneFiles(**files).of(cloud).options.values()))
+
+
+def _named(cloud: str, files: Files) -> Files:
+    """The files of a cloud, with its name in theirs."""
+    from lifelore.agent.perceive.scene_files import SceneFiles
+
+    return vars(SceneFiles(**files).of(cloud))
 
 
 def to_stderr(line: str) -> None:
@@ -270,17 +293,11 @@ def _cut(segment: str | None, colours: int | None):
     return SegmentationSettings(method=segment, colours=default if colours is None else colours)  # type: ignore[arg-type]
 
 
-def _region(roi: str | None, max_range: float | None):
-    if roi is None and max_range is None:
-        return None
-    from lifelore.core.errors import InputError
-    from lifelore.perception.segmentation.region import AXES, Region
+def _planner():
+    from lifelore.bridges.planner import library, solve
 
-    try:
-        box = None if roi is None else tuple(float(part) for part in roi.split(","))
-    except ValueError:
-        raise InputError(f"roi must be {','.join(AXES)}, six numbers, got '{roi}'") from None
-    return Region(box, max_range)
+    library()  # refuse at once where the extra is missing
+    return solve
 
 
 def _check_bag_options(cloud: str, topic: str | None, index: int | None) -> None:
@@ -294,15 +311,3 @@ def _out_of_bag(path: str, topic: str | None, index: int, units: str, labels: st
     from lifelore.bridges.rosbag_cloud import read_bag_cloud
 
     return read_bag_cloud(path, topic, index, units=units, labels=labels)
-
-
-def direction(text: str):
-    """Parse the upward direction: table, z or X,Y,Z."""
-    if "," not in text:
-        return text
-    from lifelore.core.errors import InputError
-
-    try:
-        return tuple(float(part) for part in text.split(","))
-    except ValueError:
-        raise InputError(f"up must be table, z or X,Y,Z, three numbers, got '{text}'") from None

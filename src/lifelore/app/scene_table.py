@@ -1,6 +1,10 @@
 """Prints the relations of a perceived scene as a table."""
 
 from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 
 def print_scene(document: Mapping, written: Sequence[str]) -> None:
@@ -20,10 +24,42 @@ def print_scene(document: Mapping, written: Sequence[str]) -> None:
         console.print(table)
     n_objects, n_holes = len(document["objects"]), len(document["holes"])
     console.print(f"{_many(n_objects, 'object')}, {_many(n_holes, 'hole')}, {document['seconds']:.2f} s")
+    hidden = [one["fact"] for one in document["unknown"] if one["reason"] == "hidden"]
+    if hidden:
+        text = f"unknown, since other objects hide a part of the top: {', '.join(hidden)}"
+        console.print(text, highlight=False, soft_wrap=True)
+    if "plan" in document:
+        _print_plan(document["plan"], console)
     for warning in document["warnings"]:
         console.print(f"warning: {warning['message']}", highlight=False, soft_wrap=True, markup=False)
     for path in written:
         console.print(f"written: {path}", highlight=False, soft_wrap=True)
+
+
+def _print_plan(plan: Mapping, console: "Console") -> None:
+    if plan["reason"] is not None:
+        lines = [f"no plan: {plan['reason']}"]
+    elif not plan["steps"]:
+        lines = ["no step is needed: the goal holds already"]
+    else:
+        lines = [f"plan with a confidence of {plan['confidence']:.2f}; places of the centres as x, y, z in m:"]
+        for number, step in enumerate(plan["steps"], start=1):
+            objects = ", ".join(_placed(one) for one in step["objects"])
+            lines.append(f"{number}. {step['action']} {objects}: confidence {step['confidence']:.2f}")
+    for line in lines:
+        console.print(line, highlight=False, soft_wrap=True, markup=False)
+
+
+def _placed(one: Mapping) -> str:
+    """An object of a step with its place, unless an earlier step has moved it."""
+    if one["moved"]:
+        return str(one["id"])
+    frames = [("", one["centroid"]), ("camera's frame ", one.get("centroid_camera"))]
+    return f"{one['id']} at {'; '.join(f'{name}({_xyz(place)})' for name, place in frames if place is not None)}"
+
+
+def _xyz(place: Sequence[float]) -> str:
+    return ", ".join(f"{x:.3f}" for x in place)
 
 
 def _many(n: int, noun: str) -> str:

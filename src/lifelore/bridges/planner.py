@@ -11,6 +11,10 @@ from typing import Any
 from lifelore.core.errors import InputError, LifeloreError, MissingExtraError
 
 ENGINE = "fast-downward"
+SHORT = {"fast_downward_search_config": "lazy_wastar([ff()],w=1,preferred=[ff()],boost=0)"}
+"""A search for a short plan; with up to nine objects it mostly takes a fraction of a second."""
+SHORT_SECONDS = 3.0
+"""Seconds for it at most; then the first plan that is found counts, which may take detours."""
 
 
 @dataclass(frozen=True)
@@ -52,21 +56,31 @@ def solve(domain: str, problem: str, *, timeout: float = 60.0) -> tuple[Step, ..
     """
     if not timeout > 0:
         raise InputError(f"timeout must be above 0 seconds, got {timeout}")
-    shortcuts, task = _read(domain, problem)
-    with shortcuts.OneshotPlanner(name=ENGINE) as planner:
-        result = planner.solve(task, timeout=timeout)
-    if result.status.name in ("UNSOLVABLE_PROVEN", "UNSOLVABLE_INCOMPLETELY"):
-        return None
-    if result.plan is None:
-        raise LifeloreError(f"the planner found no plan in {timeout:g} s: {result.status.name}")
-    return tuple(
-        Step(step.action.name, tuple(str(argument) for argument in step.actual_parameters))
-        for step in result.plan.actions
-    )
+    shortcuts, reader = library()
+    task = _read(reader, domain, problem)
+    first, status = min(SHORT_SECONDS, timeout / 2), ""
+    for search, seconds in ((SHORT, first), ({}, timeout - first)):
+        with shortcuts.OneshotPlanner(name=ENGINE, params=search) as planner:
+            result = planner.solve(task, timeout=seconds)
+        status = result.status.name
+        if status in ("UNSOLVABLE_PROVEN", "UNSOLVABLE_INCOMPLETELY"):
+            return None
+        if result.plan is not None:
+            return tuple(
+                Step(step.action.name, tuple(str(argument) for argument in step.actual_parameters))
+                for step in result.plan.actions
+            )
+    raise LifeloreError(f"the planner found no plan in {timeout:g} s: {status}")
 
 
-def _read(domain: str, problem: str) -> tuple[Any, Any]:
-    """The library's entry and the problem as an object of it."""
+def library() -> tuple[Any, Any]:
+    """The library's shortcuts and its reader of PDDL.
+
+    Raises
+    ------
+    MissingExtraError
+        unified-planning or the engine is not installed.
+    """
     try:
         import up_fast_downward  # noqa: F401  the engine, found by name
         from unified_planning import shortcuts
@@ -76,11 +90,16 @@ def _read(domain: str, problem: str) -> tuple[Any, Any]:
             f"planning needs the extra planning: pip install 'lifelore[planning]' ({error})"
         ) from None
     shortcuts.get_environment().credits_stream = None  # the library otherwise prints the engine's authors
+    return shortcuts, PDDLReader
+
+
+def _read(reader: Any, domain: str, problem: str) -> Any:
+    """The problem as an object of the library."""
     try:
         with warnings.catch_warnings():
             # The library's reader uses old names of its parser.
             warnings.simplefilter("ignore", DeprecationWarning)
-            return shortcuts, PDDLReader().parse_problem_string(domain, problem)
+            return reader().parse_problem_string(domain, problem)
     except Exception as error:  # the reader raises its parsers' errors of many kinds
         text = " ".join(str(error).split())
         raise InputError(f"domain and problem must be PDDL: {text[:300]}") from None

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.cloud_origin import SCENE_ITSELF, CloudOrigin
 from lifelore.core.errors import InputError
 
 UNLABELLED = 0
@@ -28,6 +29,8 @@ class LabelledCloud:
         Position of the camera, in the same frame.
     other_cameras : (k, 3) float64, optional
         Positions of further cameras, of a cloud that several views make.
+    origin : CloudOrigin
+        The way back to the cloud that was read: pose, pixels, name of the frame.
 
     Raises
     ------
@@ -40,6 +43,7 @@ class LabelledCloud:
     colours: NDArray[np.uint8] | None = None
     camera: NDArray[np.float64] | None = None
     other_cameras: NDArray[np.float64] | None = None
+    origin: CloudOrigin = SCENE_ITSELF
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -54,6 +58,9 @@ class LabelledCloud:
         others = self.other_cameras
         if others is not None and (self.camera is None or others.ndim != 2 or others.shape[1] != 3):
             raise InputError(f"other_cameras must have shape (k, 3) and stand beside a camera, got {others.shape}")
+        rows = self.origin.rows
+        if rows is not None and rows.shape != (n,):
+            raise InputError(f"origin.rows must have shape ({n},), got {rows.shape}")
 
     @property
     def objects(self) -> tuple[int, ...]:
@@ -67,8 +74,11 @@ class LabelledCloud:
 
     def of(self, label: int) -> NDArray[np.float64]:
         """The points of one object, shape ``(m, 3)``."""
-        rows = self._rows.get(label)
-        return self.points[:0] if rows is None else self.points[rows]
+        return self.points[self.rows_of(label)]
+
+    def rows_of(self, label: int) -> NDArray[np.int64]:
+        """Rows of the points of one object, ascending, shape ``(m,)``."""
+        return self._rows.get(label, np.empty(0, np.int64))
 
     @cached_property
     def _rows(self) -> dict[int, NDArray[np.int64]]:

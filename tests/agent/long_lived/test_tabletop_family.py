@@ -68,7 +68,10 @@ def test_a_replay_is_the_job():
 def test_a_raw_cloud_of_which_no_scene_can_be_made_shows_nothing(monkeypatch):
     job = TabletopJob(sample_tray(3, 0), KIND)
     rng = np.random.default_rng(0)
-    lumps = rng.uniform(-1, 1, (100, 1, 3)) + rng.normal(0, 0.02, (100, 300, 3))
+    # Side by side across the view: none hides another.
+    across, up = np.meshgrid(np.linspace(-1, 1, 10), np.linspace(-1, 1, 10))
+    places = np.stack([across, np.zeros((10, 10)), up], axis=-1).reshape(100, 1, 3)
+    lumps = places + rng.normal(0, 0.02, (100, 300, 3))
     cloud = LabelledCloud(lumps.reshape(-1, 3), np.zeros(30_000, np.int64), None, np.array([0.0, -2.0, 2.0]))
     with pytest.raises(InputError, match="objects"):
         to_scene(PointCloud(cloud.points, camera=cloud.camera), "z")

@@ -138,7 +138,7 @@ def test_clouds_in_millimetres_with_parts_and_no_table(folder):
     assert len(told) == 1
     assert "labels of 3 of 3 clouds were taken as parts" in told[0]
     for change, said in (
-        ({"units": "m"}, "millimetres"),
+        ({"units": "m"}, "looks like cm: .* m in mm"),
         ({"up": None}, "scene 'near': no table was found"),
         ({"labels": "plain"}, "names an object that the cloud does not have; it has 20, 21, 31"),
     ):

@@ -10,6 +10,7 @@ import pytest
 from lifelore.agent.perceive.perceive import STAGES, PerceiveSettings, perceive
 from lifelore.agent.perceive.relation_memory import store_model
 from lifelore.agent.perceive.scene_files import domain_path
+from lifelore.bridges.planner import Step
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import open_memory
 from lifelore.perception.clouds.point_cloud import PointCloud
@@ -67,6 +68,19 @@ def test_a_box_on_a_slab_and_one_apart(document):
     assert {"clear(3)", "clear(4)", "supports*(2, 3)"} <= set(document["facts"])
     assert document["seconds"] > 0
     assert json.loads(json.dumps(document, allow_nan=False)) == document
+
+
+@pytest.mark.slow
+def test_the_boxes_are_where_the_boxes_stand(document):
+    places = {2: ([0.1, 0.075, 0.025], [0.2, 0.15, 0.05]), 3: ([0.09, 0.07, 0.11], [0.08, 0.06, 0.12])}
+    for number, (centre, size) in places.items():
+        one = document["objects"][number - 2]
+        assert one["box"]["centre"] == one["box_camera"]["centre"] == pytest.approx(centre, abs=0.002)
+        assert one["box"]["size"] == pytest.approx(size, abs=0.003)
+        assert np.abs(one["box"]["axes"]) == pytest.approx(np.eye(3), abs=0.02)
+        assert one["top"] == pytest.approx(centre[2] + size[2] / 2, abs=0.002)
+    supports = [one["support"] for one in document["objects"]]
+    assert supports == pytest.approx([0, 0.05, 0], abs=0.002)
 
 
 @pytest.mark.slow
@@ -184,3 +198,22 @@ def test_an_output_that_cannot_be_written_is_told_before_the_work(tmp_path, outp
         perceive("no such cloud.pcd", **{output: str(tmp_path)})
     with pytest.raises(InputError, match="cannot be written"):
         perceive("no such cloud.pcd", **{output: str(tmp_path / "no" / "file")})
+
+
+def test_a_planner_of_your_own_plans_in_the_scene(pile):
+    asked = []
+
+    def solve(domain, problem):
+        asked.append((domain, problem))
+        return [Step("pick-up", ("o3",)), Step("put-on", ("o3", "o4"))]
+
+    plan = perceive(pile, PerceiveSettings(up="z", goal="on(o3, o4)", planner=solve))["plan"]
+    ((domain, problem),) = asked
+    assert domain.startswith("(define (domain")
+    assert "(:goal (on o3 o4))" in problem
+    assert [[one["id"] for one in step["objects"]] for step in plan["steps"]] == [[3], [3, 4]]
+    (first,) = plan["steps"][0]["objects"]
+    np.testing.assert_allclose(first["centroid"][:2], [0.09, 0.07], atol=0.03)
+    assert plan["reason"] is None
+    with pytest.raises(InputError, match="needs a goal"):
+        PerceiveSettings(planner=solve)

@@ -13,7 +13,9 @@ pytest.importorskip("playwright", reason="needs the extra browser")
 
 from playwright.sync_api import Browser, Page, expect
 
-from lifelore.agent.perceive.perceive import perceive
+from lifelore.agent.perceive.perceive import PerceiveSettings, perceive
+from lifelore.perception.clouds.cloud_file import read_cloud
+from lifelore.perception.segmentation.region import Region
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
@@ -122,6 +124,49 @@ def test_doubtful_relations_fall_below_the_least_confidence(serve_pages: Callabl
     assert "digraph" in Path(saved.value.path()).read_text()
 
 
+def test_bars_are_as_long_as_their_confidence(serve_pages: Callable[..., str], open_page: Opened):
+    page = open_page(serve_pages() + "/see")
+    shown(page, TOWER)
+    page.select_option("#example", "crowded_table")
+    shown(page, "6 objects, 7 relations")
+    own = perceive(str(EXAMPLES / "crowded_table.pcd"))
+    expected = [r["confidence"] for r in own["relations"] if r["relation"] != "none"]
+    shares = page.eval_on_selector_all(
+        "#relations .bar", "bars => bars.map(b => b.firstChild.offsetWidth / b.offsetWidth)"
+    )
+    assert shares == pytest.approx(expected, abs=0.02)
+    assert min(expected) < 0.9
+
+
+def test_a_range_and_a_box_cut_the_cloud(serve_pages: Callable[..., str], open_page: Opened):
+    page = open_page(serve_pages() + "/see")
+    shown(page, TOWER)
+    page.select_option("#example", "crowded_table")
+    shown(page, "6 objects")
+    points = read_cloud(EXAMPLES / "crowded_table.pcd").points
+    middle = float(np.median(points[:, 0]))
+    box = f"-9,{middle},-9,9,-9,9"
+    page.get_by_label("Only in the box").fill(box)
+    page.get_by_label("Only in the box").press("Enter")
+    settings = PerceiveSettings(region=Region(tuple(map(float, box.split(",")))))
+    left = perceive(str(EXAMPLES / "crowded_table.pcd"), settings)
+    assert len(left["objects"]) < 6
+    shown(page, f"{len(left['objects'])} objects")
+    page.get_by_label("Only in the box").fill("")
+    page.get_by_label("Only in the box").press("Enter")
+    shown(page, "6 objects")
+    page.select_option("#up", "vector")
+    page.locator("#vector").fill("0,0,3")
+    page.locator("#vector").press("Enter")
+    upright = perceive(str(EXAMPLES / "crowded_table.pcd"), PerceiveSettings(up=(0, 0, 3)))
+    shown(page, f"{len(upright['objects'])} objects, ")
+    page.select_option("#up", "table")
+    page.get_by_label("Only within").fill("9")
+    page.get_by_label("Only within").press("Enter")
+    expect(page.locator("#message")).to_be_hidden(timeout=LOADED)
+    shown(page, "6 objects")
+
+
 def test_own_files_are_analysed_with_their_warnings(
     serve_pages: Callable[..., str], open_page: Opened, tmp_path: Path
 ):
@@ -146,6 +191,7 @@ def test_own_files_are_analysed_with_their_warnings(
     message = page.locator("#message")
     expect(message).to_contain_text("notes.txt is no PCD, PLY, npz or npy file")
     expect(message).to_have_attribute("role", "alert")
+    expect(page.locator("#objects button")).to_have_count(0)
 
 
 def depth_image(folder: Path) -> dict[str, Path]:
@@ -264,7 +310,7 @@ def test_the_thumb_of_the_confidence_is_at_the_end_of_its_track(
     assert blue().max() > 0.97
 
 
-def test_a_damaged_file_is_one_line_and_the_scene_stays(serve_pages: Callable[..., str], browser: Browser):
+def test_a_damaged_file_is_one_line_and_clears_the_scene(serve_pages: Callable[..., str], browser: Browser):
     # Not by `open_page`: the browser itself logs each answer that is an error.
     with browser.new_context(viewport=DESKTOP) as context:  # pyright: ignore[reportArgumentType]
         page = context.new_page()
@@ -273,9 +319,27 @@ def test_a_damaged_file_is_one_line_and_the_scene_stays(serve_pages: Callable[..
         drop(page, "broken.pcd", b"no cloud")
         message = page.locator("#message")
         expect(message).to_have_class("message error")
-        expect(message).to_contain_text("cloud.pcd")
+        expect(message).to_contain_text("broken.pcd: PCD header has no DATA line")
         expect(message).not_to_contain_text("tmp")
+        expect(page.locator("#example")).to_have_value("")
+        for cleared in ("#objects", "#relations", "#details", "#warnings"):
+            expect(page.locator(cleared)).to_have_text("")
+        shown(page, "No scene")
+        assert pixels(page, (230, 159, 0)) == 0
+        expect(page.get_by_role("button", name="Save the graph")).to_be_disabled()
+        page.select_option("#example", "tower")
         shown(page, TOWER)
+        expect(page.get_by_role("button", name="Save the graph")).to_be_enabled()
+        # A range that holds no point fails too, and the message names a field of the page.
+        page.get_by_label("Only within").fill("0.01")
+        page.get_by_label("Only within").press("Enter")
+        expect(message).to_contain_text("the region (roi, max_range) holds no point")
+        expect(page.locator("#objects button")).to_have_count(0)
+        page.get_by_label("Only within").fill("")
+        page.select_option("#up", "vector")
+        page.locator("#vector").fill("up")
+        page.locator("#vector").press("Enter")
+        expect(message).to_contain_text("tower.pcd: up must be", timeout=LOADED)
 
 
 @pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])

@@ -47,7 +47,7 @@ def cloud():
 
 def ask(client, content, **options):
     return client.post(
-        "/v1/perceive/cloud", content=content, params={"up": "z", **options},
+        "/v1/perceive/cloud", content=content, params={"up": "z"} | options,
         headers=FILE,
     )  # fmt: skip
 
@@ -61,11 +61,56 @@ def test_a_cloud_becomes_a_scene_with_pddl(serve, cloud, tmp_path):
     from lifelore.agent.perceive.perceive import PerceiveSettings
 
     own = perceive(str(tmp_path / "cloud.npy"), PerceiveSettings(up="z"))
+    masked = ask(serve(), content, format="npy", with_masks=True).json()
+    assert all(len(one["points"]) == one["n_points"] for one in masked["objects"])
     for key in own.keys() - {"seconds", "source"}:
         assert document[key] == own[key], key
     assert "(define (problem" in document["pddl"]["problem"]
     assert "(define (domain" in document["pddl"]["domain"]
     assert document["dot"].startswith("digraph")
+
+
+@pytest.fixture(scope="module")
+def pile(cloud):
+    """The same with the table labelled, so that the boxes are objects 2 and 3."""
+    file = io.BytesIO()
+    np.save(file, cloud[1] + [0, 0, 0, 1])
+    return file.getvalue()
+
+
+@pytest.mark.planning
+def test_a_goal_is_planned_for(serve, pile):
+    client = serve()
+    plan = ask(client, pile, format="npy", goal="holding(o2)", plan=True).json()["plan"]
+    named = [(step["action"], step["objects"][0]["id"]) for step in plan["steps"]]
+    assert (named[0], named[-1], len(named)) == (("pick-up", 3), ("pick-up", 2), 3)
+    assert plan["reason"] is None
+    refused = ask(client, pile, format="npy", plan=True)
+    assert refused.status_code == 422
+    assert "plan (--plan) needs a goal" in refused.text
+
+
+def test_up_is_a_direction(serve, pile):
+    client = serve()
+    stated = {
+        up: {(r["relation"], r["a"], r["b"]) for r in ask(client, pile, format="npy", up=up).json()["relations"]}
+        for up in ("z", "0,0,2")
+    }
+    assert stated["z"] == stated["0,0,2"] >= {("on", 3, 2)}
+    for wrong in ("0,0", "a,b,c", "sideways"):
+        refused = ask(client, pile, format="npy", up=wrong)
+        assert refused.status_code == 422
+        assert "up must be" in refused.text
+
+
+def test_a_region_is_cut_out(serve, pile):
+    client = serve()
+    (only,) = ask(client, pile, format="npy", roi="-1,1,-1,1,-1,0.09").json()["objects"]
+    assert only["id"] == 2
+    refused = ask(client, pile, format="npy", roi="1,2")
+    assert refused.status_code == 422
+    assert "roi must be six numbers" in refused.text
+    assert "max_range must be a positive number" in ask(client, pile, format="npy", max_range=-1).text
 
 
 @pytest.fixture(scope="module")
@@ -110,6 +155,13 @@ def test_a_depth_image_comes_with_the_file_of_its_camera_and_masks(serve, depth)
     asked = depth | {"intrinsics": camera, "masks": encoded(masks)}
     document = client.post("/v1/perceive/depth", json=asked).json()
     assert [one["id"] for one in document["objects"]] == [2, 3]
+    assert not any("mask" in one for one in document["objects"])
+    masked = client.post("/v1/perceive/depth", json=asked | {"with_masks": True}).json()
+    # Column 60 of 120 rows begins at pixel 7200; 40 rows of each of 20 columns are the first half.
+    assert masked["objects"][0]["mask"] == {"size": [120, 160], "counts": [7240, *[40, 80] * 19, 40, 9640]}
+    # The block lies 0.9 m in front of the camera, to the right of its axis or to the left.
+    assert [np.sign(one["centroid_camera"][0]) for one in document["objects"]] == [-1, 1]
+    assert all(one["centroid_camera"][2] == pytest.approx(0.9, abs=0.01) for one in document["objects"])
     body = client.post("/v1/perceive/depth/points", json=asked).content
     (n,) = struct.unpack("<I", body[:4])
     labels = np.frombuffer(body, "<i4", n, 4 + 12 * n)

@@ -1,6 +1,7 @@
 """Intrinsics from three kinds of files, lens distortion and its inverse, and files that break a rule."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.camera_intrinsics import CameraIntrinsics, read_intrinsics
+from lifelore.perception.clouds.point_cloud import PointCloud
 
 PLAIN = {"fx": 525.0, "fy": 520.0, "cx": 319.5, "cy": 239.5, "width": 640, "height": 480}
 CAMERA_INFO = """\
@@ -58,9 +60,11 @@ def test_plain_json_a_camera_info_file_and_a_printed_message_agree(tmp_path: Pat
     assert plain == CameraIntrinsics(640, 480, 525.0, 520.0, 319.5, 239.5)
     from_file = read_intrinsics(written(tmp_path, CAMERA_INFO))
     assert from_file == CameraIntrinsics(640, 480, 525.0, 520.0, 319.5, 239.5, (0.1, -0.2, 0.001, 0.002, 0.05))
-    assert read_intrinsics(written(tmp_path, MESSAGE)) == plain
+    named = replace(plain, frame="camera")
+    assert read_intrinsics(written(tmp_path, MESSAGE)) == named
     older = MESSAGE.replace("\nd:", "\nD:").replace("\nk:", "\nK:")
-    assert read_intrinsics(written(tmp_path, older)) == plain
+    assert read_intrinsics(written(tmp_path, older)) == named
+    assert PointCloud.from_depth(np.ones((480, 640)), named).frame == ("camera", None)
 
 
 def test_rays_of_a_pinhole_by_hand() -> None:

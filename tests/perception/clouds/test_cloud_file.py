@@ -86,7 +86,7 @@ def test_a_cloud_knows_whether_its_labels_were_parts(tmp_path, labels, rule, ids
 def test_a_bad_option_is_refused(tmp_path):
     path = tmp_path / "cloud.pcd"
     path.write_bytes(PCD)
-    with pytest.raises(InputError, match="units must be m or mm"):
-        read_cloud(path, units="inch")
+    with pytest.raises(InputError, match="units must be m, cm, mm or inch"):
+        read_cloud(path, units="feet")
     with pytest.raises(InputError, match="labels must be one of"):
         read_cloud(np.zeros((2, 3)), labels="none")

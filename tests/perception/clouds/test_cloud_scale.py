@@ -1,10 +1,10 @@
-"""Metres and millimetres, and points no sensor can have seen."""
+"""Metres and other units, and points no sensor can have seen."""
 
 import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.perception.clouds.cloud_scale import in_metres
+from lifelore.perception.clouds.cloud_scale import UNITS, in_metres
 from lifelore.perception.clouds.point_cloud import PointCloud
 
 RNG = np.random.default_rng(5)
@@ -15,14 +15,18 @@ def test_metres_stay_as_they_are():
     np.testing.assert_array_equal(in_metres(PointCloud(TABLE_TOP)).points, TABLE_TOP)
 
 
-def test_millimetres_are_noticed_and_the_option_named():
-    with pytest.raises(InputError, match=r"looks like millimetres: .*units=mm"):
-        in_metres(PointCloud(TABLE_TOP * 1000))
+@pytest.mark.parametrize("unit", ["cm", "mm", "inch"])
+def test_other_units_are_noticed_named_and_understood(unit):
+    numbers = TABLE_TOP / UNITS[unit]
+    with pytest.raises(InputError, match=rf"looks like {unit}: .*--units {unit}\)"):
+        in_metres(PointCloud(numbers))
+    np.testing.assert_allclose(in_metres(PointCloud(numbers), unit).points, TABLE_TOP)
 
 
 def test_a_single_small_object_in_millimetres_is_noticed():
+    """It might be a table in inches too, so its width in each unit is named."""
     cube = RNG.uniform(0, 30.0, (500, 3))
-    with pytest.raises(InputError, match="looks like millimetres"):
+    with pytest.raises(InputError, match=r"looks like inch: .* m in cm, .* m in mm, .* m in inch"):
         in_metres(PointCloud(cube))
 
 
@@ -51,7 +55,7 @@ def test_a_stray_point_is_dropped_and_does_not_count_for_the_width():
 
 def test_a_small_scene_far_from_the_origin_of_its_map_is_a_scene():
     np.testing.assert_array_equal(in_metres(PointCloud(TABLE_TOP + 5e6)).points, TABLE_TOP + 5e6)
-    with pytest.raises(InputError, match="too far for millimetres"):
+    with pytest.raises(InputError, match="too far to resolve millimetres"):
         in_metres(PointCloud(TABLE_TOP + 1e12))
 
 
@@ -66,5 +70,5 @@ def test_nothing_finite_is_refused(points):
 
 
 def test_other_units_are_refused():
-    with pytest.raises(InputError, match="units must be m or mm, got 'cm'"):
-        in_metres(PointCloud(TABLE_TOP), "cm")
+    with pytest.raises(InputError, match="units must be m, cm, mm or inch, got 'feet'"):
+        in_metres(PointCloud(TABLE_TOP), "feet")

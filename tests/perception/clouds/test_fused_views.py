@@ -31,6 +31,8 @@ def test_points_and_cameras_stand_in_the_first_frame() -> None:
     np.testing.assert_allclose(whole.other_cameras, [[1, 2, 3]], atol=1e-12)
     assert whole.colours is not None
     assert whole.grid is None
+    assert whole.source_rows is not None
+    assert whole.source_rows.tolist() == [-1, -1, -1]
 
 
 def test_a_place_seen_twice_is_one_point_for_each_label() -> None:

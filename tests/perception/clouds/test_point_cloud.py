@@ -27,6 +27,9 @@ def test_only_keeps_what_belongs_together_and_the_pixels() -> None:
     assert part.pixels.tolist() == [[1, 1], [0, 0]]
     assert part.only(np.array([False, True])).pixels.tolist() == [[0, 0]]
     assert part.camera is cloud.camera
+    loose = PointCloud(POINTS).only(np.array([True, False, True, True])).only(np.array([2, 0]))
+    assert loose.source_rows is not None
+    assert loose.source_rows.tolist() == [3, 0]
     assert PointCloud(POINTS, from_parts=True).only(np.array([0])).from_parts
 
 
@@ -51,10 +54,10 @@ def test_labels_of_nothing_but_zero_are_no_labels() -> None:
         ({"labels": np.full(4, -1)}, "from 0"),
         ({"colours": np.zeros((4, 4), np.uint8)}, "colours must have shape"),
         ({"grid": (3, 2)}, "must hold the 4 points"),
-        ({"pixel_numbers": np.arange(4)}, "numbers of pixels in a grid"),
-        ({"grid": (3, 2), "pixel_numbers": np.arange(3)}, "must be 4 numbers"),
-        ({"grid": (3, 2), "pixel_numbers": np.array([0, 1, 2, 6])}, "lie in 0 to 5"),
-        ({"grid": (3, 2), "pixel_numbers": np.array([0, 1, 2, -1])}, "lie in 0 to 5"),
+        ({"source_rows": np.arange(3)}, "source_rows must be 4"),
+        ({"grid": (3, 2), "source_rows": np.arange(3)}, "must be 4 numbers"),
+        ({"grid": (3, 2), "source_rows": np.array([0, 1, 2, 6])}, "lie in 0 to 5"),
+        ({"grid": (3, 2), "source_rows": np.array([0, 1, 2, -1])}, "lie in 0 to 5"),
         ({"camera": np.zeros(2)}, "camera must have shape"),
         ({"camera": np.array([0, np.nan, 0])}, "camera must be three finite numbers"),
         ({"camera": np.array([0, 0, -np.inf])}, "camera must be three finite numbers"),

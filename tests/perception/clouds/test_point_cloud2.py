@@ -34,6 +34,13 @@ def test_points_colours_and_shape(order):
     assert cloud.camera.tolist() == [0, 0, 0]
 
 
+def test_the_header_names_the_frame_and_the_time_in_ros_2_and_ros_1():
+    assert cloud_from_message(message()).frame == (None, None)
+    for stamp in (SimpleNamespace(sec=7, nanosec=250_000_000), SimpleNamespace(secs=7, nsecs=250_000_000)):
+        header = SimpleNamespace(frame_id="camera_optical", stamp=stamp)
+        assert cloud_from_message(message(header=header)).frame == ("camera_optical", 7.25)
+
+
 def test_the_last_row_may_come_without_its_padding():
     assert len(cloud_from_message(message(data=message().data[:-4])).points) == 4
 

@@ -31,14 +31,16 @@ def strip(x: float, n: int) -> np.ndarray:
     return np.column_stack([np.full(n, x), np.arange(n) * 0.01, np.zeros(n)])
 
 
-def test_small_clusters_go_but_the_strongest_stays():
+def test_small_clusters_go_and_where_both_objects_are_clustered_the_strongest_stays():
     points = np.vstack([strip(0.0, 9), strip(0.2, 3), strip(0.4, 8)])
     alpha = np.concatenate([np.full(9, 1.0), np.full(3, 5.0), np.full(8, 1.0)])
     assert [rows.tolist() for rows in contact_clusters(points, alpha, 0.025, 7)] == [
         list(range(9)),
         list(range(12, 20)),
     ]
-    assert [len(rows) for rows in contact_clusters(points, alpha, 0.025, 100)] == [3]
+    assert contact_clusters(points, alpha, 0.025, 100) == []
+    for side in facing_clusters(points, alpha, points, alpha, 0.025, 100):
+        assert [rows.tolist() for rows in side] == [[9, 10, 11]]
     assert len(contact_clusters(points, alpha, 0.025, 1)) == 3
 
 
@@ -60,10 +62,9 @@ def test_a_contact_cut_in_two_on_one_object_is_one_where_the_other_holds_it_toge
     assert [rows.tolist() for rows in found[1]] == [list(range(15, 30)), list(range(15))]
 
 
-def test_a_contact_is_the_weighted_centroid_with_its_extent():
+def test_a_contact_has_the_extent_and_strength_of_its_support_vectors():
     points = np.array([[0.0, 0, 0], [0.03, 0, 0], [0.0, 0.01, 0]])
-    one = contact_point(points, np.array([1.0, 2.0, 1.0]), np.array([0.0, 0, 1]), 7)
-    np.testing.assert_allclose(one.position, [0.015, 0.0025, 0])
+    one = contact_point(points[0], points, np.array([1.0, 2.0, 1.0]), np.array([0.0, 0, 1]), 7)
     assert (one.strength, one.n_support, one.other) == (4.0, 3, 7)
     assert np.isclose(one.extent[2], 0)
 

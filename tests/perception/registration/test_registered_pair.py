@@ -43,6 +43,23 @@ def test_an_object_that_moved_between_the_views_is_doubted(blocks_seen) -> None:
     assert found.doubt is not None
 
 
+def test_the_place_where_a_small_object_moved_is_named(blocks_seen) -> None:
+    """Most of the cells agree: only 3 % of them are the small block's, on the table of the other view."""
+    large = ((-0.2, -0.15, 0.2, 0.2, 0.08), (0.05, -0.1, 0.14, 0.2, 0.15))
+    before, after = ((*large, (0.1, 0.2, 0.03, 0.03, 0.04)), (*large, (0.1, 0.28, 0.03, 0.03, 0.04)))
+    away = tilted_away()
+    found = registered_pair(blocks_seen(away, before), blocks_seen(blocks=after))
+    assert found is not None
+    assert found.agreement.share > 0.96
+    assert found.moved is not None
+    assert "something moved between them, at " in str(found.doubt)
+    place = (found.moved - away[:3, 3]) @ away[:3, :3]
+    assert min(np.linalg.norm(place - [0.115, y, 0.02]) for y in (0.215, 0.295)) < 0.015
+    still = registered_pair(blocks_seen(away, before), blocks_seen(blocks=before))
+    assert still is not None
+    assert (still.moved, still.doubt) == (None, None)
+
+
 def test_doubts_in_words() -> None:
     assert Registration(np.eye(4), Agreement(90, 1, 100), 0.2).doubt is None
     assert "fit in more than one way" in str(Registration(np.eye(4), Agreement(90, 1, 100), 0.8).doubt)

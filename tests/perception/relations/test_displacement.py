@@ -3,15 +3,10 @@
 import numpy as np
 import pytest
 from sklearn.neighbors import KNeighborsClassifier
-from sklearn.utils.estimator_checks import parametrize_with_checks
 
-from lifelore.perception.relations.displacement import DisplacementNeighbours
-from lifelore.perception.relations.displacement_relations import DisplacementRelations
-
-
-@parametrize_with_checks([DisplacementNeighbours(), DisplacementNeighbours(omega=0.5, weights="distance")])
-def test_the_estimator_is_scikit_learns(estimator, check):
-    check(estimator)
+from lifelore.core.errors import InputError
+from lifelore.perception.relations.displacement import short_enough, votes
+from lifelore.perception.relations.displacement_relations import DisplacementRelations, NeighbourSettings
 
 
 @pytest.mark.parametrize("weights", ["uniform", "distance"])
@@ -23,22 +18,24 @@ def test_votes_are_those_of_scikit_learns_neighbours(weights):
         rng.normal(size=(40, 3)),
     )
     asked[0] = known[3]
-    ours = DisplacementNeighbours(4, weights=weights).fit(known, names).predict_proba(asked)
+    ours = votes(known, np.unique(names, return_inverse=True)[1], 3, asked, 4, weights)
     theirs = KNeighborsClassifier(4, weights=weights).fit(known, names).predict_proba(asked)
     np.testing.assert_allclose(ours, theirs, atol=1e-12)
 
 
 def test_long_displacements_are_not_learnt_from_but_no_class_is_lost():
     known = np.array([[0.01, 0, 0], [0.02, 0, 0], [0.5, 0, 0], [0.6, 0, 0]])
-    fitted = DisplacementNeighbours(k=1, omega=0.1).fit(known, ["a", "a", "b", "b"])
-    assert fitted.displacements_[:, 0].tolist() == [0.01, 0.02, 0.5]
-    assert fitted.predict([[0.55, 0, 0]]).tolist() == ["b"]
+    codes = np.array([0, 0, 1, 1])
+    assert short_enough(known, codes, 0.1).tolist() == [True, True, True, False]
+    assert short_enough(known, codes, None).all()
+    assert short_enough(known, codes, 0.005).tolist() == [True, False, True, False]
 
 
-def test_wrong_settings_are_refused():
-    for wrong in (DisplacementNeighbours(k=0), DisplacementNeighbours(weights="even")):
-        with pytest.raises(ValueError, match="weights"):
-            wrong.fit(np.zeros((2, 3)), [0, 1])
+@pytest.mark.parametrize("wrong", [{"k": 0}, {"k": 2.5}, {"omega": 0.0}, {"weights": "even"}])
+def test_wrong_settings_are_refused(wrong):
+    (name,) = wrong
+    with pytest.raises(InputError, match=name):
+        NeighbourSettings(**wrong)
 
 
 def relations() -> DisplacementRelations:

@@ -9,6 +9,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, NONE, ON, PairLabel
 from lifelore.core.streams import stream
+from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.pairs.scene_pairs import ScenePairs, scene_pairs
 from lifelore.perception.relations.relation_classifier import RelationClassifier
 from lifelore.perception.trees.tree_training import TreeSettings
@@ -50,6 +51,21 @@ def blocks(number: int) -> tuple[LabelledCloud, list[PairLabel]]:
 
 
 Lessons = tuple[list[ScenePairs], list[list[PairLabel]]]
+
+
+def test_as_printed_a_pair_without_contacts_has_no_relation_and_the_form_is_stored(tmp_path):
+    settings = ContactSettings.of_thesis()
+    scenes = [scene_pairs(cloud, settings=settings) for cloud, _ in map(blocks, range(8))]
+    model = RelationClassifier("displacement", settings=settings).fit(scenes, [blocks(n)[1] for n in range(8)])
+    model.save(tmp_path / "printed.npz")
+    again = RelationClassifier.load(tmp_path / "printed.npz")
+    assert again.settings == settings
+    slab = surface((0, 0, 0), (0.1, 0.1, 0.02), 0.004)
+    needle = np.column_stack([np.full((10, 2), 0.05), 0.025 + 0.01 * np.arange(10)])
+    cloud = LabelledCloud(np.vstack([slab, needle]), np.repeat([2, 3], [len(slab), 10]))
+    assert scene_pairs(cloud, settings=settings).displacements[0].shape == (0, 3)
+    assert again.predict(cloud) == ()
+    assert (3, 2, ON) in {(r.a, r.b, r.relation) for r in again.predict(blocks(0)[0])}
 
 
 @pytest.fixture(scope="module")

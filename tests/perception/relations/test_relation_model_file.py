@@ -248,6 +248,7 @@ HEADERS = [
     ("trees", ("settings", "near"), float("inf"), "near"),
     ("trees", ("settings", "cost"), True, "cost"),
     ("trees", ("settings", "wide_cost"), 0, "wide_cost"),
+    ("trees", ("settings", "as_printed"), 1, "as_printed must be true or false"),
     ("trees", ("settings", "colour"), 1, "colour"),
     ("trees", ("names",), "on", "names must be a list"),
     ("trees", ("names", 0), "~on", "names must neither"),

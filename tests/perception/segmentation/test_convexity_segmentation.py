@@ -213,13 +213,15 @@ def test_hostile_points_give_labels_for_all():
 @pytest.mark.skipif("LIFELORE_DATA" not in os.environ, reason="LIFELORE_DATA is not set")
 def test_real_scenes_are_cut_as_well_as_measured():
     scenes = []
-    for path in sorted((Path(os.environ["LIFELORE_DATA"]) / "osd").glob("*.pcd")):
+    folders = [Path(os.environ["LIFELORE_DATA"]) / name for name in ("osd", "osd_hard")]
+    for path in sorted(path for folder in folders for path in folder.glob("*.pcd")):
         cloud = read_cloud(path)
         scene = to_scene(PointCloud(cloud.points, camera=cloud.camera))
         assert cloud.labels is not None
         scenes.append(overlaps(cloud.labels[cloud.measured], scene.labels))
     score = segmentation_score(scenes)
-    assert score.weighted_overlap.value >= 0.92
-    assert score.over.value <= 0.075
-    assert score.under.value <= 0.02
-    assert score.found.value >= 0.95
+    # Over shifts of the voxels: 0.955 to 0.97, 0.02 to 0.03, 0.01 to 0.05, and 0.97 to 0.99.
+    assert score.weighted_overlap.value >= 0.94
+    assert score.over.value <= 0.04
+    assert score.under.value <= 0.06
+    assert score.found.value >= 0.96

@@ -2,15 +2,20 @@
 
 import csv
 import os
+from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from lifelore.core.cloud_origin import SensorFrame
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.segmentation.table_frame import table_plane, to_scene, upright
+from lifelore.perception.clouds.voxel import thinned
+from lifelore.perception.segmentation.region import Region
+from lifelore.perception.segmentation.table_frame import segmented_scene, table_plane, to_scene, upright
 
 
 def table_top(rng, height=0.0):
@@ -49,6 +54,31 @@ def test_a_table_seen_by_a_camera_is_set_upright(labelled):
                                np.linalg.norm((points - CAMERA)[:, :2], axis=1), atol=3 * near)  # fmt: skip
     assert (scene.points[:, 1] > scene.camera[1]).all()
     assert scene.objects == (2,)
+
+
+def test_points_of_a_scene_lead_back_to_the_pixels_and_the_frame_of_the_cloud(monkeypatch):
+    points, labels = table_top(np.random.default_rng(3))
+    points, labels = points[: len(points) // 50 * 50], labels[: len(points) // 50 * 50]
+    cloud = PointCloud(
+        seen(points), labels, grid=(len(points) // 50, 50), camera=np.zeros(3), frame=SensorFrame("eye", 3.5)
+    )
+    cloud.points[::7] = np.nan
+    near = Region(max_range=1.4)
+    for given in (cloud, replace(cloud, labels=None), replace(cloud, grid=None)):
+        scene = segmented_scene(given, region=near).cloud
+        origin = scene.origin
+        assert origin.frame == ("eye", 3.5)
+        assert origin.rows is not None
+        assert 0 < len(origin.rows) < np.count_nonzero(cloud.measured)
+        np.testing.assert_allclose(origin.in_camera(scene.points), cloud.points[origin.rows], atol=1e-12)
+        np.testing.assert_allclose(origin.T_camera_scene, np.linalg.inv(origin.T_scene_camera), atol=1e-12)
+        if given.grid is None:
+            assert origin.pixels is None
+        else:
+            assert origin.pixels is not None
+            assert (origin.pixels @ [50, 1] == origin.rows).all()
+    monkeypatch.setattr("lifelore.perception.segmentation.table_frame.thinned", partial(thinned, at_most=1000))
+    assert to_scene(cloud).origin.rows is None
 
 
 def test_the_side_of_the_objects_is_up_even_when_the_camera_is_said_to_be_below():
@@ -112,7 +142,7 @@ def test_another_up_is_refused(up):
 def test_objects_alone_do_not_tell_up():
     points, labels = table_top(np.random.default_rng(9))
     box = labels == 2
-    with pytest.raises(InputError, match="give up as a vector or 'z'"):
+    with pytest.raises(InputError, match="--up X,Y,Z"):
         to_scene(PointCloud(points[box], labels[box]))
 
 

@@ -107,7 +107,7 @@ def test_same_as_libsvm(name, n, length, cost):
 
 
 @pytest.mark.slow
-def test_same_as_libsvm_where_levels_and_expansions_take_part():
+def test_same_as_libsvm_where_working_sets_and_expansions_take_part():
     first, second = PAIRS["touching boxes"](4500)
     found = separate(first, second, length=0.06, cost=4.0, tolerance=1e-5)
     twin = libsvm(first, second, 0.06, 4.0, 1e-7)
@@ -245,7 +245,7 @@ def mixed(n, seed=0, side=0.3):
     return points[0], points[1]
 
 
-@pytest.mark.parametrize("side", [0.2, 0.05, 0.01])  # one level, three, and five
+@pytest.mark.parametrize("side", [0.2, 0.05, 0.01])  # many cells of the far field, some, and one
 @pytest.mark.parametrize("max_work", [1e3, 3e4, 1e5, 3e5, 1e6, 4e6, 1e7])
 def test_too_little_work_is_owned_up_to(max_work, side):
     first, second = mixed(1200, side=side)
@@ -280,7 +280,7 @@ def test_work_is_counted_and_bounded(monkeypatch):
 def test_work_that_suffices_changes_no_bit():
     first, second = PAIRS["touching boxes"](3000)
     one = separate(first, second, length=0.06, cost=5.0, max_work=np.inf)
-    two = separate(first, second, length=0.06, cost=5.0, max_work=2000 * 6000)
+    two = separate(first, second, length=0.06, cost=5.0, max_work=5000 * 6000)
     assert np.array_equal(one.alpha_first, two.alpha_first)
     assert one.bias == two.bias
     assert one.max_violation == two.max_violation <= 1e-3

@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 from sklearn.ensemble import ExtraTreesClassifier
-from sklearn.utils.estimator_checks import parametrize_with_checks
 
 from lifelore.core.errors import InputError
-from lifelore.perception.trees.tree_classifier import TreeClassifier
 from lifelore.perception.trees.tree_ensemble import TreeEnsemble
+from lifelore.perception.trees.tree_training import TreeSettings, extra_trees
 
 
 @pytest.fixture(scope="module")
@@ -56,11 +55,16 @@ def test_arrays_there_and_back_and_damage_is_refused(forest):
         TreeEnsemble.from_arrays(arrays)
 
 
-@parametrize_with_checks([TreeClassifier(n_trees=5)])
-def test_the_estimator_is_scikit_learns(estimator, check):
-    check(estimator)
+def test_settings_are_scikit_learns_and_classes_are_sorted():
+    rng = np.random.default_rng(4)
+    rows, names = rng.normal(size=(200, 4)), rng.choice(["on", "adjacent", "none"], 200)
+    settings = TreeSettings(n_trees=7, min_leaf=3, feature_share=0.5, seed=5)
+    classes, trees = extra_trees(rows, names, settings)
+    twin = ExtraTreesClassifier(7, min_samples_leaf=3, max_features=0.5, random_state=5).fit(rows, names)
+    assert classes == ("adjacent", "none", "on")
+    np.testing.assert_allclose(trees.predict_proba(rows), twin.predict_proba(rows), atol=1e-6)
 
 
 def test_one_class_is_always_that_class():
-    trees = TreeClassifier(3).fit(np.zeros((4, 2)), ["on"] * 4)
-    assert trees.predict(np.ones((2, 2))).tolist() == ["on", "on"]
+    classes, trees = extra_trees(np.zeros((4, 2)), np.array(["on"] * 4), TreeSettings(n_trees=3))
+    assert (classes, trees.predict_proba(np.ones((2, 2))).tolist()) == (("on",), [[1.0], [1.0]])

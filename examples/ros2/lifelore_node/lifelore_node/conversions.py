@@ -89,14 +89,15 @@ def cloud_points(message: Any) -> np.ndarray:
 def perceived(url: str, points: np.ndarray, token: str = "", seconds: float = 60.0) -> dict[str, Any]:
     """The scene of a cloud as `POST /v1/perceive/cloud` of `lifelore serve` answers it.
 
+    The camera stands at the origin of the points' frame, as in the optical frame of a depth camera.
     Raises ValueError with the words of the service where it refuses, and OSError where it does not answer.
     """
     file = io.BytesIO()
-    np.save(file, points)
+    np.savez(file, points=points, camera=np.zeros(3))
     headers = {"Content-Type": "application/octet-stream"}
     if token:
         headers["Authorization"] = f"Bearer {token}"
-    request = Request(f"{url}/v1/perceive/cloud?format=npy", file.getvalue(), headers)
+    request = Request(f"{url}/v1/perceive/cloud?format=npz", file.getvalue(), headers)
     try:
         with urlopen(request, timeout=seconds) as answer:
             return json.load(answer)
@@ -104,12 +105,11 @@ def perceived(url: str, points: np.ndarray, token: str = "", seconds: float = 60
         raise ValueError(json.load(error)["error"]["message"]) from None
 
 
-def relations_text(scene: dict[str, Any]) -> dict[str, str]:
-    """Fields of `std_msgs/String`: stated relations, facts and warnings of a scene as JSON."""
-    keys = ("a", "b", "relation", "confidence")
-    stated = [
-        {key: found[key] for key in keys}
-        for found in scene["relations"]
-        if found["stated"] and found["relation"] != "none"
-    ]
-    return {"data": json.dumps({"relations": stated, "facts": scene["facts"], "warnings": scene["warnings"]})}
+def header_fields(header: Any) -> dict[str, Any]:
+    """Fields of a `std_msgs/Header`, for messages of what was seen in it."""
+    return {"stamp": {"sec": header.stamp.sec, "nanosec": header.stamp.nanosec}, "frame_id": header.frame_id}
+
+
+def facts_text(scene: dict[str, Any]) -> dict[str, str]:
+    """Fields of `std_msgs/String`: facts and warnings of a scene as JSON."""
+    return {"data": json.dumps({"facts": scene["facts"], "warnings": scene["warnings"]})}

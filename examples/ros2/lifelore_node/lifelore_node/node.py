@@ -1,6 +1,6 @@
-"""The node: publishes the masks and a path of an export, and the relations of each cloud that it receives.
+"""The node: publishes the masks and a path of an export, and the objects and relations of each cloud it receives.
 
-Untested on a robot. All conversions are in `conversions`, which needs no ROS.
+Untested on a robot. All conversions are in `conversions` and `detection3d`, which need no ROS.
 """
 
 import os
@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import rclpy
+from lifelore_msgs.msg import SpatialRelationArray
 from nav_msgs.msg import OccupancyGrid
 from nav_msgs.msg import Path as PathMessage
 from rclpy.node import Node
@@ -18,8 +19,17 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 from rosidl_runtime_py.set_message import set_message_fields
 from sensor_msgs.msg import PointCloud2
 from std_msgs.msg import String
+from vision_msgs.msg import Detection3DArray
 
-from lifelore_node.conversions import cloud_points, occupancy_grid, path_poses, perceived, relations_text
+from lifelore_node.conversions import (
+    cloud_points,
+    facts_text,
+    header_fields,
+    occupancy_grid,
+    path_poses,
+    perceived,
+)
+from lifelore_node.detection3d import detection_array, relation_array
 
 MASKS = {"keepout_mask": "keepout.yaml", "cost_mask": "costs.yaml"}
 """Topics of the masks, as in docs/nav2.md, and their files."""
@@ -39,7 +49,9 @@ class LifeloreNode(Node):
         for topic, file in MASKS.items():
             self._publish_once(OccupancyGrid, topic, latched, occupancy_grid, exports / file)
         self._publish_once(PathMessage, "lifelore/path", latched, path_poses, exports / "paths.csv")
-        self._relations = self.create_publisher(String, "lifelore/relations", 10)
+        self._facts = self.create_publisher(String, "lifelore/facts", 10)
+        self._detections = self.create_publisher(Detection3DArray, "lifelore/detections", 10)
+        self._relations = self.create_publisher(SpatialRelationArray, "lifelore/relations", 10)
         self._clouds: queue.Queue[PointCloud2] = queue.Queue(maxsize=1)
         self.create_subscription(PointCloud2, "points", self._take_cloud, qos_profile_sensor_data)
         threading.Thread(target=self._perceive_clouds, daemon=True).start()
@@ -68,9 +80,15 @@ class LifeloreNode(Node):
             except (ValueError, OSError) as error:
                 self.get_logger().error(str(error))
                 continue
-            message = String()
-            set_message_fields(message, relations_text(scene))
-            self._relations.publish(message)
+            head = header_fields(cloud.header)
+            _publish(self._facts, String(), facts_text(scene))
+            _publish(self._detections, Detection3DArray(), detection_array(scene, head))
+            _publish(self._relations, SpatialRelationArray(), relation_array(scene, head))
+
+
+def _publish(publisher: Any, message: Any, fields: dict[str, Any]) -> None:
+    set_message_fields(message, fields)
+    publisher.publish(message)
 
 
 def main() -> None:

@@ -58,7 +58,7 @@ class LearnRelationsSettings:
         The symmetric relations; all others then have a direction. None infers them from the labels.
     labels : {"auto", "plain", "parts"}
         How a label field becomes objects, see `label_rule`.
-    units : {"m", "mm"}
+    units : {"m", "cm", "mm", "inch"}
     up : "table", "z", or (3,) numbers, optional
         Upward direction in each cloud's frame, see `to_scene`; default: from `planes.csv`, else the table's
         normal.

@@ -5,14 +5,14 @@ The cloud is read before the modules that perceive it are imported, so that a ba
 
 import os
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 from numpy.typing import NDArray
 
-from lifelore.agent.perceive.scene_files import SceneFiles, check_scene_files, write_scene_files
+from lifelore.agent.perceive.scene_files import FileNames, SceneFiles, check_scene_files, write_scene_files
 from lifelore.agent.perceive.source_files import NO_SOURCE_FILES, SourceFiles, read_source
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress
@@ -21,6 +21,7 @@ from lifelore.perception.clouds.point_cloud import PointCloud
 
 if TYPE_CHECKING:
     from lifelore.perception.reasoning.planning_goal import Statement
+    from lifelore.perception.reasoning.scene_plan import Solver
     from lifelore.perception.relations.relation_classifier import RelationClassifier
     from lifelore.perception.scene import Scene
     from lifelore.perception.segmentation.object_segmentation import SegmentationSettings
@@ -40,7 +41,7 @@ class PerceiveSettings:
     ----------
     up : "table", "z", or (3,) numbers
         Upward direction in the cloud's frame, see `to_scene`.
-    units : {"m", "mm"}
+    units : {"m", "cm", "mm", "inch"}
     labels : {"auto", "plain", "parts"}
         How a label field becomes objects, see `label_rule`.
     segmentation : SegmentationSettings, optional
@@ -58,11 +59,17 @@ class PerceiveSettings:
         Files beside the cloud: intrinsics and colours of a depth image, masks of objects.
     region : Region, optional
         Where objects are looked for; by default everywhere.
+    with_masks : bool
+        Whether the document holds each object's pixels or point numbers, see `object_mask`.
+    planner : Solver, optional
+        Solves the planning problem of the `goal`, such as `lifelore.bridges.planner.solve`; the document then has
+        the ``plan`` of `plan_json`. By default nothing is solved.
 
     Raises
     ------
     InputError
-        `memory` is given without the name of a model, `min_confidence` is no probability, or `goal` is no goal.
+        `memory` is given without the name of a model, `min_confidence` is no probability, `goal` is no goal, or
+        a planner has no goal.
     """
 
     up: "Up" = "table"
@@ -75,10 +82,14 @@ class PerceiveSettings:
     goal: str | None = None
     beside: SourceFiles = NO_SOURCE_FILES
     region: "Region | None" = None
+    with_masks: bool = False
+    planner: "Solver | None" = None
 
     def __post_init__(self) -> None:
         if self.min_confidence is not None and not 0 <= self.min_confidence <= 1:
             raise InputError(f"min_confidence must be a probability from 0 to 1, got {self.min_confidence!r}")
+        if self.planner is not None and self.goal is None:
+            raise InputError("plan (--plan) needs a goal (--goal GOAL), such as on(o2, o3)")
         _ = self.statements
         if self.memory is not None and (self.model is None or is_file_name(self.model)):
             raise InputError(
@@ -96,10 +107,45 @@ class PerceiveSettings:
         return read_goal(self.goal)
 
 
+def read_up(text: str) -> "Up":
+    """The upward direction that a user writes: ``table``, ``z`` or ``X,Y,Z``; see `segmented_scene`.
+
+    Raises
+    ------
+    InputError
+        The text has a comma, but is not of numbers.
+    """
+    if "," not in text:
+        return text  # type: ignore[return-value]  # other words are refused where the scene is made
+    try:
+        return tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(f"up must be table, z or X,Y,Z, three numbers, got '{text}'") from None
+
+
+def read_region(roi: str | None, max_range: float | None) -> "Region | None":
+    """The region that a user writes: ``XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX`` and a range, metres; None where none is.
+
+    Raises
+    ------
+    InputError
+        A value breaks the rule of `Region`.
+    """
+    if roi is None and max_range is None:
+        return None
+    from lifelore.perception.segmentation.region import AXES, Region
+
+    try:
+        box = None if roi is None else tuple(float(part) for part in roi.split(","))
+    except ValueError:
+        raise InputError(f"roi must be {','.join(AXES)}, six numbers, got '{roi}'") from None
+    return Region(box, max_range)
+
+
 def check_goal(settings: PerceiveSettings, pddl: str | None) -> None:
-    """Raise InputError for a goal without a planning problem to write it to."""
-    if settings.goal is not None and pddl is None:
-        raise InputError("goal is written to the planning problem, but none is asked for: add pddl (--pddl FILE)")
+    """Raise InputError for a goal that is neither planned for nor written to a planning problem."""
+    if settings.goal is not None and pddl is None and settings.planner is None:
+        raise InputError("goal needs a plan (--plan), or a planning problem to write it to (--pddl FILE): add one")
 
 
 def check_settings(settings: PerceiveSettings, pddl: str | None) -> None:
@@ -129,11 +175,9 @@ def perceive(
     source: Source,
     settings: PerceiveSettings = DEFAULT,
     *,
-    pddl: str | None = None,
-    dot: str | None = None,
-    plot: str | None = None,
     progress: Progress | None = None,
     notice: Callable[[str], None] | None = None,
+    **files: Unpack[FileNames],
 ) -> dict[str, Any]:
     """Perceive a scene.
 
@@ -143,19 +187,20 @@ def perceive(
         A source that `read_cloud` reads, a depth image (with `settings.beside.intrinsics`), or a cloud (for
         example from a rosbag).
     settings : PerceiveSettings
-    pddl, dot, plot : str, optional
-        Files to write: a planning problem (its domain beside it, as ``NAME-domain.pddl``), a graph for Graphviz,
-        a picture (``NAME.png``).
     progress : Progress, optional
         Called as each of the `STAGES` begins.
     notice : callable, optional
         Called with one line for the user if labels were interpreted as parts of objects.
+    pddl, dot, plot, masks_out, log, recorder : optional
+        Files to write, see `SceneFiles`: a planning problem (its domain beside it, as ``NAME-domain.pddl``), a
+        graph for Graphviz, a picture, a label image (both ``NAME.png``), a log.
 
     Returns
     -------
     dict
         The document of `scene_json`, with the contact points of pairs that support or are adjacent to each other,
-        and ``warnings``.
+        and ``warnings``; with a planner ``plan``. A goal that no plan can reach is a warning, or the reason of the
+        plan.
 
     Raises
     ------
@@ -166,11 +211,11 @@ def perceive(
     StoreError
         A file cannot be written.
     """
-    files = SceneFiles(pddl, dot, plot)
-    check_goal(settings, pddl)
-    check_scene_files(files, files_read([source], settings))
+    asked = SceneFiles(**files)
+    check_goal(settings, asked.pddl)
+    check_scene_files(asked, files_read([source], settings))
     model = None if settings.model is None else model_of(settings, notice)
-    return perceived(source, model, settings, files, progress, notice)
+    return perceived(source, model, settings, asked, progress, notice)
 
 
 def perceived(
@@ -201,9 +246,10 @@ def scene_and_document(
     _report_stage(progress, 0)
     cloud = read_scene(source, settings)
     reading = time.perf_counter() - began
-    from lifelore.perception.perceived_scene import perceived_scene
+    from lifelore.perception.reasoning.support_warnings import support_warnings
     from lifelore.perception.relations.relation_classifier import shipped_model
     from lifelore.perception.scene_json import DIGITS, scene_document
+    from lifelore.perception.scene_perception import perceived_scene
     from lifelore.perception.segmentation.scene_warnings import scene_warnings
     from lifelore.perception.segmentation.table_frame import EVERYWHERE, segmented_scene
 
@@ -216,11 +262,35 @@ def scene_and_document(
     scene = perceived_scene(segmented.cloud, model).without_unrelated_contacts
     _report_stage(progress, 3)
     document = scene_document(
-        scene, min_confidence=settings.min_confidence or 0.0, cut_confidence=segmented.confidence
+        scene,
+        min_confidence=settings.min_confidence or 0.0,
+        cut_confidence=segmented.confidence,
+        with_masks=settings.with_masks,
     )
-    document["warnings"] = [asdict(warning) for warning in scene_warnings(segmented)]
+    warnings = (*scene_warnings(segmented), *support_warnings(scene))
+    document["warnings"] = [asdict(warning) for warning in warnings]
     document["seconds"] = round(time.perf_counter() - began, DIGITS)
+    if settings.statements:
+        _add_plan(document, scene, settings, segmented.confidence)
     return cloud, scene, document
+
+
+def _add_plan(
+    document: dict[str, Any], scene: "Scene", settings: PerceiveSettings, cut_confidence: Mapping[int, float]
+) -> None:
+    """Add the plan for the goal; without a planner a warning where no plan can reach it."""
+    from lifelore.agent.perceive.plan_json import plan_document
+    from lifelore.perception.reasoning.planning_state import PLAN_CONFIDENCE, scene_state
+    from lifelore.perception.reasoning.scene_plan import no_plan_reason, scene_plan
+
+    least = PLAN_CONFIDENCE if settings.min_confidence is None else settings.min_confidence
+    if settings.planner is not None:
+        plan = scene_plan(scene, settings.statements, settings.planner, least, cut_confidence)
+        document["plan"] = plan_document(plan, document["objects"])
+    elif reason := no_plan_reason(scene, scene_state(scene, least), settings.statements):
+        document["warnings"].append(
+            {"code": "goal_out_of_reach", "message": f"no plan reaches the goal: {reason}"}
+        )
 
 
 def files_read(sources: Iterable[Source], settings: PerceiveSettings) -> list[str | os.PathLike[str]]:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from threading import Event
-from typing import Any
+from typing import Any, Unpack
 
 from lifelore.agent.perceive.cloud_folder import new_clouds
 from lifelore.agent.perceive.perceive import (
@@ -22,12 +22,11 @@ from lifelore.agent.perceive.perceive import (
     perceived,
 )
 from lifelore.agent.perceive.scene_files import (
-    NAME,
+    FileNames,
     SceneFiles,
     check_files_of_scenes,
     check_names,
     check_scene_files,
-    named_files,
 )
 from lifelore.agent.perceive.source_files import NO_SOURCE_FILES
 from lifelore.core.errors import InputError, LifeloreError
@@ -42,13 +41,11 @@ def perceive_many(
     sources: Sequence[str],
     settings: PerceiveSettings = DEFAULT,
     *,
-    pddl: str | None = None,
-    dot: str | None = None,
-    plot: str | None = None,
     read: Callable[[str], Source] | None = None,
     stop: Event | None = None,
     progress: Progress | None = None,
     notice: Callable[[str], None] | None = None,
+    **files: Unpack[FileNames],
 ) -> Iterator[Entry]:
     """Perceive clouds one after another, each when the iterator reaches it.
 
@@ -57,8 +54,6 @@ def perceive_many(
     sources : sequence of str
         Files that `read_cloud` reads, or sources of `read`.
     settings : PerceiveSettings
-    pddl, dot, plot : str, optional
-        As for `perceive`; ``{name}`` stands for the name of each cloud's file without its suffix.
     read : callable, optional
         Maps one of `sources` to a source for `perceive` (for example a cloud of a rosbag).
     stop : Event, optional
@@ -67,6 +62,8 @@ def perceive_many(
         Called as each of the `perceive.STAGES` of each cloud begins.
     notice : callable, optional
         As for `perceive`; each line begins with the name of the cloud.
+    pddl, dot, plot, masks_out, log, recorder : optional
+        As for `perceive`; ``{name}`` stands for the name of each cloud's file without its suffix.
 
     Returns
     -------
@@ -80,18 +77,19 @@ def perceive_many(
         Before the first cloud: a setting breaks its rule, the model does not exist, or a file to write has no
         ``{name}``, cannot be written, or is the same for two clouds.
     """
-    check_settings(settings, pddl)
+    asked = SceneFiles(**files)
+    check_settings(settings, asked.pddl)
     if len(sources) > 1:
         settings.beside.check_for_many()
-    files = [named_files(source, pddl, dot, plot) for source in sources]
-    if pddl or dot or plot:
-        check_names(SceneFiles(pddl, dot, plot))
+    if asked.paths:
+        check_names(asked)
         _check_equal_names(sources)
-    check_files_of_scenes(files, files_read(sources, settings))
+    named = [asked.of(source) for source in sources]
+    check_files_of_scenes(named, files_read(sources, settings))
     model = model_of(settings, notice)
 
     def each() -> Iterator[Entry]:
-        for number, (source, own) in enumerate(zip(sources, files, strict=True)):
+        for number, (source, own) in enumerate(zip(sources, named, strict=True)):
             if stop is not None and stop.is_set():
                 return
             step = None if progress is None else _step_of(progress, number, len(sources), source)
@@ -110,20 +108,20 @@ def perceive_folder(
     settings: PerceiveSettings = DEFAULT,
     *,
     stop: Event,
-    pddl: str | None = None,
-    dot: str | None = None,
-    plot: str | None = None,
     notice: Callable[[str], None] | None = None,
+    **files: Unpack[FileNames],
 ) -> Iterator[Entry]:
     """Perceive each new cloud of a folder when its file is complete, until `stop` is set; see `new_clouds`.
 
     Parameters
     ----------
     folder : path
-    settings, pddl, dot, plot, notice
-        As for `perceive_many`. A new version of a cloud overwrites the files of the version before.
+    settings, notice
+        As for `perceive_many`.
     stop : Event
         Set it to stop after the current cloud.
+    pddl, dot, plot, masks_out, log, recorder : optional
+        As for `perceive_many`. A new version of a cloud overwrites the files of the version before.
 
     Returns
     -------
@@ -136,14 +134,14 @@ def perceive_folder(
         Before the first cloud: as `perceive_many`, or the folder does not exist. Later: the folder has
         disappeared.
     """
-    check_settings(settings, pddl)
+    asked = SceneFiles(**files)
+    check_settings(settings, asked.pddl)
     if settings.beside != NO_SOURCE_FILES:
         raise InputError(
             "watch perceives clouds alone: leave out intrinsics, colour, depth_scale, masks and table_mask"
         )
-    if pddl or dot or plot:
-        check_names(SceneFiles(pddl, dot, plot))
-    check_scene_files(named_files(NAME, pddl, dot, plot), files_read([], settings))
+    check_names(asked)
+    check_scene_files(asked, files_read([], settings))
     model = model_of(settings, notice)
     arrivals = new_clouds(
         folder, lambda path: read_cloud(path, units=settings.units, labels=settings.labels), stop
@@ -153,7 +151,7 @@ def perceive_folder(
     def perceived_of(path: str, cloud: Source | LifeloreError) -> Entry:
         if isinstance(cloud, LifeloreError):
             raise cloud
-        own = named_files(path, pddl, dot, plot)
+        own = asked.of(path)
         if own.paths:
             check_scene_files(own, files_read([path], settings))
             _claim(owner, path, own)

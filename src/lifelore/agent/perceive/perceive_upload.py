@@ -30,7 +30,8 @@ def perceive_upload(
     parts : mapping of str to bytes
         ``cloud``; or ``depth`` with ``intrinsics`` (JSON or YAML) and, if known, ``colour`` and ``masks``.
     options : mapping
-        Fields of `PerceiveSettings`: ``up``, ``units``, ``labels``, ``min_confidence``, ``goal``.
+        Fields of `PerceiveSettings`: ``up``, ``units``, ``labels``, ``min_confidence``, ``goal``,
+        ``with_masks``, ``planner``, ``region``.
     depth_scale : float, optional
         Metres for each unit of depth.
 

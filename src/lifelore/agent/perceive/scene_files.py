@@ -1,19 +1,40 @@
-"""Writes the files of a perceived scene: a planning problem with its domain, a graph, a picture."""
+"""Writes the files of a perceived scene: a planning problem with its domain, graph, picture, label image, log."""
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 from lifelore.core.errors import InputError, StoreError
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from lifelore.perception.reasoning.planning_goal import Statement
     from lifelore.perception.scene import Scene
 
 NAME = "{name}"
 """Placeholder in the name of a file for the name of the cloud."""
+
+
+Recorder = Callable[[str, "Scene", Mapping], None]
+"""Writes a log of a scene and its document to a path, such as `bridges.scene_log.write_scene_log`."""
+ENDINGS = {"plot": (".png",), "masks_out": (".png",), "log": (".mcap", ".rrd")}
+"""Endings of the files that have them."""
+
+
+class FileNames(TypedDict, total=False):
+    """The fields of `SceneFiles`, as keyword arguments of a function."""
+
+    pddl: str | None
+    dot: str | None
+    plot: str | None
+    masks_out: str | None
+    log: str | None
+    recorder: Recorder | None
 
 
 @dataclass(frozen=True)
@@ -28,17 +49,51 @@ class SceneFiles:
         A graph for Graphviz.
     plot : str, optional
         A picture, ``NAME.png``.
+    masks_out : str, optional
+        A label image of 16 bits, ``NAME.png``: 0 nothing, 1 the table, 2 … the objects.
+    log : str, optional
+        A log of the scene, ``NAME.mcap`` or ``NAME.rrd``, by the `recorder`.
+    recorder : callable, optional
+        Needed for a log.
+
+    Raises
+    ------
+    InputError
+        A log without a recorder.
     """
 
     pddl: str | None = None
     dot: str | None = None
     plot: str | None = None
+    masks_out: str | None = None
+    log: str | None = None
+    recorder: Recorder | None = None
+
+    def __post_init__(self) -> None:
+        if self.log is not None and self.recorder is None:
+            raise InputError("log needs a recorder: give bridges.scene_log.write_scene_log")
+
+    @property
+    def options(self) -> dict[str, str]:
+        """The files that are asked for, by their options."""
+        paths = {name: getattr(self, name) for name in ("pddl", "dot", "plot", "masks_out", "log")}
+        return {name: path for name, path in paths.items() if path is not None}
 
     @property
     def paths(self) -> tuple[str, ...]:
         """All files to write, with the domain."""
-        domain = None if self.pddl is None else domain_path(self.pddl)
-        return tuple(path for path in (self.pddl, domain, self.dot, self.plot) if path is not None)
+        domain = () if self.pddl is None else (domain_path(self.pddl),)
+        return (*self.options.values(), *domain)
+
+    def of(self, source: str) -> "SceneFiles":
+        """The files of a cloud: the placeholder `NAME` is replaced by the name of its file without suffix.
+
+        >>> SceneFiles(dot="graphs/{name}.dot").of("clouds/cup.pcd").dot
+        'graphs/cup.dot'
+        """
+        return replace(
+            self, **{name: path.replace(NAME, Path(source).stem) for name, path in self.options.items()}
+        )
 
 
 def domain_path(problem: str) -> str:
@@ -47,23 +102,14 @@ def domain_path(problem: str) -> str:
     return str(path.with_name(f"{path.stem}-domain.pddl")) if path.name else ""
 
 
-def named_files(name: str, pddl: str | None, dot: str | None, plot: str | None) -> SceneFiles:
-    """The files of a cloud: the placeholder `NAME` is replaced by the name of the cloud's file without suffix.
-
-    >>> named_files("clouds/cup.pcd", None, "graphs/{name}.dot", None).dot
-    'graphs/cup.dot'
-    """
-    stem = Path(name).stem
-    return SceneFiles(*(None if path is None else path.replace(NAME, stem) for path in (pddl, dot, plot)))
-
-
 def check_names(files: SceneFiles) -> None:
     """Refuse a file name without placeholder, which would be the same for all clouds."""
-    for option, path in (("pddl", files.pddl), ("dot", files.dot), ("plot", files.plot)):
-        if path is not None and NAME not in path:
+    for option, path in files.options.items():
+        if NAME not in path:
+            ending = ENDINGS.get(option, (f".{option}",))[0]
             raise InputError(
                 f"{option} names one file for many clouds, '{path}': write {NAME} for the name of each cloud,"
-                f" such as --{option} {NAME}.{'png' if option == 'plot' else option}"
+                f" such as --{option.replace('_', '-')} {NAME}{ending}"
             )
 
 
@@ -84,16 +130,23 @@ def check_files_of_scenes(many: Iterable[SceneFiles], sources: Sequence[str | os
     for files in many:
         for path in files.paths:
             _check_writable(path)
-        if files.plot is not None and not files.plot.lower().endswith(".png"):
-            raise InputError(f"plot must name a PNG file, such as scene.png, got '{files.plot}'")
+        for option, path in files.options.items():
+            _check_ending(option, path)
     used = {os.path.realpath(path) for path in sources if many}
     for path in (path for files in many for path in files.paths):
         if os.path.realpath(path) in used:
             raise InputError(
-                f"'{path}' would be overwritten: the cloud, the model, plot, dot, pddl and the domain beside it"
-                " must be different files"
+                f"'{path}' would be overwritten: the cloud, the model, plot, dot, masks_out, log, pddl and the"
+                " domain beside it must be different files"
             )
         used.add(os.path.realpath(path))
+
+
+def _check_ending(option: str, path: str) -> None:
+    endings = ENDINGS.get(option, ("",))
+    if not path.lower().endswith(endings):
+        kinds = " or ".join(ending[1:].upper() for ending in endings)
+        raise InputError(f"{option} must name a {kinds} file, such as scene{endings[0]}, got '{path}'")
 
 
 def _check_writable(path: str) -> None:
@@ -128,10 +181,16 @@ def write_scene_files(
     Raises
     ------
     InputError
-        The goal names a predicate or an object that does not exist; no file is written.
+        The goal names a predicate or an object that does not exist, or a label image is asked for and the cloud
+        has no image; no file is written.
     StoreError
         A file cannot be written.
     """
+    labels = None
+    if files.masks_out is not None:
+        from lifelore.perception.places.object_mask import label_image
+
+        labels = label_image(scene.cloud)
     if files.pddl is not None:
         from lifelore.perception.reasoning.planning_domain import planning_domain
         from lifelore.perception.reasoning.planning_problem import scene_problem
@@ -149,10 +208,28 @@ def write_scene_files(
         from lifelore.figures.style import save_figure
 
         save_figure(draw_scene(scene.cloud, document), files.plot)
+    if files.masks_out is not None and labels is not None:
+        _write_image(files.masks_out, labels)
+    if files.log is not None and files.recorder is not None:
+        with _file_errors(files.log):
+            files.recorder(files.log, scene, document)
 
 
 def _write_text(path: str, text: str) -> None:
-    try:
+    with _file_errors(path):
         Path(path).write_text(text, encoding="utf-8")
+
+
+def _write_image(path: str, numbers: "NDArray[np.uint16]") -> None:
+    from PIL import Image
+
+    with _file_errors(path):
+        Image.fromarray(numbers).save(path)
+
+
+@contextmanager
+def _file_errors(path: str) -> Iterator[None]:
+    try:
+        yield
     except OSError as error:
         raise StoreError(f"cannot write {path}: {error.strerror}; choose another folder") from None

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from lifelore.agent.perceive.perceive import (
     perceived,
     read_scene,
 )
-from lifelore.agent.perceive.scene_files import SceneFiles, check_scene_files
+from lifelore.agent.perceive.scene_files import FileNames, SceneFiles, check_scene_files
 from lifelore.agent.perceive.source_files import NO_SOURCE_FILES
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Progress
@@ -33,12 +33,10 @@ def perceive_views(
     settings: PerceiveSettings = DEFAULT,
     *,
     poses: str | None = None,
-    pddl: str | None = None,
-    dot: str | None = None,
-    plot: str | None = None,
     read: Callable[[str], Source] | None = None,
     progress: Progress | None = None,
     notice: Callable[[str], None] | None = None,
+    **files: Unpack[FileNames],
 ) -> dict[str, Any]:
     """Perceive a scene seen in several clouds.
 
@@ -50,7 +48,7 @@ def perceive_views(
         `up` is a direction in the first view's frame. Masks are refused: each view has its own numbers.
     poses : str, optional
         File of the views' poses, see `read_poses`. Default: the views are registered, see `registered_views`.
-    pddl, dot, plot, progress, notice
+    progress, notice, pddl, dot, plot, log, recorder
         As for `perceive`.
     read : callable, optional
         Maps one of `sources` to a source for `perceive`.
@@ -66,8 +64,8 @@ def perceive_views(
     Raises
     ------
     InputError
-        As for `perceive`; fewer than two views, only some of them have labels, or no poses are given and the
-        views cannot be registered surely.
+        As for `perceive`; fewer than two views, a label image is asked for (`masks_out`), only some of them
+        have labels, or no poses are given and the views cannot be registered surely.
     """
     if len(sources) < 2:
         option = "registration (--register)" if poses is None else "poses (--poses)"
@@ -77,15 +75,17 @@ def perceive_views(
             "masks number the objects of each view differently: leave out --masks, or give labelled clouds"
         )
     settings.beside.check_for_many()
-    files = SceneFiles(pddl, dot, plot)
-    check_settings(settings, pddl)
-    check_scene_files(files, [*files_read(sources, settings), *([] if poses is None else [poses])])
+    asked = SceneFiles(**files)
+    if asked.masks_out is not None:
+        raise InputError("masks_out (--masks-out) is of one image, and views have several: leave it out")
+    check_settings(settings, asked.pddl)
+    check_scene_files(asked, [*files_read(sources, settings), *([] if poses is None else [poses])])
     given = None if poses is None else read_poses(poses, len(sources))
     model = model_of(settings)
     clouds = [_read(source, settings, read) for source in sources]
     places, beside = (given, []) if given is not None else _registered(clouds, sources, settings, notice)
     whole = fused(clouds, places)
-    document = perceived(whole, model, replace(settings, beside=NO_SOURCE_FILES), files, progress, notice)
+    document = perceived(whole, model, replace(settings, beside=NO_SOURCE_FILES), asked, progress, notice)
     to_first = np.linalg.inv(places[0]) @ places
     document["views"] = [
         {

@@ -41,6 +41,8 @@ class CameraIntrinsics:
     distortion : tuple of float
         Coefficients k1, k2, p1, p2, k3, k4, k5, k6 of OpenCV's model, at most 8 (*plumb_bob*: the first five;
         *rational_polynomial*: all). Empty or zeros for a rectified image.
+    frame : str, optional
+        Name of the camera's frame (frame_id), where the file names it.
 
     Raises
     ------
@@ -55,6 +57,7 @@ class CameraIntrinsics:
     cx: float
     cy: float
     distortion: tuple[float, ...] = ()
+    frame: str | None = None
 
     def __post_init__(self) -> None:
         if not (1 <= self.width <= MAX_SIDE and 1 <= self.height <= MAX_SIDE):
@@ -128,7 +131,7 @@ class CameraIntrinsics:
         values : mapping
             ``fx, fy, cx, cy, width, height`` and optionally ``distortion``; or a camera_info file (``image_width,
             image_height, camera_matrix, distortion_model, distortion_coefficients``); or a printed
-            `sensor_msgs/CameraInfo` (``width, height, k, d, distortion_model``, in small or capital letters).
+            `sensor_msgs/CameraInfo` (``width, height, k, d, distortion_model, header``, in any case).
 
         Raises
         ------
@@ -168,7 +171,9 @@ class CameraIntrinsics:
                 f" the image and give zeros, or use {' or '.join(name for name in _MODELS if name)}"
             )
         size = _whole(held[width], width), _whole(held[height], height)
-        return cls(*size, k[0], k[4], k[2], k[5], tuple(distortion) if any(distortion) else ())
+        header = held.get("header")
+        frame = str(header.get("frame_id") or "") if isinstance(header, Mapping) else ""
+        return cls(*size, k[0], k[4], k[2], k[5], tuple(distortion) if any(distortion) else (), frame or None)
 
 
 def read_intrinsics(path: str | os.PathLike[str]) -> CameraIntrinsics:

@@ -34,8 +34,8 @@ def read_cloud(source: str | os.PathLike[str] | NDArray, *, units: str = "m", la
     source : path or (n, 3), (n, 4), (rows, columns, 3) array
         A PCD, PLY, npz or npy file, recognised by its content, then by its suffix; or the points, with labels
         as an optional fourth column.
-    units : {"m", "mm"}
-        Of the coordinates. A cloud in metres that looks like millimetres is refused, see `cloud_scale`.
+    units : {"m", "cm", "mm", "inch"}
+        Of the coordinates. A cloud in metres that looks like other units is refused, see `cloud_scale`.
     labels : {"auto", "plain", "parts"}
         How labels become object numbers, see `label_rule`.
 

@@ -8,9 +8,12 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.point_cloud import PointCloud, finite_rows
 
-UNITS = {"m": 1.0, "mm": 0.001}
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inch": 0.0254}
+"""Metres of a unit."""
 MAX_SPAN = 20.0
 """Metres. No table-top scene, and no room a depth camera sees, is wider; 20 mm in millimetres is."""
+USUAL_SPAN = 1.0
+"""Metres: width of a table that a depth camera sees; the unit that comes nearest to it is the likely one."""
 MIN_SPAN = 0.002
 """Metres. A cloud narrower than this after ``units=mm`` was in metres before."""
 STRAY = 50.0
@@ -42,7 +45,7 @@ def in_metres(cloud: PointCloud, units: str = "m") -> PointCloud:
     _check_span(float(np.max(high - low)), units)
     if np.abs(middle).max() > FAR:
         raise InputError(
-            f"lies {np.abs(middle).max():.3g} m from its origin, too far for millimetres; move it there"
+            f"lies {np.abs(middle).max():.3g} m from its origin, too far to resolve millimetres; move it there"
         )
     if points is cloud.points:
         points = points.copy()
@@ -56,7 +59,16 @@ def in_metres(cloud: PointCloud, units: str = "m") -> PointCloud:
 def check_units(units: str) -> None:
     """Raise InputError for unknown units."""
     if units not in UNITS:
-        raise InputError(f"units must be m or mm, got {units!r}")
+        raise InputError(f"units must be m, cm, mm or inch, got {units!r}")
+
+
+def unit_hint(span: float) -> str:
+    """What to do about a scene whose width, `span` metres, makes other units likely."""
+    if span > USUAL_SPAN:
+        return f"if its numbers are inches, pass --units inch ({span * UNITS['inch']:.2g} m wide)"
+    cm, inch = (span * UNITS[unit] / UNITS["mm"] for unit in ("cm", "inch"))
+    choice = f"--units cm ({cm:.2g} m wide) or --units inch ({inch:.2g} m)"
+    return f"if numbers in cm or inch were read as mm, pass {choice}"
 
 
 def _sample(points: NDArray[np.floating], measured: NDArray[np.bool_]) -> NDArray[np.floating]:
@@ -66,15 +78,14 @@ def _sample(points: NDArray[np.floating], measured: NDArray[np.bool_]) -> NDArra
 
 def _check_span(span: float, units: str) -> None:
     if span > MAX_SPAN and units == "m":
+        widths = {unit: span * size for unit, size in UNITS.items() if unit != "m"}
+        likely = min(widths, key=lambda unit: abs(np.log(widths[unit] / USUAL_SPAN)))
+        each = ", ".join(f"{width:.2g} m in {unit}" for unit, width in widths.items())
         raise InputError(
-            f"looks like millimetres: the cloud spans {span:,.0f} m where at most {MAX_SPAN:.0f} m are read; "
-            "pass units=mm (--units mm), or crop the cloud"
+            f"looks like {likely}: the cloud spans {span:,.0f} m where at most {MAX_SPAN:.0f} m are read (it would"
+            f" be {each}); pass units={likely} (--units {likely}), or crop the cloud"
         )
     if span > MAX_SPAN:
-        raise InputError(
-            f"spans {span:,.0f} m in millimetres where at most {MAX_SPAN:.0f} m are read; crop the cloud"
-        )
+        raise InputError(f"spans {span:,.0f} m in {units} where at most {MAX_SPAN:.0f} m are read; crop the cloud")
     if units == "mm" and 0 < span < MIN_SPAN:
-        raise InputError(
-            f"spans {span * 1000:.3g} mm in millimetres, so it is in metres already; pass units=m (--units m)"
-        )
+        raise InputError(f"spans {span * 1000:.3g} mm in mm, so it is in metres already; pass units=m (--units m)")

@@ -26,8 +26,8 @@ def fused(views: Sequence[PointCloud], poses: NDArray[np.float64], size: float =
     Returns
     -------
     PointCloud
-        Not organised. `camera` is that of the first view that names its camera, `other_cameras` are those of the
-        others. Labels and colours exist if every view has them.
+        Not organised; name and time of the frame are the first view's. `camera` is that of the first view that
+        names its camera, `other_cameras` are those of the others. Labels and colours exist if every view has them.
 
     Raises
     ------
@@ -66,7 +66,9 @@ def fused(views: Sequence[PointCloud], poses: NDArray[np.float64], size: float =
         merged.colours,
         camera=cameras[0] if cameras else None,
         from_parts=any(view.from_parts for view in views),
+        source_rows=np.full(len(merged.points), -1),
         other_cameras=np.stack(cameras[1:]) if len(cameras) > 1 else None,
+        frame=views[0].frame,
     )
 
 

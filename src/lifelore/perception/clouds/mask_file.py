@@ -132,7 +132,7 @@ def _of_points(numbers: NDArray[np.int64], cloud: PointCloud) -> NDArray[np.int6
             " the same size"
         )
     flat = numbers.reshape(-1)
-    return flat if cloud.pixel_numbers is None else flat[cloud.pixel_numbers]
+    return flat if cloud.source_rows is None else flat[cloud.source_rows]
 
 
 def _labels(numbers: NDArray[np.int64], table_mask: int | None) -> NDArray[np.int64]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.cloud_origin import NO_FRAME, SensorFrame
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.camera_intrinsics import CameraIntrinsics
 from lifelore.perception.clouds.depth_image import metres_of_depth
@@ -28,11 +29,14 @@ class PointCloud:
         Position of the camera, in the frame of the points; finite.
     from_parts : bool
         Whether the file labelled parts of objects; `labels` are then the objects of these parts.
-    pixel_numbers : (n,) int64, optional
-        Number of each point's pixel in the `grid`, row by row from 0. None if the points are all pixels in this
-        order. `only` keeps them, so that a part of an organised cloud still knows its neighbours in the image.
+    source_rows : (n,) int64, optional
+        Row of each point in the cloud that was read, -1 for a mean of several points; with a `grid` the number
+        of its pixel, row by row from 0. None if the points are all of that cloud, in its order. `only` keeps
+        them, so that a part of an organised cloud still knows its neighbours in the image.
     other_cameras : (k, 3) float64, optional
         Positions of further cameras, of a cloud that several views make.
+    frame : SensorFrame
+        Name and time of the frame of the points, where the source names them.
 
     Raises
     ------
@@ -46,8 +50,9 @@ class PointCloud:
     grid: tuple[int, int] | None = None
     camera: NDArray[np.float64] | None = None
     from_parts: bool = False
-    pixel_numbers: NDArray[np.int64] | None = None
+    source_rows: NDArray[np.int64] | None = None
     other_cameras: NDArray[np.float64] | None = None
+    frame: SensorFrame = NO_FRAME
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -119,20 +124,20 @@ class PointCloud:
         rays = intrinsics.rays().astype(z.dtype)
         points = np.stack([rays[..., 0] * z, rays[..., 1] * z, z], axis=-1).reshape(-1, 3)
         flat = None if colours is None else np.ascontiguousarray(colours.reshape(-1, 3))
-        return cls(points, None, flat, intrinsics.grid, np.zeros(3))
+        frame = SensorFrame(intrinsics.frame)
+        return cls(points, None, flat, intrinsics.grid, np.zeros(3), frame=frame)
 
     def _check_grid(self) -> None:
-        n, pixels = len(self.points), 0 if self.grid is None else self.grid[0] * self.grid[1]
-        if self.pixel_numbers is None:
-            if self.grid is not None and pixels != n:
-                raise InputError(f"grid {self.grid} must hold the {n} points; give pixel_numbers for a part of it")
-        elif self.grid is None or self.pixel_numbers.shape != (n,):
-            raise InputError(
-                f"pixel_numbers must be {n} numbers of pixels in a grid, "
-                f"got shape {self.pixel_numbers.shape} and grid {self.grid}"
-            )
-        elif n and not 0 <= self.pixel_numbers.min() <= self.pixel_numbers.max() < pixels:
-            raise InputError(f"pixel_numbers must lie in 0 to {pixels - 1} for grid {self.grid}")
+        n, rows = len(self.points), self.source_rows
+        if rows is not None and rows.shape != (n,):
+            raise InputError(f"source_rows must be {n} numbers, got shape {rows.shape}")
+        if self.grid is None:
+            return
+        pixels = self.grid[0] * self.grid[1]
+        if rows is None and pixels != n:
+            raise InputError(f"grid {self.grid} must hold the {n} points; give source_rows for a part of it")
+        if rows is not None and n and not 0 <= rows.min() <= rows.max() < pixels:
+            raise InputError(f"source_rows must lie in 0 to {pixels - 1} for grid {self.grid}")
 
     @property
     def pixels(self) -> NDArray[np.int64]:
@@ -147,7 +152,7 @@ class PointCloud:
             raise InputError(
                 "pixels need an organised cloud (grid of height and width), but this cloud has no grid"
             )
-        numbers = np.arange(len(self.points)) if self.pixel_numbers is None else self.pixel_numbers
+        numbers = np.arange(len(self.points)) if self.source_rows is None else self.source_rows
         return np.stack(np.divmod(numbers, self.grid[1]), axis=1)
 
     @property
@@ -161,17 +166,14 @@ class PointCloud:
         return self.labels is not None and bool(self.labels.any())
 
     def only(self, keep: NDArray) -> "PointCloud":
-        """The points that `keep` ((n,) bool, or indices) names; points of an organised cloud keep their pixels."""
+        """The points that `keep` ((n,) bool, or indices) names; they keep their rows in the source."""
         rows = np.flatnonzero(keep) if keep.dtype == bool else keep
-        pixel_numbers = self.pixel_numbers
-        if self.grid is not None:
-            pixel_numbers = rows.astype(np.int64) if pixel_numbers is None else pixel_numbers[rows]
         return replace(
             self,
             points=self.points.take(rows, axis=0),
             labels=None if self.labels is None else self.labels[rows],
             colours=None if self.colours is None else self.colours.take(rows, axis=0),
-            pixel_numbers=pixel_numbers,
+            source_rows=rows.astype(np.int64) if self.source_rows is None else self.source_rows[rows],
         )
 
 

@@ -1,9 +1,11 @@
 """Clouds from `sensor_msgs/PointCloud2` messages of rclpy, rospy or rosbags, none of which is imported."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from lifelore.core.cloud_origin import NO_FRAME, SensorFrame
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.cloud_columns import MAX_POINTS, cloud_from_columns, readable_fields
 from lifelore.perception.clouds.cloud_scale import in_metres
@@ -18,7 +20,8 @@ def cloud_from_message(message: Any, *, units: str = "m", labels: str = "auto") 
     Parameters
     ----------
     message : object
-        With ``height, width, fields (name, offset, datatype, count), is_bigendian, point_step, row_step, data``.
+        With ``height, width, fields (name, offset, datatype, count), is_bigendian, point_step, row_step, data``
+        and, where it names its frame, ``header``.
     units, labels : str
         As in `read_cloud`.
 
@@ -39,7 +42,18 @@ def cloud_from_message(message: Any, *, units: str = "m", labels: str = "auto") 
     rows = np.lib.stride_tricks.as_strided(data, (height, width * step), (row, 1), writeable=False)
     records = np.ascontiguousarray(rows).reshape(-1).view(_layout(message, step))
     columns = {name: records[name] for name in records.dtype.names or ()}
-    return in_metres(cloud_from_columns(columns, labels, (height, width), np.zeros(3)), units)
+    cloud = in_metres(cloud_from_columns(columns, labels, (height, width), np.zeros(3)), units)
+    return replace(cloud, frame=_frame(message))
+
+
+def _frame(message: Any) -> SensorFrame:
+    """Of the header; ROS 1 calls the parts of a time by other names than ROS 2."""
+    header = getattr(message, "header", None)
+    if header is None:
+        return NO_FRAME
+    stamp = header.stamp
+    seconds, nanoseconds = (stamp.sec, stamp.nanosec) if hasattr(stamp, "sec") else (stamp.secs, stamp.nsecs)
+    return SensorFrame(str(header.frame_id) or None, float(seconds) + float(nanoseconds) * 1e-9)
 
 
 def _layout(message: Any, step: int) -> np.dtype:

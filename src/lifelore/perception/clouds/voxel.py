@@ -78,8 +78,9 @@ def voxelised(cloud: LabelledCloud, size: float = VOXEL) -> VoxelCloud:
 def thinned(cloud: PointCloud, size: float = VOXEL, at_most: int = MAX_SCENE_POINTS) -> PointCloud:
     """The cloud itself while it has at most `at_most` measured points; else its voxels, in bounded memory.
 
-    Voxels are means of points, so that they have no pixels (`grid` is None). The cloud is voxelised by chunks of
-    10⁶ points. Where the voxels are more than `at_most`, their size doubles until they are not.
+    Voxels are means of points, so that they have no pixels (`grid` is None) and no rows in the source. The
+    cloud is voxelised by chunks of 10⁶ points. Where the voxels are more than `at_most`, their size doubles
+    until they are not.
     """
     measured = cloud.measured
     if np.count_nonzero(measured) <= at_most:
@@ -94,8 +95,9 @@ def thinned(cloud: PointCloud, size: float = VOXEL, at_most: int = MAX_SCENE_POI
             size *= 2
             voxels = voxels.merged(origin, size)
     points = voxels.points.astype(cloud.points.dtype)
+    unknown = np.full(len(points), -1)
     return replace(
-        cloud, points=points, labels=voxels.labels, colours=voxels.colours, grid=None, pixel_numbers=None
+        cloud, points=points, labels=voxels.labels, colours=voxels.colours, grid=None, source_rows=unknown
     )
 
 

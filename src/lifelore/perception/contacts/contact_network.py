@@ -8,7 +8,7 @@ The edges are those of the minimum weighted spanning tree over the contact point
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,14 +72,6 @@ class ContactPointNetwork:
         for i, j in self.edges.tolist():
             graph.add_edge(i, j, length=float(np.linalg.norm(at[i] - at[j])))
         return graph
-
-    @classmethod
-    def from_networkx(cls, graph: Any) -> "ContactPointNetwork":
-        """From a graph such as `to_networkx` makes; nodes in the graph's order, with the graph's edges."""
-        order = {name: number for number, name in enumerate(graph.nodes)}
-        nodes = tuple(ContactPoint(**fields) for _, fields in graph.nodes(data=True))
-        edges = np.array([[order[i], order[j]] for i, j in graph.edges], np.int64).reshape(-1, 2)
-        return cls(graph.graph["object_id"], nodes, edges)
 
 
 def spanning_edges(positions: NDArray[np.float64]) -> NDArray[np.int64]:

@@ -21,7 +21,7 @@ class ContactPoint:
     Parameters
     ----------
     position : (3,) float64
-        α-weighted centroid, metres.
+        Centroid, metres: weighted by α, or the plain mean with `ContactSettings.as_printed`.
     normal : (3,) float64
         Unit vector out of the other object into this one, across the separating surface.
     extent : (3,) float64
@@ -84,7 +84,7 @@ def contact_clusters(
     linkage : float
         Metres.
     min_support : float
-        Smaller clusters are left out, except the strongest.
+        Smaller clusters are discarded; there may be none left.
     """
     return _strongest_first(linked(np.ascontiguousarray(points), linkage), alpha, min_support)
 
@@ -99,6 +99,8 @@ def facing_clusters(
 ) -> tuple[list[NDArray[np.int64]], list[NDArray[np.int64]]]:
     """As `contact_clusters` on either object, where links may lead through the other's support vectors.
 
+    The strongest cluster of either object is never discarded.
+
     Parameters
     ----------
     first, second : (k, 3), (m, 3) float64
@@ -107,28 +109,31 @@ def facing_clusters(
     linkage, min_support : float
     """
     component = linked(np.concatenate([first, second]), linkage)
-    return (
-        _strongest_first(component[: len(first)], alpha_first, min_support),
-        _strongest_first(component[len(first) :], alpha_second, min_support),
-    )
+    found = []
+    for own, alpha in ((component[: len(first)], alpha_first), (component[len(first) :], alpha_second)):
+        found.append(_strongest_first(own, alpha, min_support) or _strongest_first(own, alpha, 1)[:1])
+    return found[0], found[1]
 
 
 def _strongest_first(
     component: NDArray[np.int64], alpha: NDArray[np.float64], min_support: float
 ) -> list[NDArray[np.int64]]:
-    """Rows of each component, by strength; components of too few rows are dropped, except the strongest."""
+    """Rows of each component, by strength; components of too few rows are dropped."""
     strength = np.bincount(component, weights=alpha)
     rows = [np.flatnonzero(component == number) for number in np.argsort(-strength, kind="stable")]
-    large = [cluster for cluster in rows if len(cluster) >= max(min_support, 1)]
-    return large or rows[:1]
+    return [cluster for cluster in rows if len(cluster) >= max(min_support, 1)]
 
 
 def contact_point(
-    points: NDArray[np.float64], alpha: NDArray[np.float64], normal: NDArray[np.float64], other: int
+    position: NDArray[np.float64],
+    points: NDArray[np.float64],
+    alpha: NDArray[np.float64],
+    normal: NDArray[np.float64],
+    other: int,
 ) -> ContactPoint:
-    """One contact: α-weighted centroid, extent along principal axes, strength Σα."""
+    """One contact at `position`: extent along principal axes, strength Σα."""
     return ContactPoint(
-        position=alpha @ points / alpha.sum(),
+        position=position,
         normal=normal,
         extent=extent(points),
         strength=float(alpha.sum()),

@@ -1,8 +1,9 @@
 """`Interface`: contacts and separators of two near objects; `interfaces` finds all interfaces of a scene.
 
-Thesis: §2.3.4 for a pair, §2.3.6 for a scene. A literal reading (hard margin, every contact of at least 7 support
-vectors) loses most contacts of a real depth camera; here a soft margin gives the contacts, and each separator also
-gives one *dipole*: the α-weighted centroids of all support vectors on either side, which always exist.
+Thesis: §2.3.4 for a pair (`pair_networks` for two bare clouds), §2.3.6 for a scene. A literal reading (hard
+margin, every contact of at least 7 support vectors) loses most contacts of a real depth camera; here a soft margin
+gives the contacts, and each separator also gives one *dipole*: the α-weighted centroids of all support vectors on
+either side, which always exist.
 """
 
 from collections.abc import Sequence
@@ -14,17 +15,23 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.perception.clouds.voxel import voxelised
-from lifelore.perception.contacts.contact_points import ContactPoint, contact_edges, contact_point, facing_clusters
+from lifelore.perception.contacts.contact_points import (
+    ContactPoint,
+    contact_clusters,
+    contact_edges,
+    contact_point,
+    facing_clusters,
+)
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.contacts.near_pairs import NearPair, near_pairs, split_objects
 from lifelore.perception.separation.separator import MOST_WORK, Separator, separate
 
 STANDARD_VOXEL = 0.003
 """Spacing (metres) at which `ContactSettings.cost` and `min_support` are stated."""
-LEAST_SHARE = 1000.0
+LEAST_SHARE = 1500.0
 """Kernel evaluations per point that a separator may always use, also in large scenes; more cost time.
 
-On ordinary scenes half of the pairs need 160, one in a hundred 930, the worst 2100, and a scene's own share of
+On ordinary scenes half of the pairs need 230, one in a hundred 1140, the worst 1840, and a scene's own share of
 `separator.MOST_WORK` is 12,000 and more. Clouds that lie in each other never converge.
 """
 DEFAULT_CONTACT_SETTINGS = ContactSettings()
@@ -62,7 +69,7 @@ class Interface:
         Visible gap, metres: the mean of the up to five smallest distances from a point of a to the nearest of b
         (`near_pairs.visible_gap`).
     contacts_a, contacts_b : tuple of ContactPoint
-        Strongest first, at least one each.
+        Strongest first, at least one each; there may be none with `ContactSettings.as_printed`.
     contact_edges : (m, 2) int64
         Row (i, j): ``contacts_a[i]`` faces ``contacts_b[j]``.
     dipoles : tuple of Dipole
@@ -152,8 +159,7 @@ def interface(
         if (length, cost, max_work) not in known:
             known[length, cost, max_work] = _separator(pair, length, cost, max_work)
     found = [known[length, cost, max_work] for length, cost in scales]
-    scale = (STANDARD_VOXEL / settings.voxel) ** 2 if settings.voxel else 1.0
-    sides = list(_contacts(pair, found[0], settings, settings.min_support * scale))
+    sides = list(_contacts(pair, found[0], settings))
     points_a, points_b = ([cluster for cluster, _ in side] for side in sides)
     return Interface(
         a=pair.first.label,
@@ -184,20 +190,34 @@ def _separator(pair: NearPair, length: float, cost: float, max_work: float) -> S
     return separate(pair.first.points, pair.second.points, length=length, cost=cost, max_work=max_work)
 
 
-def _contacts(pair: NearPair, found: Separator, settings: ContactSettings, min_support: float):
+def _contacts(pair: NearPair, found: Separator, settings: ContactSettings):
     """(support vectors, contact point) of each contact, on either side."""
     sides = (
         (pair.first.points[found.support_first], found.alpha_first, 1.0, pair.second.label),
         (pair.second.points[found.support_second], found.alpha_second, -1.0, pair.first.label),
     )
-    both = facing_clusters(*sides[0][:2], *sides[1][:2], settings.linkage, min_support)
+    both = _clusters(sides[0][:2], sides[1][:2], settings)
     for (points, alpha, sign, other), clusters in zip(sides, both, strict=True):
-        places = np.array([alpha[rows] @ points[rows] / alpha[rows].sum() for rows in clusters])
+        weights = np.ones(len(alpha)) if settings.as_printed else alpha
+        places = np.array([weights[rows] @ points[rows] / weights[rows].sum() for rows in clusters]).reshape(-1, 3)
         normals = sign * _unit(found.gradient(places))
         yield [
-            (points[rows], contact_point(points[rows], alpha[rows], normal, other))
-            for rows, normal in zip(clusters, normals, strict=True)
+            (points[rows], contact_point(place, points[rows], alpha[rows], normal, other))
+            for rows, place, normal in zip(clusters, places, normals, strict=True)
         ]
+
+
+def _clusters(
+    first: tuple[NDArray[np.float64], NDArray[np.float64]],
+    second: tuple[NDArray[np.float64], NDArray[np.float64]],
+    settings: ContactSettings,
+) -> tuple[list[NDArray[np.int64]], list[NDArray[np.int64]]]:
+    """Rows of each contact's support vectors, from (support vectors, α) of either object."""
+    linkage, least = settings.linkage, settings.min_support
+    if settings.as_printed:
+        return contact_clusters(*first, linkage, least), contact_clusters(*second, linkage, least)
+    scale = (STANDARD_VOXEL / settings.voxel) ** 2 if settings.voxel else 1.0
+    return facing_clusters(*first, *second, linkage, least * scale)
 
 
 def _dipole(pair: NearPair, found: Separator, length: float) -> Dipole:

@@ -53,6 +53,6 @@ def scene_pairs(
 
 
 def _displacements(one: Interface) -> NDArray[np.float64]:
-    first = np.array([contact.position for contact in one.contacts_a])
-    second = np.array([contact.position for contact in one.contacts_b])
+    first = np.array([contact.position for contact in one.contacts_a]).reshape(-1, 3)
+    second = np.array([contact.position for contact in one.contacts_b]).reshape(-1, 3)
     return (first[:, None] - second[None]).reshape(-1, 3)

@@ -36,13 +36,25 @@ def scene_problem(scene: Scene, least: float, goal: Sequence[Statement] = ()) ->
     Raises
     ------
     InputError
-        No relation says what an object rests on; the goal names a predicate or an object that does not exist; the
-        threshold is outside [0, 1].
+        As for `state_problem`; the threshold is outside [0, 1].
     """
-    _check_support(scene.relations, scene.objects)
+    return state_problem(scene, scene_state(scene, least), goal)
+
+
+def state_problem(scene: Scene, state: PlanningState, goal: Sequence[Statement] = ()) -> str:
+    """The problem of a perceived scene in a `state` of its own.
+
+    Raises
+    ------
+    InputError
+        No relation says what an object rests on, although there is a table; the goal names a predicate or an
+        object that does not exist.
+    """
+    if scene.cloud.has_table:
+        _check_support(scene.relations, scene.objects)
     called = pddl_names(scene.objects, words=scene.words)
     wanted = pddl_goal(goal, called, predicates(scene.words)) if goal else NOTHING
-    return problem_text(scene_state(scene, least), called, wanted, scene.words)
+    return problem_text(state, called, wanted, scene.words)
 
 
 def planning_problem(

@@ -3,20 +3,21 @@
 A pair's label is split into what a planner needs: *both* means *on* and *adjacent*, so the probability that a
 rests on b is the sum of those of *on* and *both*. The probability of *clear(b)* is that no object rests on b.
 Pairs count as independent. A fact of the most likely scene is stated if its probability is at least a threshold;
-otherwise it is unknown. *clear(b)* is also unknown if other objects hide a part of b's top from the camera.
+otherwise it is unknown. *clear(b)* is also unknown if other objects hide a part of b's top from the camera, and
+*on(b, table)* where no object carries b and the cloud has no point of a table.
 
 For a planner, a fact that is not stated is false. So an object on which something may rest unseen is marked:
 nothing is planned on it or with it, even when everything known has been taken off it.
 """
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from math import prod
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, ON
-from lifelore.perception.reasoning.fact import Fact
+from lifelore.perception.reasoning.fact import Fact, objects_without_support
 from lifelore.perception.reasoning.hidden_tops import hidden_tops
 from lifelore.perception.reasoning.label_distribution import LabelDistribution, label_distributions
 from lifelore.perception.reasoning.scene_logic import alternatives
@@ -26,8 +27,9 @@ from lifelore.perception.scene import Scene
 CLEAR = "clear"
 PLAN_CONFIDENCE = 0.6
 """Default threshold of planning problems: a higher value gives fewer plans, of which more are valid."""
-DOUBTFUL, HIDDEN = "doubtful", "hidden"
-"""Reasons why a fact is unknown: its probability is below the threshold, or the place is out of sight."""
+DOUBTFUL, HIDDEN, NO_TABLE = "doubtful", "hidden", "no table"
+"""Reasons why a fact is unknown: its probability is below the threshold, the place is out of sight, or the cloud
+has no table."""
 
 
 @dataclass(frozen=True, order=True)
@@ -62,16 +64,23 @@ class PlanningState:
         Sorted.
     may_be_covered : tuple of int
         Objects on which something may rest beside what is stated, ascending.
+    probability : mapping of Fact to float
+        Of every fact of the most likely scene, stated or not. That of ``clear(a)``, which every object has, is the
+        probability that nothing rests on a beside what is stated, as far as the camera sees.
     """
 
     objects: tuple[int, ...]
     stated: tuple[Fact, ...]
     unknown: tuple[UnknownFact, ...] = ()
     may_be_covered: tuple[int, ...] = ()
+    probability: Mapping[Fact, float] = field(default_factory=dict, compare=False)
 
 
 def scene_state(scene: Scene, least: float = 0.0) -> PlanningState:
     """The state of a perceived scene at a threshold in [0, 1]; hidden tops are unknown at any threshold.
+
+    What no object carries in a scene without a table is unknown to be on the table. The probability of that fact
+    is that no object carries it.
 
     Raises
     ------
@@ -79,7 +88,15 @@ def scene_state(scene: Scene, least: float = 0.0) -> PlanningState:
         The threshold is outside [0, 1].
     """
     distributions = label_distributions(alternatives(scene.beliefs)) if scene.beliefs else None
-    return planning_state(scene.relations, scene.objects, least, distributions, hidden_tops(scene.cloud))
+    state = planning_state(scene.relations, scene.objects, least, distributions, hidden_tops(scene.cloud))
+    if scene.cloud.has_table:
+        return state
+    known = label_distributions(scene.relations) if distributions is None else distributions
+    unknown = {
+        UnknownFact(Fact(ON, (x, TABLE)), prod(1 - one.carried(x) for one in known if x in one.pair), NO_TABLE)
+        for x in objects_without_support(scene.relations, scene.objects)
+    }
+    return replace(state, unknown=tuple(sorted(unknown.union(state.unknown))))
 
 
 def planning_state(
@@ -119,10 +136,12 @@ def planning_state(
     stated = {fact for fact, probability in likely.items() if probability >= least}
     unknown = {UnknownFact(fact, likely[fact], DOUBTFUL) for fact in set(likely) - stated}
     covered = []
+    clear: dict[Fact, float] = {}
     for thing in things:
         on_it = {fact.arguments[0] for fact in likely if fact.name == ON and fact.arguments[1] == thing}
         stated_on_it = {a for a in on_it if Fact(ON, (a, thing)) in stated}
         free = prod(1 - one.carried(x) for one in known for x in _others(one, thing) if x not in stated_on_it)
+        clear[Fact(CLEAR, (thing,))] = free
         # At threshold 0 the most likely scene counts as it is.
         doubtful = least > 0 and (on_it != stated_on_it or free < least)
         unseen = thing in set(hidden) and not on_it
@@ -132,7 +151,7 @@ def planning_state(
             unknown.add(UnknownFact(Fact(CLEAR, (thing,)), free, DOUBTFUL if doubtful else HIDDEN))
         elif not on_it:
             stated.add(Fact(CLEAR, (thing,)))
-    return PlanningState(things, tuple(sorted(stated)), tuple(sorted(unknown)), tuple(covered))
+    return PlanningState(things, tuple(sorted(stated)), tuple(sorted(unknown)), tuple(covered), likely | clear)
 
 
 def _others(one: LabelDistribution, thing: int) -> list[int]:

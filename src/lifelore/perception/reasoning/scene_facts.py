@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, NONE, ON
 from lifelore.perception.reasoning.compound_relations import compound_relations
 from lifelore.perception.reasoning.fact import Fact, objects_without_support
@@ -16,9 +17,10 @@ def scene_facts(scene: Scene) -> tuple[Fact, ...]:
     """The facts of a scene, sorted by name and objects, each once; *none* is not a fact.
 
     Where no relation says what an object rests on, the facts are the relations themselves: *clear* or
-    *disconnected* would be guesses (see `fact`).
+    *disconnected* would be guesses (see `fact`). In a scene without a table, where such objects are usual, only
+    facts that name the table are left out.
     """
-    if objects_without_support(scene.relations, scene.objects):
+    if scene.cloud.has_table and objects_without_support(scene.relations, scene.objects):
         return tuple(sorted(_relations_as_facts(scene)))
     return tuple(sorted(_relations_as_facts(scene) | _derived(scene)))
 
@@ -48,4 +50,5 @@ def _relations_as_facts(scene: Scene) -> set[Fact]:
 def _derived(scene: Scene) -> set[Fact]:
     derived = compound_relations(scene.relations, scene.objects)
     regions = region_relations(scene.relations, scene.objects)
-    return {*derived, *geometric_relations(scene), *regions}
+    found = {*derived, *geometric_relations(scene), *regions}
+    return {fact for fact in found if scene.cloud.has_table or TABLE not in fact.arguments}

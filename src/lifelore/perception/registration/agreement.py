@@ -12,11 +12,13 @@ from lifelore.perception.registration.tabletop_view import TabletopView
 CELL = 0.01
 SAME = 0.015
 """Metres between heights that agree; more lets different objects agree."""
+MOVED = 2
+"""Cells: least width and length of a place where something moved."""
 AGAINST = 3.0
 """Agreeing cells that one contradicting cell outweighs."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Agreement:
     """Cells with objects of either view.
 
@@ -26,11 +28,15 @@ class Agreement:
         Cells that the other view shows too: within the heights of this cell and those around it, or not.
     cells : int
         All of them.
+    moved : (3,) float64, optional
+        Metres, in the target's frame: the middle of the largest place that contradicts as a whole, at least
+        `MOVED` cells wide and long. Something moved there: noise and rims contradict in single cells and lines.
     """
 
     agreeing: int
     contradicting: int
     cells: int
+    moved: NDArray[np.float64] | None = None
 
     @property
     def share(self) -> float:
@@ -49,12 +55,31 @@ def agreement(target: TabletopView, source: TabletopView, motion: NDArray[np.flo
     low, shape = cells_spanned(np.concatenate([target.surface, objects, table]), CELL)
     first = height_map(target.objects, target.table, CELL, low, shape)
     second = height_map(objects, table, CELL, low, shape)
-    counts = np.array([_counts(first, second), _counts(second, first)]).sum(axis=0)
-    return Agreement(*counts.tolist())
+    same_first, against_first = _compared(first, second)
+    same_second, against_second = _compared(second, first)
+    places = [_moved(first, against_first), _moved(second, against_second)]
+    return Agreement(
+        int(same_first.sum() + same_second.sum()),
+        int(against_first.sum() + against_second.sum()),
+        int(first.objects.sum() + second.objects.sum()),
+        max(places, key=lambda place: place[0])[1],
+    )
 
 
-def _counts(own: HeightMap, other: HeightMap) -> tuple[int, int, int]:
-    """Agreeing, contradicting and all cells with objects of `own`.
+def _moved(own: HeightMap, against: NDArray[np.bool_]) -> tuple[int, NDArray[np.float64] | None]:
+    """Number of cells and middle (3,) of the largest contradicting place; 0 and None where all are thin."""
+    thick = ndimage.binary_opening(against, np.ones((MOVED, MOVED)))
+    if not thick.any():
+        return 0, None
+    numbers = np.asarray(ndimage.label(thick, np.ones((3, 3)))[0], np.int64)  # type: ignore[index]
+    sizes = np.bincount(numbers.ravel())[1:]
+    cells = np.argwhere(numbers == sizes.argmax() + 1)
+    height = float(own.heights[tuple(cells.T)].mean()) / 2
+    return int(sizes.max()), np.append((cells.mean(axis=0) + own.low + 0.5) * CELL, height)
+
+
+def _compared(own: HeightMap, other: HeightMap) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Agreeing and contradicting cells with objects of `own`.
 
     A cell counts only if the other view shows all nine cells around it. It agrees if its height lies between their
     lowest and highest: at a rim, the top, the side and the table share cells.
@@ -63,5 +88,4 @@ def _counts(own: HeightMap, other: HeightMap) -> tuple[int, int, int]:
     shown = np.asarray(ndimage.minimum_filter(other.seen, 3, mode="constant", cval=False), bool) & objects
     lowest, highest = (limit(other.heights, 3) for limit in (ndimage.minimum_filter, ndimage.maximum_filter))
     same = (own.heights > lowest - SAME) & (own.heights < highest + SAME)
-    agreeing = int(np.count_nonzero(shown & same))
-    return agreeing, int(np.count_nonzero(shown)) - agreeing, int(np.count_nonzero(objects))
+    return shown & same, shown & ~same

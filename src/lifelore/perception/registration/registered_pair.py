@@ -31,16 +31,20 @@ class Registration:
     agreement : Agreement
     rival : float
         Evidence of the best other motion; 0 without.
+    moved : (3,) float64, optional
+        Where something moved between the views, in the frame of the target's cloud, see `Agreement`.
     """
 
     motion: NDArray[np.float64]
     agreement: Agreement
     rival: float
+    moved: NDArray[np.float64] | None = None
 
     @property
     def doubt(self) -> str | None:
         """Why the motion is not sure, in words; None where it is."""
         found = self.agreement
+        place = "" if self.moved is None else ", ".join(f"{x:.2f}" for x in self.moved)
         if found.evidence < LEAST_EVIDENCE and found.share >= LEAST_SHARE:
             return (
                 f"they show too little of the same objects (evidence {max(found.evidence, 0.0):.2f}, at least"
@@ -49,8 +53,10 @@ class Registration:
         if found.share < LEAST_SHARE:
             return (
                 f"they contradict each other at their best ({found.share:.1%} of what both show agrees, at least"
-                f" {LEAST_SHARE:.0%} must)"
+                f" {LEAST_SHARE:.0%} must){f', most at {place} m in the first' if place else ''}"
             )
+        if place:
+            return f"something moved between them, at {place} m in the frame of the first"
         if self.rival > RIVAL * found.evidence:
             return "their objects fit in more than one way"
         return None
@@ -65,7 +71,8 @@ def registered_pair(target: TabletopView, source: TabletopView) -> Registration 
     best, motion = max(judged, key=lambda end: end[0].evidence)
     rival = max((other.evidence for other, end in judged if is_apart(end, motion)), default=0.0)
     whole = np.linalg.inv(target.from_view) @ motion @ source.from_view
-    return Registration(whole, best, max(rival, 0.0))
+    moved = None if best.moved is None else (best.moved - target.from_view[:3, 3]) @ target.from_view[:3, :3]
+    return Registration(whole, best, max(rival, 0.0), moved)
 
 
 def is_apart(motion: NDArray[np.float64], other: NDArray[np.float64]) -> bool:

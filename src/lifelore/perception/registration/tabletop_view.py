@@ -12,6 +12,7 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.clouds.voxel import thinned, voxelised
 from lifelore.perception.segmentation.plane import Plane
+from lifelore.perception.segmentation.range_noise import band
 from lifelore.perception.segmentation.region import over_table
 from lifelore.perception.segmentation.surface_voxels import surface_voxels
 from lifelore.perception.segmentation.table_frame import Up, table_plane, up_direction, upright
@@ -106,4 +107,4 @@ def _parts(
     table = find_table(points, cloud.camera, up_direction(up)).table
     if table is None:
         raise InputError("no table was found, on which the views could be laid over each other")
-    return table.plane, *over_table(points, cloud.camera, table)
+    return table.plane, *over_table(points, band(points, cloud.camera), table)

@@ -5,7 +5,7 @@ otherwise the relation with most votes wins. The share of agreeing votes is the 
 """
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from math import isfinite
 from numbers import Integral, Real
 
@@ -16,6 +16,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.relations import ADJACENT, BOTH, ON, PairLabel
 from lifelore.perception.pairs.directed_label import mirrored, pair_class
 from lifelore.perception.pairs.scene_pairs import ScenePairs
+from lifelore.perception.relations.displacement import short_enough, votes
 
 UNIONS = {frozenset({ON, ADJACENT}): BOTH, frozenset({"~" + ON, ADJACENT}): "~" + BOTH}
 """The union of two labels of one pair."""
@@ -25,15 +26,16 @@ MOST_NEIGHBOURS = 1000
 
 @dataclass(frozen=True)
 class NeighbourSettings:
-    """Settings of the votes, see `DisplacementNeighbours`.
+    """Settings of the votes.
 
     Parameters
     ----------
     k : int
-        1 to `MOST_NEIGHBOURS`.
+        Number of neighbours that vote, 1 to `MOST_NEIGHBOURS`; the thesis's 4.
     omega : float, optional
-        Metres, above 0.
+        Largest displacement in training (the thesis's threshold ω), metres, above 0; None uses all.
     weights : {"uniform", "distance"}
+        Equal votes, or votes by the inverse of the distance (the thesis's alternative to ω).
 
     Raises
     ------
@@ -80,8 +82,6 @@ class DisplacementRelations:
 
     def shares(self, asked: NDArray[np.float64]) -> dict[str, float]:
         """Probability of each class for a pair with these displacements ``(m, 3)``, m ≥ 1."""
-        from lifelore.perception.relations.displacement import votes
-
         found = votes(self.displacements, self.codes, len(self.classes), asked, self.k, self.weights)
         mean = dict(zip(self.classes, found.mean(axis=0).tolist(), strict=True))
         said = frozenset(self.classes[at] for at in found.argmax(axis=1))
@@ -102,8 +102,6 @@ def fit_displacements(
     options: NeighbourSettings,
 ) -> DisplacementRelations | None:
     """All displacements of all labelled pairs, each with its pair's label, in both orders among objects."""
-    from lifelore.perception.relations.displacement import DisplacementNeighbours
-
     rows, names = [], []
     for scene, truth in zip(scenes, truths, strict=True):
         said = scene.labels(truth, least_confidence)
@@ -117,6 +115,9 @@ def fit_displacements(
                     names += [mirrored(name, symmetric)] * len(rows[-1])
     if not rows:
         return None
-    one = DisplacementNeighbours(**asdict(options)).fit(np.concatenate(rows), np.array(names))
-    classes = tuple(map(str, one.classes_))
-    return DisplacementRelations(classes, one.displacements_, one.codes_, one.k, one.weights)
+    known = np.concatenate(rows)
+    classes, codes = np.unique(np.array(names, str), return_inverse=True)
+    chosen = short_enough(known, codes, options.omega)
+    return DisplacementRelations(
+        tuple(map(str, classes)), known[chosen], codes[chosen], options.k, options.weights
+    )

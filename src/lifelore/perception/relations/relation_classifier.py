@@ -274,13 +274,13 @@ class RelationClassifier(Estimator):
         )
 
     def _shares(self, scene: ScenePairs) -> list[dict[str, float]]:
-        """Shares of each pair; empty for pairs of a kind without training labels."""
+        """Shares of each pair; empty for pairs of a kind without training labels, and without any displacement."""
         if self.multi_label:
             return label_shares(self.models_, scene, self.symmetric_)
         if self.method == "displacement":
             kinds = [WITH_TABLE if table else OBJECTS for table in scene.with_table]
             return [
-                self.models_[kind].shares(moved) if kind in self.models_ else {}
+                self.models_[kind].shares(moved) if kind in self.models_ and len(moved) else {}
                 for kind, moved in zip(kinds, scene.displacements, strict=True)
             ]
         return tree_shares(self.models_.get(OBJECTS), self.models_.get(WITH_TABLE), scene, self.vocabulary)

@@ -64,6 +64,10 @@ def _check_words(name: str, words: Any) -> None:
 
 
 def _check_setting(name: str, value: Any) -> None:
+    if name == "as_printed":
+        if not isinstance(value, bool):
+            raise InputError(f"the setting {name} must be true or false, got {value!r:.60}")
+        return
     if not is_number(value):
         raise InputError(f"the setting {name} must be a number, got {value!r:.60}")
     length = name not in ("cost", "wide_cost", "min_support")

@@ -139,7 +139,7 @@ def model_from_bytes(content: bytes, where: str = "the model") -> RelationModel:
             header["method"],
             header["adjacent_gap"],
             header["multi_label"],
-            ContactSettings(**{name: float(value) for name, value in header["settings"].items()}),
+            _contact_settings(header["settings"]),
             _neighbours(header),
             tuple(header["names"]),
             frozenset(header["symmetric"]),
@@ -151,6 +151,12 @@ def model_from_bytes(content: bytes, where: str = "the model") -> RelationModel:
     except (TypeError, ValueError, AttributeError, OverflowError) as error:
         raise InputError(f"{where} {DAMAGED.format(error)}") from None
     return replace(model, models=models)
+
+
+def _contact_settings(settings: Mapping[str, Any]) -> ContactSettings:
+    """Settings from a header; numbers may be whole."""
+    numbers = {name: float(value) for name, value in settings.items() if not isinstance(value, bool)}
+    return ContactSettings(**{**settings, **numbers})
 
 
 def _neighbours(header: Mapping[str, Any]) -> NeighbourSettings:

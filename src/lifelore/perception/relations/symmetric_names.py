@@ -8,8 +8,11 @@ from lifelore.core.errors import InputError
 from lifelore.core.relations import CORE_RELATIONS, SYMMETRIC, PairLabel
 from lifelore.perception.pairs.pair_features import TURNING_COLUMNS, VIEW_COLUMNS
 from lifelore.perception.pairs.scene_pairs import ScenePairs
+from lifelore.perception.trees.tree_training import TreeSettings, extra_trees
 
 FOLDS = 5
+DIRECTION_TREES = TreeSettings(n_trees=50, feature_share=1.0)
+"""All columns are tried at every split, because a single one may show the direction."""
 FEWEST = 10
 """Least number of examples for the test; with fewer a name counts as directed, because the trees may miss its
 direction."""
@@ -85,17 +88,15 @@ def _is_symmetric(name: str, known: tuple[np.ndarray, np.ndarray], truths: Seque
 
 def _right_directions(rows: np.ndarray, scene: np.ndarray) -> int:
     """Number of held-out pairs whose direction the trees predict right."""
-    from lifelore.perception.trees.tree_classifier import TreeClassifier
-
     right = 0
     place = np.unique(scene, return_inverse=True)[1]
     folds = min(FOLDS, int(place.max()) + 1)
     for fold in range(folds):
         seen = place % folds != fold
-        # All columns at every split, because a single one may show the direction.
-        trees = TreeClassifier(50, feature_share=1.0).fit(
-            rows[seen].reshape(-1, rows.shape[2]), np.tile([1, 0], seen.sum())
+        _, trees = extra_trees(
+            rows[seen].reshape(-1, rows.shape[2]), np.tile(["written", "turned"], seen.sum()), DIRECTION_TREES
         )
         held_out = rows[~seen]
-        right += int((trees.predict_proba(held_out[:, 0])[:, 1] > trees.predict_proba(held_out[:, 1])[:, 1]).sum())
+        written, turned = (trees.predict_proba(held_out[:, order])[:, 1] for order in (0, 1))
+        right += int((written > turned).sum())
     return right

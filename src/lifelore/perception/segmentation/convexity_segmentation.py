@@ -5,12 +5,16 @@ borders, and regions of patches that bend outwards. Here regions grow by the mea
 border.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import UNLABELLED
 from lifelore.perception.segmentation.cut_confidence import CutCloud, cut_confidence
-from lifelore.perception.segmentation.patch_convexity import evidence, signed_angles
+from lifelore.perception.segmentation.hollow_objects import hollow_pairs
+from lifelore.perception.segmentation.parted_objects import parted_pairs
+from lifelore.perception.segmentation.patch_convexity import beyond_bend, evidence, signed_angles
 from lifelore.perception.segmentation.patch_merging import merged, without_fragments
 from lifelore.perception.segmentation.plane import NEAR
 from lifelore.perception.segmentation.range_noise import band
@@ -32,7 +36,12 @@ _SPARSE = 3 * VOXEL
 """Size to which the voxels of sparse points grow."""
 
 
-def convex_objects(points: NDArray[np.float64], camera: NDArray[np.float64] | None, min_area: float) -> CutCloud:
+def convex_objects(
+    points: NDArray[np.float64],
+    camera: NDArray[np.float64] | None,
+    min_area: float,
+    seen: NDArray[np.float64] | None = None,
+) -> CutCloud:
     """Labels 2 for the object of the largest surface, 3 for the next, …, 0 for noise; with confidences.
 
     Parameters
@@ -43,6 +52,8 @@ def convex_objects(points: NDArray[np.float64], camera: NDArray[np.float64] | No
         Position of the camera. Without it, the outer side of a surface is guessed.
     min_area : float
         Square metres of surface below which a region is noise.
+    seen : (m, 3) float64, optional
+        All points that the camera sees, those of the table too; default: `points`.
     """
     if len(points) == 0:
         return CutCloud(np.empty(0, np.int64))
@@ -50,10 +61,14 @@ def convex_objects(points: NDArray[np.float64], camera: NDArray[np.float64] | No
     noisier = min(float(np.median(band(points, camera))) / NEAR, NOISIEST)
     surface = surface_voxels(points, camera, VOXEL * noisier, _MOST_VOXELS, _SPARSE)
     patches = supervoxels(surface, PATCH * surface.size / VOXEL)
-    odds = evidence(signed_angles(patches))
+    odds = evidence(beyond_bend(patches, signed_angles(patches)))
     regions = merged(len(patches.counts), patches.pairs, patches.borders, odds)
     fragment = round(FRAGMENT * (VOXEL / surface.size) ** 2)
     regions = without_fragments(regions, patches.counts, patches.pairs, patches.borders, fragment)
+    pairs = list(hollow_pairs(surface, patches, regions, fragment))
+    if camera is not None:
+        pairs += parted_pairs(patches, regions, fragment, camera, points if seen is None else seen)
+    regions = _joined(regions, pairs)
     voxels = np.bincount(regions, patches.counts)
     order = np.argsort(-voxels, kind="stable")
     kept = order[voxels[order] * surface.size**2 >= min_area]
@@ -62,3 +77,14 @@ def convex_objects(points: NDArray[np.float64], camera: NDArray[np.float64] | No
     sure = cut_confidence(patches, odds, regions)
     confidence = {int(label[region]): float(sure[region]) for region in kept}
     return CutCloud(label[regions][patches.of_voxel][surface.inverse], confidence)
+
+
+def _joined(regions: NDArray[np.int64], pairs: Sequence[tuple[int, int]]) -> NDArray[np.int64]:
+    """(k,) the regions of patches, from 0, those of the `pairs` as one."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    n = int(regions.max()) + 1
+    ends = np.array(pairs, np.int64).reshape(-1, 2).T
+    graph = coo_array((np.ones(ends.shape[1], np.int8), (ends[0], ends[1])), shape=(n, n))
+    return connected_components(graph, directed=False)[1].astype(np.int64)[regions]

@@ -94,7 +94,7 @@ def cut_cloud(
     labels = np.zeros(len(points), np.int64)
     labels[np.abs(points[:, 2]) <= settings.table_band] = TABLE
     above = np.flatnonzero((points[:, 2] > settings.table_band) & (points[:, 2] <= settings.reach))
-    cut = _objects(points[above], None if colours is None else colours[above], settings, camera)
+    cut = _objects(points[above], None if colours is None else colours[above], settings, camera, points)
     tests = [over_outline(points[above, :2], points[labels == TABLE, :2])]
     if camera is not None and (labels == TABLE).any():
         tests.append(points[above, 2] > RISE * noise(points[above], camera))
@@ -108,8 +108,9 @@ def _objects(
     colours: NDArray[np.uint8] | None,
     settings: SegmentationSettings,
     camera: NDArray[np.float64] | None,
+    seen: NDArray[np.float64],
 ) -> CutCloud:
-    """Labels of points above the table: 2 … objects by size, 0 the rest."""
+    """Labels of points above the table: 2 … objects by size, 0 the rest; `seen` are those of the table too."""
     if settings.method == "colour":
         from lifelore.perception.segmentation.colour_segmentation import colour_classes
 
@@ -126,7 +127,7 @@ def _objects(
         return CutCloud(smooth_surfaces(points, camera, settings.min_area))
     from lifelore.perception.segmentation.convexity_segmentation import convex_objects
 
-    return convex_objects(points, camera, settings.min_area)
+    return convex_objects(points, camera, settings.min_area, seen)
 
 
 def _standing(cut: CutCloud, shares: Iterable[NDArray[np.bool_]]) -> CutCloud:

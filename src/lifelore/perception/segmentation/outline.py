@@ -31,7 +31,7 @@ def convex_corners(points: NDArray[np.float64]) -> NDArray[np.float64] | None:
     try:
         if len(points) > 1000:
             # A point inside the hull of a few is no corner: Qhull has little left to do (Akl and Toussaint).
-            extreme = np.unique((points @ _DIRECTIONS).argmax(axis=0))
+            extreme = np.unique((_DIRECTIONS.T @ points.T).argmax(axis=1))
             few = points[extreme][ConvexHull(points[extreme]).vertices]
             points = np.concatenate([few, points[~_within(points, few)]])
         return points[ConvexHull(points).vertices]

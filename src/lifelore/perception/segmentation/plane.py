@@ -67,7 +67,7 @@ def dominant_plane(
     sample = points if len(points) <= _SAMPLE else points[rng.choice(len(points), _SAMPLE, replace=False)]
     normals, offsets = _hypotheses(sample, rng, up)
     if len(normals) == 0:
-        raise InputError("no plane can be found in the cloud; give up as a vector or 'z'")
+        raise InputError("no plane can be found in the cloud; pass --up X,Y,Z (or z)")
     votes = np.concatenate(
         [
             (np.abs(sample @ normals[i : i + _BATCH].T + offsets[i : i + _BATCH]) <= near).sum(axis=0)
@@ -76,7 +76,7 @@ def dominant_plane(
     )
     best = int(votes.argmax())
     if votes[best] < _LEAST_SHARE * len(sample):
-        raise InputError("no plane stands out in the cloud; give up as a vector or 'z'")
+        raise InputError("no plane stands out in the cloud; pass --up X,Y,Z (or z)")
     plane = refined(points, Plane(normals[best], float(offsets[best])), near)
     return plane, float(np.mean(np.abs(plane.height(points)) <= near))
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.segmentation.range_noise import band
+from lifelore.perception.segmentation.surface_patches import Patch
 from lifelore.perception.segmentation.table_evidence import FRINGE, REACH
 from lifelore.perception.segmentation.table_search import Table
 
@@ -94,40 +94,36 @@ def inside(cloud: PointCloud, region: Region) -> PointCloud:
 
 
 def over_table(
-    points: NDArray[np.float64], camera: NDArray[np.float64] | None, table: Table
+    points: NDArray[np.float64], bands: NDArray[np.float64], table: Table
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Which points (n, 3) are the table, and which stand over it; both (n,) bool.
 
     The table's points lie within the band of its plane and within its outline. Points over it are up to `REACH`
     above the band. Points of walls and furniture are left out: large flat patches that are mostly not over it.
     """
-    heights, bands = table.plane.height(points), band(points, camera)
-    low = (heights >= -bands) & (heights <= REACH)
-    low[low] = table.patch.covers(points[low])
+    heights = table.plane.height(points)
+    low = _covered((heights >= -bands) & (heights <= REACH), points, table.patch)
     on_it = low & (heights <= bands)
     over = low & ~on_it
     for patch in table.background:
-        near = np.abs(patch.plane.height(points)) <= bands
-        near[near] = patch.covers(points[near])
+        near = _covered(np.abs(patch.plane.height(points)) <= bands, points, patch)
         if np.count_nonzero(near & over) < _INSIDE_SHARE * np.count_nonzero(near):
             over &= ~near
     return on_it, over
 
 
 def reaching_out(
-    points: NDArray[np.float64], camera: NDArray[np.float64] | None, table: Table, over: NDArray[np.bool_]
+    points: NDArray[np.float64], bands: NDArray[np.float64], table: Table, over: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
     """(n,) bool: points beyond the table's visible outline that are linked to points `over` (n,) it.
 
     The visible part of a table is not the whole: an object hides the table behind it, the picture ends, and an
     object may overhang. Large flat patches (walls, furniture) are left out.
     """
-    heights, bands = table.plane.height(points), band(points, camera)
-    beyond = (heights > bands) & (heights <= REACH) & ~over
-    beyond[beyond] = table.patch.covers(points[beyond], OVERHANG)
-    at_border = beyond.copy()
-    at_border[beyond] = table.patch.covers(points[beyond], _LINK)
-    beyond[at_border] = ~table.patch.covers(points[at_border])
+    heights = table.plane.height(points)
+    beyond = _covered((heights > bands) & (heights <= REACH) & ~over, points, table.patch, OVERHANG)
+    at_border = _covered(beyond, points, table.patch, _LINK)
+    beyond &= ~_covered(at_border, points, table.patch)
     for patch in table.background:
         near = np.flatnonzero(beyond)
         near = near[np.abs(patch.plane.height(points[near])) <= FRINGE * bands[near]]
@@ -137,6 +133,16 @@ def reaching_out(
     met = np.bincount(cluster[(over | at_border)[among]], minlength=int(cluster.max(initial=-1)) + 1) > 0
     beyond[among] &= met[cluster]
     return beyond
+
+
+def _covered(
+    which: NDArray[np.bool_], points: NDArray[np.float64], patch: Patch, margin: float = 0.0
+) -> NDArray[np.bool_]:
+    """(n,) bool: those of `which` points (n, 3) that lie over or under the outline of a patch."""
+    places = np.flatnonzero(which)
+    covered = np.zeros(len(which), bool)
+    covered[places[patch.covers(points.take(places, axis=0), margin)]] = True
+    return covered
 
 
 def _linked(points: NDArray[np.float64]) -> NDArray[np.int64]:

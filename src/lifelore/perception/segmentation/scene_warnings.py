@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE
+from lifelore.perception.clouds.cloud_scale import unit_hint
+from lifelore.perception.segmentation.dropped_points import dropped_points
 from lifelore.perception.segmentation.range_noise import band
 from lifelore.perception.segmentation.table_frame import SegmentedScene
 
@@ -22,6 +24,12 @@ NARROW, WIDE = 0.25, 12.0
 NEAREST = 0.15
 """Metres: median range below which the units are doubted; depth cameras measure from about 0.3 m."""
 
+FACING = 25.0
+"""Degrees between the table's normal and the direction to the camera below which the table may be a wall; 44° to
+51° on tables that a camera looks at from the side."""
+FEW_POINTS = 30
+"""Points of an object; with fewer its contacts and relations are a guess."""
+
 
 @dataclass(frozen=True)
 class SceneWarning:
@@ -34,10 +42,13 @@ class SceneWarning:
 def scene_warnings(scene: SegmentedScene) -> tuple[SceneWarning, ...]:
     """The warnings of a scene, the most fundamental first; empty for a labelled scene without a doubt.
 
-    Codes: ``units``, ``up_not_level``, ``no_table``, ``table_empty``, ``few_table_points``, ``table_gap``,
-    ``tiny_objects``, ``automatic_objects``.
+    Codes: ``units``, ``camera_doubted``, ``up_not_level``, ``no_table``, ``table_faces_camera``, ``table_empty``,
+    ``few_table_points``, ``table_gap``, ``points_dropped``, ``tiny_objects``, ``few_object_points``,
+    ``automatic_objects``.
     """
-    found = [*_units(scene), *_table(scene), *_objects(scene)]
+    dropped = dropped_points(scene)
+    found = [*_units(scene), *_camera(scene), *_table(scene)]
+    found += ([] if dropped is None else [("points_dropped", dropped)]) + _objects(scene)
     return tuple(SceneWarning(code, message) for code, message in found)
 
 
@@ -54,10 +65,17 @@ def _units(scene: SegmentedScene) -> list[tuple[str, str]]:
             wrong.append(f"is seen from {100 * away:.3g} cm")
     if not wrong:
         return []
+    return [("units", f"the scene {' and '.join(wrong)}: {unit_hint(width)}")]
+
+
+def _camera(scene: SegmentedScene) -> list[tuple[str, str]]:
+    if scene.camera_doubt is None:
+        return []
     text = (
-        f"the scene {' and '.join(wrong)}: its coordinates may be in cm or inch; convert them to m or mm (--units)"
+        f"the camera cannot be where the cloud says: {scene.camera_doubt}; it counts as unknown, so that hidden"
+        " tops are not noticed. Give its place in the cloud's frame (VIEWPOINT of a PCD, camera of an npz)"
     )
-    return [("units", text)]
+    return [("camera_doubted", text)]
 
 
 def _table(scene: SegmentedScene) -> list[tuple[str, str]]:
@@ -66,11 +84,10 @@ def _table(scene: SegmentedScene) -> list[tuple[str, str]]:
         return []
     if scene.automatic and scene.table is None:
         return _missing_table(scene)
-    found = []
+    found = [] if scene.up_given or not scene.automatic else _facing(scene)
     if scene.table is not None and scene.table.standing == 0:
-        found.append(
-            ("table_empty", "nothing stands on the plane that was taken for the table; check it, or give up")
-        )
+        text = "nothing stands on the plane that was taken for the table; if it is not, pass --up X,Y,Z"
+        found.append(("table_empty", text))
     share = float(np.mean(labels == TABLE))
     if share < _FEW_TABLE_SHARE:
         text = (
@@ -78,6 +95,21 @@ def _table(scene: SegmentedScene) -> list[tuple[str, str]]:
         )
         found.append(("few_table_points", text))
     return found + _gap(scene)
+
+
+def _facing(scene: SegmentedScene) -> list[tuple[str, str]]:
+    """A warning where the table's normal points at the camera, as a wall's does."""
+    if scene.cloud.camera is None:
+        return []
+    away = scene.cloud.points.mean(axis=0) - scene.cloud.camera
+    angle = float(np.degrees(np.arccos(np.clip(-away[2] / np.linalg.norm(away), -1, 1))))
+    if angle >= FACING:
+        return []
+    text = (
+        f"the plane that was taken for the table faces the camera ({angle:.0f}° off), as a wall does; unless the"
+        " camera looks straight down, pass --up X,Y,Z"
+    )
+    return [("table_faces_camera", text)]
 
 
 def _missing_table(scene: SegmentedScene) -> list[tuple[str, str]]:
@@ -118,6 +150,9 @@ def _band(scene: SegmentedScene) -> float:
 
 def _objects(scene: SegmentedScene) -> list[tuple[str, str]]:
     found = []
+    if not scene.automatic and not scene.cloud.objects:
+        text = "no point has the label of an object: objects are numbered from 2 (0 is no object, 1 is the table)"
+        found.append(("table_empty", text))
     sizes: list[NDArray[np.float64]] = [np.ptp(scene.cloud.of(label), axis=0) for label in scene.cloud.objects]
     tiny = sum(float(size.max()) < TINY for size in sizes)
     if sizes and tiny > _TINY_SHARE * len(sizes):
@@ -125,6 +160,12 @@ def _objects(scene: SegmentedScene) -> list[tuple[str, str]]:
             f"{tiny} of {len(sizes)} objects are smaller than {100 * TINY:.0f} cm; check the units and the labels"
         )
         found.append(("tiny_objects", text))
+    counts = np.bincount(scene.cloud.labels)
+    few = {label: int(counts[label]) for label in scene.cloud.objects if counts[label] < FEW_POINTS}
+    if few:
+        named = ", ".join(f"{label} ({n})" for label, n in few.items())
+        text = f"objects with fewer than {FEW_POINTS} points, whose relations are a guess: {named}"
+        found.append(("few_object_points", text))
     if scene.automatic and sizes:
         found.append(("automatic_objects", _automatic(len(sizes), scene)))
     return found

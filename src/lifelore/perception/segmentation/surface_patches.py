@@ -1,5 +1,6 @@
 """Flat patches of a cloud: planes found in turn among oriented voxels, each cut into connected pieces."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -8,7 +9,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.clouds.voxel import voxelised
-from lifelore.perception.segmentation.outline import over_outline
+from lifelore.perception.segmentation.outline import convex_corners, over_outline
 from lifelore.perception.segmentation.plane import Plane
 from lifelore.perception.segmentation.range_noise import band
 
@@ -19,7 +20,7 @@ LEAST_AREA = 0.004
 _MOST_PLANES = 16
 _HYPOTHESES = 200
 _SAMPLE = 3000
-_NEIGHBOURS = 20
+_NEIGHBOURS = 12
 _ALIKE = np.cos(np.radians(30.0))
 """A voxel is part of a plane only if its own normal is within 30° of the plane's."""
 _MOST_VOXELS = 25_000
@@ -87,7 +88,13 @@ class Patch:
 
     def covers(self, points: NDArray[np.float64], margin: float = 0.0) -> NDArray[np.bool_]:
         """(n,) bool: whether points (n, 3) lie over or under its convex outline, grown by `margin` metres."""
-        return over_outline(points @ self.flat.T, self.corners, margin)
+        return over_outline(points @ np.ascontiguousarray(self.flat.T), self._outline, margin)
+
+    @cached_property
+    def _outline(self) -> NDArray[np.float64]:
+        """(k, 2) corners of the convex hull; all voxels where they span no area."""
+        hull = convex_corners(self.corners)
+        return self.corners if hull is None else hull
 
 
 def oriented_voxels(
@@ -137,6 +144,18 @@ def patches(voxels: OrientedVoxels, rng: np.random.Generator) -> list[Patch]:
     return found
 
 
+def united(pieces: Sequence[Patch]) -> Patch:
+    """One patch of pieces of the same plane, at least one."""
+    first = pieces[0]
+    return Patch(
+        first.plane,
+        np.concatenate([piece.voxels for piece in pieces]),
+        first.flat,
+        sum(piece.area for piece in pieces),
+        np.concatenate([piece.corners for piece in pieces]),
+    )
+
+
 def _best_plane(voxels: OrientedVoxels, places: NDArray[np.int64], rng: np.random.Generator) -> Plane:
     """The plane with most agreeing voxels among `places`, from their own normals, refined."""
     sample = places if len(places) <= _SAMPLE else places[rng.choice(len(places), _SAMPLE, replace=False)]
@@ -145,9 +164,9 @@ def _best_plane(voxels: OrientedVoxels, places: NDArray[np.int64], rng: np.rando
     offsets = -np.einsum("ij,ij->i", normals, voxels.points[starts])
     votes = _votes(voxels, sample, normals, offsets)
     best, best_votes = None, -1
-    for start in np.argsort(-votes, kind="stable")[:8]:
+    for start in np.argsort(-votes, kind="stable")[:3]:
         plane = Plane(normals[start], float(offsets[start]))
-        for _ in range(4):
+        for _ in range(3):
             plane = _fitted(voxels, sample, plane)
         agreed = int(_votes(voxels, sample, plane.normal[None], np.array([plane.offset]))[0])
         if agreed > best_votes:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.perception.segmentation.outline import over_outline
 from lifelore.perception.segmentation.plane import Plane
 from lifelore.perception.segmentation.surface_patches import OrientedVoxels, Patch
 
@@ -18,6 +19,8 @@ FACE_AREA = 0.12
 """Square metres; a smaller patch with as many points below its border is the top of an object."""
 HANGING = 0.20
 """Metres above a plane from which a cluster hangs in the air; below, its support may be hidden."""
+HIDDEN_FOOT = 0.15
+"""Metres between a cluster in the air and what stands below it, within which it hides its own support."""
 LEAST_TABLE = 0.03
 """Square metres; a smaller patch is no table."""
 BELOW_SHARE = 0.3
@@ -42,7 +45,8 @@ class Candidate:
     tall : int
         Points of clusters that stand on it and rise higher: a table's legs on the floor.
     hanging : int
-        Points of clusters over it that touch nothing and begin at least `HANGING` above it.
+        Points of clusters over it that touch nothing and begin at least `HANGING` above it, with nothing under
+        them on which they may stand.
     floating : int
         Points of clusters anywhere that touch neither it nor a large patch, and are not low over it: objects on a
         table of glass.
@@ -168,6 +172,12 @@ def _judged(voxels: OrientedVoxels, patch: Patch, plane: Plane, around: _Surroun
     standing = on_foot & ~on_level & of_size & (top <= REACH)
     tall = on_foot & of_size & (top > REACH)
     hanging = ~on_foot & ~on_large & (size >= _SPECK) & (bottom >= HANGING)
+    if hanging.any():
+        flat = voxels.points @ patch.flat.T
+        for number in np.flatnonzero(hanging):
+            near = standing & (top >= bottom[number] - HIDDEN_FOOT)
+            pillar = flat[(cluster >= 0) & near[cluster]]
+            hanging[number] = not over_outline(pillar, flat[cluster == number]).any()
     stand, rise_high, hang = (int(points[which].sum()) for which in (standing, tall, hanging))
     return Candidate(patch, plane, stand, rise_high, hang, floating, below, on_it)
 

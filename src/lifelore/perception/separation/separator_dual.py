@@ -1,4 +1,4 @@
-"""The dual of one level: multipliers, and slopes that are exact or within a known error.
+"""The dual of a separator: multipliers, and slopes that are exact or within a known error.
 
 Notation as in `separator_smo`: β = yα, slope r = y - Kβ. Slopes of a working set, extremes and the bias are
 evaluated exactly before they are used.
@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from lifelore.perception.separation.far_field import Cells, far_field
 from lifelore.perception.separation.gaussian import Array, kernel_sums
-from lifelore.perception.separation.nested_voxels import Level
 
 ORDER = 5
 """Degree of the far field's expansions."""
@@ -25,44 +24,50 @@ Indices = NDArray[np.int64]
 
 @dataclass(eq=False)
 class Dual:
-    """One level's dual, changed in place.
+    """The dual, changed in place.
 
     Parameters
     ----------
-    level : Level
-    beta : (m,) float64
-        Σβ = 0 and lower ≤ β ≤ upper.
-    scope : (k,) int64 or None
-        Points whose slopes are computed, ascending; others keep a given slope. None: all.
-    cells : Cells or None
-        Far-field cells of the level's points, if all slopes are computed; None: every sum is exact.
-    work, max_work : float
-        Evaluations of a Gaussian so far, and their limit. At the limit slopes are no longer evaluated and stay
-        within their errors.
+    points : (3, n) float64
+        In lengths of the kernel, sorted by cell.
+    side : (n,) float64
+        +1 for the first cloud, -1 for the second.
+    cells : Cells
+        Far-field cells of the points.
+    cost : float
+        Greatest |β| of a point.
+    max_work : float
+        Limit of `work`. At the limit slopes are no longer evaluated and stay within their errors.
 
     Attributes
     ----------
-    lower, upper : (m,) float64
-        0 and the cap for the first cloud, minus the cap and 0 for the second.
-    slope, error : (m,) float64
+    work : float
+        Evaluations of a Gaussian so far.
+    beta : (n,) float64
+        Σβ = 0 and lower ≤ β ≤ upper; zeros at first.
+    lower, upper : (n,) float64
+        0 and the cost for the first cloud, minus the cost and 0 for the second.
+    slope, error : (n,) float64
         |slope - exact slope| ≤ error; infinite until `evaluate` or `settle`.
     """
 
-    level: Level
-    beta: Array
-    scope: Indices | None = None
-    cells: Cells | None = None
-    work: float = 0.0
+    points: Array
+    side: Array
+    cells: Cells
+    cost: float
     max_work: float = np.inf
+    work: float = field(init=False, default=0.0)
+    beta: Array = field(init=False)
     lower: Array = field(init=False)
     upper: Array = field(init=False)
     slope: Array = field(init=False)
     error: Array = field(init=False)
 
     def __post_init__(self) -> None:
-        bound = self.level.side * self.level.cap
+        bound = self.side * self.cost
+        self.beta = np.zeros(len(bound))
         self.lower, self.upper = np.minimum(bound, 0.0), np.maximum(bound, 0.0)
-        self.slope, self.error = self.level.side.copy(), np.full(len(bound), np.inf)
+        self.slope, self.error = self.side.copy(), np.full(len(bound), np.inf)
 
     @property
     def spent(self) -> bool:
@@ -90,35 +95,30 @@ class Dual:
             return
         exact = self.error == 0
         exact_slopes = self.slope[exact]
-        scope = slice(None) if self.scope is None else self.scope
-        self.slope[scope], self.error[scope] = self.level.side[scope], 0.0
+        self.slope[:], self.error[:] = self.side, 0.0
         self.pull(support, self.beta[support])
         self.slope[exact], self.error[exact] = exact_slopes, 0.0
 
     def pull(self, which: Indices, weights: Array) -> None:
         """Subtract from all slopes the sums of Gaussians at the points `which` with `weights`."""
-        points = self.level.points
-        n, k = points.shape[1], len(which)
+        n, k = len(self.side), len(which)
         if k == 0:
             return
         self.work += self._cost(k)
-        sources, sums = np.ascontiguousarray(points[:, which]), np.zeros(n)
-        if self.cells is not None and self._far_cost(k) < n * k:
-            sums, error = far_field(points, self.cells, sources, weights, ORDER)
+        sources, sums = np.ascontiguousarray(self.points[:, which]), np.zeros(n)
+        if self._far_cost(k) < n * k:
+            sums, error = far_field(self.points, self.cells, sources, weights, ORDER)
             self.error += error
         else:
-            kernel_sums(points, sources, weights, np.arange(n) if self.scope is None else self.scope, sums)
+            kernel_sums(self.points, sources, weights, np.arange(n), sums)
         self.slope -= sums
 
     def _far_cost(self, n_sources: int) -> float:
-        if self.cells is None:
-            return np.inf
-        return len(self.cells.radius) * n_sources * _PER_CELL + self.level.points.shape[1] * _PER_POINT
+        return len(self.cells.radius) * n_sources * _PER_CELL + len(self.side) * _PER_POINT
 
     def _cost(self, n_sources: int) -> float:
-        """Work of the sums of `n_sources` sources at all points in scope."""
-        n_points = self.level.points.shape[1] if self.scope is None else len(self.scope)
-        return min(self._far_cost(n_sources), n_points * n_sources)
+        """Work of the sums of `n_sources` sources at all points."""
+        return min(self._far_cost(n_sources), len(self.side) * n_sources)
 
     def settle(self, which: Indices) -> None:
         """Evaluate the slopes of `which` exactly, where work remains."""
@@ -126,17 +126,13 @@ class Dual:
         if len(which) and not self.affords(len(which)):
             self.work = max(self.work, self.max_work)
         elif len(which):
-            sums = self.sums(np.ascontiguousarray(self.level.points[:, which]))
-            self.slope[which] = self.level.side[which] - sums
+            support, sums = np.flatnonzero(self.beta), np.empty(len(self.side))
+            self.work += len(support) * len(which)
+            kernel_sums(
+                self.points, np.ascontiguousarray(self.points[:, support]), self.beta[support], which, sums
+            )
+            self.slope[which] = self.side[which] - sums[which]
             self.error[which] = 0.0
-
-    def sums(self, points: Array) -> Array:
-        """Σ_j β_j k(point, x_j) at `points` (3, m), exactly."""
-        support = np.flatnonzero(self.beta)
-        self.work += len(support) * points.shape[1]
-        sources, out = np.ascontiguousarray(self.level.points[:, support]), np.empty(points.shape[1])
-        kernel_sums(points, sources, self.beta[support], np.arange(points.shape[1]), out)
-        return out
 
     def extremes(self, tolerance: float) -> tuple[float, float]:
         """max{r : β < upper} and min{r : β > lower}: exact if within `tolerance`, else possibly too close.

@@ -1,4 +1,4 @@
-"""Topology of contact point networks: substructure, functional similarity, holes and grasp seeds (thesis §2.3.6).
+"""Topology of contact point networks: holes and grasp seeds (thesis §2.3.6).
 
-Read in this order: `substructure`, `functional_similarity`, `holes`, `grasp_seeds`; `sight` serves `holes`.
+Read in this order: `holes`, `grasp_seeds`; `sight` serves `holes`.
 """

@@ -1,6 +1,7 @@
 """`TreeEnsemble`: decision trees as flat arrays that NumPy alone can predict with; scikit-learn trains them.
 
-A model is a few arrays without pickle, and a command starts without the 0.7 s of importing scikit-learn.
+A model is a few arrays without pickle, and a command starts without importing scikit-learn (more than a second).
+For the 4 to 20 rows of an ordinary scene, 200 trees take 1 to 5 ms; scikit-learn's forest takes 16 ms.
 """
 
 from collections.abc import Mapping

@@ -1,7 +1,7 @@
 """Training of `TreeRelations`: rows in both orders, temperature calibrated on held-out scenes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from numbers import Integral
 
 import numpy as np
@@ -13,7 +13,7 @@ from lifelore.perception.pairs import gap_rule
 from lifelore.perception.pairs.directed_label import mirrored, pair_class
 from lifelore.perception.pairs.pair_features import GEOMETRY_COLUMNS
 from lifelore.perception.pairs.scene_pairs import ScenePairs
-from lifelore.perception.trees.tree_ensemble import MOST_TREES
+from lifelore.perception.trees.tree_ensemble import MOST_TREES, TreeEnsemble
 from lifelore.perception.trees.tree_relations import (
     Shares,
     TreeRelations,
@@ -34,16 +34,16 @@ TEMPERATURES = np.geomspace(0.3, 2.0, 39)
 
 @dataclass(frozen=True)
 class TreeSettings:
-    """Settings of the trees, see `TreeClassifier`.
+    """Settings of the extremely randomised trees.
 
     Parameters
     ----------
     n_trees, table_trees : int
         Trees for pairs of objects and for pairs with the table, 1 to `MOST_TREES`.
     min_leaf : int
-        At least 1.
+        Least training rows in a leaf, at least 1.
     feature_share : float or "sqrt"
-        In (0, 1].
+        Share of the columns tried at each split, in (0, 1].
     seed : int
         At least 0.
 
@@ -135,12 +135,25 @@ def _object_rows(
 
 def grow_trees(rows: TrainingRows, columns: Sequence[str], settings: TreeSettings, n_trees: int) -> TreeRelations:
     """Trees over these rows, not calibrated."""
-    from lifelore.perception.trees.tree_classifier import TreeClassifier
+    few = len(rows.classes) < FEW_ROWS
+    own = replace(settings, n_trees=n_trees, min_leaf=1 if few else settings.min_leaf)
+    classes, trees = extra_trees(rows.matrix, rows.classes, own)
+    return TreeRelations(classes, tuple(columns), trees)
 
-    min_leaf = settings.min_leaf if len(rows.classes) >= FEW_ROWS else 1
-    estimator = TreeClassifier(n_trees, min_leaf, settings.feature_share, random_state=settings.seed)
-    estimator.fit(rows.matrix, rows.classes)
-    return TreeRelations(tuple(map(str, estimator.classes_)), tuple(columns), estimator.ensemble_)
+
+def extra_trees(
+    rows: NDArray[np.float64], classes: NDArray[np.str_], settings: TreeSettings
+) -> tuple[tuple[str, ...], TreeEnsemble]:
+    """The classes (sorted) and the `TreeSettings.n_trees` trees that scikit-learn trains on rows ``(n, d)``."""
+    from sklearn.ensemble import ExtraTreesClassifier
+
+    forest = ExtraTreesClassifier(
+        n_estimators=settings.n_trees,
+        min_samples_leaf=settings.min_leaf,
+        max_features=settings.feature_share,  # type: ignore[arg-type]
+        random_state=settings.seed,
+    ).fit(rows, classes)
+    return tuple(map(str, forest.classes_)), TreeEnsemble.from_forest(forest)
 
 
 def _held_out(

@@ -21,8 +21,8 @@ from lifelore.core.relations import BOTH, ON
 from lifelore.domains.tabletop_job.job import TabletopJob
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.pairs.scene_pairs import scene_pairs
-from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.scene import Scene
+from lifelore.perception.scene_perception import perceived_scene
 from lifelore.perception.segmentation.table_frame import to_scene
 
 Array = NDArray[np.float64]

@@ -46,6 +46,9 @@ export function sentenceOf({ a, b, relation }) {
   return `${nameOf(a)} ${words[relation] ?? relation} ${nameOf(b)}`;
 }
 
+/** What a view draws without a scene. */
+export const NOTHING = { bounds: { centre: [0, 0, 0], radius: 1 }, points: null, labels: [], dots: [], lines: [], bars: [], names: [] };
+
 /** All that a view draws, under the settings of the page; positions in metres, colours as #rrggbb. */
 export function drawingOf(scene, settings) {
   const { selected, show, least } = settings;

@@ -2,7 +2,7 @@
 
 import { ask, make, say } from "/static/shell/shell.js";
 import { describeSource, lackOf, questionOf, sourceOf } from "./source_files.js";
-import { colourOf, drawingOf, nameOf, NONE, relationColour, relationsOf, sceneOf, sentenceOf } from "./scene.js";
+import { colourOf, drawingOf, nameOf, NONE, NOTHING, relationColour, relationsOf, sceneOf, sentenceOf } from "./scene.js";
 
 const EXAMPLES = "/static/see/examples/";
 const BOXES = ["points", "contacts", "networks", "relations", "holes"];
@@ -14,8 +14,8 @@ let view = null;
 async function start() {
   view = await openView();
   $("example").addEventListener("change", openExample);
-  $("file").addEventListener("change", () => openFiles($("file").files));
-  for (const id of ["up", "units", "scale"]) $(id).addEventListener("change", analyse);
+  $("file").addEventListener("change", () => openOwn($("file").files));
+  for (const id of ["up", "vector", "units", "scale", "range", "roi"]) $(id).addEventListener("change", analyse);
   for (const id of [...BOXES.map((box) => `show-${box}`), "colours"]) $(id).addEventListener("change", () => draw());
   $("least").addEventListener("input", () => draw());
   $("plan").addEventListener("click", () => save("problem.pddl", (document) => document.pddl.problem, "domain.pddl", (document) => document.pddl.domain));
@@ -54,12 +54,18 @@ async function openExample() {
   await openFiles([new File([await answer.blob()], `${name}.pcd`)]);
 }
 
+async function openOwn(files) {
+  $("example").value = "";
+  await openFiles(files);
+}
+
 /** Look at files that a person gives, once they are a whole source. */
 async function openFiles(files) {
   if (!files.length) return;
   try {
     state.source = await sourceOf([...files], state.source);
   } catch (error) {
+    clear();
     say($("message"), error.message, "error");
     return;
   }
@@ -79,19 +85,41 @@ function dropping(area) {
   area.addEventListener("dragleave", over(false));
   area.addEventListener("drop", (event) => {
     over(false)(event);
-    openFiles(event.dataTransfer.files);
+    openOwn(event.dataTransfer.files);
   });
 }
 
 /** Ask for the scene of the source: its document, or with `points` an answer in bytes. */
 async function question(points, options = {}) {
-  const read = { up: $("up").value, units: $("units").value, scale: $("scale").value, ...options };
+  const up = $("up").value === "vector" ? $("vector").value : $("up").value;
+  const read = { up, units: $("units").value, scale: $("scale").value, ...region(), ...options };
   const [route, asked] = await questionOf(state.source, read, points);
   return ask(`/v1/perceive/${route}`, { ...asked, raw: points });
 }
 
+/** The box and the range that are filled in. */
+function region() {
+  const [roi, range] = [$("roi").value.trim(), $("range").value];
+  return { ...(roi && { roi }), ...(range && { max_range: Number(range) }) };
+}
+
+/** Remove the scene: what is shown is never another cloud than the one that was asked for. */
+function clear() {
+  state.scene = null;
+  state.selected = null;
+  for (const id of ["warnings", "objects", "details", "relations"]) $(id).replaceChildren();
+  $("summary").textContent = "No scene: see the message above the picture.";
+  view.show(NOTHING, true);
+  allowSaving(false);
+}
+
+function allowSaving(allowed) {
+  for (const id of ["plan", "graph"]) $(id).disabled = !allowed;
+}
+
 async function analyse() {
   const asked = (state.asked += 1);
+  $("vector-label").hidden = $("up").value !== "vector";
   const lack = lackOf(state.source);
   say($("message"), lack || `Looking at ${[...state.source.values()].map(({ name }) => name).join(", ")} …`, lack ? "warning" : "");
   if (lack) return;
@@ -102,9 +130,14 @@ async function analyse() {
     state.scene = scene;
     state.selected = null;
     say($("message"), "");
+    allowSaving(true);
     draw(true);
   } catch (error) {
-    if (asked === state.asked) say($("message"), error.message, "error");
+    if (asked !== state.asked) return;
+    clear();
+    // The service gives an uploaded cloud a name of its own.
+    const name = (state.source.get("cloud") ?? state.source.get("depth")).name;
+    say($("message"), `${name}: ${error.message.replace(/^(cloud|depth)\.\w+: /, "")}`, "error");
   }
 }
 
@@ -215,7 +248,7 @@ function showRelations(scene, least) {
     const swatch = make("span", { class: "swatch", "aria-hidden": "true" });
     swatch.style.background = relationColour(one.relation);
     const filled = make("span");
-    filled.style.width = percent(one.confidence);
+    filled.style.width = `${100 * one.confidence}%`;
     filled.style.background = relationColour(one.relation);
     const bar = make("span", { class: "bar share", "aria-hidden": "true" }, filled);
     const chosen = [one.a, one.b].includes(state.selected);

@@ -1,0 +1,1 @@
+../../../../src/lifelore/bridges/detection3d.py

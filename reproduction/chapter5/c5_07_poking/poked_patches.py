@@ -1,0 +1,336 @@
+"""`PokedPatches`: patches of a first cloud's surface, and the rigid motion of each at every push.
+
+For each push the motions are found that explain the picture after it: registrations of the segments whose surface
+is no longer where it was, each patch being assigned to rest or to a motion (`motion_labels`), and carried along.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.perception.segmentation.supervoxels import supervoxels
+from lifelore.perception.segmentation.surface_voxels import SurfaceVoxels, surface_voxels
+from reproduction.chapter5.c5_07_poking.motion_labels import motion_labels
+from reproduction.chapter5.c5_07_poking.moved_surface import NEAR, VOXEL, ViewAfter
+from reproduction.chapter5.c5_07_poking.rigid_motion import STILL, RigidMotion, registered, turned_about
+
+PATCH = 0.015
+"""Metres between the seeds of patches: the resolution of a split."""
+BORDER = 0.25
+"""Cost of each pair of neighbouring voxels with different motions, in voxels of evidence; more splits less."""
+CREASE = 0.4
+"""Share of that cost where the first segmentation cuts."""
+MOVED = 0.008
+"""Metres; patches that moved less are still."""
+LEAST_EVIDENCE = 25.0
+"""Voxels (0.25 cm² each) of evidence that a further motion must explain."""
+DECIDED, LEAST_DECIDED = 0.04, 8.0
+"""Share of a part's voxels, and number of voxels, by which two motions must differ to be told apart."""
+APART = 0.06
+"""Share of a segment's voxels that a further motion within it must explain, besides `LEAST_EVIDENCE`."""
+FARTHEST = 2.0
+"""Largest step of a followed patch, in lengths of the push: what rolls or falls over is lost."""
+DOUBTFUL, LOST = 0.2, 0.35
+"""Mean cost of a segment's voxels above which a push tells nothing about it, and above which it is lost."""
+MOST_MOTIONS = 4
+"""Motions of one push beside rest."""
+STEEP = 0.5
+"""Largest vertical part of a unit normal of a surface that is pushed."""
+ASIDE = 0.3
+"""Largest angle between a push and the surface's normal, radians; a fingertip glances off at a larger one."""
+_SAMPLE = 500
+_MOST_VOXELS = 40_000
+_TURNS = (0.0, -0.35, 0.35)
+"""Radians about the vertical at which a registration starts."""
+
+
+@dataclass(frozen=True)
+class Poke:
+    """A push of a fingertip.
+
+    Parameters
+    ----------
+    place : (3,) float64
+        Point of the surface that is touched, metres.
+    push : (3,) float64
+        Way of the fingertip after the touch, metres.
+    """
+
+    place: NDArray[np.float64]
+    push: NDArray[np.float64]
+
+
+class PokedPatches:
+    """Patches of a first cloud's segments, followed through pushes.
+
+    Parameters
+    ----------
+    cloud : LabelledCloud
+        Before the first push, with its camera and the labels of a segmentation: 1 the table, from 2 segments.
+        Other points take no part.
+
+    Raises
+    ------
+    InputError
+        The cloud has no camera.
+    """
+
+    def __init__(self, cloud: LabelledCloud) -> None:
+        if cloud.camera is None:
+            raise InputError("cloud must have a camera: emptiness is seen along its lines of sight; give camera")
+        self.first = cloud
+        self._rows = np.flatnonzero(cloud.labels > TABLE)
+        self._motions: list[NDArray[np.int64]] = []
+        self._costs: list[NDArray[np.float64]] = []
+        self._touched: list[int] = []
+        if not len(self._rows):
+            self._surface, self._segment = None, np.empty(0, np.int64)
+            return
+        self._surface = surface_voxels(cloud.points[self._rows], cloud.camera, VOXEL, _MOST_VOXELS)
+        self._make_patches(cloud.labels[self._rows])
+        self._pose = [STILL] * len(self._counts)
+        self._seen = np.ones(len(self._counts), bool)
+
+    def _make_patches(self, labels: NDArray[np.int64]) -> None:
+        """Patches that each lie in a single segment, and the borders between them."""
+        surface = self._surface
+        assert surface is not None
+        of_voxel = _majority(surface.inverse, labels, len(surface.points))
+        inner = of_voxel[surface.pairs[:, 0]] == of_voxel[surface.pairs[:, 1]]
+        cut = SurfaceVoxels(surface.points, surface.normals, surface.pairs[inner], surface.inverse, surface.size)
+        patches = supervoxels(cut, PATCH * surface.size / VOXEL)
+        mixed = patches.of_voxel * (of_voxel.max() + 1) + of_voxel
+        self._patch = np.unique(mixed, return_inverse=True)[1].reshape(-1)
+        self._counts = np.bincount(self._patch)
+        self._segment = _majority(self._patch, of_voxel, len(self._counts))
+        ends = np.sort(self._patch[surface.pairs], axis=1)
+        self._pairs, border = np.unique(ends[ends[:, 0] != ends[:, 1]], axis=0, return_counts=True)
+        within = self._segment[self._pairs[:, 0]] == self._segment[self._pairs[:, 1]]
+        self._weights: NDArray[np.float64] = np.asarray(
+            BORDER * border * np.where(within, 1.0, CREASE), np.float64
+        )
+
+    # --- pushes -----------------------------------------------------------------------------------------------
+
+    @property
+    def segments(self) -> tuple[int, ...]:
+        """Labels of the first segmentation, ascending."""
+        return tuple(np.unique(self._segment).tolist())
+
+    def poke_at(
+        self, segment: int, rng: np.random.Generator, length: float, heights: tuple[float, float] = (0.15, 0.75)
+    ) -> Poke | None:
+        """A level push against a steep side of a segment where it is now; None if no steep side is seen or known.
+
+        Parameters
+        ----------
+        segment : int
+        rng : numpy.random.Generator
+            Draws the place and, within `ASIDE` of the surface's normal, the direction.
+        length : float
+            Of the push, metres.
+        heights : (float, float)
+            Shares of the segment's height between which it is touched.
+        """
+        own = (self._segment == segment)[self._patch] & self._seen[self._patch]
+        if self._surface is None or not own.any():
+            return None
+        places = self._places()[own]
+        rotations = np.array([pose.rotation for pose in self._pose])[self._patch[own]]
+        normals = np.einsum("nij,nj->ni", rotations, self._surface.normals[own])
+        low, high = np.quantile(places[:, 2], [0.02, 0.98])
+        level = (places[:, 2] - low) / max(high - low, 1e-6)
+        steep = np.abs(normals[:, 2]) < STEEP
+        fit = np.flatnonzero(steep & (level >= heights[0]) & (level <= heights[1]))
+        if not len(fit):
+            return None
+        place = int(rng.choice(fit))
+        turn = turned_about(np.zeros(3), np.array([0.0, 0.0, rng.uniform(-ASIDE, ASIDE)]), np.zeros(3))
+        way = turn.apply(-normals[place][None] * [1, 1, 0])[0]
+        return Poke(places[place], length * way / np.linalg.norm(way))
+
+    def observe(self, poke: Poke, after: LabelledCloud) -> NDArray[np.int64]:
+        """Take in the cloud after a push; returns the motion of each patch: 0 at rest, −1 lost.
+
+        Raises
+        ------
+        InputError
+            The cloud has no camera.
+        """
+        if after.camera is None:
+            raise InputError("after must have a camera: emptiness is seen along its lines of sight; give camera")
+        if self._surface is None:
+            return np.empty(0, np.int64)
+        view = ViewAfter(after)
+        places = self._places()
+        motions, costs = [STILL], [self._patch_costs(view.costs(places))]
+        labels = np.zeros(len(self._counts), np.int64)
+        for _ in range(MOST_MOTIONS):
+            unexplained = np.where(self._seen, np.stack(costs, 1)[np.arange(len(labels)), labels], 0.0)
+            fitted = self._next_motion(view, places, unexplained, poke, motions)
+            if fitted is None:
+                break
+            added = self._patch_costs(view.costs(fitted.apply(places)))
+            tried = motion_labels(np.stack([*costs, added], 1) * self._seen[:, None], self._pairs, self._weights)
+            if not (tried == len(motions)).any():
+                break
+            motions.append(fitted)
+            costs.append(added)
+            labels = tried
+            motions, costs = self._refitted(view, places, labels, motions, costs)
+            labels = motion_labels(np.stack(costs, 1) * self._seen[:, None], self._pairs, self._weights)
+        labels = self._joined_motions(view, places, labels, motions, costs)
+        every = np.stack(costs, 1)
+        labels = self._simplified(labels, every)
+        seen = self._seen.copy()
+        labels = self._carried(places, labels, motions, every)
+        if (self._seen != seen).any():
+            # Something fell or rolled away, perhaps over the others: this push tells nothing.
+            labels = np.full(len(labels), -1)
+        self._motions.append(labels)
+        self._costs.append(every)
+        self._touched.append(self._touched_segment(places, poke))
+        return labels
+
+    def _places(self) -> NDArray[np.float64]:
+        """Where each voxel is now."""
+        assert self._surface is not None
+        rotations = np.array([pose.rotation for pose in self._pose])[self._patch]
+        shifts = np.array([pose.shift for pose in self._pose])[self._patch]
+        return np.einsum("nij,nj->ni", rotations, self._surface.points) + shifts
+
+    def _patch_costs(self, costs: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.bincount(self._patch, costs, len(self._counts)).astype(np.float64)
+
+    def _next_motion(
+        self, view: ViewAfter, places: NDArray, unexplained: NDArray, poke: Poke, motions: list[RigidMotion]
+    ) -> RigidMotion | None:
+        """A motion for the segment with most unexplained voxels; None where no motion explains enough of them."""
+        found = np.bincount(self._segment, unexplained)
+        for segment in np.argsort(-found)[:3]:
+            if found[segment] < LEAST_EVIDENCE:
+                return None
+            own = (self._segment == segment)[self._patch] & self._seen[self._patch]
+            spread = np.flatnonzero(own)
+            sample = places[spread[:: max(1, len(spread) // _SAMPLE)]]
+            loose = places[own & (unexplained > 0.4 * self._counts)[self._patch]]
+            middle = loose.mean(axis=0) if len(loose) else sample.mean(axis=0)
+            now = view.costs(sample).sum()
+            best, least = None, now * 0.85
+            for start in [*motions[1:], *_starts(middle, poke.push)]:
+                motion = registered(sample, view.points, view.normals, view.tree, start, 3 * NEAR)
+                cost = float(view.costs(motion.apply(sample)).sum())
+                gain = self._gain(view, places, own, motion)
+                far = motion.largest_step(sample) > FARTHEST * float(np.linalg.norm(poke.push))
+                if not far and gain > 0 and (best is None or cost - gain < least):
+                    best, least = motion, cost - gain
+            if best is not None:
+                return best
+        return None
+
+    def _gain(self, view: ViewAfter, places: NDArray, own: NDArray, motion: RigidMotion) -> float:
+        """Voxels of evidence that a motion explains better than rest, patch by patch."""
+        before = np.bincount(self._patch[own], view.costs(places[own]), len(self._counts))
+        after = np.bincount(self._patch[own], view.costs(motion.apply(places[own])), len(self._counts))
+        gain = float(np.maximum(before - after, 0).sum())
+        return gain if gain >= LEAST_EVIDENCE else 0.0
+
+    def _refitted(self, view, places, labels, motions, costs):
+        """The motions fitted again to the patches that they explain."""
+        for _ in range(2):
+            for number in range(1, len(motions)):
+                own = np.flatnonzero((labels == number)[self._patch])
+                if len(own) < 30:
+                    continue
+                sample = places[own[:: max(1, len(own) // _SAMPLE)]]
+                motion = registered(sample, view.points, view.normals, view.tree, motions[number], 2 * NEAR)
+                refit = self._patch_costs(view.costs(motion.apply(places)))
+                if refit[labels == number].sum() < costs[number][labels == number].sum():
+                    motions[number], costs[number] = motion, refit
+            labels = motion_labels(np.stack(costs, 1) * self._seen[:, None], self._pairs, self._weights)
+        return motions, costs
+
+    def _joined_motions(
+        self, view: ViewAfter, places: NDArray, labels: NDArray, motions: list[RigidMotion], costs: list[NDArray]
+    ) -> NDArray[np.int64]:
+        """Replace two motions by a motion fitted to the patches of both, where it explains them nearly as well."""
+        labels = labels.copy()
+        for a in range(1, len(motions)):
+            for b in range(a + 1, len(motions)):
+                both, own = np.isin(labels, (a, b)), [np.flatnonzero(labels == n) for n in (a, b)]
+                if not all(map(len, own)):
+                    continue
+                now = sum(float(costs[n][rows].sum()) for n, rows in zip((a, b), own, strict=True))
+                rows = np.flatnonzero(both[self._patch])
+                sample = places[rows[:: max(1, len(rows) // _SAMPLE)]]
+                tried = [
+                    registered(sample, view.points, view.normals, view.tree, start, 3 * NEAR)
+                    for start in (motions[a], motions[b])
+                ]
+                found = [self._patch_costs(view.costs(motion.apply(places))) for motion in tried]
+                best = int(np.argmin([cost[both].sum() for cost in found]))
+                allowed = max(LEAST_EVIDENCE, DECIDED * float(self._counts[both].sum()))
+                if found[best][both].sum() - now <= allowed:
+                    labels[labels == b] = a
+                    motions[a], costs[a] = tried[best], found[best]
+        return labels
+
+    def _simplified(self, labels: NDArray[np.int64], costs: NDArray[np.float64]) -> NDArray[np.int64]:
+        """Give up motions within a segment that explain too little beyond another motion of the segment."""
+        labels = labels.copy()
+        for segment in self.segments:
+            rows = np.flatnonzero((self._segment == segment) & self._seen)
+            need = max(LEAST_EVIDENCE, APART * float(self._counts[rows].sum()))
+            used = np.unique(labels[rows]).tolist()
+            while len(used) > 1:
+                # What it costs to give up a motion for another.
+                lost = {
+                    (a, b): float((costs[own, b] - costs[own, a]).sum())
+                    for a in used
+                    for own in [rows[labels[rows] == a]]
+                    for b in used
+                    if a != b
+                }
+                (a, b), least = min(lost.items(), key=lambda item: item[1])
+                if least >= need:
+                    break
+                labels[rows[labels[rows] == a]] = b
+                used.remove(a)
+        return labels
+
+    def _carried(self, places: NDArray, labels: NDArray, motions: list[RigidMotion], costs: NDArray) -> NDArray:
+        """Carry the patches along; patches that no motion explains are lost from now on."""
+        chosen, labels = labels, labels.copy()
+        for number, motion in enumerate(motions):
+            rows = labels == number
+            if not rows.any():
+                continue
+            if motion.largest_step(places[rows[self._patch]]) < MOVED:
+                labels[rows] = 0
+                continue
+            for patch in np.flatnonzero(rows):
+                self._pose[patch] = motion.after(self._pose[patch])
+        # A segment whose surface is found too rarely tells nothing now; if even rarer, it cannot be followed.
+        size = np.maximum(np.bincount(self._segment, self._counts), 1)
+        poor = np.bincount(self._segment, costs[np.arange(len(labels)), chosen]) / size
+        self._seen &= (poor <= LOST)[self._segment]
+        return np.where(self._seen & (poor <= DOUBTFUL)[self._segment], labels, -1)
+
+    def _touched_segment(self, places: NDArray, poke: Poke) -> int:
+        return int(self._segment[self._patch[np.linalg.norm(places - poke.place, axis=1).argmin()]])
+
+
+def _starts(middle: NDArray[np.float64], push: NDArray[np.float64]) -> list[RigidMotion]:
+    """Motions at which registrations start: the way of the fingertip and half of it, with turns."""
+    return [turned_about(middle, np.array([0, 0, turn]), part * push) for part in (1.0, 0.5) for turn in _TURNS]
+
+
+def _majority(group: NDArray[np.int64], labels: NDArray[np.int64], n: int) -> NDArray[np.int64]:
+    """(n,) the most frequent label of each group."""
+    values, column = np.unique(labels, return_inverse=True)
+    table = np.zeros((n, len(values)), np.int64)
+    np.add.at(table, (group, column.reshape(-1)), 1)
+    return values[table.argmax(axis=1)]

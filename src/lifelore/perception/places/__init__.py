@@ -1,0 +1,2 @@
+"""Where objects are: their boxes in space (`object_box`), what they rest on (`support_height`), their pixels
+(`object_mask`)."""

@@ -1,0 +1,88 @@
+"""`perceived_scene`: from labelled points to a consistent scene with relations (thesis §2.3, Algorithm 1)."""
+
+from collections.abc import Sequence
+from math import inf
+
+import numpy as np
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE, UNLABELLED, LabelledCloud
+from lifelore.core.relations import NONE
+from lifelore.perception.contacts.interface import Interface, interfaces
+from lifelore.perception.pairs.scene_pairs import scene_pairs
+from lifelore.perception.pairs.side_faces import pairs_beside
+from lifelore.perception.reasoning.raised_objects import off_the_table
+from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
+from lifelore.perception.relations.relation import Relation
+from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
+from lifelore.perception.scene import Scene
+
+FLAT = 0.15
+"""Largest height of a table, noise of a distant camera included, as a share of its width; larger refuses fewer."""
+
+
+def perceived_scene(
+    cloud: LabelledCloud, model: RelationClassifier | None = None, *, consistent: bool = True
+) -> Scene:
+    """Contacts, networks and relations of a cloud; `Scene.optimal` is False where the solver reached its bound.
+
+    Parameters
+    ----------
+    cloud : LabelledCloud
+        With any number of objects, also without any. Without a point of the table, no relation names the table.
+    model : RelationClassifier, optional
+        Predicts the relations; default: the shipped classifier. A model with other names than *on*, *adjacent*,
+        *both* and *none* adds them: these four then come from the shipped classifier, whatever the model learned
+        of them.
+    consistent : bool
+        Whether logic makes *on*, *adjacent*, *both* and *none* consistent (see `scene_logic`). No rules are known
+        for other names, nor for a model that gives a pair several of the four.
+
+    Raises
+    ------
+    InputError
+        The labels are 0 and 1 alone, and what is labelled 1 is too high to be the table: two objects of a user who
+        numbers from 0, as the thesis does.
+    """
+    _check_numbers(cloud)
+    model = model or shipped_model()
+    core = shipped_model() if model.words.names else model
+    found = interfaces(cloud, core.settings)
+    scene = _core_scene(cloud, core, found, consistent)
+    if model is core:
+        return scene
+    shared = found if model.settings == core.settings else None
+    return scene.with_words(_stated_words(model, cloud, shared), model.words)
+
+
+def _core_scene(
+    cloud: LabelledCloud, model: RelationClassifier, found: tuple[Interface, ...], consistent: bool
+) -> Scene:
+    if not consistent or model.multi_label:
+        return Scene(cloud, found, model.predict(cloud, found))
+    pairs = scene_pairs(cloud, found, model.settings)
+    beliefs = off_the_table(model.beliefs_of(pairs), cloud)
+    decided = most_likely_scene(alternatives(beliefs), cloud.objects, beside=pairs_beside(pairs))
+    # Logic puts on the table what nothing carries; where no table was seen, that is no perception.
+    seen = (r for r in decided.relations if cloud.has_table or TABLE not in (r.a, r.b))
+    stated = tuple(r for r in seen if r.relation != NONE or r.gap < inf)
+    return Scene(cloud, found, stated, decided.optimal, beliefs)
+
+
+def _stated_words(
+    model: RelationClassifier, cloud: LabelledCloud, found: Sequence[Interface] | None
+) -> tuple[Relation, ...]:
+    return tuple(r for r in model.predict(cloud, found) if r.relation in model.words.names)
+
+
+def _check_numbers(cloud: LabelledCloud) -> None:
+    if cloud.objects or not cloud.has_table or not (cloud.labels == UNLABELLED).any():
+        return
+    low, high = np.quantile(cloud.of(TABLE), [0.05, 0.95], axis=0)
+    width, height = float((high - low)[:2].max()), float((high - low)[2])
+    if height > FLAT * width:
+        raise InputError(
+            "labels must number objects from 2 (0 is no object, 1 is the table), got 0 and 1 alone, and the points"
+            f" labelled 1 are {100 * height:.0f} cm high and {100 * width:.0f} cm wide, which is no table: add 2"
+            " to every label, or call contact_networks(points_a, points_b)"
+        )

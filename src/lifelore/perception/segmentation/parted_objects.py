@@ -1,0 +1,114 @@
+"""Objects that a nearer object parts: their surface goes on behind it, in the same planes.
+
+Two patches continue each other if they lie in one plane and the camera sees a nearer object, and nothing behind
+the plane, between them. Two regions are one object if much of both continues.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.perception.segmentation.supervoxels import Supervoxels
+
+_PIXEL = 0.006
+"""Radians; three points of a Kinect, so that a surface has no gaps in it."""
+_ALIKE = np.cos(np.radians(15.0))
+_APART = 0.010
+"""Metres by which each of two patches may be off the plane of the other."""
+_FAR = 0.35
+"""Metres between two patches; more joins farther parts, through more that is not seen."""
+_SEEN = 60_000
+"""Points of the image; fewer leave gaps in surfaces."""
+_STEPS = np.linspace(0.1, 0.9, 9)
+"""Where the line between two patches is looked at."""
+_BEFORE = 0.02
+"""Metres by which a point is before or behind the line; more than the noise of the depth."""
+_HIDDEN, _FREE = 0.15, 0.15
+"""Least share of the line behind a nearer object, and largest share before a farther one."""
+_CONTINUES = 0.4
+"""Least share of both regions that continues in the other. Less joins equal boxes beside each other."""
+
+
+class _DepthImage:
+    """Distances of the nearest and the farthest point in each pixel, seen from the origin; metres."""
+
+    def __init__(self, rays: NDArray[np.float64]) -> None:
+        pixels, depths = _pixels(rays), np.linalg.norm(rays, axis=1)
+        self._low = pixels.min(axis=0)
+        self._shape = pixels.max(axis=0) - self._low + 1
+        self._nearest, self._farthest = np.full(self._shape, np.inf), np.full(self._shape, -np.inf)
+        at = tuple((pixels - self._low).T)
+        np.minimum.at(self._nearest, at, depths)
+        np.maximum.at(self._farthest, at, depths)
+
+    def before_and_behind(self, rays: NDArray[np.float64]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """(m,) bool each: whether something is seen before, and behind, the end of each ray (m, 3)."""
+        pixels, depths = _pixels(rays) - self._low, np.linalg.norm(rays, axis=1)
+        known = ((pixels >= 0) & (pixels < self._shape)).all(axis=1)
+        at = tuple(np.where(known[:, None], pixels, 0).T)
+        before = known & (self._nearest[at] < depths - _BEFORE)
+        return before, known & (self._farthest[at] > depths + _BEFORE)
+
+
+def parted_pairs(
+    patches: Supervoxels,
+    regions: NDArray[np.int64],
+    least: int,
+    camera: NDArray[np.float64],
+    seen: NDArray[np.float64],
+) -> Iterator[tuple[int, int]]:
+    """Pairs of regions that are parts of one object behind a nearer one.
+
+    Parameters
+    ----------
+    patches : Supervoxels
+    regions : (k,) int64
+        Region of each patch, from 0.
+    least : int
+        Voxels of the smallest region that is looked at.
+    camera : (3,) float64
+    seen : (n, 3) float64
+        All points that the camera sees, those of the table too.
+    """
+    sizes = np.bincount(regions, patches.counts)
+    first, second = _coplanar(patches, regions, sizes >= least)
+    if len(first) == 0:
+        return
+    image = _DepthImage(seen[:: max(1, len(seen) // _SEEN)] - camera)
+    hidden, free = np.zeros(len(first)), np.zeros(len(first))
+    for step in _STEPS:
+        place = (1 - step) * patches.middles[first] + step * patches.middles[second]
+        before, behind = image.before_and_behind(place - camera)
+        hidden += before / len(_STEPS)
+        free += behind / len(_STEPS)
+    goes_on = (hidden >= _HIDDEN) & (free <= _FREE)
+    first, second = first[goes_on], second[goes_on]
+    ends = np.sort(np.stack([regions[first], regions[second]], axis=1), axis=1)
+    for a, b in np.unique(ends, axis=0).tolist():
+        of_pair = (ends == (a, b)).all(axis=1)
+        members = np.union1d(first[of_pair], second[of_pair])
+        shares = [patches.counts[members[regions[members] == end]].sum() / sizes[end] for end in (a, b)]
+        if min(shares) >= _CONTINUES:
+            yield a, b
+
+
+def _coplanar(
+    patches: Supervoxels, regions: NDArray[np.int64], large: NDArray[np.bool_]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """(p,) and (p,): patches of different `large` regions in one plane, each pair once."""
+    own = np.flatnonzero(large[regions])
+    middles, normals = patches.middles[own], patches.normals[own]
+    between = middles[:, None] - middles[None]
+    off = np.abs(np.einsum("ijk,ik->ij", between, normals))
+    good = (normals @ normals.T >= _ALIKE) & (np.maximum(off, off.T) <= _APART)
+    good &= (regions[own][:, None] != regions[own][None]) & (np.einsum("ijk,ijk->ij", between, between) <= _FAR**2)
+    first, second = np.nonzero(np.triu(good))
+    return own[first], own[second]
+
+
+def _pixels(rays: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(n, 2) column and row of the pixel of each ray."""
+    turn = np.arctan2(rays[:, 1], rays[:, 0])
+    rise = np.arctan2(rays[:, 2], np.hypot(rays[:, 0], rays[:, 1]))
+    return np.floor(np.column_stack([turn, rise]) / _PIXEL).astype(np.int64)

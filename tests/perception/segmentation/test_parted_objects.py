@@ -1,0 +1,61 @@
+"""Parts of an object beside what stands before it are one object, unless the camera sees between them."""
+
+import numpy as np
+import pytest
+
+from lifelore.perception.segmentation.convexity_segmentation import convex_objects
+
+CAMERA = np.array([0.0, -0.9, 0.6])
+STEP = 0.002
+
+
+def face(corner, u, v):
+    corner, u, v = (np.asarray(x, float) for x in (corner, u, v))
+    a, b = (np.arange(0, np.linalg.norm(side) + 1e-9, STEP) / np.linalg.norm(side) for side in (u, v))
+    return (corner + a[:, None, None] * u + b[None, :, None] * v).reshape(-1, 3)
+
+
+def block(x, y, length, width, height):
+    """The top and the front of a block whose lower left front corner stands at (x, y, 0)."""
+    top = face((x, y, height), (length, 0, 0), (0, width, 0))
+    return np.concatenate([face((x, y, 0), (length, 0, 0), (0, 0, height)), top])
+
+
+def hidden_behind(points, left, right, y):
+    """Which points the camera does not see past an upright post from x = `left` to `right` at depth `y`."""
+    along = CAMERA[0] + (points[:, 0] - CAMERA[0]) * (y - CAMERA[1]) / (points[:, 1] - CAMERA[1])
+    return (points[:, 1] > y) & (along > left) & (along < right)
+
+
+def labels_of(*parts):
+    points = np.concatenate(parts)
+    table = face((-0.4, -0.4, 0), (0.8, 0, 0), (0, 0.2, 0))  # what the parts do not hide
+    noisy = points + np.random.default_rng(0).normal(0, 0.0007, points.shape)
+    labels = convex_objects(noisy, CAMERA, 6e-4, np.concatenate([noisy, table])).labels
+    return np.split(labels, np.cumsum([len(part) for part in parts])[:-1])
+
+
+POST = block(-0.02, -0.15, 0.04, 0.03, 0.30)
+
+
+def seen(points):
+    return points[~hidden_behind(points, -0.03, 0.03, -0.15)]
+
+
+def test_the_parts_of_a_block_behind_a_post_are_one_object():
+    long, post = labels_of(seen(block(-0.12, 0.0, 0.24, 0.08, 0.08)), POST)
+    assert len(np.unique(long)) == 1
+    assert np.unique(post).tolist() not in (np.unique(long).tolist(), [0])
+
+
+@pytest.mark.parametrize("height", [0.05, 0.11])
+def test_blocks_of_other_heights_and_fronts_behind_a_post_are_two(height):
+    left, right = seen(block(-0.12, 0.0, 0.10, 0.08, 0.08)), seen(block(0.02, 0.03, 0.10, 0.08, height))
+    first, second, _ = labels_of(left, right, POST)
+    assert np.bincount(first).argmax() != np.bincount(second).argmax()
+
+
+def test_equal_blocks_with_a_gap_that_is_seen_are_two():
+    left, right = block(-0.12, 0.0, 0.08, 0.08, 0.08), block(0.04, 0.0, 0.08, 0.08, 0.08)
+    first, second = labels_of(left, right)
+    assert np.bincount(first).argmax() != np.bincount(second).argmax()

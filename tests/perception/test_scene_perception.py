@@ -1,0 +1,71 @@
+"""Scenes without a table, and labels that count from 0."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE, UNLABELLED, LabelledCloud
+from lifelore.perception import perceived_scene
+from lifelore.perception.reasoning.fact import Fact
+from lifelore.perception.reasoning.planning_problem import scene_problem
+from lifelore.perception.reasoning.planning_state import NO_TABLE, scene_state
+from lifelore.perception.scene_json import scene_document
+
+
+@pytest.fixture
+def tower(box) -> dict[int, np.ndarray]:
+    """Object 3 rests on 2; 4 stands beside them, 3 cm away."""
+    return {
+        2: box([0, 0, 0.002], [0.08, 0.08, 0.05]),
+        3: box([0.02, 0.02, 0.052], [0.06, 0.06, 0.1]),
+        4: box([0.11, 0, 0.002], [0.16, 0.08, 0.06]),
+    }
+
+
+def cloud_of(parts: dict[int, np.ndarray]) -> LabelledCloud:
+    return LabelledCloud(np.vstack([*parts.values()]), np.repeat([*parts], [len(part) for part in parts.values()]))
+
+
+def test_where_no_table_was_seen_nothing_is_said_to_be_on_it(tower, box):
+    with_table = perceived_scene(cloud_of({TABLE: box([-0.2, -0.2, -0.01], [0.3, 0.3, 0]), **tower}))
+    assert {(r.relation, r.a, r.b) for r in with_table.relations} >= {
+        ("on", 2, TABLE),
+        ("on", 3, 2),
+        ("on", 4, TABLE),
+    }
+    assert not [one for one in scene_state(with_table).unknown if one.reason == NO_TABLE]
+
+    scene = perceived_scene(cloud_of(tower))
+    assert scene.relation_of(3, 2).relation == "on"
+    assert not [r for r in scene.relations if TABLE in (r.a, r.b)]
+    state = scene_state(scene)
+    unknown = {one.fact: one for one in state.unknown}
+    assert set(unknown) == {Fact("on", (2, TABLE)), Fact("on", (4, TABLE))}
+    assert {one.reason for one in unknown.values()} == {NO_TABLE}
+    assert all(0.5 < one.probability <= 1 for one in unknown.values())
+    assert Fact("clear", (3,)) in state.stated
+    assert not [fact for fact in state.stated if TABLE in fact.arguments]
+    document = scene_document(scene)
+    assert "table" not in " ".join(document["facts"])
+    assert {"on(3, 2)", "clear(3)", "clear(4)", "ec(2, 3)", "dc(3, 4)"} <= set(document["facts"])
+    assert [one["reason"] for one in document["unknown"]] == [NO_TABLE, NO_TABLE]
+
+
+def test_a_planning_problem_without_a_table_lists_what_is_unknown(tower):
+    text = scene_problem(perceived_scene(cloud_of(tower)), 0.6)
+    comments, problem = text.split("(define")
+    assert "(on-table o2) no table, probability" in comments
+    assert "on-table" not in problem
+    assert "(on o3 o2)" in problem
+
+
+def test_two_objects_labelled_0_and_1_are_refused_and_an_empty_table_is_none(tower, box):
+    pair = {0: tower[2], 1: tower[3]}
+    with pytest.raises(
+        InputError, match=r"got 0 and 1 alone, .* 5 cm high and 4 cm wide, .* add 2 to every label"
+    ):
+        perceived_scene(cloud_of(pair))
+    shifted = cloud_of({label + 2: points for label, points in pair.items()})
+    assert perceived_scene(shifted).relation_of(3, 2).relation == "on"
+    bare = cloud_of({TABLE: box([-0.2, -0.2, -0.01], [0.3, 0.3, 0]), UNLABELLED: tower[2]})
+    assert perceived_scene(bare).relations == ()

@@ -1,0 +1,138 @@
+"""X-means: the criterion by hand, clusters found, k-means at its own number, and where the paper slips."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.stats import multivariate_normal
+from sklearn.cluster import KMeans
+from sklearn.metrics import adjusted_rand_score
+
+from lifelore.core.errors import InputError
+from reproduction.chapter2.c2_12_unlabelled_relations.x_means import bayesian_criterion, x_means
+
+LINE = np.array([[0.0], [2.0], [10.0], [12.0]])
+CENTRES = np.array([[1.0], [11.0]])
+HALVES = np.array([0, 0, 1, 1])
+
+
+def blobs(k: int, dimensions: int = 3, each: int = 80) -> tuple[np.ndarray, np.ndarray]:
+    """`k` round clusters of deviation 0.3 with centres 5 apart."""
+    rng = np.random.default_rng(k)
+    # Corners of a grid, so that the clusters are apart whatever the seed.
+    centres = 5.0 * np.stack(np.unravel_index(rng.permutation(3**dimensions)[:k], (3,) * dimensions), axis=1)
+    points = np.concatenate([centre + 0.3 * rng.normal(size=(each, dimensions)) for centre in centres])
+    return points, np.repeat(np.arange(k), each)
+
+
+def test_criterion_by_hand():
+    # S = 4, R = 4, M = 1, K = 2: sigma^2 = 1, and p = 1 + 2 + 1 = 4.
+    expected = 4 * np.log(0.5) - 2 * (np.log(2 * np.pi) + 1) - 2 * np.log(4)
+    assert bayesian_criterion(LINE, CENTRES, HALVES) == pytest.approx(expected)
+
+
+def test_printed_criterion_by_hand():
+    # sigma^2 = 4 / (4 - 2) = 2; each half: -log 2pi - log 2 - (2 - 2) / 2 + 2 log 2 - 2 log 4.
+    half = -np.log(2 * np.pi) - np.log(2) + 2 * np.log(2) - 2 * np.log(4)
+    assert bayesian_criterion(LINE, CENTRES, HALVES, "printed") == pytest.approx(2 * half - 2 * np.log(4))
+
+
+@pytest.mark.parametrize(("k", "dimensions"), [(1, 1), (1, 3), (2, 2), (4, 3)])
+def test_the_corrected_criterion_is_the_mixtures_own_likelihood(k, dimensions):
+    points, labels = (
+        blobs(k, dimensions) if dimensions > 1 else (np.random.default_rng(0).normal(size=(50, 1)), None)
+    )
+    labels = np.zeros(len(points), np.int64) if labels is None else labels
+    centres = np.array([points[labels == n].mean(axis=0) for n in range(k)])
+    variance = ((points - centres[labels]) ** 2).mean()
+    likelihood = sum(
+        np.log(np.mean(labels == n)) + multivariate_normal(centres[n], variance * np.eye(dimensions)).logpdf(point)
+        for point, n in zip(points, labels, strict=True)
+    )
+    parameters = (k - 1) + k * dimensions + 1
+    expected = likelihood - parameters / 2 * np.log(len(points))
+    assert bayesian_criterion(points, centres, labels) == pytest.approx(expected)
+
+
+def test_the_printed_likelihood_is_one_in_a_single_dimension_and_cluster_only():
+    """With M = K = 1 it is the likelihood under its own variance; with M = 3 that variance is thrice too large."""
+    rng = np.random.default_rng(0)
+    for dimensions, holds in ((1, True), (3, False)):
+        points = rng.normal(size=(200, dimensions))
+        centre, labels = points.mean(axis=0, keepdims=True), np.zeros(200, np.int64)
+        variance = ((points - centre) ** 2).sum() / 199
+        # Printed to be an estimate of the variance of a coordinate, which is 1.
+        assert (abs(variance - 1) < 0.3) == holds
+        density = multivariate_normal(centre[0], variance * np.eye(dimensions)).logpdf(points).sum()
+        penalty = (dimensions + 1) / 2 * np.log(200)
+        assert (bayesian_criterion(points, centre, labels, "printed") == pytest.approx(density - penalty)) == holds
+
+
+@pytest.mark.parametrize("formula", ["corrected", "printed"])
+@pytest.mark.parametrize("k", [1, 2, 5, 8])
+def test_clusters_that_are_apart_are_found(k, formula):
+    points, truth = blobs(k)
+    found = x_means(points, np.random.default_rng(0), formula=formula)
+    assert len(found.centres) == k
+    assert adjusted_rand_score(truth, found.labels) == 1
+
+
+@pytest.mark.slow
+@settings(deadline=None, max_examples=25)
+@given(st.integers(0, 10_000), st.integers(5, 60))
+def test_what_is_found_is_a_fixed_point_of_k_means(seed, n):
+    points = np.random.default_rng(seed).normal(size=(n, 2))
+    found = x_means(points, np.random.default_rng(seed), most=min(n, 8))
+    twin = KMeans(len(found.centres), init=found.centres, n_init=1, tol=0).fit(points)
+    assert (twin.labels_ == found.labels).all()
+    assert twin.cluster_centers_ == pytest.approx(found.centres)
+    assert found.criterion == pytest.approx(bayesian_criterion(points, found.centres, found.labels))
+    assert set(found.labels.tolist()) == set(range(len(found.centres)))
+
+
+def test_never_more_than_asked_for_nor_fewer():
+    points, _ = blobs(8)
+    assert len(x_means(points, np.random.default_rng(0), most=3).centres) <= 3
+    assert len(x_means(points[:80], np.random.default_rng(0), least=4, most=6).centres) >= 4
+
+
+def test_the_same_generator_gives_the_same_clusters():
+    points, _ = blobs(5)
+    one, other = (x_means(points, np.random.default_rng(3)) for _ in range(2))
+    assert (one.labels == other.labels).all()
+    assert one.criterion == other.criterion
+
+
+def test_equal_points_are_one_cluster():
+    found = x_means(np.ones((20, 3)), np.random.default_rng(0))
+    assert found.centres.tolist() == [[1.0, 1.0, 1.0]]
+
+
+@pytest.mark.parametrize(
+    ("points", "least", "most", "match"),
+    [
+        (np.zeros(3), 1, 2, "shape"),
+        (np.full((3, 2), np.nan), 1, 2, "finite"),
+        (np.zeros((0, 2)), 1, 1, "shape"),
+        (np.zeros((3, 2)), 2, 1, "least and most"),
+        (np.zeros((3, 2)), 0, 2, "least and most"),
+        (np.zeros((3, 2)), 1, 4, "<= 3"),
+    ],
+)
+def test_refusals(points, least, most, match):
+    with pytest.raises(InputError, match=match):
+        x_means(points, np.random.default_rng(0), least=least, most=most)
+
+
+def test_a_ring_of_displacements_is_cut_at_random_and_a_relation_in_both_orders_is_two():
+    # Errata E22. Neighbours in every direction: one relation, but no sphere holds a ring.
+    turn = np.linspace(0, 2 * np.pi, 200, endpoint=False)
+    ring = 0.06 * np.column_stack([np.cos(turn), np.sin(turn), np.zeros(200)])
+    ring += np.random.default_rng(0).normal(0, 0.004, ring.shape)
+    cuts = [x_means(ring, np.random.default_rng(seed), most=10).labels for seed in range(2)]
+    assert min(cut.max() for cut in cuts) >= 2
+    assert adjusted_rand_score(*cuts) < 0.9
+    # One object on another, named in either order.
+    above = np.random.default_rng(1).normal([0, 0, 0.05], 0.004, (60, 3))
+    both = x_means(np.concatenate([above, -above]), np.random.default_rng(0), most=10).labels
+    assert set(both[:60]).isdisjoint(both[60:])

@@ -1,0 +1,127 @@
+"""Substructure: Fig. 2.10's stacks, controls, the witness checked, and networkx as oracle on random skeletons."""
+
+import networkx as nx
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from networkx.algorithms.isomorphism import GraphMatcher
+
+from lifelore.core.errors import InputError
+from reproduction.chapter2.scenes.substructure import find_substructure, skeleton
+
+POINT = np.zeros((1, 3))
+
+
+def stack(make_scene, meet, contacts, labels=(2, 3, 4)):
+    """Objects one above the other, each interface with so many contacts side by side."""
+    clouds = dict.fromkeys(labels, POINT)
+    parts = []
+    for height, (low, high, n) in enumerate(zip(labels[:-1], labels[1:], contacts, strict=True)):
+        parts.append(meet(low, high, [[0.05 * k, 0, 0.1 * (height + 1)] for k in range(n)]))
+    return make_scene(clouds, parts)
+
+
+def check_witness(part, whole, found):
+    small, large = skeleton(part), skeleton(whole)
+    whereto = {**{(a,): (b,) for a, b in found.objects.items()}, **found.nodes}
+    assert set(whereto) == set(small)
+    assert len(set(whereto.values())) == len(whereto)
+    for x, y, kind in small.edges(data="kind"):
+        assert large.edges[whereto[x], whereto[y]]["kind"] == kind
+    assert all(small.nodes[x]["kind"] == large.nodes[y]["kind"] for x, y in whereto.items())
+
+
+def test_a_stack_is_part_of_one_with_two_contacts_and_not_the_other_way(make_scene, meet):
+    single = stack(make_scene, meet, (1, 1))
+    double = stack(make_scene, meet, (1, 2), labels=(9, 5, 7))
+    found = find_substructure(single, double)
+    assert found.found
+    check_witness(single, double, found)
+    assert find_substructure(double, single) == type(found)(False, True, {}, {})
+
+
+def test_a_row_on_the_table_is_not_a_stack(make_scene, meet):
+    standing = make_scene({2: POINT, 3: POINT}, [meet(2, 1, [[0, 0, 0]]), meet(3, 1, [[0.3, 0, 0]])])
+    pile = make_scene({2: POINT, 3: POINT}, [meet(2, 1, [[0, 0, 0]]), meet(3, 2, [[0, 0, 0.1]])])
+    assert not find_substructure(standing, pile).found
+    assert not find_substructure(pile, standing).found
+    assert find_substructure(pile, pile).objects == {1: 1, 2: 2, 3: 3}
+
+
+def test_one_more_contact_in_the_middle_takes_the_printed_edge_away(make_scene, meet):
+    # Errata E15: the tree over both ends of a plank is one edge; a contact between them replaces it by two.
+    ends = [meet(2, 3, [[0, 0, 0]]), meet(2, 4, [[0.2, 0, 0]])]
+    clouds = dict.fromkeys((2, 3, 4, 5), POINT)
+    part = make_scene({label: clouds[label] for label in (2, 3, 4)}, ends)
+    whole = make_scene(clouds, [*ends, meet(2, 5, [[0.1, 0, 0]])])
+    assert whole.networks[2].edges.tolist() == [[0, 2], [1, 2]]
+    # With the numbers free, the part is found at one end and the middle; with both ends known it is not.
+    assert 5 in find_substructure(part, whole).objects.values()
+    closed = [meet(3, 4, [[0.1, 0.5, 0.5]])]
+    triangle = make_scene({label: clouds[label] for label in (2, 3, 4)}, [*ends, *closed])
+    larger = make_scene(clouds, [*ends, *closed, meet(2, 5, [[0.1, 0, 0]])])
+    assert not find_substructure(triangle, larger).found
+    assert find_substructure(triangle, larger, networks="connected").found
+
+
+def test_objects_that_touch_nothing_need_objects_too(make_scene):
+    two, three = (make_scene(dict.fromkeys(range(2, 2 + n), POINT)) for n in (2, 3))
+    assert find_substructure(two, three).found
+    assert not find_substructure(three, two).found
+    assert find_substructure(make_scene({}), two).found
+
+
+@st.composite
+def contacts(draw, n_objects):
+    pairs = [(a, b) for a in range(1, n_objects + 2) for b in range(max(a + 1, 2), n_objects + 2)]
+    return [(pair, draw(st.integers(0, 2))) for pair in pairs]
+
+
+@pytest.fixture
+def scene_with(make_scene, meet):
+    def build(counts, seed):
+        rng = np.random.default_rng(seed)
+        parts = [meet(a, b, rng.uniform(0, 1, (n, 3)).tolist()) for (a, b), n in counts if n]
+        return make_scene({2: POINT, 3: POINT, 4: POINT}, parts)
+
+    return build
+
+
+@pytest.mark.slow
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(small=contacts(3), large=contacts(3), seed=st.integers(0, 9))
+def test_networkx_agrees(scene_with, small, large, seed):
+    part, whole = scene_with(small, seed), scene_with(large, seed + 1)
+    same_kind = nx.algorithms.isomorphism.categorical_node_match("kind", None)
+    same_edge = nx.algorithms.isomorphism.categorical_edge_match("kind", None)
+    matcher = GraphMatcher(skeleton(whole), skeleton(part), same_kind, same_edge)
+    found = find_substructure(part, whole)
+    assert found.decided
+    assert found.found == matcher.subgraph_is_monomorphic()
+    if found.found:
+        check_witness(part, whole, found)
+        assert find_substructure(part, whole, networks="connected").found
+
+
+@pytest.mark.slow
+def test_when_the_bound_runs_out_nothing_is_claimed(scene_with, make_scene, meet):
+    # A ring of twelve with chords to every third, in one of fourteen with chords to every fifth: it needs search.
+    def ring(n, chord):
+        clouds = dict.fromkeys(range(2, 2 + n), POINT)
+        links = [(k, (k + 1) % n) for k in range(n)] + [(k, (k + chord) % n) for k in range(n)]
+        pairs = sorted({tuple(sorted((a + 2, b + 2))) for a, b in links})
+        rng = np.random.default_rng(n)
+        return make_scene(clouds, [meet(a, b, rng.uniform(0, 1, (1, 3)).tolist()) for a, b in pairs])
+
+    found = find_substructure(ring(12, 3), ring(14, 5), networks="connected", most_conflicts=1)
+    assert not found.decided
+    assert not found.found
+
+
+def test_wrong_settings_are_refused(make_scene):
+    scene = make_scene({})
+    with pytest.raises(InputError, match="networks"):
+        find_substructure(scene, scene, networks="loose")
+    with pytest.raises(InputError, match="most_conflicts"):
+        find_substructure(scene, scene, most_conflicts=0)

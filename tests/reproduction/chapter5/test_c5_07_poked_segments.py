@@ -1,0 +1,115 @@
+"""Pushes merge and split segments of boxes whose clouds are cast ray by ray, without physics."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from reproduction.chapter5.c5_07_poking.poked_patches import Poke
+from reproduction.chapter5.c5_07_poking.poked_segments import PokedSegments
+from tests.perception.segmentation.boards import Board, cast_boards
+
+CAMERA = np.array([0.0, -0.7, 0.6])
+PUSH, BACK = np.array([0.025, 0.0, 0.0]), np.array([0.0, 0.025, 0.0])
+
+
+def picture(boxes, seed=0):
+    """What the camera sees of boxes ``(x, y, half sizes)`` on the table; label k + 2 for box k."""
+    rng = np.random.default_rng(seed)
+    u, v = np.meshgrid(np.arange(-0.32, 0.32, 0.004), np.arange(-0.32, 0.32, 0.004))
+    ahead = np.array([0.0, 0.75, -0.66])
+    up = np.cross([1.0, 0.0, 0.0], ahead)
+    rays = ahead + u.reshape(-1, 1) * [1.0, 0.0, 0.0] + v.reshape(-1, 1) * up
+    boards = [Board("box", (x, y, half[2]), half) for x, y, half in boxes]
+    number, along, _ = cast_boards(boards, CAMERA, rays)
+    floor = np.where(rays[:, 2] < 0, -CAMERA[2] / np.minimum(rays[:, 2], -1e-9), np.inf)
+    labels = np.where(floor < along, TABLE, number + 2)
+    along = np.minimum(along, floor)
+    seen = np.isfinite(along) & (along < 2.5)
+    noisy = along[seen] * (1 + rng.normal(0, 0.001, np.count_nonzero(seen)))
+    return LabelledCloud(CAMERA + rays[seen] * noisy[:, None], labels[seen], None, CAMERA)
+
+
+def as_one(cloud, *labels):
+    """The cloud with some labels joined into the first."""
+    return LabelledCloud(
+        cloud.points, np.where(np.isin(cloud.labels, labels), labels[0], cloud.labels), None, CAMERA
+    )
+
+
+BLOCK = (0.05, 0.05, 0.04)
+PAIR = [(-0.051, 0.0, BLOCK), (0.051, 0.0, BLOCK)]
+LEFT, RIGHT = np.array([-0.05, -0.05, 0.03]), np.array([0.05, -0.05, 0.03])
+
+
+def moved(boxes, *which, by=PUSH):
+    return [(x + by[0] * (k in which), y + by[1] * (k in which), half) for k, (x, y, half) in enumerate(boxes)]
+
+
+def test_flush_blocks_in_one_segment_split_when_one_moves():
+    first = picture(PAIR)
+    known = PokedSegments(as_one(first, 2, 3))
+    known.observe(Poke(RIGHT, PUSH), picture(moved(PAIR, 1), 1))
+    found = known.corrected()
+    assert found.split == (2,)
+    parts = [found.labels[first.labels == label] for label in (2, 3)]
+    own = [np.bincount(part).argmax() for part in parts]
+    assert own[0] != own[1]
+    assert all((part == label).mean() > 0.85 for part, label in zip(parts, own, strict=True))
+    assert all(found.confidence[int(label)] == pytest.approx(2 / 3) for label in own)
+
+
+def test_two_segments_merge_when_a_push_on_each_moves_both():
+    known = PokedSegments(picture(PAIR))
+    known.observe(Poke(LEFT, BACK), picture(moved(PAIR, 0, 1, by=BACK), 1))
+    assert known.corrected().merged == ()
+    known.observe(Poke(RIGHT, BACK), picture(moved(PAIR, 0, 1, by=2 * BACK), 2))
+    found = known.corrected()
+    assert found.merged == ((2, 3),)
+    assert set(found.confidence.values()) == {3 / 4}
+
+
+def test_a_motion_that_rest_explains_as_well_tells_nothing():
+    # Along their row, the left block takes the place that the right block leaves.
+    known = PokedSegments(picture(PAIR))
+    for poke, steps in ((LEFT, 1), (RIGHT, 2)):
+        known.observe(Poke(poke, PUSH), picture(moved(PAIR, 0, 1, by=steps * PUSH), steps))
+    assert known.corrected().merged == ()
+
+
+def test_segments_that_move_apart_stay_apart():
+    known = PokedSegments(picture(PAIR))
+    known.observe(Poke(LEFT, -PUSH), picture(moved(PAIR, 0, by=-PUSH), 1))
+    found = known.corrected()
+    assert (found.merged, found.split) == ((), ())
+    assert len(found.confidence) == 2
+
+
+def test_pictures_without_a_motion_change_nothing():
+    first = picture(PAIR)
+    known = PokedSegments(as_one(first, 2, 3))
+    for seed in (1, 2):
+        assert (known.observe(Poke(LEFT, PUSH), picture(PAIR, seed)) <= 0).all()
+    found = known.corrected()
+    assert (found.merged, found.split, found.confidence) == ((), (), {2: 0.5})
+    assert np.unique(found.labels).tolist() == [TABLE, 2]
+
+
+def test_a_push_goes_against_a_steep_side():
+    known = PokedSegments(picture(PAIR))
+    poke = known.poke_at(2, np.random.default_rng(0), 0.025)
+    assert poke is not None
+    assert np.linalg.norm(poke.push) == pytest.approx(0.025)
+    assert poke.push[2] == pytest.approx(0.0, abs=1e-9)
+    assert poke.push[1] > 0.02  # the front is the only steep side that the camera sees well
+    assert known.poke_at(9, np.random.default_rng(0), 0.025) is None
+
+
+def test_clouds_need_a_camera_and_may_be_empty():
+    bare = LabelledCloud(np.zeros((1, 3)), np.array([TABLE]))
+    with pytest.raises(InputError, match="camera"):
+        PokedSegments(bare)
+    empty = PokedSegments(LabelledCloud(np.zeros((1, 3)), np.array([TABLE]), None, CAMERA))
+    assert empty.corrected().confidence == {}
+    with pytest.raises(InputError, match="camera"):
+        empty.observe(Poke(LEFT, PUSH), bare)

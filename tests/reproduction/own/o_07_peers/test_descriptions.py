@@ -1,0 +1,71 @@
+"""What each peer sees of a pair, worked by hand and beside a plain twin."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from reproduction.own.o_07_unseen_scenes.peers import orientation_histogram as orientation
+from reproduction.own.o_07_unseen_scenes.peers.bounding_box_rule import BoundingBoxRule, boxes
+from reproduction.own.o_07_unseen_scenes.peers.orientation_histogram import orientation_histogram
+from reproduction.own.o_07_unseen_scenes.peers.peer import DescribedPair
+
+from .conftest import box
+
+HIGH = np.array([[0.0, 0.0, 0.10]])
+LOW = np.array([[0.0, 0.0, 0.05]])
+
+
+def test_orientation_histogram_by_hand():
+    # 5 cm straight up: the last elevation bin, and the third distance bin, 4 to 7 cm.
+    above = orientation_histogram(HIGH, LOW).reshape(orientation.ELEVATION_BINS, -1)
+    assert above[-1, 2] == 1
+    assert above.sum() == 1
+    # Level at 20 cm: the first bin above the middle, 16 to 23 cm.
+    level = orientation_histogram(HIGH + np.array([0.2, 0, 0]), HIGH).reshape(orientation.ELEVATION_BINS, -1)
+    assert level[orientation.ELEVATION_BINS // 2, 5] == 1
+
+
+@settings(deadline=None, max_examples=20)
+@given(st.integers(0, 10_000), st.floats(0, 6.28))
+def test_orientation_histogram_does_not_see_the_heading(seed, turn):
+    rng = np.random.default_rng(seed)
+    # Points far apart, so that coarse cells hold one each whichever way they are turned.
+    first, second = (rng.integers(0, 4, (5, 3)) * 0.1 + shift for shift in (0.0, np.array([0.45, 0, 0])))
+    turned = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
+    first, second = np.unique(first, axis=0), np.unique(second, axis=0)
+    # Off the edges of the bins, which rounding would move points across.
+    first = first + np.array([0.013, 0.007, 0.0171])
+    assert orientation_histogram(first @ turned.T, second @ turned.T) == pytest.approx(
+        orientation_histogram(first, second)
+    )
+
+
+def test_boxes_by_hand():
+    top, bottom = box((0.0, 0, 0.1), (0.1, 0.1, 0.1)), box((0.05, 0, 0), (0.1, 0.2, 0.1))
+    low, high, other_low, other_high, overlap = boxes(top, bottom)
+    assert (low, high, other_low, other_high) == pytest.approx((0.1, 0.2, 0.0, 0.1), abs=0.002)
+    assert overlap == pytest.approx(0.5)
+
+
+def seen(*rows: list[float], gap: float = 0.001, b: int = 3) -> tuple[DescribedPair]:
+    return (DescribedPair(2, b, gap, np.array(rows, float)),)
+
+
+@pytest.mark.parametrize(
+    ("row", "gap", "b", "expected"),
+    [
+        ([0.1, 0.2, 0.0, 0.11, 1.0], 0.001, 3, (2, 3, "on")),
+        ([0.0, 0.1, 0.09, 0.2, 1.0], 0.001, 3, (3, 2, "on")),
+        ([0.04, 0.2, 0.0, 0.1, 1.0], 0.001, 3, (2, 3, "both")),
+        ([0.0, 0.1, 0.03, 0.2, 1.0], 0.001, 3, (3, 2, "both")),
+        ([0.0, 0.1, 0.0, 0.1, 0.0], 0.020, 3, (2, 3, "adjacent")),
+        ([0.0, 0.1, 0.0, 0.1, 0.0], 0.025, 3, (2, 3, "none")),
+        ([0.1, 0.2, 0.0, 0.11, 0.1], 0.025, 3, (2, 3, "none")),
+        ([0.01, 0.2, 0.0, 0.0, 1.0], 0.001, 1, (2, 1, "on")),
+        ([0.03, 0.2, 0.0, 0.0, 1.0], 0.001, 1, (2, 1, "none")),
+    ],
+)
+def test_the_rule_of_boxes(row, gap, b, expected):
+    (said,) = BoundingBoxRule().predict_pairs(seen(row, gap=gap, b=b))
+    assert (said.a, said.b, said.relation) == expected
