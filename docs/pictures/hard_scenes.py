@@ -1,6 +1,6 @@
 """Picture of the four hardest shared scenes: hand-made labels, and objects found by two versions of the package.
 
-``python -m docs.pictures.hard_scenes FOLDER``, with `LIFELORE_DATA` set; the folder: a checkout of the version before.
+``python -m docs.pictures.hard_scenes FOLDER``, with `LIFELORE_DATA` set; FOLDER is the checkout before.
 """
 
 import os
