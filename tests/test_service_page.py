@@ -43,7 +43,7 @@ def cloud() -> bytes:
     faces = [np.insert(side * 0.1, axis, 0.1, axis=1) for axis in range(3)]
     block = np.concatenate(faces)
     file = io.BytesIO()
-    np.save(file, np.concatenate([table, np.column_stack([block, np.ones(len(block))])]))
+    np.save(file, np.concatenate([table, np.column_stack([block, np.full(len(block), 2)])]))
     return file.getvalue()
 
 

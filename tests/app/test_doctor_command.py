@@ -38,7 +38,7 @@ def test_after_the_warm_up_verbs_compile_nothing(ask, tmp_path):
     points = np.vstack(
         [random.uniform((-0.3, -0.3, 0), (0.3, 0.3, 0), (4000, 3)), random.uniform(0, 0.1, (900, 3))]
     )
-    np.savez(tmp_path / "cloud.npz", points=points, labels=np.repeat([0, 1], [4000, 900]))
+    np.savez(tmp_path / "cloud.npz", points=points, labels=np.repeat([1, 2], [4000, 900]))
     log = "user,policy,outcome\n" + "".join(f"u{i % 5},p{i % 3},{random.random()}\n" for i in range(60))
     (tmp_path / "log.csv").write_text(log)
     for arguments in (
