@@ -61,7 +61,9 @@ def _core_scene(
     if not consistent or model.multi_label:
         return Scene(cloud, found, model.predict(cloud, found))
     pairs = scene_pairs(cloud, found, model.settings)
-    beliefs = off_the_table(model.beliefs_of(pairs), cloud)
+    beliefs = model.beliefs_of(pairs)
+    if cloud.has_table:
+        beliefs = off_the_table(beliefs, cloud)
     decided = most_likely_scene(alternatives(beliefs), cloud.objects, beside=pairs_beside(pairs))
     # Logic puts on the table what nothing carries; where no table was seen, that is no perception.
     seen = (r for r in decided.relations if cloud.has_table or TABLE not in (r.a, r.b))

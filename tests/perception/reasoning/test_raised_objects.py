@@ -54,3 +54,9 @@ def test_beliefs_of_raised_objects_deny_the_table():
 def test_a_scene_states_the_support_that_is_seen():
     scene = perceived_scene(cloud_of(block(0, 0, 0), block(0.02, -0.06, 0.062)))
     assert {(r.relation, r.a, r.b) for r in scene.relations if r.a == 3} == {("on", 3, 2), ("none", 3, 1)}
+
+
+def test_without_a_table_nothing_is_believed_about_it():
+    whole = cloud_of(block(0, 0, 0), block(0.02, -0.06, 0.062))
+    bare = LabelledCloud(whole.points[len(TABLE_POINTS) :], whole.labels[len(TABLE_POINTS) :], camera=CAMERA)
+    assert all(TABLE not in (one.a, one.b) for one in perceived_scene(bare).beliefs)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.cloud_origin import CloudOrigin
+from lifelore.perception.segmentation.outline import convex_corners
 
 
 class ObjectBox(NamedTuple):
@@ -54,10 +55,5 @@ def upright_box(points: NDArray[np.float64]) -> ObjectBox:
 
 def _hull(flat: NDArray[np.float64]) -> NDArray[np.float64]:
     """(k, 2) corners of the convex hull, in turn; the two ends of points on a line."""
-    from scipy.spatial import ConvexHull, QhullError
-
-    try:
-        return flat[ConvexHull(flat).vertices]
-    except QhullError:  # fewer than three points, or all on a line
-        order = np.lexsort(flat.T[::-1])
-        return flat[order[[0, -1]]]
+    corners = convex_corners(flat)
+    return flat[np.lexsort(flat.T[::-1])[[0, -1]]] if corners is None else corners

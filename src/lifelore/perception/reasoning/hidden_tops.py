@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.perception.clouds.view_pixels import view_pixels
 
 CELL = 0.01
 """Metres between two places; smaller finds smaller hidden parts and costs time with its square."""
@@ -55,7 +56,7 @@ class _Image:
     """
 
     def __init__(self, rays: NDArray[np.float64], labels: NDArray[np.int64]) -> None:
-        pixels = _pixels(rays)
+        pixels = view_pixels(rays, PIXEL)
         self._low = pixels.min(axis=0)
         columns, rows = (pixels.max(axis=0) - self._low + 1).tolist()
         self._shape = columns, rows
@@ -71,7 +72,7 @@ class _Image:
 
     def n_hidden(self, rays: NDArray[np.float64], label: int) -> int:
         """Number of places below the camera before which another object than `label` lies; rays are ``(m, 3)``."""
-        pixels = _pixels(rays) - self._low
+        pixels = view_pixels(rays, PIXEL) - self._low
         inside = ((pixels >= 0) & (pixels < self._shape)).all(axis=1) & (rays[:, 2] < 0)
         at = self._numbers(pixels[inside])
         depths = np.where(self._nearest[at] == label, self._second[at], self._first[at])
@@ -102,13 +103,6 @@ def _between(grid: NDArray[np.bool_]) -> NDArray[np.bool_]:
     before = np.maximum.accumulate(grid, axis=1)
     behind = np.maximum.accumulate(grid[:, ::-1], axis=1)[:, ::-1]
     return before & behind
-
-
-def _pixels(rays: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Column and row of the pixel that each ray falls into, ``(n, 2)``."""
-    turn = np.arctan2(rays[:, 1], rays[:, 0])
-    rise = np.arctan2(rays[:, 2], np.hypot(rays[:, 0], rays[:, 1]))
-    return np.floor(np.column_stack([turn, rise]) / PIXEL).astype(np.int64)
 
 
 def _lengths(rays: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -9,10 +9,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from math import inf
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import NONE, ON
+from lifelore.perception.clouds.view_pixels import view_pixels
 from lifelore.perception.contacts.object_shape import DIRECTIONS, ObjectShape, shape_of
 from lifelore.perception.relations.relation import PairBelief
 
@@ -76,7 +76,7 @@ class _Image:
     def __init__(self, cloud: LabelledCloud) -> None:
         assert cloud.camera is not None
         rays = cloud.points - cloud.camera
-        pixels = _pixels(rays)
+        pixels = view_pixels(rays, PIXEL)
         self._depths = np.full(pixels.max(axis=0) - pixels.min(axis=0) + 1, np.inf)
         self._labels = np.full(self._depths.shape, -1)
         at, depths = tuple((pixels - pixels.min(axis=0)).T), np.linalg.norm(rays, axis=1)
@@ -94,10 +94,3 @@ class _Image:
             depths = self._depths[columns, np.maximum(lowest - step, 0)]
             behind |= (depths > self._depths[columns, lowest] + BEHIND) & np.isfinite(depths) & (lowest >= step)
         return float(behind.mean()) if len(columns) else 0.0
-
-
-def _pixels(rays: NDArray[np.float64]) -> NDArray[np.int64]:
-    """(n, 2) column and row of the pixel of each ray; rows ascend upwards."""
-    turn = np.arctan2(rays[:, 1], rays[:, 0])
-    rise = np.arctan2(rays[:, 2], np.hypot(rays[:, 0], rays[:, 1]))
-    return np.floor(np.column_stack([turn, rise]) / PIXEL).astype(np.int64)

@@ -1,4 +1,4 @@
-"""Whether a cloud can have been seen from where its camera is said to be.
+"""Doubt about the camera of a cloud: whether the points can have been seen from its position.
 
 A camera sees one surface on a line of sight. A cloud that was moved to another frame, such as a robot's, while its
 camera stayed at the origin, has surfaces behind others all over. On 36 clouds of a Kinect, 0 to 0.8 % of the

@@ -5,12 +5,11 @@ borders, and regions of patches that bend outwards. Here regions grow by the mea
 border.
 """
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import UNLABELLED
+from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.segmentation.cut_confidence import CutCloud, cut_confidence
 from lifelore.perception.segmentation.hollow_objects import hollow_pairs
 from lifelore.perception.segmentation.parted_objects import parted_pairs
@@ -68,7 +67,8 @@ def convex_objects(
     pairs = list(hollow_pairs(surface, patches, regions, fragment))
     if camera is not None:
         pairs += parted_pairs(patches, regions, fragment, camera, points if seen is None else seen)
-    regions = _joined(regions, pairs)
+    joined = connected_parts(np.array(pairs, np.int64).reshape(-1, 2), int(regions.max()) + 1)
+    regions = joined[regions]
     voxels = np.bincount(regions, patches.counts)
     order = np.argsort(-voxels, kind="stable")
     kept = order[voxels[order] * surface.size**2 >= min_area]
@@ -77,14 +77,3 @@ def convex_objects(
     sure = cut_confidence(patches, odds, regions)
     confidence = {int(label[region]): float(sure[region]) for region in kept}
     return CutCloud(label[regions][patches.of_voxel][surface.inverse], confidence)
-
-
-def _joined(regions: NDArray[np.int64], pairs: Sequence[tuple[int, int]]) -> NDArray[np.int64]:
-    """(k,) the regions of patches, from 0, those of the `pairs` as one."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    n = int(regions.max()) + 1
-    ends = np.array(pairs, np.int64).reshape(-1, 2).T
-    graph = coo_array((np.ones(ends.shape[1], np.int8), (ends[0], ends[1])), shape=(n, n))
-    return connected_components(graph, directed=False)[1].astype(np.int64)[regions]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import UNLABELLED
+from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.segmentation.surface_voxels import SurfaceVoxels, surface_voxels
 
 VOXEL = 0.005
@@ -32,8 +33,6 @@ def smooth_surfaces(
     min_area : float
         Square metres of smooth surface below which a region is noise.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
     from scipy.spatial import KDTree
 
     if len(points) == 0:
@@ -41,9 +40,7 @@ def smooth_surfaces(
     surface = surface_voxels(points, camera, VOXEL, _MOST_VOXELS)
     m = len(surface.points)
     smooth = curvature(surface) < SHARP
-    a, b = surface.pairs[smooth[surface.pairs].all(axis=1)].T
-    graph = coo_array((np.ones(len(a), np.int8), (a, b)), shape=(m, m))
-    region = connected_components(graph, directed=False)[1].astype(np.int64)
+    region = connected_parts(surface.pairs[smooth[surface.pairs].all(axis=1)], m)
     sizes = np.bincount(region[smooth], minlength=m)
     order = np.argsort(-sizes, kind="stable")
     kept = order[sizes[order] * surface.size**2 >= min_area]

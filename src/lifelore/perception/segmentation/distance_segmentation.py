@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import UNLABELLED, LabelledCloud
+from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.clouds.voxel import voxelised
 
 _MAX_VOXELS = 200_000
@@ -18,8 +19,6 @@ def euclidean_clusters(points: NDArray[np.float64], tolerance: float, min_area: 
     The points are thinned to voxels of half the tolerance first; an area is counted in occupied voxels. A scene
     of more than 200,000 such voxels is cut at a coarser tolerance, so that memory stays bounded.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
     from scipy.spatial import KDTree
 
     if len(points) == 0:
@@ -28,10 +27,8 @@ def euclidean_clusters(points: NDArray[np.float64], tolerance: float, min_area: 
     while len(thin.counts) > _MAX_VOXELS:
         tolerance *= 2
         thin = voxelised(LabelledCloud(points, np.zeros(len(points), np.int64)), tolerance / 2)
-    m = len(thin.counts)
     pairs = KDTree(thin.cloud.points).query_pairs(tolerance, output_type="ndarray")
-    graph = coo_array((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(m, m))
-    _, component = connected_components(graph, directed=False)
+    component = connected_parts(pairs, len(thin.counts))
     sizes = np.bincount(component)
     order = np.argsort(-sizes, kind="stable")
     label = np.full(len(sizes), UNLABELLED, np.int64)

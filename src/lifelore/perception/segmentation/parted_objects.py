@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.perception.clouds.view_pixels import view_pixels
 from lifelore.perception.segmentation.supervoxels import Supervoxels
 
 _PIXEL = 0.006
@@ -34,7 +35,7 @@ class _DepthImage:
     """Distances of the nearest and the farthest point in each pixel, seen from the origin; metres."""
 
     def __init__(self, rays: NDArray[np.float64]) -> None:
-        pixels, depths = _pixels(rays), np.linalg.norm(rays, axis=1)
+        pixels, depths = view_pixels(rays, _PIXEL), np.linalg.norm(rays, axis=1)
         self._low = pixels.min(axis=0)
         self._shape = pixels.max(axis=0) - self._low + 1
         self._nearest, self._farthest = np.full(self._shape, np.inf), np.full(self._shape, -np.inf)
@@ -44,7 +45,7 @@ class _DepthImage:
 
     def before_and_behind(self, rays: NDArray[np.float64]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
         """(m,) bool each: whether something is seen before, and behind, the end of each ray (m, 3)."""
-        pixels, depths = _pixels(rays) - self._low, np.linalg.norm(rays, axis=1)
+        pixels, depths = view_pixels(rays, _PIXEL) - self._low, np.linalg.norm(rays, axis=1)
         known = ((pixels >= 0) & (pixels < self._shape)).all(axis=1)
         at = tuple(np.where(known[:, None], pixels, 0).T)
         before = known & (self._nearest[at] < depths - _BEFORE)
@@ -105,10 +106,3 @@ def _coplanar(
     good &= (regions[own][:, None] != regions[own][None]) & (np.einsum("ijk,ijk->ij", between, between) <= _FAR**2)
     first, second = np.nonzero(np.triu(good))
     return own[first], own[second]
-
-
-def _pixels(rays: NDArray[np.float64]) -> NDArray[np.int64]:
-    """(n, 2) column and row of the pixel of each ray."""
-    turn = np.arctan2(rays[:, 1], rays[:, 0])
-    rise = np.arctan2(rays[:, 2], np.hypot(rays[:, 0], rays[:, 1]))
-    return np.floor(np.column_stack([turn, rise]) / _PIXEL).astype(np.int64)

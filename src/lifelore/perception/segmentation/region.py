@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.segmentation.surface_patches import Patch
 from lifelore.perception.segmentation.table_evidence import FRINGE, REACH
@@ -147,8 +148,6 @@ def _covered(
 
 def _linked(points: NDArray[np.float64]) -> NDArray[np.int64]:
     """(n,) number of the cluster of each point: cells of `_LINK` that touch are one cluster."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
     from scipy.spatial import KDTree
 
     if len(points) == 0:
@@ -156,6 +155,5 @@ def _linked(points: NDArray[np.float64]) -> NDArray[np.int64]:
     cells = np.floor((points - points.min(axis=0)) / _LINK).astype(np.int64)
     key, cell = np.unique(np.ravel_multi_index(tuple(cells.T), tuple(cells.max(axis=0) + 1)), return_inverse=True)
     places = np.stack(np.unravel_index(key, tuple(cells.max(axis=0) + 1)), axis=1)
-    a, b = KDTree(places).query_pairs(1.8, output_type="ndarray").T
-    graph = coo_array((np.ones(len(a), np.int8), (a, b)), shape=(len(key),) * 2)
-    return connected_components(graph, directed=False)[1].astype(np.int64)[cell.reshape(-1)]
+    touching = KDTree(places).query_pairs(1.8, output_type="ndarray")
+    return connected_parts(touching, len(key))[cell.reshape(-1)]

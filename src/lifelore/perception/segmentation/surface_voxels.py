@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.clouds.voxel import voxelised
 
 LINK = 1.9
@@ -95,12 +96,7 @@ def _normals(
 
 def _inside(points: NDArray[np.float64], pairs: NDArray[np.int64]) -> NDArray[np.float64]:
     """(m, 3): middle of the connected surface of each voxel, at the voxel's height."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    m = len(points)
-    graph = coo_array((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(m, m))
-    _, part = connected_components(graph, directed=False)
+    part = connected_parts(pairs, len(points))
     counts = np.bincount(part)
     middle = np.stack([np.bincount(part, points[:, axis]) / counts for axis in (0, 1)], axis=1)[part]
     return np.column_stack([middle, points[:, 2]])

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.segmentation.outline import over_outline
 from lifelore.perception.segmentation.plane import Plane
 from lifelore.perception.segmentation.surface_patches import OrientedVoxels, Patch
@@ -191,15 +192,10 @@ def _floating(voxels: OrientedVoxels, around: _Surroundings, near: NDArray[np.bo
 
 def _clusters(members: NDArray[np.int64], links: NDArray[np.int64], n: int) -> NDArray[np.int64]:
     """Number of the connected cluster of each of `members`, which are some of n voxels."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     number = np.full(n, -1)
     number[members] = np.arange(len(members))
     pairs = number[links]
-    pairs = pairs[(pairs >= 0).all(axis=1)]
-    graph = coo_array((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(members),) * 2)
-    return connected_components(graph, directed=False)[1].astype(np.int64)
+    return connected_parts(pairs[(pairs >= 0).all(axis=1)], len(members))
 
 
 def _touching(

@@ -46,7 +46,7 @@ class SegmentedScene:
     confidence : mapping of int to float
         How surely each object was cut, see `CutCloud`; empty for a cloud with labels.
     camera_doubt : str, optional
-        Why the camera of the cloud cannot be where it is said to be; it then counts as unknown.
+        Why the position of the camera is impossible; the camera then counts as unknown.
     up_given : bool
         Whether the upward direction was given, so that it is no result of the search for the table.
     """
@@ -91,10 +91,10 @@ def segmented_scene(
     -------
     SegmentedScene
         Measured points of the region only, z = 0 at the table; `LabelledCloud.origin` leads back to the pixels and
-        the frame of the cloud. Under ``up="table"`` and a vector, x is the
-        camera's right seen from above and y leads away from it; under ``"z"`` x and y stay. Without a visible
-        table, z = 0 is the lowest point but for 1 % (a vector), or stays as it is (``"z"``). A camera that cannot
-        be where it is said to be counts as unknown (see `camera_doubt`).
+        the frame of the cloud. Under ``up="table"`` and a vector, x is the camera's right seen from above and y
+        leads away from it; under ``"z"`` x and y stay. Without a visible table, z = 0 is the lowest point but for
+        1 % (a vector), or stays as it is (``"z"``). A camera whose position is impossible counts as unknown (see
+        `camera_doubt`).
 
     Raises
     ------
