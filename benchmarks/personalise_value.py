@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchmarks.rounds import Part, at_least, counted, joined, row
-from lifelore.agent.personalise.fit.fit import FitSettings, study_of_log
+from lifelore.agent.personalise.fitting.fit import FitSettings, study_of_log
 from lifelore.agent.personalise.log.log import read_log
 from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream

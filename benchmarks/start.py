@@ -17,7 +17,7 @@ from statistics import median
 from benchmarks.process import Cost, cold_and_warm, installed_environment, process_cost
 from benchmarks.rounds import Part, at_most, counted, joined, row
 from lifelore.agent.personalise.decisions import choose
-from lifelore.agent.personalise.fit.fit import FitSettings, fit
+from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.study import open_study
 from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream

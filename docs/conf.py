@@ -1,7 +1,7 @@
 """Sphinx settings of the site, and the generator of its API reference.
 
-The reference has one page for each name in `lifelore.__all__`, so no public name can be forgotten. Names in
-backticks inside public docstrings are checked: a name that can be found neither in the code nor among the
+The reference has one page for each name that `lifelore` or a room exports, so no public name can be forgotten.
+Names in backticks inside public docstrings are checked: a name that can be found neither in the code nor among the
 parameters keeps its role, and Sphinx (`-n -W`) then fails the build.
 """
 
@@ -51,6 +51,9 @@ napoleon_custom_sections = [("Attributes", "params_style")]
 
 # The rooms in the order in which the reference shows them, and a title for each.
 ROOMS = {
+    "lifelore.agent.personalise": "Personalisation",
+    "lifelore.interaction.evaluation": "Off-policy evaluation",
+    "lifelore.domains.tabletop_job": "Tabletop jobs",
     "lifelore.agent": "Verbs",
     "lifelore.perception": "Perception",
     "lifelore.action": "Action priors",
@@ -60,8 +63,25 @@ ROOMS = {
     "lifelore.memory": "Memory",
     "lifelore.core": "Tasks, learners and protocols",
 }
-HOMES = {name: lifelore._HOME[name] for name in lifelore.__all__ if name != "__version__"}
+
+
 ERRORS = "lifelore.core.errors"
+
+
+def exported() -> dict[str, tuple[str, object]]:
+    """Each public name, with the package to import it from (`lifelore` before a room) and its value."""
+    names = {name: ("lifelore", getattr(lifelore, name)) for name in lifelore.__all__ if name != "__version__"}
+    for room in ROOMS:
+        package = import_module(room)
+        for name in getattr(package, "__all__", ()):
+            value = getattr(package, name)
+            if callable(value) and getattr(value, "__module__", "") != ERRORS:
+                names.setdefault(name, (room, value))
+    return names
+
+
+PUBLIC = exported()
+HOMES = {name: getattr(value, "__module__", package) for name, (package, value) in PUBLIC.items()}
 SOURCES = Path(lifelore.__file__).parent
 # Where modules and classes live, by their bare names: docstrings name both so.
 MODULES: dict[str, list[str]] = {}
@@ -80,7 +100,7 @@ def first_line(documented: object) -> str:
 
 def undocumented(name: str) -> list[str]:
     """A public name and its public methods and properties that have no docstring of their own."""
-    value = getattr(lifelore, name)
+    value = PUBLIC[name][1]
     missing = [] if value.__doc__ else [name]
     for member, attribute in vars(value).items() if inspect.isclass(value) else ():
         function = getattr(attribute, "__func__", getattr(attribute, "func", attribute))
@@ -96,7 +116,10 @@ def write_reference(app: Sphinx) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     index = ["API reference", "=============", ""]
-    index += ["Every name below can be imported from ``lifelore``. Each is loaded when first used.", ""]
+    index += [
+        "Every name can be imported from the package that stands before it. Each is loaded when first used.",
+        "",
+    ]
     left = dict(HOMES)
     for room, title in ROOMS.items():
         names = sorted((name for name in left if left[name].startswith(room)), key=str.lower)
@@ -104,20 +127,20 @@ def write_reference(app: Sphinx) -> None:
         index += [".. list-table::", "   :widths: 28 72", "   :class: wide", ""]
         for name in names:
             left.pop(name)
-            value = getattr(lifelore, name)
-            index += [f"   * - :doc:`{name} <{name}>`", f"     - {first_line(value)}"]
+            package, value = PUBLIC[name]
+            index += [f"   * - ``{package}.``\\ :doc:`{name} <{name}>`", f"     - {first_line(value)}"]
             kind = "class" if inspect.isclass(value) else "function"
-            directive = [f".. auto{kind}:: lifelore.{name}"]
+            directive = [f".. auto{kind}:: {package}.{name}"]
             if issubclass(value, BaseException) if kind == "class" else False:
-                directive = [f".. autoexception:: lifelore.{name}", "   :show-inheritance:"]
+                directive = [f".. autoexception:: {package}.{name}", "   :show-inheritance:"]
             elif kind == "class":
                 directive += ["   :members:"]
             (folder / f"{name}.rst").write_text("\n".join([name, "=" * len(name), "", *directive, ""]))
             for missing in undocumented(name):
-                log.warning("lifelore.%s has no docstring", missing)
+                log.warning("%s.%s has no docstring", package, missing)
         index += ["", ".. toctree::", "   :hidden:", "", *(f"   {name}" for name in names), ""]
     for name in left:
-        log.warning("lifelore.%s lives in %s, a room that docs/conf.py does not list", name, left[name])
+        log.warning("%s lives in %s, a room that docs/conf.py does not list", name, left[name])
     index += ["Errors", "------", "", first_line(import_module(ERRORS)), ""]
     index += [".. toctree::", "   :hidden:", "", "   errors", "", "See :doc:`errors`.", ""]
     errors = ["Errors", "======", "", f".. automodule:: {ERRORS}", "   :members:", "   :show-inheritance:", ""]
@@ -164,17 +187,18 @@ def has_page(target: str) -> bool:
     public, *member = target.split(".")
     if public not in HOMES or len(member) > 1:
         return False
-    attribute = inspect.getattr_static(getattr(lifelore, public), member[0], None) if member else None
+    attribute = vars(PUBLIC[public][1]).get(member[0]) if member else None
     return not member or callable(attribute) or isinstance(attribute, (property, classmethod, cached_property))
 
 
 def link_names(app: Sphinx, what: str, name: str, value: object, options: object, lines: list[str]) -> None:
     """Turn backticks into links to public names and literals of other names; leave unknown names to fail."""
-    public, *member = name.removeprefix("lifelore.").split(".")
+    package = max((room for room in ("lifelore", *ROOMS) if name.startswith(room + ".")), key=len)
+    public, *member = name.removeprefix(package + ".").split(".")
     if public not in HOMES:
         public, owners, module = "", [value], ERRORS
     else:
-        owner = getattr(lifelore, public)
+        owner = PUBLIC[public][1]
         owners, module = [value, owner] if member else [owner], HOMES[public]
     known = set().union(*map(parameters, owners))
 
@@ -185,7 +209,7 @@ def link_names(app: Sphinx, what: str, name: str, value: object, options: object
         whole = target == text.removeprefix("lifelore.")
         for page in (target, f"{public}.{target}"):
             if whole and has_page(page):
-                return f":py:obj:`~lifelore.{page}`"
+                return f":py:obj:`~{PUBLIC[page.split('.')[0]][0]}.{page}`"
         if start and (target.split(".")[0] in known or found(start[0], owners, module)):
             return f"``{text}``"
         return match[0]
@@ -199,7 +223,7 @@ def link_names(app: Sphinx, what: str, name: str, value: object, options: object
         line = "".join(parts)
         field = re.match(r"(\w[\w, ]*) : (.*)$", line)
         if field:
-            line = f"{field[1]} : " + linked.sub(lambda m: f":py:obj:`~lifelore.{m[0]}`", field[2])
+            line = f"{field[1]} : " + linked.sub(lambda m: f":py:obj:`~{PUBLIC[m[0]][0]}.{m[0]}`", field[2])
         # Napoleon takes the text before a colon in a property's docstring for its type.
         lines[place] = line.replace(":", "\0") if what in ("property", "attribute") else line
 

@@ -6,7 +6,7 @@ For people who personalise interactive systems. `lifelore serve` runs, and has t
 import random
 import sys
 
-from lifelore.bridges.study_client import StudyClient
+from lifelore.bridges import StudyClient
 
 url = sys.argv[1] if len(sys.argv) > 1 else "http://127.0.0.1:8321"
 random.seed(0)

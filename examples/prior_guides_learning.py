@@ -4,9 +4,8 @@ For reinforcement-learning researchers. Thesis: §3.2.2, Algorithms 2 and 4.
 """
 
 from lifelore import ActionPrior, QLearning, make_world
-from lifelore.action.priors.exploration import prior_rows
-from lifelore.core.planning.planning import learnt_best_actions
-from lifelore.core.streams import stream
+from lifelore.action import prior_rows
+from lifelore.core import learnt_best_actions, stream
 
 learner = QLearning(episodes=500)
 

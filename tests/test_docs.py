@@ -25,6 +25,7 @@ PAGES = [
     DOCS.parent / "README.md",
     *sorted(path for path in DOCS.rglob("*.md") if "reproduction" not in str(path)),
 ]
+EXAMPLES = sorted([*(DOCS.parent / "examples").glob("*.py"), *(DOCS.parent / "examples" / "plain").glob("*.py")])
 ROOMS = sorted(folder.name for folder in (DOCS.parent / "src" / "lifelore").iterdir() if folder.is_dir())
 
 
@@ -48,6 +49,14 @@ def test_modules_and_files_named_on_a_page_exist(page):
     assert not [name for name in dotted if not exists(name)]
     files = re.findall(rf"`((?:{rooms})/[\w/.]+)`", text)
     assert not [name for name in files if not (DOCS.parent / "src" / "lifelore" / name).exists()]
+
+
+@pytest.mark.parametrize("page", [*PAGES, *EXAMPLES], ids=lambda path: path.stem)
+def test_a_page_imports_from_rooms_alone(page):
+    """From `lifelore`, a room, what a room exports as a package of its own, or the file of a bridge."""
+    modules = re.findall(r"^ *(?:from|import) (lifelore[\w.]*)", page.read_text("utf-8"), flags=re.M)
+    deep = [module for module in modules if module.count(".") > 1 and not module.startswith("lifelore.bridges.")]
+    assert not [module for module in deep if not getattr(import_module(module), "__all__", ())]
 
 
 @pytest.mark.slow

@@ -3,8 +3,15 @@
 import inspect
 import subprocess
 import sys
+from importlib import import_module
+
+import pytest
 
 import lifelore
+
+ROOMS = ("core", "perception", "action", "interaction", "domains", "bridges", "figures", "agent", "app")
+DOORS = [f"lifelore.{room}" for room in ROOMS]
+DOORS += ["lifelore.agent.personalise", "lifelore.domains.tabletop_job", "lifelore.interaction.evaluation"]
 
 
 def test_every_public_name_exists_and_is_documented():
@@ -14,22 +21,22 @@ def test_every_public_name_exists_and_is_documented():
     assert set(dir(lifelore)) == set(lifelore.__all__)
 
 
-def test_what_perception_exports_exists_is_documented_and_is_what_the_package_exports():
-    from lifelore import perception
-
-    assert {"LabelledCloud", "perceived_scene", "contact_networks", "RelationClassifier", "read_cloud"} <= set(
-        perception.__all__
-    )
-    assert set(perception.__all__) == set(perception._HOME)
-    for name in perception.__all__:
-        assert inspect.getdoc(getattr(perception, name)), name
-        assert getattr(lifelore, name, getattr(perception, name)) is getattr(perception, name), name
-    assert set(perception.__all__) <= set(dir(perception))
+@pytest.mark.parametrize("name", DOORS)
+def test_what_a_room_exports_exists_is_documented_and_is_what_the_package_exports(name):
+    room = import_module(name)
+    assert set(room.__all__) - {"ENVIRONMENTS"} == set(room._HOME)
+    for export in room._HOME:
+        value = getattr(room, export)
+        assert not callable(value) or inspect.getdoc(value), export
+        assert getattr(lifelore, export, value) is value, export
+    assert set(room.__all__) <= set(dir(room))
+    with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
+        room.nothing  # noqa: B018
 
 
 def test_importing_the_package_imports_nothing_heavy():
     heavy = ("numba", "numpy", "matplotlib", "sqlite3", "gymnasium", "scipy", "typer")
-    code = f"import sys, lifelore.perception; print([name for name in {heavy} if name in sys.modules])"
+    code = f"import sys, lifelore.perception, lifelore.action, lifelore.interaction; print([name for name in {heavy} if name in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "[]"
 
 

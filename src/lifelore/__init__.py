@@ -6,8 +6,9 @@ The public names, each imported when first used, so that ``import lifelore`` cos
 >>> prior = lifelore.ActionPrior(n_actions=4)
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from lifelore.core.lazy_exports import lazy_exports
 
 if TYPE_CHECKING:
     from lifelore.action.features.learnt_contexts import LearntContexts as LearntContexts
@@ -112,14 +113,4 @@ _HOME = {
 
 __all__ = ["__version__", *_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
 
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOME:
-        raise AttributeError(f"module 'lifelore' has no attribute '{name}'")
-    value = getattr(import_module(_HOME[name]), name)
-    globals()[name] = value
-    return value
-
-
-def __dir__() -> list[str]:
-    return sorted(__all__)
+__getattr__, __dir__ = lazy_exports(__name__, _HOME)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lifelore.agent.personalise.decisions import choose, update
-from lifelore.agent.personalise.fit.fit import fit
+from lifelore.agent.personalise.fitting.fit import fit
 from lifelore.agent.personalise.study import open_study
 from lifelore.memory import open_memory
 
@@ -291,9 +291,9 @@ print(status, *sorted(sys.modules), file=sys.stderr)
 
 HEAVY = {
     "numba", "scipy", "sklearn", "matplotlib", "networkx", "pandas", "gymnasium", "sqlalchemy", "psycopg",
-    "joblib", "rich.console", "lifelore.agent.live", "lifelore.agent.personalise.fit.fit",
+    "joblib", "rich.console", "lifelore.agent.live", "lifelore.agent.personalise.fitting.fit",
     "lifelore.agent.personalise.log.log",
-    "lifelore.agent.personalise.report", "lifelore.domains", "reproduction.engine", "lifelore.figures",
+    "lifelore.agent.personalise.study_report", "lifelore.domains", "reproduction.engine", "lifelore.figures",
     "lifelore.interaction.selection.tie_kernels", "lifelore.perception",
 }  # fmt: skip
 """Modules that cost a start time and that a choice does not need."""

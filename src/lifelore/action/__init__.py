@@ -3,3 +3,81 @@
 `priors` counts which actions were best, `features` chooses what to condition on, `search` guides planners,
 `demonstrations` learns from people, `advice` advises agents whose goals are unknown.
 """
+
+from typing import TYPE_CHECKING
+
+from lifelore.core.lazy_exports import lazy_exports
+
+if TYPE_CHECKING:
+    from lifelore.action.advice.advisor import AdviceSettings as AdviceSettings
+    from lifelore.action.advice.advisor import Advisor as Advisor
+    from lifelore.action.advice.agent_classes import ClassAdvisor as ClassAdvisor
+    from lifelore.action.advice.goal_model import GoalModel as GoalModel
+    from lifelore.action.advice.goal_model import Trajectory as Trajectory
+    from lifelore.action.advice.outcome_map import OutcomeMap as OutcomeMap
+    from lifelore.action.demonstrations.demonstrations import Demonstration as Demonstration
+    from lifelore.action.demonstrations.demonstrations import count_demonstrations as count_demonstrations
+    from lifelore.action.demonstrations.demonstrations import read_demonstrations as read_demonstrations
+    from lifelore.action.features.counted_features import CountedFeatures as CountedFeatures
+    from lifelore.action.features.feature_acquisition import FeatureAcquisition as FeatureAcquisition
+    from lifelore.action.features.feature_function import AgentClass as AgentClass
+    from lifelore.action.features.feature_function import JoinedFeatures as JoinedFeatures
+    from lifelore.action.features.feature_function import LastReward as LastReward
+    from lifelore.action.features.feature_function import StateFeatures as StateFeatures
+    from lifelore.action.features.feature_function import TaskFeature as TaskFeature
+    from lifelore.action.features.feature_function import context_codes as context_codes
+    from lifelore.action.features.feature_selection import OnlineFeatureSelection as OnlineFeatureSelection
+    from lifelore.action.features.feature_selection import best_feature_set as best_feature_set
+    from lifelore.action.features.feature_selection import independent_features as independent_features
+    from lifelore.action.features.feature_set import FeatureSet as FeatureSet
+    from lifelore.action.features.learnt_contexts import LearntContexts as LearntContexts
+    from lifelore.action.features.uncertainty import why_uncertain as why_uncertain
+    from lifelore.action.priors.action_prior import ActionPrior as ActionPrior
+    from lifelore.action.priors.exploration import prior_rows as prior_rows
+    from lifelore.action.priors.prior_file import load_prior as load_prior
+    from lifelore.action.priors.prior_file import save_prior as save_prior
+    from lifelore.action.priors.prior_report import prior_report as prior_report
+    from lifelore.action.search.domain_reduction import MinimisedDomain as MinimisedDomain
+    from lifelore.action.search.domain_reduction import domain_futile_actions as domain_futile_actions
+    from lifelore.action.search.domain_reduction import domain_futile_states as domain_futile_states
+    from lifelore.action.search.domain_reduction import minimised_domain as minimised_domain
+    from lifelore.action.search.domain_reduction import reachable_states as reachable_states
+
+_HOME = {
+    "ActionPrior": ".priors.action_prior",
+    "AdviceSettings": ".advice.advisor",
+    "Advisor": ".advice.advisor",
+    "AgentClass": ".features.feature_function",
+    "ClassAdvisor": ".advice.agent_classes",
+    "CountedFeatures": ".features.counted_features",
+    "Demonstration": ".demonstrations.demonstrations",
+    "FeatureAcquisition": ".features.feature_acquisition",
+    "FeatureSet": ".features.feature_set",
+    "GoalModel": ".advice.goal_model",
+    "JoinedFeatures": ".features.feature_function",
+    "LastReward": ".features.feature_function",
+    "LearntContexts": ".features.learnt_contexts",
+    "MinimisedDomain": ".search.domain_reduction",
+    "OnlineFeatureSelection": ".features.feature_selection",
+    "OutcomeMap": ".advice.outcome_map",
+    "StateFeatures": ".features.feature_function",
+    "TaskFeature": ".features.feature_function",
+    "Trajectory": ".advice.goal_model",
+    "best_feature_set": ".features.feature_selection",
+    "context_codes": ".features.feature_function",
+    "count_demonstrations": ".demonstrations.demonstrations",
+    "domain_futile_actions": ".search.domain_reduction",
+    "domain_futile_states": ".search.domain_reduction",
+    "independent_features": ".features.feature_selection",
+    "load_prior": ".priors.prior_file",
+    "minimised_domain": ".search.domain_reduction",
+    "prior_report": ".priors.prior_report",
+    "prior_rows": ".priors.exploration",
+    "reachable_states": ".search.domain_reduction",
+    "read_demonstrations": ".demonstrations.demonstrations",
+    "save_prior": ".priors.prior_file",
+    "why_uncertain": ".features.uncertainty",
+}
+
+__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
+__getattr__, __dir__ = lazy_exports(__name__, _HOME)

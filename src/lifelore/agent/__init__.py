@@ -4,3 +4,47 @@
 files. `external_world` holds `live_in`, which lives in a user's own world. `compile_kernels` compiles the kernels
 of the verbs before their first use.
 """
+
+from typing import TYPE_CHECKING
+
+from lifelore.core.lazy_exports import lazy_exports
+
+if TYPE_CHECKING:
+    from lifelore.agent.any_tasks.comparison import compare_agents as compare_agents
+    from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent as LongLivedAgent
+    from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld as GymnasiumWorld
+    from lifelore.agent.external_world.live_in import live_in as live_in
+    from lifelore.agent.external_world.stored_prior import BatchContexts as BatchContexts
+    from lifelore.agent.external_world.stored_prior import prior_from_memory as prior_from_memory
+    from lifelore.agent.live.life_settings import LifeSettings as LifeSettings
+    from lifelore.agent.live.output.l2_log import L2Log as L2Log
+    from lifelore.agent.long_lived.check_family import check_family as check_family
+    from lifelore.agent.long_lived.long_life import live_long as live_long
+    from lifelore.agent.long_lived.task_family import AgentTask as AgentTask
+    from lifelore.agent.long_lived.task_family import Plan as Plan
+    from lifelore.agent.long_lived.task_family import Step as Step
+    from lifelore.agent.long_lived.task_family import TaskFamily as TaskFamily
+    from lifelore.agent.long_lived.type_prior import TypePrior as TypePrior
+    from lifelore.agent.perceive.perceive import PerceiveSettings as PerceiveSettings
+
+_HOME = {
+    "L2Log": ".live.output.l2_log",
+    "AgentTask": ".long_lived.task_family",
+    "BatchContexts": ".external_world.stored_prior",
+    "GymnasiumWorld": ".external_world.gymnasium_world",
+    "LifeSettings": ".live.life_settings",
+    "LongLivedAgent": ".any_tasks.long_lived_agent",
+    "PerceiveSettings": ".perceive.perceive",
+    "Plan": ".long_lived.task_family",
+    "Step": ".long_lived.task_family",
+    "TaskFamily": ".long_lived.task_family",
+    "TypePrior": ".long_lived.type_prior",
+    "check_family": ".long_lived.check_family",
+    "compare_agents": ".any_tasks.comparison",
+    "live_in": ".external_world.live_in",
+    "live_long": ".long_lived.long_life",
+    "prior_from_memory": ".external_world.stored_prior",
+}
+
+__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
+__getattr__, __dir__ = lazy_exports(__name__, _HOME)

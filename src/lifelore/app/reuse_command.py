@@ -103,8 +103,8 @@ def fit(
 
     Use it first, and again when there are more outcomes.
     """
-    from lifelore.agent.personalise.fit.fit import FitSettings
-    from lifelore.agent.personalise.fit.fit import fit as fitted
+    from lifelore.agent.personalise.fitting.fit import FitSettings
+    from lifelore.agent.personalise.fitting.fit import fit as fitted
     from lifelore.app.console import print_json
     from lifelore.interaction.selection import DEFAULT_RULE
     from lifelore.memory import open_memory
@@ -242,7 +242,7 @@ def report(
 
     It compares with the control group, with the best single policy and with the incumbent.
     """
-    from lifelore.agent.personalise.report import report as reported
+    from lifelore.agent.personalise.study_report import report as reported
     from lifelore.app.console import print_json
 
     with _opened(name, where) as (memory, study):

@@ -1,1 +1,23 @@
 """Connections to other programs: MiniGrid, Stable-Baselines3, rosbags, PDDL planners, clients of the service."""
+
+from typing import TYPE_CHECKING
+
+from lifelore.core.lazy_exports import lazy_exports
+
+if TYPE_CHECKING:
+    from lifelore.bridges.minigrid_view import SymbolicView as SymbolicView
+    from lifelore.bridges.minigrid_view import open_directions as open_directions
+    from lifelore.bridges.minigrid_view import solved_layout as solved_layout
+    from lifelore.bridges.prior_mask import PriorMask as PriorMask
+    from lifelore.bridges.study_client import StudyClient as StudyClient
+
+_HOME = {
+    "PriorMask": ".prior_mask",
+    "StudyClient": ".study_client",
+    "SymbolicView": ".minigrid_view",
+    "open_directions": ".minigrid_view",
+    "solved_layout": ".minigrid_view",
+}
+
+__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
+__getattr__, __dir__ = lazy_exports(__name__, _HOME)

@@ -4,52 +4,69 @@ Importing this package registers the environments and little else: what needs th
 public name is first used.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import gymnasium
 
-if TYPE_CHECKING:
-    from lifelore.domains.buildings.building import building_from_map
-    from lifelore.domains.buildings.occupancy_map import OccupancyMap, read_occupancy_map, write_occupancy_map
-    from lifelore.domains.buildings.office import office_map
-    from lifelore.domains.grid_environment import GridEnvironment
-    from lifelore.domains.grids.grid_world import Frame, GridWorld
-    from lifelore.domains.task_environment import TaskEnvironment
-    from lifelore.domains.worlds import WorldSettings, domain_names, make_world, world_from_settings
+from lifelore.core.lazy_exports import lazy_exports
 
-__all__ = [
-    "ENVIRONMENTS",
-    "Frame",
-    "GridEnvironment",
-    "GridWorld",
-    "OccupancyMap",
-    "TaskEnvironment",
-    "WorldSettings",
-    "building_from_map",
-    "domain_names",
-    "make_world",
-    "office_map",
-    "read_occupancy_map",
-    "world_from_settings",
-    "write_occupancy_map",
-]
+if TYPE_CHECKING:
+    from lifelore.domains.advice.advice_maze import advice_maze as advice_maze
+    from lifelore.domains.advice.advice_maze import maze_goals as maze_goals
+    from lifelore.domains.buildings.building import building_from_map as building_from_map
+    from lifelore.domains.buildings.floor import floor_of as floor_of
+    from lifelore.domains.buildings.occupancy_map import OccupancyMap as OccupancyMap
+    from lifelore.domains.buildings.occupancy_map import read_occupancy_map as read_occupancy_map
+    from lifelore.domains.buildings.occupancy_map import write_occupancy_map as write_occupancy_map
+    from lifelore.domains.buildings.office import office_map as office_map
+    from lifelore.domains.factory.modified_factory import modified_factory as modified_factory
+    from lifelore.domains.golf.golf import Golf as Golf
+    from lifelore.domains.grid_environment import GridEnvironment as GridEnvironment
+    from lifelore.domains.grids.grid_world import Frame as Frame
+    from lifelore.domains.grids.grid_world import GridWorld as GridWorld
+    from lifelore.domains.grids.lattice import lattice as lattice
+    from lifelore.domains.grids.noise_maze import noise_maze as noise_maze
+    from lifelore.domains.pacman.pacman import PacmanMaze as PacmanMaze
+    from lifelore.domains.pacman.pacman import PacmanTask as PacmanTask
+    from lifelore.domains.surveillance.surveillance import Surveillance as Surveillance
+    from lifelore.domains.task_environment import TaskEnvironment as TaskEnvironment
+    from lifelore.domains.task_stream import TaskStream as TaskStream
+    from lifelore.domains.telephone.telephone import Telephone as Telephone
+    from lifelore.domains.worlds import WorldSettings as WorldSettings
+    from lifelore.domains.worlds import domain_names as domain_names
+    from lifelore.domains.worlds import make_world as make_world
+    from lifelore.domains.worlds import world_from_settings as world_from_settings
 
 _HOME = {
-    "Frame": "grids.grid_world",
-    "GridEnvironment": "grid_environment",
-    "GridWorld": "grids.grid_world",
-    "OccupancyMap": "buildings.occupancy_map",
-    "TaskEnvironment": "task_environment",
-    "WorldSettings": "worlds",
-    "building_from_map": "buildings.building",
-    "domain_names": "worlds",
-    "make_world": "worlds",
-    "office_map": "buildings.office",
-    "read_occupancy_map": "buildings.occupancy_map",
-    "world_from_settings": "worlds",
-    "write_occupancy_map": "buildings.occupancy_map",
+    "Frame": ".grids.grid_world",
+    "Golf": ".golf.golf",
+    "GridEnvironment": ".grid_environment",
+    "GridWorld": ".grids.grid_world",
+    "OccupancyMap": ".buildings.occupancy_map",
+    "PacmanMaze": ".pacman.pacman",
+    "PacmanTask": ".pacman.pacman",
+    "Surveillance": ".surveillance.surveillance",
+    "TaskEnvironment": ".task_environment",
+    "TaskStream": ".task_stream",
+    "Telephone": ".telephone.telephone",
+    "WorldSettings": ".worlds",
+    "advice_maze": ".advice.advice_maze",
+    "building_from_map": ".buildings.building",
+    "domain_names": ".worlds",
+    "floor_of": ".buildings.floor",
+    "lattice": ".grids.lattice",
+    "make_world": ".worlds",
+    "maze_goals": ".advice.advice_maze",
+    "modified_factory": ".factory.modified_factory",
+    "noise_maze": ".grids.noise_maze",
+    "office_map": ".buildings.office",
+    "read_occupancy_map": ".buildings.occupancy_map",
+    "world_from_settings": ".worlds",
+    "write_occupancy_map": ".buildings.occupancy_map",
 }
+
+__all__ = ["ENVIRONMENTS", *_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
+__getattr__, __dir__ = lazy_exports(__name__, _HOME)
 
 ENVIRONMENTS = {
     "lifelore/AdviceMaze-v0": ("advice_environment:AdviceMazeEnvironment", 5000),
@@ -65,17 +82,6 @@ ENVIRONMENTS = {
     "lifelore/Telephone-v0": ("telephone.environment:TelephoneEnvironment", 3),
 }
 """Registered name → where its class lives in this package, and the steps after which an episode is cut."""
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOME:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOME[name]}"), name)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
-
 
 for _name, (_place, _max_steps) in ENVIRONMENTS.items():
     if _name not in gymnasium.registry:

@@ -15,7 +15,7 @@ MOST_POLICIES = 20
 
 
 def draw_reuse_report(document: Mapping) -> "Figure":
-    """The picture from what `agent.personalise.report` returns."""
+    """The picture from what `agent.personalise.study_report` returns."""
     with house_style():
         figure = new_figure(10.4, 3.8)
         curves, policies, regret = figure.subplots(1, 3, width_ratios=[1.3, 1.2, 0.7])

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from lifelore.agent.personalise.decisions import choose, update
-from lifelore.agent.personalise.fit.fit import FitSettings, fit
+from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.past import warm
-from lifelore.agent.personalise.report import report
+from lifelore.agent.personalise.study_report import report
 from lifelore.agent.personalise.study import open_study
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse

@@ -15,7 +15,7 @@ from lifelore.agent.personalise.decisions import (
     update,
 )
 from lifelore.agent.personalise.explanation import explain
-from lifelore.agent.personalise.fit.fit import FitSettings, fit
+from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.identifiers import identifier, new_ids, parse_identifier
 from lifelore.agent.personalise.policy_states import add
 from lifelore.agent.personalise.study import open_study

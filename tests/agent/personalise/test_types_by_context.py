@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lifelore.agent.personalise.fit.fit import FitSettings, fit
-from lifelore.agent.personalise.fit.library_from_log import TypedRows, library_of
-from lifelore.agent.personalise.fit.types_by_context import (
+from lifelore.agent.personalise.fitting.fit import FitSettings, fit
+from lifelore.agent.personalise.fitting.library_from_log import TypedRows, library_of
+from lifelore.agent.personalise.fitting.types_by_context import (
     FEWEST_USERS,
     by_context,
     contexts_differ,

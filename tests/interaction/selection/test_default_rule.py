@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.agent.personalise.fit.fit import FitSettings
+from lifelore.agent.personalise.fitting.fit import FitSettings
 from lifelore.agent.personalise.study import Study
 from lifelore.app import reuse_command
 from lifelore.interaction.library.policy_library import PolicyLibrary

@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 from lifelore.agent.personalise.decisions import choose, update
-from lifelore.agent.personalise.report import report
+from lifelore.agent.personalise.study_report import report
 from lifelore.agent.personalise.study import open_study
 from lifelore.memory import open_memory
 

@@ -50,6 +50,7 @@ class TaskFeature:
 
     @property
     def features(self) -> FeatureSet:
+        """The features, with the number of values of each."""
         return FeatureSet((self.name,), (self.size,))
 
     def __call__(self, states: ArrayLike, task: Any, last_rewards: ArrayLike) -> Columns:
@@ -76,6 +77,7 @@ class LastReward:
 
     @property
     def features(self) -> FeatureSet:
+        """The features, with the number of values of each."""
         return FeatureSet((self.name,), (len(self.edges) + 1,))
 
     def __call__(self, states: ArrayLike, task: Any, last_rewards: ArrayLike) -> Columns:
@@ -97,6 +99,7 @@ class AgentClass:
 
     @property
     def features(self) -> FeatureSet:
+        """The features, with the number of values of each."""
         return FeatureSet((self.name,), (len(self.classes),))
 
     def __call__(self, states: ArrayLike, task: Any, last_rewards: ArrayLike) -> Columns:
@@ -111,6 +114,7 @@ class JoinedFeatures:
 
     @property
     def features(self) -> FeatureSet:
+        """The features, with the number of values of each."""
         sets = [part.features for part in self.parts]
         names = tuple(name for one in sets for name in one.names)
         return FeatureSet(names, tuple(size for one in sets for size in one.sizes))

@@ -1,6 +1,38 @@
-"""Personalisation for a program that keeps a memory open, such as the HTTP service.
+"""Personalisation of an interactive system: a study chooses the best of N policies for each of its users.
 
 Read in this order: `library_document` (a policy library as plain data), `registration` (a library becomes a
-study), `open_studies` (studies that stay open), `explanation` (the evidence behind a user's belief), `panel` (very
-many users in batches; `panel_journal`, `open_panels`), `adaptation` (BEAT).
+study), `study`, `decisions` (choices and outcomes), `study_report`, `fitting` (a library from a log), `evaluate`
+(policies that were not in place), `explanation` (the evidence behind a user's belief), `adaptation` (BEAT).
 """
+
+from typing import TYPE_CHECKING
+
+from lifelore.core.lazy_exports import lazy_exports
+
+if TYPE_CHECKING:
+    from lifelore.agent.personalise.decisions import Request as Request
+    from lifelore.agent.personalise.decisions import choose as choose
+    from lifelore.agent.personalise.decisions import decide as decide
+    from lifelore.agent.personalise.decisions import observe as observe
+    from lifelore.agent.personalise.decisions import update as update
+    from lifelore.agent.personalise.fitting.fit import FitSettings as FitSettings
+    from lifelore.agent.personalise.fitting.fit import fit as fit
+    from lifelore.agent.personalise.log.log_format import LogFormat as LogFormat
+    from lifelore.agent.personalise.study import open_study as open_study
+    from lifelore.agent.personalise.study_report import report as report
+
+_HOME = {
+    "FitSettings": ".fitting.fit",
+    "LogFormat": ".log.log_format",
+    "Request": ".decisions",
+    "choose": ".decisions",
+    "decide": ".decisions",
+    "fit": ".fitting.fit",
+    "observe": ".decisions",
+    "open_study": ".study",
+    "report": ".study_report",
+    "update": ".decisions",
+}
+
+__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
+__getattr__, __dir__ = lazy_exports(__name__, _HOME)

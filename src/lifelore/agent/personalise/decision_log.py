@@ -49,7 +49,7 @@ def log_parts(
     Parameters
     ----------
     form : {"csv", "ndjson"}
-        CSV as in RFC 4180, with `COLUMNS` and the features of the study, so that a new fit can read it: outcomes
+        CSV as in RFC 4180, with ``COLUMNS`` and the features of the study, so that a new fit can read it: outcomes
         not yet known are empty, times are seconds since 1970, ``available`` is a JSON list of the policies that
         were available, empty where all were. A word that a spreadsheet would take for a formula begins with ``'``.
     since, until : float, optional

@@ -11,9 +11,9 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from lifelore.agent.personalise.decision_log import log_parts
 from lifelore.agent.personalise.evaluate.evaluate import EvaluateSettings, evaluate
-from lifelore.agent.personalise.fit.fit import FitSettings, fit
+from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.log.log_format import LogFormat
-from lifelore.agent.personalise.report import report
+from lifelore.agent.personalise.study_report import report
 from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service
 from lifelore.app.service.study_routes import Name

@@ -68,6 +68,7 @@ class Golf:
 
     @property
     def n_clubs(self) -> int:
+        """Number of clubs."""
         return len(self.yards)
 
     @cached_property

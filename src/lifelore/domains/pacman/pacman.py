@@ -105,6 +105,7 @@ class PacmanMaze:
 
     @property
     def n_cells(self) -> int:
+        """Number of free cells."""
         return self.grid.n_states
 
     @property
@@ -192,6 +193,7 @@ class PacmanTask:
 
     @property
     def n_phases(self) -> int:
+        """Number of positions in the ghost's cycle."""
         return len(self.params[2])
 
     @property

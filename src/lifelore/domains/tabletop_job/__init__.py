@@ -3,3 +3,29 @@
 Read in this order: `job_types` (users and grippers), `gripper_tray` (MuJoCo), `skills` (pick, put aside, push
 apart, hand over), `events` (spills and knocks), `tray` (draw trays and targets), `job` (the world), `best_return`.
 """
+
+from typing import TYPE_CHECKING
+
+from lifelore.core.lazy_exports import lazy_exports
+
+if TYPE_CHECKING:
+    from lifelore.domains.tabletop_job.best_return import OutcomeTree as OutcomeTree
+    from lifelore.domains.tabletop_job.job import PICK as PICK
+    from lifelore.domains.tabletop_job.job import VERBS as VERBS
+    from lifelore.domains.tabletop_job.job import TabletopJob as TabletopJob
+    from lifelore.domains.tabletop_job.job_types import job_type_named as job_type_named
+    from lifelore.domains.tabletop_job.tray import Tray as Tray
+    from lifelore.domains.tabletop_job.tray import sample_tray as sample_tray
+
+_HOME = {
+    "OutcomeTree": ".best_return",
+    "PICK": ".job",
+    "TabletopJob": ".job",
+    "Tray": ".tray",
+    "VERBS": ".job",
+    "job_type_named": ".job_types",
+    "sample_tray": ".tray",
+}
+
+__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
+__getattr__, __dir__ = lazy_exports(__name__, _HOME)

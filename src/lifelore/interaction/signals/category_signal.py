@@ -153,7 +153,7 @@ class CategorySignal(CategoryModel):
             By default the number of `categories`, or else the largest sample plus 1.
         pseudo_count : float or "held-out"
             Added to every category of every pair, ≥ 0; at 0, a category never seen excludes a type for ever.
-            "held-out" chooses it by held-out likelihood, see `outcomes.pseudo_counts`.
+            "held-out" chooses it by held-out likelihood, see ``outcomes.pseudo_counts``.
 
         Raises
         ------

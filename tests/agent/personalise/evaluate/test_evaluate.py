@@ -12,9 +12,9 @@ from lifelore.agent.personalise.decisions import choose, update
 from lifelore.agent.personalise.evaluate.cross_fitted import expected_by_means, studies_of_others
 from lifelore.agent.personalise.evaluate.evaluate import EvaluateSettings, evaluate
 from lifelore.agent.personalise.evaluate.logged_decisions import read_decisions
-from lifelore.agent.personalise.fit.fit import FitSettings, fit
+from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.log.log_format import LogFormat
-from lifelore.agent.personalise.report import report
+from lifelore.agent.personalise.study_report import report
 from lifelore.agent.personalise.study import open_study
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.evaluation.reward_models import user_folds
@@ -253,7 +253,7 @@ def test_a_study_is_replayed_on_users_whom_it_does_not_know(served):
 def test_a_study_is_not_judged_on_decisions_that_a_later_fit_may_have_read(served, tmp_path, monkeypatch):
     shutil.copy(served / "m.db", tmp_path / "m.db")
     now = time.time()
-    monkeypatch.setattr("lifelore.agent.personalise.fit.fit.time.time", lambda: now + 10)
+    monkeypatch.setattr("lifelore.agent.personalise.fitting.fit.time.time", lambda: now + 10)
     with open_memory(tmp_path / "m.db") as memory:
         fit([served / "log.csv", served / "decisions.csv"], memory, FitSettings(types=2, control=0.4))
         with pytest.raises(InputError, match="was fitted to all users of the log or knows their past"):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.agent.personalise.decisions import choose
-from lifelore.agent.personalise.fit.fit import FitSettings, fit
+from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.log.log import read_log
 from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.past import warm

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.personalise.evaluate.replayed_choices import ReplayedChoices, replayed_choices
-from lifelore.agent.personalise.fit.fit import FitSettings, study_of_log
+from lifelore.agent.personalise.fitting.fit import FitSettings, study_of_log
 from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.agent.personalise.study import Study
 from lifelore.interaction.evaluation.reward_models import RewardModel, policy_means

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.fit.library_from_log import TypedRows, library_of
+from lifelore.agent.personalise.fitting.library_from_log import TypedRows, library_of
 from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics

@@ -17,9 +17,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.fit.held_out import COUNTED, HeldOut, Scores
-from lifelore.agent.personalise.fit.library_from_log import Fitted
-from lifelore.agent.personalise.fit.types_by_context import contexts_differ, priors_by_context
+from lifelore.agent.personalise.fitting.held_out import COUNTED, HeldOut, Scores
+from lifelore.agent.personalise.fitting.library_from_log import Fitted
+from lifelore.agent.personalise.fitting.types_by_context import contexts_differ, priors_by_context
 from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.core.errors import InputError
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from lifelore.agent.personalise.fit.fit import FitSettings, fit
-from lifelore.agent.personalise.fit.held_out import COUNTED, LEAST, MOST_SHOWN, HeldOut
+from lifelore.agent.personalise.fitting.fit import FitSettings, fit
+from lifelore.agent.personalise.fitting.held_out import COUNTED, LEAST, MOST_SHOWN, HeldOut
 from lifelore.agent.personalise.log.log import read_log
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary

@@ -51,7 +51,7 @@ def report(
     out : folder, optional
         Gets ``report.json`` and ``report.png``, and ``calibration.png`` where there is an outcome.
     log : file, optional
-        Gets every decision as CSV: `COLUMNS`, outcomes not yet known left empty; ``available`` is a JSON list
+        Gets every decision as CSV: ``COLUMNS``, outcomes not yet known left empty; ``available`` is a JSON list
         of the policies that were available, empty where all were. Features of the study follow, so that a new
         fit can read them.
     incumbent : str, optional

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.agent.personalise.fit.library_from_log import TypedRows
-from lifelore.agent.personalise.fit.model_choice import LEAST_USERS
+from lifelore.agent.personalise.fitting.library_from_log import TypedRows
+from lifelore.agent.personalise.fitting.model_choice import LEAST_USERS
 from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.agent.personalise.study import Study
 

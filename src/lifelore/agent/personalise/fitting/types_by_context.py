@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.fit.library_from_log import Fitted, TypedRows, library_of
+from lifelore.agent.personalise.fitting.library_from_log import Fitted, TypedRows, library_of
 from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes

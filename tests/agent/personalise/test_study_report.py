@@ -10,8 +10,8 @@ from scipy import stats
 from lifelore.agent.personalise.decision_log import COLUMNS
 from lifelore.agent.personalise.decisions import choose, forget, update
 from lifelore.agent.personalise.explanation import explain
-from lifelore.agent.personalise.fit.fit import FitSettings, fit
-from lifelore.agent.personalise.report import report
+from lifelore.agent.personalise.fitting.fit import FitSettings, fit
+from lifelore.agent.personalise.study_report import report
 from lifelore.agent.personalise.study import Study, open_study
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.figures.reuse_report import draw_reuse_report
@@ -71,7 +71,7 @@ def test_numbers_by_hand(memory, study):
 def test_the_interval_of_many_users_is_students(memory, study, monkeypatch):
     said = lived(memory, study, 20)
     resampled = report(memory, study)["personal"]
-    monkeypatch.setattr("lifelore.agent.personalise.report.MANY", 4)
+    monkeypatch.setattr("lifelore.agent.personalise.study_report.MANY", 4)
     document = report(memory, study)
     means = [np.mean([outcome for _, outcome in rows]) for (_, held), rows in said.items() if not held]
     half = stats.t.ppf(0.975, len(means) - 1) * stats.sem(means)
