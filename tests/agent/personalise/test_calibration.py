@@ -8,8 +8,8 @@ import pytest
 from lifelore.agent.personalise.decisions import choose, update
 from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.past import warm
-from lifelore.agent.personalise.study_report import report
 from lifelore.agent.personalise.study import open_study
+from lifelore.agent.personalise.study_report import report
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.calibration import outcome_calibration, outcome_levels, type_calibration

@@ -10,8 +10,8 @@ from lifelore.agent.personalise.decision_log import COLUMNS, log_parts, write_lo
 from lifelore.agent.personalise.decisions import choose, forget, update
 from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.registration import register
-from lifelore.agent.personalise.study_report import report
 from lifelore.agent.personalise.study import open_study
+from lifelore.agent.personalise.study_report import report
 from lifelore.core.errors import InputError
 
 from .studies import POLICIES, study_of

@@ -13,8 +13,8 @@ from lifelore.agent.personalise.explanation import explain
 from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.past import warm
 from lifelore.agent.personalise.registration import register
-from lifelore.agent.personalise.study_report import report
 from lifelore.agent.personalise.study import open_study, study_names
+from lifelore.agent.personalise.study_report import report
 from lifelore.core.errors import InputError, StoreError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.memory import open_memory

@@ -11,8 +11,8 @@ from lifelore.agent.personalise.decision_log import COLUMNS
 from lifelore.agent.personalise.decisions import choose, forget, update
 from lifelore.agent.personalise.explanation import explain
 from lifelore.agent.personalise.fitting.fit import FitSettings, fit
-from lifelore.agent.personalise.study_report import report
 from lifelore.agent.personalise.study import Study, open_study
+from lifelore.agent.personalise.study_report import report
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.figures.reuse_report import draw_reuse_report
 from lifelore.interaction.library.policy_library import PolicyLibrary

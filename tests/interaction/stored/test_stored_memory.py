@@ -5,8 +5,8 @@ import shutil
 import pytest
 
 from lifelore.agent.personalise.decisions import choose, update
-from lifelore.agent.personalise.study_report import report
 from lifelore.agent.personalise.study import open_study
+from lifelore.agent.personalise.study_report import report
 from lifelore.memory import open_memory
 
 from .test_stored import assert_same, expected

@@ -14,8 +14,8 @@ from lifelore.agent.personalise.evaluate.evaluate import EvaluateSettings, evalu
 from lifelore.agent.personalise.evaluate.logged_decisions import read_decisions
 from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.log.log_format import LogFormat
-from lifelore.agent.personalise.study_report import report
 from lifelore.agent.personalise.study import open_study
+from lifelore.agent.personalise.study_report import report
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.evaluation.reward_models import user_folds
 from lifelore.memory import open_memory

@@ -9,8 +9,8 @@ from lifelore.agent.personalise.decisions import choose, update
 from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.log.log_format import LogFormat, parse_features
 from lifelore.agent.personalise.past import warm
-from lifelore.agent.personalise.study_report import report
 from lifelore.agent.personalise.study import open_study
+from lifelore.agent.personalise.study_report import report
 from lifelore.core.errors import InputError, NotFoundError
 
 FORM = LogFormat(features=("age", "visits"))
