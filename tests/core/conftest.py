@@ -52,8 +52,9 @@ def naive_q_learning(tables, rows, schedule, world_state, own_state) -> dict:
             row, context = rows.q_row[state], rows.context_row[state, reward_class]
             action = _naive_choice(q[row], rows.explore_cum[context], rows.tie_weight[context], epsilon, own)
             outcome = 0
-            if len(tables.outcome_cum) > 1:
-                outcome = int(np.searchsorted(tables.outcome_cum, world.uniform(), side="right"))
+            if tables.n_outcomes > 1:
+                own_cum = tables.by_pair.outcome_cum[state, action]
+                outcome = int(np.searchsorted(own_cum, world.uniform(), side="right"))
             reward = float(tables.reward[state, action, outcome])
             event = int(tables.event[state, action, outcome])
             following = int(tables.next_state[state, action, outcome])

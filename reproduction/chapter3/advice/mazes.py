@@ -128,8 +128,7 @@ def expert_walk(world: GridWorld, found: Errand, start: int, random: np.random.G
 
 def thesis_advisor(purposes: Sequence[GoalModel], kappa: float = KAPPA) -> Advisor:
     """M₁ pooled over all goals, M₂ uniform."""
-    pooled = replace(GoalModel.pooled(purposes), advised_alpha0=purposes[0].advised_alpha0)
-    return Advisor([pooled], None, AdviceSettings(kappa, WINDOW))
+    return Advisor([GoalModel.pooled(purposes)], None, AdviceSettings(kappa, WINDOW))
 
 
 def policy_of(world: GridWorld, agent: str, found: Errand) -> NDArray[np.float64]:

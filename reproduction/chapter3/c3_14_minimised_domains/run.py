@@ -96,7 +96,7 @@ def learn_within(task: Solved, pairs: Pairs, schedule: Schedule, purpose: str) -
 
 def best_returns(task: Solved, n_episodes: int) -> NDArray[np.float64]:
     """The optimal return from where each episode starts; worlds of one outcome draw nothing but starts."""
-    if task.tables.outcome_cum.size > 1:
+    if task.tables.n_outcomes > 1:
         return np.full(n_episodes, task.q[task.tables.starts].max(axis=1).mean())
     return task.q[drawn_starts(task.tables, (*task.stream, "learn"), n_episodes)].max(axis=1)
 

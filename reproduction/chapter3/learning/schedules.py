@@ -2,8 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import Schedule
 
@@ -20,10 +18,7 @@ def schedule_of(settings: Mapping, epsilon: Epsilon) -> Schedule:
 
     The learning rate belongs to geometric schedules; the printed schedule has its own.
     """
-    n = settings["episodes"]
-    own = (FIRST, 1.0, FIRST) if isinstance(epsilon, str) else epsilon
-    schedule = QLearning(n, settings["max_steps"], settings["learning_rate"], *own).schedule(settings["discount"])
-    if not isinstance(epsilon, str):
-        return schedule
-    left = FIRST * (1 - np.arange(n) / n)
-    return schedule._replace(epsilon=left, alpha=left)
+    n, max_steps = settings["episodes"], settings["max_steps"]
+    if isinstance(epsilon, str):
+        return QLearning(n, max_steps, FIRST, FIRST, annealed=True).schedule(settings["discount"])
+    return QLearning(n, max_steps, settings["learning_rate"], *epsilon).schedule(settings["discount"])

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from lifelore.action.features.feature_function import StateFeatures as StateFeatures
     from lifelore.action.features.feature_function import TaskFeature as TaskFeature
     from lifelore.action.features.feature_function import context_codes as context_codes
+    from lifelore.action.features.feature_rows import feature_rows as feature_rows
     from lifelore.action.features.feature_selection import OnlineFeatureSelection as OnlineFeatureSelection
     from lifelore.action.features.feature_selection import best_feature_set as best_feature_set
     from lifelore.action.features.feature_selection import independent_features as independent_features
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
     from lifelore.action.search.domain_reduction import MinimisedDomain as MinimisedDomain
     from lifelore.action.search.domain_reduction import domain_futile_actions as domain_futile_actions
     from lifelore.action.search.domain_reduction import domain_futile_states as domain_futile_states
+    from lifelore.action.search.domain_reduction import futile_goal_probability as futile_goal_probability
     from lifelore.action.search.domain_reduction import minimised_domain as minimised_domain
     from lifelore.action.search.domain_reduction import reachable_states as reachable_states
 
@@ -68,6 +70,8 @@ _HOME = {
     "count_demonstrations": ".demonstrations.demonstrations",
     "domain_futile_actions": ".search.domain_reduction",
     "domain_futile_states": ".search.domain_reduction",
+    "feature_rows": ".features.feature_rows",
+    "futile_goal_probability": ".search.domain_reduction",
     "independent_features": ".features.feature_selection",
     "load_prior": ".priors.prior_file",
     "minimised_domain": ".search.domain_reduction",

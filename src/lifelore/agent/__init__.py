@@ -28,10 +28,10 @@ if TYPE_CHECKING:
     from lifelore.agent.perceive.perceive import PerceiveSettings as PerceiveSettings
 
 _HOME = {
-    "L2Log": ".live.output.l2_log",
     "AgentTask": ".long_lived.task_family",
     "BatchContexts": ".external_world.stored_prior",
     "GymnasiumWorld": ".external_world.gymnasium_world",
+    "L2Log": ".live.output.l2_log",
     "LifeSettings": ".live.life_settings",
     "LongLivedAgent": ".any_tasks.long_lived_agent",
     "PerceiveSettings": ".perceive.perceive",

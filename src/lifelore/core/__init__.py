@@ -32,7 +32,9 @@ if TYPE_CHECKING:
     from lifelore.core.planning.planning import greedy_policy as greedy_policy
     from lifelore.core.planning.planning import learnt_best_actions as learnt_best_actions
     from lifelore.core.planning.planning import mean_start_value as mean_start_value
+    from lifelore.core.planning.planning import optimal_actions as optimal_actions
     from lifelore.core.planning.planning import optimal_q as optimal_q
+    from lifelore.core.planning.planning import policy_values as policy_values
     from lifelore.core.protocols import Policy as Policy
     from lifelore.core.protocols import Record as Record
     from lifelore.core.protocols import SignalModel as SignalModel
@@ -41,8 +43,6 @@ if TYPE_CHECKING:
     from lifelore.core.streams import stream as stream
 
 _HOME = {
-    "TERMINAL": ".mdp",
-    "NOTHING": ".mdp",
     "COLLISION": ".mdp",
     "CloudOrigin": ".cloud_origin",
     "Domain": ".mdp",
@@ -50,6 +50,7 @@ _HOME = {
     "LabelledCloud": ".labelled_cloud",
     "LifeloreError": ".errors",
     "MissingExtraError": ".errors",
+    "NOTHING": ".mdp",
     "NotFoundError": ".errors",
     "PairLabel": ".relations",
     "Policy": ".protocols",
@@ -57,6 +58,7 @@ _HOME = {
     "Record": ".protocols",
     "SignalModel": ".protocols",
     "StoreError": ".errors",
+    "TERMINAL": ".mdp",
     "Tables": ".mdp",
     "Task": ".mdp",
     "World": ".protocols",
@@ -69,7 +71,9 @@ _HOME = {
     "lifetime_transfer": ".learning.transfer",
     "mean_estimate": ".metrics",
     "mean_start_value": ".planning.planning",
+    "optimal_actions": ".planning.planning",
     "optimal_q": ".planning.planning",
+    "policy_values": ".planning.planning",
     "stream": ".streams",
 }
 

@@ -7,10 +7,10 @@ tables that every kernel and the exact solver read, and the Gymnasium environmen
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 
@@ -29,8 +29,8 @@ class Tables(NamedTuple):
     reward : (n_states, n_actions, n_outcomes) float64
     event : (n_states, n_actions, n_outcomes) uint8
         Bits ``TERMINAL`` (1: the episode ends) and ``COLLISION`` (2: the world refused the move).
-    outcome_cum : (n_outcomes,) float64
-        Cumulative probabilities of the outcomes; the last is 1.
+    outcome_cum : (n_outcomes,) or (n_states, n_actions, n_outcomes) float64
+        Cumulative probabilities of the outcomes; the last is 1. One row may serve all states and actions.
     starts : (n_starts,) int32
         An episode starts in one of these states, drawn uniformly.
     """
@@ -50,6 +50,59 @@ class Tables(NamedTuple):
     def n_actions(self) -> int:
         """Number of actions."""
         return self.next_state.shape[1]
+
+    @property
+    def n_outcomes(self) -> int:
+        """Number of outcomes of a move; 1 where the task is deterministic."""
+        return self.outcome_cum.shape[-1]
+
+    @property
+    def by_pair(self) -> "Tables":
+        """The same task with ``outcome_cum`` by state and action, without a copy."""
+        return self._replace(outcome_cum=np.broadcast_to(self.outcome_cum, self.next_state.shape))
+
+    @classmethod
+    def from_matrices(cls, transitions: Any, rewards: Any, terminal: ArrayLike = (), starts: Any = None) -> "Tables":
+        """The tables of an MDP that is given as T(s, a, s') and R.
+
+        Memory and time grow with n_states · n_actions · the largest number of next states of a move.
+
+        Parameters
+        ----------
+        transitions : (n_states, n_actions, n_states) float; list of sparse matrices; or dictionaries
+            Probabilities T(s, a, s'). Sparse: one (n_states, n_states) matrix an action. Dictionaries:
+            ``{state: {action: {next state: probability}}}``, all numbered from 0.
+        rewards : (n_states, n_actions, n_states), (n_states, n_actions) or (n_states,) float
+            Reward of a move, of an action in a state, or of entering a state. Sparse matrices and dictionaries in
+            the forms of `transitions` are rewards of moves, 0 where they have no entry.
+        terminal : (n,) int or (n_states,) bool
+            States that end the episode when they are entered; their own rows are not read.
+        starts : (n_starts,) int or (n_states,) bool, optional
+            By default every state that is not terminal.
+
+        Raises
+        ------
+        InputError
+            A shape is wrong; a row of probabilities does not sum to 1 to 1e-9; a reward that is read is not
+            finite; a start is terminal, or there is none.
+
+        Examples
+        --------
+        >>> tables = Tables.from_matrices([[[0.5, 0.5], [1, 0]], [[0, 0], [0, 0]]], [0, 10.0], terminal=[1])
+        >>> tables.next_state[0].tolist(), tables.reward[0].tolist(), tables.outcome_cum[0].tolist()
+        ([[0, 1], [0, 0]], [[0.0, 10.0], [0.0, 0.0]], [[0.5, 1.0], [1.0, 1.0]])
+        """
+        from lifelore.core.matrices import checked_states, outcomes_of
+
+        outcomes, ended = outcomes_of(transitions, rewards, terminal)
+        begin = np.flatnonzero(~ended) if starts is None else checked_states(starts, len(ended), "starts")
+        if not begin.size or ended[begin].any():
+            raise InputError(
+                f"starts must name at least one state, none of them terminal, got {begin[ended[begin]].tolist()} "
+                "that are terminal" if begin.size else "starts must name at least one state, got none"
+            )
+        event = np.where(ended[outcomes.following], TERMINAL, NOTHING).astype(np.uint8)
+        return cls(outcomes.following, outcomes.reward, event, outcomes.cumulative, begin.astype(np.int32))
 
 
 @dataclass(frozen=True)

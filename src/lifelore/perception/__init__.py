@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from lifelore.perception.trees.tree_training import TreeSettings as TreeSettings
 
 _HOME = {
-    "TreeSettings": ".trees.tree_training",
     "CameraIntrinsics": ".clouds.camera_intrinsics",
     "ContactPointNetwork": ".contacts.contact_network",
     "ContactSettings": ".contacts.contact_settings",
@@ -34,6 +33,7 @@ _HOME = {
     "PointCloud": ".clouds.point_cloud",
     "RelationClassifier": ".relations.relation_classifier",
     "Scene": ".scene",
+    "TreeSettings": ".trees.tree_training",
     "contact_networks": ".contacts.pair_networks",
     "perceived_scene": ".scene_perception",
     "read_cloud": ".clouds.cloud_file",

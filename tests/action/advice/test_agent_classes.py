@@ -69,9 +69,9 @@ def test_advised_steps_do_not_confirm_a_class(models):
     assert known.probs(agent) == {"staff": 0.5, "visitor": 0.5}
 
 
-def test_one_class_is_the_thesis(models):
+def test_one_class_is_one_prior_over_all_goals(models):
     every = [*models["staff"], *models["visitor"]]
-    ours, thesis = pooled_classes({"anyone": every}, PLAIN).advisor, Advisor.of_thesis(every, PLAIN)
+    ours, thesis = pooled_classes({"anyone": every}, PLAIN).advisor, Advisor([GoalModel.pooled(every)], None, PLAIN)
     steps = np.random.default_rng(0).integers(0, 2, (2, 60))
     for found, wanted in zip(ours.assess(*steps), thesis.assess(*steps), strict=True):
         assert np.array_equal(found, wanted)

@@ -1,5 +1,7 @@
 """Experts' ways to goals: counts, steps to go, and ways extend_goal_models together."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -47,6 +49,11 @@ def test_pooled_is_the_sum():
     assert both.goals == ()
     assert both.theta[:3].tolist() == [[0, 0], [0.5, 0.5], [1, 0]]
     assert np.isfinite(both.steps).tolist() == [False, True, True, False, False]
+    smooth = [replace(model, advised_alpha0=0.5) for model in (east, west)]
+    assert GoalModel.pooled(smooth).theta[1].tolist() == [0.5, 0.5]
+    assert GoalModel.pooled(smooth).theta[2].tolist() == [0.75, 0.25]
+    with pytest.raises(InputError, match=r"goal_models must share advised_alpha0, got \[0.0, 0.5\]"):
+        GoalModel.pooled([smooth[0], west])
 
 
 def test_stitched_leads_on_over_others_ways_and_no_farther():

@@ -429,3 +429,50 @@ def test_own_labels_stand_in_tables_and_merge():
     prior.merge(other)
     assert prior.to_columns()["label"].tolist() == ["('free', 1)"] * 2 + ["('wall', 0)"] * 2
     assert prior.to_columns({8: "eight"})["label"].tolist() == ["7", "7", "eight", "eight"]
+
+
+# ---- what may be counted -----------------------------------------------------------------------------
+
+
+def test_what_is_not_boolean_is_refused_and_a_policy_counts_its_largest():
+    prior = ActionPrior(3)
+    for wrong in ([[0.2, 0.5, 0.3]], [[0, 1, 0]], [[1.5, 2.0, -1.0]]):
+        with pytest.raises(InputError, match="best must be boolean.*give probabilities to update_policy"):
+            prior.update([4], wrong)
+    # Eq. 3.5 counts w(π) for each largest probability, whatever it is; a row of zeros is no policy.
+    prior.update_policy([4, 4, 5], [[0.2, 0.5, 0.3], [0.4, 0.2, 0.4], [0.0, 0.0, 0.0]], weight=2.0)
+    assert prior.counts([4, 5]).tolist() == [[2.0, 2.0, 2.0], [0.0, 0.0, 0.0]]
+    assert prior.contexts.tolist() == [4]
+    for wrong in ([[0.2, 0.5, 0.2]], [[1.2, -0.2, 0.0]], [0.2, 0.5, 0.3]):
+        with pytest.raises(InputError, match="policy must hold probabilities"):
+            prior.update_policy([4], wrong)
+    with pytest.raises(InputError, match="contexts must be whole numbers.*float64"):
+        prior.update([0.5], [[True, False, False]])
+    with pytest.raises(InputError, match="contexts must be whole numbers"):
+        prior.probs(["door"])
+
+
+def test_pseudo_counts_by_context_and_action():
+    # Eq. 3.4: α_s(a) = Σ w U + α⁰_s(a), here α⁰ = (1, 2) in context 4 and (3, 1) in context 5.
+    table = {4: [1.0, 2.0], 5: [3.0, 1.0]}
+    prior = ActionPrior(2, alpha0=lambda contexts: [table[code] for code in contexts.tolist()])
+    prior.update([4], [[True, False]], weight=3.0)
+    assert prior.probs([4, 5])[0] == pytest.approx([4 / 6, 2 / 6])
+    assert prior.probs([4, 5])[1] == pytest.approx([3 / 4, 1 / 4])
+    many = prior.sample(np.tile([4, 5], 20_000), stream(0))
+    assert many[::2].mean() == pytest.approx(1 / 3, abs=4 * np.sqrt(0.25 / 20_000))
+    assert many[1::2].mean() == pytest.approx(1 / 4, abs=4 * np.sqrt(0.25 / 20_000))
+    assert "alpha0=by context" in repr(prior)
+    with pytest.raises(InputError, match="alpha0 must be one number here"):
+        prior.marginalise([0])
+    with pytest.raises(InputError, match=r"alpha0 must give positive numbers of shape \(1, 2\)"):
+        ActionPrior(2, alpha0=lambda contexts: [[1.0, 0.0]]).probs([4])
+
+
+def test_whole_weights_are_exact_and_others_within_the_bound():
+    prior = ActionPrior(1)
+    for weight in (3.0, 123_456.0):
+        prior.update([0], [[True]], weight)
+    assert prior.counts([0]).tolist() == [[123_459.0]]
+    prior.update([1], [[True]], 1 / 3)
+    assert 0 < abs(prior.counts([1])[0, 0] - 1 / 3) <= 5e-7

@@ -319,3 +319,35 @@ def test_many_may_share_generators_drawn_learner_by_learner(draw_world):
     for i in range(3):
         alone, _ = method.learn(tables, 0.9, world=again, own=again)
         assert np.array_equal(learners.q[i], alone.q)
+
+
+def test_annealed_rates_fall_by_equal_steps():
+    plan = QLearning(4, learning_rate=0.5, epsilon=0.8, annealed=True).schedule(0.9)
+    assert plan.epsilon.tolist() == pytest.approx([0.8, 0.6, 0.4, 0.2])
+    assert plan.alpha.tolist() == pytest.approx([0.5, 0.375, 0.25, 0.125])
+
+
+def test_a_seed_stands_for_its_two_streams(draw_world):
+    tables, plan = draw_world(4, n_outcomes=3), QLearning(30, max_steps=20)
+    seeded, curve = plan.learn(tables, 0.9, seed=5)
+    given_, other = plan.learn(tables, 0.9, world=stream(5, "world"), own=stream(5, "learner"))
+    assert np.array_equal(seeded.q, given_.q)
+    assert np.array_equal(curve.returns, other.returns)
+
+
+def test_probabilities_by_pair_learn_as_the_twin(draw_world, naive_learn):
+    tables = draw_world(3, n_outcomes=4)
+    own = np.random.default_rng(0).dirichlet(np.ones(4), tables.next_state.shape[:2]).cumsum(axis=2)
+    own[..., -1] = 1.0
+    tables = tables._replace(outcome_cum=own)
+    rows, plan = uniform_rows(tables), schedule(40)
+    who, curve = learnt(tables, rows, plan)
+    fresh = learner(rows)
+    twin = naive_learn(tables, rows, plan, fresh.world_random, fresh.own_random)
+    assert agree(twin, who, curve)
+    shared = draw_world(3, n_outcomes=4)
+    assert agree_arrays(learnt(shared, rows, plan)[0], learnt(shared.by_pair, rows, plan)[0])
+
+
+def agree_arrays(one, other) -> bool:
+    return all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))

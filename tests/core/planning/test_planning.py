@@ -11,6 +11,7 @@ from lifelore.core.planning.planning import (
     greedy_policy,
     learnt_best_actions,
     mean_start_value,
+    optimal_actions,
     optimal_q,
     policy_values,
 )
@@ -116,3 +117,20 @@ def test_no_policy_where_nothing_is_promised():
 
 def test_mean_over_the_starts():
     assert mean_start_value(ring(), np.array([1.0, 50.0, 4.0, 50.0])) == 2.5
+
+
+def test_learnt_costs_teach_and_nothing_learnt_does_not():
+    q = np.array([[-3.0, -2.5, -4.0], [-3.0, 0.0, -4.0], [0.0, 0.0, 0.0], [2.0, -1.0, 0.0]])
+    best = [[False, True, False], [False] * 3, [False] * 3, [True, False, False]]
+    assert learnt_best_actions(q).tolist() == best
+
+
+def test_optimal_actions_leave_out_where_no_episode_acts():
+    # 0 → 1 → 2 (the goal; bumping there leads back to it); 3 leads to 0 and is never entered.
+    next_state = np.array([[1, 0], [2, 0], [2, 2], [0, 0]], np.int32)[:, :, None]
+    event = np.zeros(next_state.shape, np.uint8)
+    event[1, 0] = TERMINAL
+    tables = Tables(next_state, event.astype(float), event, np.ones(1), np.zeros(1, np.int32))
+    assert optimal_actions(tables, 0.9).tolist() == [[True, False], [True, False], [False] * 2, [False] * 2]
+    everywhere = tables._replace(starts=np.array([0, 3], np.int32))
+    assert optimal_actions(everywhere, 0.9)[3].tolist() == [True, True]

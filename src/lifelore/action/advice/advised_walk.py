@@ -102,7 +102,7 @@ def _cumulative_policy(policy: ArrayLike, tables: Tables, advisor: Advisor) -> N
     """Cumulative probabilities of the policy, (n_states, 1 or n_actions + 1, n_actions); checks all shapes."""
     policy = np.asarray(policy, np.float64)
     shape = (tables.n_states, tables.n_actions)
-    if tables.outcome_cum.size != 1:
+    if tables.n_outcomes != 1:
         raise InputError("tables must be deterministic, with one outcome for each action")
     if (advisor.n_states, advisor.n_actions) != shape or (policy.shape[0], policy.shape[-1]) != shape:
         raise InputError(

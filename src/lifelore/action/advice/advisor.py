@@ -8,7 +8,7 @@ share of advised steps, and saves them up so that it can advise a whole path. Th
 
 from collections.abc import Sequence
 from copy import copy
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -154,8 +154,9 @@ class Advisor:
 
     @classmethod
     def of_thesis(cls, goal_models: Sequence[GoalModel], settings: AdviceSettings | None = None) -> "Advisor":
-        """M₁ from all experts pooled, M₂ uniform (§3.7.1.2)."""
-        return cls([GoalModel.pooled(goal_models)], None, settings)
+        """Condition 3.16 as printed: one θ over all goals, with its α⁰, is advised and is M₁; M₂ is uniform."""
+        pooled = GoalModel.pooled(goal_models)
+        return cls([replace(pooled, advised_alpha0=pooled.prior.uniform_alpha0)], None, settings)
 
     def with_goal_weights(self, goal_weights: ArrayLike) -> "Advisor":
         """An advisor that finds other goals likely beforehand and shares this one's tables.

@@ -91,8 +91,8 @@ class GoalModel:
 
         `steps` (n_states,) defaults to 0 in states with counts, which makes all goals equally far.
         """
-        best = np.asarray(best, bool)
-        prior = ActionPrior(best.shape[1], alpha0)
+        best = np.asarray(best)
+        prior = ActionPrior(best.shape[-1], alpha0)
         prior.update(np.arange(len(best)), best)
         shown = best.any(axis=1)
         far = np.zeros(len(best)) if steps is None else np.asarray(steps, np.float64)
@@ -100,10 +100,19 @@ class GoalModel:
 
     @classmethod
     def pooled(cls, goal_models: Sequence["GoalModel"]) -> "GoalModel":
-        """The thesis's model: one prior over all goals, without a goal of its own."""
+        """The thesis's model: one prior over all goals, without a goal of its own.
+
+        Raises
+        ------
+        InputError
+            The models differ in ``advised_alpha0``, or there is none.
+        """
+        advised = {model.advised_alpha0 for model in goal_models}
+        if len(advised) != 1:
+            raise InputError(f"goal_models must share advised_alpha0, got {sorted(advised)}")
         shown = np.any([np.isfinite(model.steps) for model in goal_models], axis=0)
         prior = ActionPrior.merged(model.prior for model in goal_models)
-        return cls((), prior, np.where(shown, 0.0, np.inf))
+        return cls((), prior, np.where(shown, 0.0, np.inf), advised.pop())
 
 
 def extend_goal_models(goal_models: Sequence[GoalModel], moves: ArrayLike) -> list[GoalModel]:

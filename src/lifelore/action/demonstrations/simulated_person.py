@@ -52,13 +52,13 @@ def simulated_demonstration(
     """
     if most_steps < 1:
         raise InputError(f"most_steps must be at least 1, got {most_steps}")
-    cum = np.cumsum(person_policy(best, skill), axis=1)
+    cum, outcome_cum = np.cumsum(person_policy(best, skill), axis=1), tables.by_pair.outcome_cum
     state = int(generator.choice(tables.starts)) if start is None else int(start)
     states, actions = [], []
     for _ in range(most_steps):
         choice, outcome = generator.random(2)
         action = int((choice * cum[state, -1] >= cum[state, :-1]).sum())
-        k = int((outcome >= tables.outcome_cum[:-1]).sum())
+        k = int((outcome >= outcome_cum[state, action, :-1]).sum())
         states.append(state)
         actions.append(action)
         if tables.event[state, action, k] & TERMINAL:

@@ -6,7 +6,7 @@ Counts are stored by context code, only for contexts with counts. Weights are fi
 stored separately, so that priors of many robots merge exactly in any order. Thesis: §3.2.2, §3.3, Eq. 3.1-3.8.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -16,13 +16,14 @@ from lifelore.action.priors.context_index import FEW, ContextIndex
 from lifelore.action.priors.count_rows import SEQUENTIAL, draw_by_proportion, merged_rows, rising, sorted_order
 from lifelore.core.errors import InputError, MissingExtraError, NotFoundError
 from lifelore.core.metrics import entropy
+from lifelore.core.planning.planning import best_actions
 from lifelore.core.protocols import Record
 
 MOST_WEIGHT = 1e6
 """Largest w(π); the counts of 2**23 such policies fit a 64-bit integer."""
 KIND, VERSION = "action_prior", 1
 ONE = 1 << 20
-"""A weight of 1 as a fixed-point integer; weights have six decimal digits and add without rounding."""
+"""A weight of 1 as a fixed-point integer. Whole weights are exact, others wrong by at most 5e-7; sums are exact."""
 
 BLOCK = 1 << 13
 """Rows sampled at a time; larger blocks do not fit the processor's cache and take longer."""
@@ -34,6 +35,9 @@ FORMS = ("proportion", "dirichlet", "softmax", "support", "tempered")
 """Forms of probabilities from counts (§3.2.2.1): their proportion (the mean of the Dirichlet), one draw from the
 Dirichlet, a softmax of the counts, uniform over actions with counts, or the proportion to a power."""
 
+PseudoCounts = float | Callable[[NDArray[np.int64]], ArrayLike]
+"""α⁰ as one number, or as a function of (n,) context codes that gives (n, n_actions) numbers."""
+
 
 class ActionPrior:
     """Counts of useful actions by context.
@@ -42,8 +46,9 @@ class ActionPrior:
     ----------
     n_actions : int
         At least 1.
-    alpha0 : float
-        Pseudo-count α⁰ of every action in every context, > 0; the weight of the uniform policy π₀.
+    alpha0 : float or callable
+        Pseudo-count α⁰ of every action in every context, > 0; the weight of the uniform policy π₀. Or a function
+        of (n,) contexts that gives α⁰_c(a), (n, n_actions), all > 0 (Eq. 3.4).
     key : str
         Meaning of the contexts, usually a hash of their definition and the actions. Priors of different keys
         do not merge.
@@ -69,12 +74,12 @@ class ActionPrior:
     <ActionPrior: 2 actions, 1 contexts, 3 counts, alpha0=0.5>
     """
 
-    def __init__(self, n_actions: int, alpha0: float = 0.1, key: str = "") -> None:
+    def __init__(self, n_actions: int, alpha0: PseudoCounts = 0.1, key: str = "") -> None:
         if n_actions < 1:
             raise InputError(f"n_actions must be at least 1, got {n_actions}")
-        if not (alpha0 > 0 and np.isfinite(alpha0)):
+        if not (callable(alpha0) or (alpha0 > 0 and np.isfinite(alpha0))):
             raise InputError(f"alpha0 must be positive and finite, got {alpha0}")
-        self.n_actions, self.alpha0, self.key = n_actions, float(alpha0), key
+        self.n_actions, self.alpha0, self.key = n_actions, alpha0 if callable(alpha0) else float(alpha0), key
         self.labels: Mapping[int, Any] = {}
         self._index = ContextIndex(np.empty(0, np.int64))
         self._counts = np.empty((0, n_actions), np.int64)
@@ -89,12 +94,26 @@ class ActionPrior:
     def __repr__(self) -> str:
         key = f", key='{self.key}'" if self.key else ""
         size = f"{len(self)} contexts, {self._counts.sum(dtype=float) / ONE:g} counts"
-        return f"<ActionPrior: {self.n_actions} actions, {size}, alpha0={self.alpha0:g}{key}>"
+        alpha0 = "by context" if callable(self.alpha0) else f"{self.alpha0:g}"
+        return f"<ActionPrior: {self.n_actions} actions, {size}, alpha0={alpha0}{key}>"
 
     @property
     def contexts(self) -> NDArray[np.int64]:
         """The (n,) sorted codes of contexts with counts."""
         return self._codes.copy()
+
+    @property
+    def uniform_alpha0(self) -> float:
+        """α⁰ as one number.
+
+        Raises
+        ------
+        InputError
+            It is a function of the context.
+        """
+        if callable(self.alpha0):
+            raise InputError("alpha0 must be one number here, got a function of the context")
+        return self.alpha0
 
     # ---- learning --------------------------------------------------------------------------------
 
@@ -109,9 +128,21 @@ class ActionPrior:
             Best or tied-best actions of each state; rows without any are not counted. Leave out, or pass as all
             False: goal rows (where every action ties), completed rows, and states without a learnt policy.
         weight : float, (n,) or (n, n_actions) float
-            w(π) in [0, `MOST_WEIGHT`], of all rows, of each, or of each action; rounded to six decimal digits.
+            w(π) in [0, `MOST_WEIGHT`], of all rows, of each, or of each action. Whole weights are exact; others
+            are rounded to a multiple of 2⁻²⁰, by at most 5e-7.
+
+        Raises
+        ------
+        InputError
+            `best` is not boolean (π(s, ·) is for `update_policy`), a shape is wrong, or a number out of range.
         """
-        contexts, best = np.asarray(contexts, np.int64).ravel(), np.asarray(best, bool)
+        contexts, best = _whole(contexts), np.asarray(best)
+        if best.dtype != bool and best.size:
+            raise InputError(
+                f"best must be boolean, True where an action is best or tied best, got {best.dtype}: "
+                "give probabilities to update_policy, and values Q to best_actions"
+            )
+        best = best.astype(bool, copy=False)
         weights = np.asarray(weight, np.float64)
         if best.shape != (len(contexts), self.n_actions):
             raise InputError(
@@ -136,6 +167,38 @@ class ActionPrior:
             contexts, best = contexts[counted], best[counted]
         if fixed_point.ndim or fixed_point:
             self._add(contexts, best, 1 if fixed_point.ndim else int(fixed_point))
+
+    def update_policy(self, contexts: ArrayLike, policy: ArrayLike, weight: ArrayLike = 1.0) -> None:
+        """Count the actions of the largest probability π(s, a) in each row, ties included (Eq. 3.5).
+
+        Parameters
+        ----------
+        contexts : (n,) int
+        policy : (n, n_actions) float
+            Rows sum to 1, or are all 0 where the policy takes no action, such as at the goal.
+        weight : float, (n,) or (n, n_actions) float
+            As for `update`: the thesis counts w(π), not the probability.
+
+        Raises
+        ------
+        InputError
+            A row is no probabilities; as for `update`.
+
+        Examples
+        --------
+        >>> prior = ActionPrior(3)
+        >>> prior.update_policy([7], [[0.2, 0.5, 0.3]])
+        >>> prior.counts([7]).tolist()
+        [[0.0, 1.0, 0.0]]
+        """
+        given = np.asarray(policy, np.float64)
+        total = given.sum(axis=-1)
+        if given.ndim != 2 or not (given >= 0).all() or not ((np.abs(total - 1) <= 1e-6) | (total == 0)).all():
+            raise InputError(
+                "policy must hold probabilities (n, n_actions), at least 0, in rows that sum to 1 or are all 0; "
+                f"got shape {given.shape}, rows from {total.min(initial=np.inf):g} to {total.max(initial=0):g}"
+            )
+        self.update(contexts, best_actions(given) & (given > 0), weight)
 
     def update_trajectory(self, contexts: ArrayLike, actions: ArrayLike, weight: float = 1.0) -> None:
         """Count the actions of a trajectory or demonstration, each visit once (§3.4.8)."""
@@ -177,7 +240,7 @@ class ActionPrior:
 
     def counts(self, contexts: ArrayLike) -> NDArray[np.float64]:
         """Weighted counts Σ w U without α⁰, (n, n_actions); zeros for contexts without counts."""
-        return self._counts_at(self._index.places(np.asarray(contexts, np.int64).ravel()))
+        return self._counts_at(self._index.places(_whole(contexts)))
 
     def _counts_at(self, place: NDArray[np.int64]) -> NDArray[np.float64]:
         if not len(self):
@@ -213,12 +276,25 @@ class ActionPrior:
         escape : float
             Probability in [0, 1] that ``support`` spreads over all actions, so that it excludes no action.
         """
-        return self._probs_of(self.counts(contexts), form, generator, beta, escape)
+        contexts = _whole(contexts)
+        return self._probs_of(contexts, self._index.places(contexts), form, generator, beta, escape)
 
-    def _probs_of(self, counts, form, generator=None, beta=1.0, escape=0.02) -> NDArray[np.float64]:
+    def _alpha0_of(self, contexts: NDArray[np.int64]) -> float | NDArray[np.float64]:
+        if not callable(self.alpha0):
+            return self.alpha0
+        rows = np.asarray(self.alpha0(contexts), np.float64)
+        if rows.shape != (len(contexts), self.n_actions) or not ((rows > 0) & np.isfinite(rows)).all():
+            raise InputError(
+                f"alpha0 must give positive numbers of shape ({len(contexts)}, {self.n_actions}) for as many "
+                f"contexts, got shape {rows.shape}"
+            )
+        return rows
+
+    def _probs_of(self, contexts, place, form, generator=None, beta=1.0, escape=0.02) -> NDArray[np.float64]:
         if not (beta >= 0 and np.isfinite(beta)):
             raise InputError(f"beta must be finite and at least 0, got {beta}")
-        alpha = counts + self.alpha0
+        counts = self._counts_at(place)
+        alpha = counts + self._alpha0_of(contexts)
         match form:
             case "proportion":
                 mass = alpha
@@ -248,25 +324,26 @@ class ActionPrior:
         self, contexts: ArrayLike, generator: np.random.Generator, form: str = "proportion", **form_settings: float
     ) -> NDArray[np.int64]:
         """One action for each context, (n,) int64, drawn from `probs`."""
-        contexts = np.asarray(contexts, np.int64).ravel()
-        if form == "proportion" and not form_settings and len(contexts) >= FEW and self.n_actions <= SEQUENTIAL:
+        contexts = _whole(contexts)
+        plain = form == "proportion" and not form_settings and not callable(self.alpha0)
+        if plain and len(contexts) >= FEW and self.n_actions <= SEQUENTIAL:
             return self._sample_many(contexts, generator.random(len(contexts)))
         place = self._index.places(contexts)
         if form == "dirichlet":
-            probs = self._probs_of(self._counts_at(place), form, generator, **form_settings)
+            probs = self._probs_of(contexts, place, form, generator, **form_settings)
             return _drawn(probs, generator.random(len(place)))
         uniform = generator.random(len(place))
         actions = np.empty(len(place), np.int64)
         for first in range(0, max(1, len(place)), BLOCK):
             rows = slice(first, first + BLOCK)
             actions[rows] = _drawn(
-                self._probs_of(self._counts_at(place[rows]), form, **form_settings), uniform[rows]
+                self._probs_of(contexts[rows], place[rows], form, **form_settings), uniform[rows]
             )
         return actions
 
     def _sample_many(self, contexts: NDArray[np.int64], uniform: NDArray[np.float64]) -> NDArray[np.int64]:
         if len(self) < MANY or rising(contexts):
-            return draw_by_proportion(self._counts, self._index.places(contexts), 1 / ONE, self.alpha0, uniform)
+            return draw_by_proportion(self._counts, self._index.places(contexts), 1 / ONE, self.uniform_alpha0, uniform)
         order, in_order = sorted_order(np.ascontiguousarray(contexts))
         actions = np.empty(len(contexts), np.int64)
         actions[order] = self._sample_many(in_order, uniform[order])
@@ -303,7 +380,7 @@ class ActionPrior:
         coarser = np.asarray(coarser, np.int64).ravel()
         if len(coarser) != len(self):
             raise InputError(f"coarser must have one code for each of {len(self)} contexts, got {len(coarser)}")
-        result = ActionPrior(self.n_actions, self.alpha0, key)
+        result = ActionPrior(self.n_actions, self.uniform_alpha0, key)
         result._add(coarser, self._counts)
         return result
 
@@ -372,7 +449,7 @@ class ActionPrior:
         return Record(KIND, self.key, VERSION, "add", slots, self._counts[context, action], about or {})
 
     @classmethod
-    def from_record(cls, record: Record, n_actions: int, alpha0: float = 0.1) -> "ActionPrior":
+    def from_record(cls, record: Record, n_actions: int, alpha0: PseudoCounts = 0.1) -> "ActionPrior":
         """The prior in a record."""
         if (record.kind, record.version) != (KIND, VERSION):
             raise InputError(f"record must be {KIND} version {VERSION}, got {record.kind} {record.version}")
@@ -391,6 +468,13 @@ class ActionPrior:
         for prior in (first, *rest):
             total.merge(prior)
         return total
+
+
+def _whole(contexts: ArrayLike) -> NDArray[np.int64]:
+    given = np.asarray(contexts).ravel()
+    if given.dtype.kind not in "iub" and given.size:
+        raise InputError(f"contexts must be whole numbers, the codes of contexts, got {given.dtype}")
+    return given.astype(np.int64, copy=False)
 
 
 def _drawn(probs: NDArray[np.float64], uniform: NDArray[np.float64]) -> NDArray[np.int64]:

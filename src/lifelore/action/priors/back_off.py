@@ -35,7 +35,7 @@ def posterior_mean(
     known = prior.contexts
     theta = np.full((len(contexts), prior.n_actions), 1 / prior.n_actions)
     # The coarsest level shrinks towards the uniform distribution with the prior's own pseudo-counts.
-    weight = prior.alpha0 * prior.n_actions
+    weight = prior.uniform_alpha0 * prior.n_actions
     for mask in reversed(coarser):
         counts = prior.marginalise(known & mask).counts(contexts & mask)
         theta = _shrink(counts, theta, weight)

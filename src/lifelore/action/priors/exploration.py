@@ -1,7 +1,9 @@
 """Turns a prior into exploration rows for Q-learning, or into costs of trying moves for a planned search."""
 
+from collections.abc import Callable
+
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import NotFoundError
 from lifelore.core.learning.q_learning import Rows, uniform_rows
@@ -18,26 +20,39 @@ SENSIBLE = 2.0
 """Nats below the best move of a context within which trying a move costs no detour."""
 
 
-def prior_rows(tables: Tables, contexts: NDArray[np.int64], probs_of, ties: str = "uniform") -> Rows:
+def prior_rows(
+    tables: Tables,
+    contexts: ArrayLike,
+    probs_of: Callable[[NDArray[np.int64]], ArrayLike],
+    ties: str = "uniform",
+    reward_class: NDArray[np.integer] | None = None,
+) -> Rows:
     """Rows for ε-QSAP and ε-QPAP (Alg. 2, 4), which explore by `probs_of` and break ties by `ties`.
 
     Parameters
     ----------
     tables : Tables
-    contexts : (n_states,) int
-        The state's own number for a state prior, its percept for an observation prior.
+    contexts : (n_states,) int, or (n_states, n_classes) int
+        The state's own number for a state prior, its percept for an observation prior. With `reward_class`, the
+        context after each class of the last reward; an episode starts with class 0 (`feature_rows`).
     probs_of : callable
         (n,) codes to (n, n_actions) probabilities, e.g. ``prior.probs``.
     ties : {"uniform", "prior"}
         How the greedy step breaks ties between best actions.
+    reward_class : (n_states, n_actions, n_outcomes) int, optional
+        Class of each outcome's reward, below n_classes, at most 256.
     """
     if ties not in TIES:
         raise NotFoundError(f"ties must be one of {', '.join(TIES)}, got '{ties}'")
-    codes, row = np.unique(contexts, return_inverse=True)
+    codes, row = np.unique(np.asarray(contexts), return_inverse=True)
     probs = np.asarray(probs_of(codes))
     # A tied action of weight zero could never be chosen, so forms with exact zeros get a least weight.
     weights = np.maximum(probs, TRACE) if ties == "prior" else np.ones_like(probs)
-    return uniform_rows(tables, probs, weights, row)
+    if reward_class is None:
+        return uniform_rows(tables, probs, weights, row)
+    row = np.ascontiguousarray(row.reshape(np.shape(contexts)), np.int32)
+    rows = uniform_rows(tables, probs, weights, row[:, 0])
+    return rows._replace(context_row=row, reward_class=np.ascontiguousarray(reward_class, np.uint8))
 
 
 def try_costs(probs: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -28,8 +28,8 @@ def actions_to_count(
     q : (n_states, n_actions) float
         Exact or learnt action values.
     over : {"all", "visited"}
-        ``all``: every state, for exact values. ``visited``: only states with a visit and a value above zero, for
-        learnt ones; of their actions only those ever tried.
+        ``all``: every state, for exact values. ``visited``: for learnt ones, only actions tried, and only states
+        whose best tried action no longer has the value 0, from which learning starts.
     ended : (n_states,) bool, optional
         Goals and completed configurations, where the episode is over and every action ties.
     visits : (n_states, n_actions) int
@@ -49,7 +49,7 @@ def actions_to_count(
             raise InputError(f"over 'visited' needs visits of shape {q.shape}, got {tried.shape}")
         known = np.where(tried, q, -np.inf)
         known[~tried.any(axis=1)] = 0.0
-        best = best_actions(known, tolerance, floor=0.0) & tried & (known.max(axis=1, keepdims=True) > 0)
+        best = best_actions(known, tolerance, floor=0.0) & tried & (known.max(axis=1, keepdims=True) != 0)
     else:
         best = best_actions(q, tolerance)
     if ended is not None:

@@ -29,7 +29,7 @@ def save_prior(prior: ActionPrior, path: str | Path, about: Mapping[str, Any] | 
     Raises
     ------
     InputError
-        `about` holds a value that is not JSON.
+        `about` holds a value that is not JSON, or α⁰ is a function of the context.
     StoreError
         The file cannot be written.
     """
@@ -59,7 +59,7 @@ def prior_about(path: str | Path) -> dict[str, Any]:
 
 def prior_bytes(prior: ActionPrior, about: Mapping[str, Any] | None = None) -> bytes:
     """The prior as the bytes of an npz file."""
-    header = {"n_actions": prior.n_actions, "alpha0": prior.alpha0, "key": prior.key, "about": dict(about or {})}
+    header = {"n_actions": prior.n_actions, "alpha0": prior.uniform_alpha0, "key": prior.key, "about": dict(about or {})}
     contexts, counts = prior.fixed_point_counts()
     return FORMAT.pack(header, {"contexts": contexts, "counts": counts})
 

@@ -74,7 +74,7 @@ def depth_first(tables: Tables, start: int, preferred: Preferences) -> DepthFirs
 
 
 def _check(tables: Tables, start: int, preferred: Preferences) -> None:
-    if tables.outcome_cum.size != 1:
+    if tables.n_outcomes != 1:
         raise InputError("depth-first search needs a deterministic world; use tree_search for a random one")
     if not 0 <= start < tables.n_states:
         raise InputError(f"start must lie in [0, {tables.n_states}), got {start}")

@@ -56,7 +56,7 @@ def reachable_states(tables: Tables, best: ArrayLike) -> States:
 
 def task_futile_actions(best: ArrayLike) -> Pairs:
     """Pairs (s, a) that the task's policy does not select (Def. 3.2.1), (n_states, n_actions) bool."""
-    return ~np.asarray(best, bool)
+    return ~_boolean(best)
 
 
 def task_futile_states(tables: Tables, best: ArrayLike) -> States:
@@ -131,7 +131,7 @@ def minimised_domain(
     pairs = kept & states[:, None]
     tables = paired[0][0]
     inside = states[tables.next_state]
-    outcome_probs = np.diff(tables.outcome_cum, prepend=0.0)
+    outcome_probs = np.diff(tables.by_pair.outcome_cum, prepend=0.0)
     # Exactly 1 where every outcome lies in Ŝ, because the sum of the probabilities may round to another number.
     mass = np.where(inside.all(axis=2), 1.0, np.minimum((inside * outcome_probs).sum(axis=2), 1 - 1e-16))
     return MinimisedDomain(form, states, pairs, np.where(pairs, mass, 0.0))
@@ -238,8 +238,18 @@ def _paired(tasks: Sequence[Tables], policies: Sequence[ArrayLike]) -> list[tupl
     return paired
 
 
+def _boolean(best: ArrayLike) -> Pairs:
+    given = np.asarray(best)
+    if given.dtype != bool:
+        raise InputError(
+            f"best must be boolean, True where an action is best or tied best, got {given.dtype}: "
+            "apply best_actions to probabilities π(s, a) or values Q(s, a) first"
+        )
+    return given
+
+
 def _checked(tables: Tables, best: ArrayLike) -> Pairs:
-    best = np.asarray(best, bool)
+    best = _boolean(best)
     if best.shape != (tables.n_states, tables.n_actions):
         raise InputError(f"best must have shape ({tables.n_states}, {tables.n_actions}), got {best.shape}")
     return best

@@ -135,7 +135,7 @@ def search(
         raise InputError(f"state must lie in [0, {tables.n_states}), got {state}")
     tree = _new_tree(tables, settings.simulations)
     settings, random = _plain(settings), random_state(generator)
-    _grow(tables, guide, tree, int(state), settings, random)
+    _grow(tables.by_pair, guide, tree, int(state), settings, random)
     visits, total = tree.visits[0].copy(), tree.total[0]
     means = np.divide(total, visits, out=np.zeros_like(total), where=visits > 0)
     return SearchResult(int(_move(tree, settings.by_mean, random)), visits, means)
@@ -161,7 +161,9 @@ def play(
         raise InputError(f"max_steps must be at least 1, got {max_steps}")
     tree = _new_tree(tables, settings.simulations)
     randoms = random_state(world), random_state(own)
-    steps, reached, gained, bumps = _walk(tables, guide, tree, int(start), _plain(settings), max_steps, *randoms)
+    steps, reached, gained, bumps = _walk(
+        tables.by_pair, guide, tree, int(start), _plain(settings), max_steps, *randoms
+    )
     return EpisodeResult(int(steps), bool(reached), float(gained), int(bumps))
 
 
@@ -187,7 +189,7 @@ def _new_tree(tables: Tables, simulations: int) -> _Tree:
     n_nodes, n_actions = simulations + 1, tables.n_actions
     return _Tree(
         np.zeros(n_nodes, np.int32),
-        np.zeros((n_nodes, n_actions, tables.outcome_cum.size), np.int32),
+        np.zeros((n_nodes, n_actions, tables.n_outcomes), np.int32),
         np.zeros((n_nodes, n_actions), np.int64),
         np.zeros((n_nodes, n_actions)),
     )
@@ -199,7 +201,7 @@ def _walk(tables, guide, tree, state, settings, max_steps, world, own):
     for moved in range(max_steps):
         _grow(tables, guide, tree, state, settings, own)
         action = _move(tree, settings.by_mean, own)
-        k = _outcome(tables.outcome_cum, world)
+        k = _outcome(tables.outcome_cum, state, action, world)
         event = tables.event[state, action, k]
         gained += factor * tables.reward[state, action, k]
         factor *= settings.discount
@@ -238,7 +240,7 @@ def _simulate(tables, guide, tree, settings, random, bounds, nodes, actions, rew
     while n < depth:
         state = states[node]
         action = _promising(visits, total, node, prior, row[state], exploration, bounds, random)
-        k = _outcome(outcome_cum, random)
+        k = _outcome(outcome_cum, state, action, random)
         nodes[n], actions[n], rewards[n] = node, action, reward[state, action, k]
         n += 1
         if event[state, action, k] & TERMINAL:
@@ -294,7 +296,7 @@ def _rollout(tables, guide, state, depth, discount, random):
     """Discounted return of at most `depth` randomly drawn moves."""
     next_state, reward, event, outcome_cum, _ = tables
     _, cum, row = guide
-    last_action, last_outcome = cum.shape[1] - 1, outcome_cum.size - 1
+    last_action, last_outcome = cum.shape[1] - 1, outcome_cum.shape[2] - 1
     gained, factor = 0.0, 1.0
     for _ in range(depth):
         uniform, here, action, k = next_uniform(random), row[state], 0, 0
@@ -302,7 +304,7 @@ def _rollout(tables, guide, state, depth, discount, random):
             action += 1
         if last_outcome > 0:
             uniform = next_uniform(random)
-            while k < last_outcome and uniform >= outcome_cum[k]:
+            while k < last_outcome and uniform >= outcome_cum[state, action, k]:
                 k += 1
         gained += factor * reward[state, action, k]
         if event[state, action, k] & TERMINAL:
@@ -313,12 +315,12 @@ def _rollout(tables, guide, state, depth, discount, random):
 
 
 @kernel
-def _outcome(outcome_cum, random):
+def _outcome(outcome_cum, state, action, random):
     """Draw the outcome of a move; a deterministic world needs no random number."""
-    last, k = outcome_cum.size - 1, 0
+    last, k = outcome_cum.shape[2] - 1, 0
     if last > 0:
         uniform = next_uniform(random)
-        while k < last and uniform >= outcome_cum[k]:
+        while k < last and uniform >= outcome_cum[state, action, k]:
             k += 1
     return k
 

@@ -227,7 +227,7 @@ def _goals(settings: AdviseSettings, walks: list[Trajectory], world: GridWorld) 
 def _advisor(settings: AdviseSettings, walks: list[Trajectory], goals: list[int], world: GridWorld) -> Advisor:
     chosen = _advice_settings(settings)
     if settings.method == "thesis":
-        return Advisor([GoalModel.from_trajectories(walks, world.n_states, len(MOVES))], None, chosen)
+        return Advisor.of_thesis([GoalModel.from_trajectories(walks, world.n_states, len(MOVES))], chosen)
     models = extend_goal_models(goal_models(walks, goals, world), world.neighbour)
     return Advisor(models, non_expert_models(world, [model.goals[0] for model in models]), chosen)
 

@@ -262,8 +262,8 @@ def _doubt(target, tried):
 
 def check_deterministic(tables: Tables) -> None:
     """Raise InputError unless each move has one outcome; this learner plans with no others."""
-    if tables.outcome_cum.size != 1:
+    if tables.n_outcomes != 1:
         raise InputError(
-            f"tables must have one outcome a move to be planned with, got {tables.outcome_cum.size}: "
+            f"tables must have one outcome a move to be planned with, got {tables.n_outcomes}: "
             "learn them by Q-learning"
         )

@@ -19,6 +19,7 @@ from lifelore.core.learning.q_learning import (
     uniform_rows,
 )
 from lifelore.core.mdp import Tables
+from lifelore.core.streams import stream
 from lifelore.core.usable_cores import usable_cores
 
 CHUNK = 1_000_000
@@ -45,6 +46,9 @@ class QLearning:
         Factor of ε after each episode, in [0, 1].
     epsilon_floor : float
         Least exploration rate ε, in [0, 1].
+    annealed : bool
+        Whether ε and α fall by equal steps to 0 over the episodes; ``epsilon_decay`` and ``epsilon_floor`` are then
+        not read. The schedule that the thesis prints (§4.6.3) also begins with ε = α = 0.5.
 
     Raises
     ------
@@ -68,6 +72,7 @@ class QLearning:
     epsilon: float = 1.0
     epsilon_decay: float = 0.98
     epsilon_floor: float = 0.01
+    annealed: bool = False
 
     def __post_init__(self) -> None:
         for name, value, most in (("episodes", self.episodes, 10**8), ("max_steps", self.max_steps, 10**9)):
@@ -89,22 +94,21 @@ class QLearning:
 
     def schedule(self, discount: float) -> Schedule:
         """ε and α of each episode, as the kernel takes them."""
-        decayed = self.epsilon * self.epsilon_decay ** np.arange(self.episode_cap)
-        return Schedule(
-            np.maximum(self.epsilon_floor, decayed),
-            np.full(self.episode_cap, float(self.learning_rate)),
-            self.step_cap,
-            float(discount),
-        )
+        episode = np.arange(self.episode_cap)
+        left = 1 - episode / self.episode_cap if self.annealed else np.ones(self.episode_cap)
+        decayed = np.maximum(self.epsilon_floor, self.epsilon * self.epsilon_decay**episode)
+        epsilon = self.epsilon * left if self.annealed else decayed
+        return Schedule(epsilon, self.learning_rate * left, self.step_cap, float(discount))
 
     def learn(
         self,
         tables: Tables,
         discount: float,
         *,
-        world: np.random.Generator,
-        own: np.random.Generator,
+        world: np.random.Generator | None = None,
+        own: np.random.Generator | None = None,
         rows: Rows | None = None,
+        seed: int = 0,
         watch: Callable[[QLearner, Curve], bool] | None = None,
     ) -> tuple[QLearner, Curve]:
         """Learn one task.
@@ -114,10 +118,12 @@ class QLearning:
         tables : Tables
         discount : float
             γ in [0, 1).
-        world, own : numpy generators
-            Draws of starts and outcomes; draws of the learner. Compared methods share the world's.
+        world, own : numpy generators, optional
+            Draws of starts and outcomes; draws of the learner. Compared methods share the world's. By default two
+            streams of `seed`.
         rows : Rows, optional
             Exploration probabilities and tie weights; default uniform.
+        seed : int
         watch : callable, optional
             Called between chunks; a true answer ends learning early.
 
@@ -126,6 +132,7 @@ class QLearning:
         learner, curve : Learner, Curve
         """
         rows = rows or uniform_rows(tables)
+        world, own = world or stream(seed, "world"), own or stream(seed, "learner")
         learner = new_learner(int(rows.q_row.max()) + 1, tables.n_actions, world, own)
         curve, schedule = new_curve(self.episode_cap), self.schedule(discount)
         while learn(tables, rows, schedule, learner, curve, CHUNK):

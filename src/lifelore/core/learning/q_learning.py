@@ -201,6 +201,8 @@ def learn(tables, rows, schedule, learner, curve, budget):
     """Run at most `budget` steps; returns how many were run, fewer once the last episode is over."""
     # Unpacked once, because reading an array of a tuple inside the loop would count references at every step.
     next_state, reward_of, event_of, outcome_cum, starts = tables
+    cum = np.broadcast_to(outcome_cum, next_state.shape)  # one row may serve all states and actions
+    n_outcomes = next_state.shape[2]
     q_row, context_row, class_of, explore_cum, tie_weight = rows
     epsilons, alphas, max_steps, gamma = schedule
     q, visits, world, own, cursor, running = learner
@@ -225,9 +227,9 @@ def learn(tables, rows, schedule, learner, curve, budget):
             if tied > 1:
                 a = _drawn_tie(q, row, tie_weight, context, a, own)
         k = 0
-        if outcome_cum.size > 1:
+        if n_outcomes > 1:
             u = next_uniform(world)
-            while u >= outcome_cum[k]:
+            while u >= cum[state, a, k]:
                 k += 1
         following = np.uint64(next_state[state, a, k])
         reward = reward_of[state, a, k]

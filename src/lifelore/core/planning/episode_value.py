@@ -31,7 +31,7 @@ def return_moments(
     discount : float
         γ in [0, 1].
     """
-    first, second = _moments(tables, row_of, probs, max_steps, discount)
+    first, second = _moments(tables.by_pair, row_of, probs, max_steps, discount)
     return float(first), float(np.sqrt(max(second - first**2, 0.0)))
 
 
@@ -115,8 +115,8 @@ def _followed(tables, row_of, probs):
                 if again and event_of[s, a, k + 1] == event_of[s, a, k]:
                     continue
                 following[n] = ENDED if event_of[s, a, k] & TERMINAL else next_state[s, a, k]
-                chance[n], reward[n] = chosen * (outcome_cum[k] - below), reward_of[s, a, k]
-                below = outcome_cum[k]
+                chance[n], reward[n] = chosen * (outcome_cum[s, a, k] - below), reward_of[s, a, k]
+                below = outcome_cum[s, a, k]
                 n += 1
         begin[s + 1] = n
     return begin, following, chance, reward

@@ -31,12 +31,13 @@ def episode_returns(
     world, own : numpy generators
         Draws of starts and outcomes; draws of the policy.
     """
-    return _run(tables, row_of, policy_cum, max_steps, n_episodes, random_state(world), random_state(own))
+    return _run(tables.by_pair, row_of, policy_cum, max_steps, n_episodes, random_state(world), random_state(own))
 
 
 @kernel
 def _run(tables, row_of, policy_cum, max_steps, n_episodes, world, own):
     next_state, reward_of, event_of, outcome_cum, starts = tables
+    n_outcomes = next_state.shape[2]
     returns = np.zeros(n_episodes)
     for episode in range(n_episodes):
         s = starts[int(next_uniform(world) * starts.size)]
@@ -46,9 +47,9 @@ def _run(tables, row_of, policy_cum, max_steps, n_episodes, world, own):
             while u >= policy_cum[row_of[s], a]:
                 a += 1
             k = 0
-            if outcome_cum.size > 1:
+            if n_outcomes > 1:
                 u = next_uniform(world)
-                while u >= outcome_cum[k]:
+                while u >= outcome_cum[s, a, k]:
                     k += 1
             returns[episode] += reward_of[s, a, k]
             if event_of[s, a, k] & TERMINAL:

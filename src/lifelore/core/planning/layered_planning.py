@@ -47,7 +47,7 @@ def layered_q(
     value = np.zeros(tables.n_states)
     q = np.empty((tables.n_states, tables.n_actions))
     scale = tolerance * max(1.0, float(np.abs(tables.reward).max()))
-    wrong = _solve_all(tables, layer_size, float(discount), scale, value, q)
+    wrong = _solve_all(tables.by_pair, layer_size, float(discount), scale, value, q)
     if wrong >= 0:
         raise _leads_back(wrong)
     return q
@@ -85,7 +85,7 @@ class LayeredPlan:
     def q(self, layer: int) -> NDArray[np.float64]:
         """Optimal action values of the places of one layer, (layer_size, n_actions)."""
         self._solve(layer)
-        rows = self._rows_of(layer)
+        rows = self._rows_of(layer).by_pair
         q = np.empty((self.layer_size, rows.n_actions))
         _back_up(rows, self._discount, self._value, q)
         return q
@@ -99,7 +99,7 @@ class LayeredPlan:
             raise InputError(f"layer must lie in [0, {len(self.solved)}), got {layer}")
         waiting = [layer]
         while waiting:
-            rows = self._rows_of(waiting[-1])
+            rows = self._rows_of(waiting[-1]).by_pair
             missing = [] if self.solved[waiting[-1]] else self._missing(rows, waiting[-1])
             if missing:
                 waiting += missing
@@ -146,7 +146,7 @@ def _solve_all(tables, layer_size, discount, tolerance, value, q):
     for layer in range(value.size // layer_size - 1, -1, -1):
         first = layer * layer_size
         last = first + layer_size
-        rows = Tables(next_state[first:last], reward[first:last], event[first:last], outcome_cum, starts)
+        rows = Tables(next_state[first:last], reward[first:last], event[first:last], outcome_cum[first:last], starts)
         if _leads_before(rows, first):
             return layer
         _solve_layer(rows, first, discount, tolerance, value)

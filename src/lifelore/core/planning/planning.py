@@ -19,7 +19,7 @@ def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDAr
     reward but a terminal one is zero or a loss, values settle exactly after as many sweeps as the longest
     shortest path.
     """
-    return _sweep(tables, float(discount), tolerance * max(1.0, float(np.abs(tables.reward).max())))
+    return _sweep(tables.by_pair, float(discount), tolerance * max(1.0, float(np.abs(tables.reward).max())))
 
 
 @kernel
@@ -46,15 +46,15 @@ def _sweep(tables, discount, tolerance):
 
 @inlined
 def backup(tables, s, a, discount, value):
-    """Expected reward and discounted value of what follows (the Bellman backup)."""
+    """Expected reward and discounted value of what follows (the Bellman backup); `tables` are `Tables.by_pair`."""
     next_state, reward, event, outcome_cum, _ = tables
     total, before = 0.0, 0.0
-    for k in range(outcome_cum.size):
+    for k in range(next_state.shape[2]):
         gain = reward[s, a, k]
         if not event[s, a, k] & TERMINAL:
             gain += discount * value[next_state[s, a, k]]
-        total += (outcome_cum[k] - before) * gain
-        before = outcome_cum[k]
+        total += (outcome_cum[s, a, k] - before) * gain
+        before = outcome_cum[s, a, k]
     return total
 
 
@@ -72,12 +72,27 @@ def best_actions(
     return q >= best - np.maximum(tolerance * np.abs(best), floor * largest)
 
 
-def learnt_best_actions(q: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """`best_actions` of a learned Q; rows without a value above zero are all False: no policy is learned there.
+def optimal_actions(tables: Tables, discount: float) -> NDArray[np.bool_]:
+    """The best or tied-best actions of the optimal policies, (n_states, n_actions) bool, for `ActionPrior.update`.
 
-    A value just learned may be very small, so there is no floor.
+    Rows in which no episode takes an action, such as the goal's, are all False (errata E3).
     """
-    return best_actions(q, floor=0.0) & (q.max(axis=1, keepdims=True) > 0)
+    acting = np.zeros(tables.n_states, bool)
+    frontier = np.unique(tables.starts)
+    while frontier.size:
+        acting[frontier] = True
+        entered = tables.next_state[frontier][(tables.event[frontier] & TERMINAL) == 0]
+        frontier = np.unique(entered[~acting[entered]])
+    return best_actions(optimal_q(tables, discount)) & acting[:, None]
+
+
+def learnt_best_actions(q: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """`best_actions` of a learned Q; rows whose best value is 0, as at the start, are all False: nothing is learned.
+
+    Where every move costs, an untried action has the best value of its row. A value just learned may be very
+    small, so there is no floor.
+    """
+    return best_actions(q, floor=0.0) & (q.max(axis=1, keepdims=True) != 0)
 
 
 def greedy_policy(q: NDArray[np.float64]) -> NDArray[np.int32]:
@@ -101,9 +116,9 @@ def policy_values(tables: Tables, policy: NDArray[np.int32], discount: float) ->
         γ in [0, 1).
     """
     policy = np.ascontiguousarray(policy, dtype=np.int32)
-    if tables.outcome_cum.size == 1:
-        return _follow(tables, policy, float(discount))
-    return _iterate(tables, policy, float(discount), 1e-12 * max(1.0, float(np.abs(tables.reward).max())))
+    if tables.n_outcomes == 1:
+        return _follow(tables.by_pair, policy, float(discount))
+    return _iterate(tables.by_pair, policy, float(discount), 1e-12 * max(1.0, float(np.abs(tables.reward).max())))
 
 
 @kernel

@@ -15,7 +15,7 @@ from lifelore.core.learning.q_learning import Schedule, learn, new_learner, unif
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 from lifelore.core.planning.episode_value import return_moments
 from lifelore.core.streams import stream
-from reproduction.chapter4.c4_04_pacman.probabilistic_policy_reuse import ProbabilisticPolicyReuse, _draw_policy
+from lifelore.interaction.baselines.probabilistic_policy_reuse import ProbabilisticPolicyReuse, _draw_policy
 
 N_STATES, N_ACTIONS = 6, 3
 ROW_OF = np.array([0, 1, 2, 3, 0, 1], np.int32)

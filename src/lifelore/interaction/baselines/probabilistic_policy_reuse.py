@@ -151,7 +151,8 @@ def _learn(tables, rows, library_cum, schedule, rule, reuser, curve):
     epsilons, alphas, max_steps, gamma = schedule
     q, gain, uses, temperature, world, own = reuser
     returns, rewards, steps, collisions, reached = curve
-    new = gain.size - 1
+    cum = np.broadcast_to(outcome_cum, next_state.shape)
+    new, n_outcomes = gain.size - 1, next_state.shape[2]
     chosen = np.zeros(epsilons.size, np.int64)
     for episode in range(epsilons.size):
         k = _draw_policy(gain, temperature[0] / rule.gain_unit, own)
@@ -168,9 +169,9 @@ def _learn(tables, rows, library_cum, schedule, rule, reuser, curve):
                 epsilon = epsilons[episode] if k < new else 0.0
                 a = epsilon_greedy(q, row, explore_cum, tie_weight, context_row[state, 0], epsilon, own)
             o = 0
-            if outcome_cum.size > 1:
+            if n_outcomes > 1:
                 u = next_uniform(world)
-                while u >= outcome_cum[o]:
+                while u >= cum[state, a, o]:
                     o += 1
             following, event, reward = next_state[state, a, o], event_of[state, a, o], reward_of[state, a, o]
             target = reward

@@ -1,0 +1,185 @@
+"""MDPs from matrices: every form gives the same task, solved as by a plain loop; every broken rule its sentence."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import sparse
+
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.action.priors.exploration import prior_rows
+from lifelore.core.errors import InputError
+from lifelore.core.learning.q_learner import QLearning
+from lifelore.core.mdp import TERMINAL, Tables
+from lifelore.core.planning.planning import optimal_actions, optimal_q
+
+GAMMA = 0.9
+
+
+def random_mdp(seed: int, n_states: int = 7, n_actions: int = 3, share: float = 0.5):
+    """T with about `share` of its entries above 0, and rewards of moves."""
+    random = np.random.default_rng(seed)
+    weight = random.random((n_states, n_actions, n_states)) * (random.random((n_states, n_actions, n_states)) < share)
+    weight[..., 0] += weight.sum(axis=2) == 0
+    return weight / weight.sum(axis=2, keepdims=True), random.normal(size=weight.shape)
+
+
+def naive_q(transitions, rewards, terminal) -> np.ndarray:
+    """Value iteration as a textbook has it, by sums over all states."""
+    n_states, n_actions, _ = transitions.shape
+    q = np.zeros((n_states, n_actions))
+    for _ in range(400):
+        value = [0.0 if s in terminal else q[s].max() for s in range(n_states)]
+        q = np.array(
+            [
+                [
+                    0.0 if s in terminal
+                    else sum(
+                        transitions[s, a, t] * (rewards[s, a, t] + GAMMA * value[t]) for t in range(n_states)
+                    )
+                    for a in range(n_actions)
+                ]
+                for s in range(n_states)
+            ]
+        )  # fmt: skip
+    return q
+
+
+def as_dictionaries(array: np.ndarray) -> dict:
+    return {
+        s: {a: {t: float(p) for t, p in enumerate(row) if p} for a, row in enumerate(actions)}
+        for s, actions in enumerate(array)
+    }
+
+
+def as_sparse(array: np.ndarray, form=sparse.csr_matrix) -> list:
+    return [form(array[:, a]) for a in range(array.shape[1])]
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([0.2, 1.0]), st.sets(st.integers(0, 6), max_size=3))
+def test_optimal_values_are_those_of_a_plain_loop(seed, share, terminal):
+    transitions, rewards = random_mdp(seed, share=share)
+    tables = Tables.from_matrices(transitions, rewards, terminal=sorted(terminal))
+    assert optimal_q(tables, GAMMA) == pytest.approx(naive_q(transitions, rewards, terminal), abs=1e-9)
+
+
+@pytest.mark.parametrize("form", [sparse.csr_matrix, sparse.coo_array, sparse.csc_array, as_dictionaries])
+def test_all_forms_give_the_same_tables(form):
+    transitions, rewards = random_mdp(3)
+    dense = Tables.from_matrices(transitions, rewards, terminal=[2])
+    if form is as_dictionaries:
+        other = Tables.from_matrices(as_dictionaries(transitions), as_dictionaries(rewards), [2])
+    else:
+        other = Tables.from_matrices(as_sparse(transitions, form), as_sparse(rewards, form), [2])
+    for one, two in zip(dense, other, strict=True):
+        assert np.array_equal(one, two)
+
+
+def test_rewards_of_actions_and_of_states():
+    transitions, _ = random_mdp(5)
+    of_actions, of_states = np.random.default_rng(0).normal(size=(7, 3)), np.arange(7.0)
+    for given_, full in (
+        (of_actions, np.broadcast_to(of_actions[..., None], (7, 3, 7))),
+        (of_states, np.broadcast_to(of_states, (7, 3, 7))),
+    ):
+        short, long = (Tables.from_matrices(transitions, rewards, [6]) for rewards in (given_, full))
+        assert np.array_equal(short.reward, long.reward)
+
+
+def test_by_hand():
+    # From 0, action 0 wins 10 with ½ and else stays; action 1 stays. Q(0, 0) = ½·10 + ½·γ·Q(0, 0) = 5 / (1 - γ/2).
+    tables = Tables.from_matrices([[[0.5, 0.5], [1, 0]], [[0, 0], [0, 0]]], [0, 10.0], terminal=1)
+    q = optimal_q(tables, GAMMA)
+    assert q[0] == pytest.approx([5 / 0.55, GAMMA * 5 / 0.55])
+    assert q[1].tolist() == [0.0, 0.0]
+    assert tables.starts.tolist() == [0]
+    assert (tables.event & TERMINAL).tolist() == [[[0, 1], [0, 0]], [[1, 1], [1, 1]]]
+    assert optimal_actions(tables, GAMMA).tolist() == [[True, False], [False, False]]
+
+
+def test_memory_grows_with_the_next_states_of_a_move():
+    n_states = 20_000  # T itself would be 6.4 GB
+    ahead = sparse.csr_array(
+        (np.ones(n_states), (np.arange(n_states), np.minimum(np.arange(n_states) + 1, n_states - 1)))
+    )
+    back = 0.5 * sparse.eye_array(n_states) + 0.5 * ahead
+    tables = Tables.from_matrices([ahead, back], np.eye(1, n_states, n_states - 1)[0], terminal=[n_states - 1])
+    assert sum(part.nbytes for part in tables) < 2e6
+    assert optimal_actions(tables, GAMMA)[-101:].tolist() == [[True, False]] * 100 + [[False, False]]
+
+
+def test_outcomes_are_drawn_by_their_own_probabilities():
+    # One step from each start; the share of each next state is its T to within four standard errors.
+    transitions, _ = random_mdp(11, n_states=4, n_actions=2)
+    pays = np.arange(4.0)
+    tables = Tables.from_matrices(transitions, pays, terminal=[])
+    n = 40_000
+    for start in range(4):
+        one = tables._replace(starts=np.array([start], np.int32))
+        learner, curve = QLearning(n, max_steps=1, epsilon=1.0, epsilon_decay=1.0).learn(one, GAMMA, seed=start)
+        share = np.bincount(curve.rewards.astype(int), minlength=4) / n
+        expected = transitions[start].mean(axis=0)  # actions are drawn uniformly
+        assert np.abs(share - expected).max() < 4 * np.sqrt(0.25 / n)
+
+
+def test_learning_approaches_the_optimal_values():
+    transitions, rewards = random_mdp(2, n_states=4, n_actions=2)
+    tables = Tables.from_matrices(transitions, rewards, terminal=[3])
+    learner, _ = QLearning(20_000, max_steps=50, epsilon=1.0, learning_rate=0.2, annealed=True).learn(tables, GAMMA)
+    assert np.abs(learner.q - optimal_q(tables, GAMMA)).max() < 0.15
+
+
+def test_a_prior_of_ten_tasks_on_an_eleventh():
+    # A 12 × 12 room; the goals of all tasks lie along its first row, the eleventh between the others.
+    n, side = 144, 12
+    row, column = np.divmod(np.arange(n), side)
+    moves = [(-1, 0), (1, 0), (0, -1), (0, 1)]
+    to = [(row + r).clip(0, 11) * side + (column + c).clip(0, 11) for r, c in moves]
+    ahead = [sparse.coo_array((np.ones(n), (np.arange(n), t)), (n, n)).tocsr() for t in to]
+    slips = [0.8 * a + 0.2 * sparse.eye_array(n) for a in ahead]
+
+    tasks = [Tables.from_matrices(slips, np.arange(n) == goal, terminal=goal) for goal in (0, 1, 2, 3, 4, 6, 7, 8, 9, 10, 5)]
+    prior = ActionPrior(n_actions=4)
+    for task in tasks[:10]:
+        prior.update(np.arange(n), optimal_actions(task, 0.95))
+    rows = prior_rows(tasks[10], np.arange(n), prior.probs)
+    _, guided = QLearning(100, max_steps=500).learn(tasks[10], 0.95, rows=rows)
+
+    _, uniform = QLearning(100, max_steps=500).learn(tasks[10], 0.95)
+    assert guided.steps[:20].mean() < 0.5 * uniform.steps[:20].mean()
+
+
+T, R = random_mdp(0)
+BAD = T.copy()
+BAD[2, 1] *= 0.5
+NEGATIVE = T.copy()
+NEGATIVE[4, 0, :2] = [-0.5, 1.5]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ((T[0], R), r"transitions must be an array \(n_states, n_actions, n_states\), a list of one sparse"),
+        ((T[:, :, :5], R), "transitions must be an array .* got ndarray of shape"),
+        ((BAD, R), "sum to 1 over the next states .* got 0.5 for state 2, action 1; name a state in terminal="),
+        ((NEGATIVE, R), r"must be probabilities in \[0, 1\], got -0.5 for T\(4, 0, 0\)"),
+        ((np.full_like(T, np.nan), R), "must be probabilities in .*nan"),
+        ((T, R[0]), r"rewards must have shape \(7,\), \(7, 3\) or \(7, 3, 7\), got \(3, 7\)"),
+        ((T, np.full(7, np.inf)), "rewards must be finite, got inf for R"),
+        ((T, R, [7]), r"terminal must be state numbers from 0 to 6, got \[7\]"),
+        ((T, R, [0.5]), "terminal must be state numbers"),
+        ((T, R, [True]), r"terminal as a mask must have shape \(7,\)"),
+        ((T, R, [1], [1, 2]), r"starts must name at least one state, none of them terminal, got \[1\]"),
+        ((T, R, range(7)), "starts must name at least one state, got none"),
+        ((as_sparse(T)[:2] + as_sparse(T[:5, :, :5])[:1], R), "one square matrix an action, all of one size"),
+        ((as_sparse(T), as_sparse(T)[:2]), "rewards must be of 7 states and 3 actions"),
+        (({"a": {0: {0: 1.0}}}, R), "transitions as dictionaries must be"),
+        (({0: {0: 1.0}}, [0.0]), "transitions as dictionaries must be"),
+        (({0: {0: {1: 1.0}}}, [0.0, 1.0]), "got 0 for state 1, action 0; name a state in terminal="),
+        (({0: {0: {0: 1.0}}}, {0: {0: {5: 1.0}}}), "rewards must be of 1 states and 1 actions"),
+    ],
+)
+def test_broken_rules(arguments, message):
+    with pytest.raises(InputError, match=message):
+        Tables.from_matrices(*arguments)
