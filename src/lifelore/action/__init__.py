@@ -52,6 +52,7 @@ __all__ = [
     "futile_goal_probability",
     "independent_features",
     "minimised_domain",
+    "minimised_transitions",
     "prior_rows",
     "reachable_states",
 ]
@@ -75,6 +76,7 @@ _HOME = {
     "futile_goal_probability": "lifelore.action.search.domain_reduction",
     "independent_features": "lifelore.action.features.feature_selection",
     "minimised_domain": "lifelore.action.search.domain_reduction",
+    "minimised_transitions": "lifelore.action.search.domain_reduction",
     "prior_rows": "lifelore.action.priors.exploration",
     "reachable_states": "lifelore.action.search.domain_reduction",
 }

@@ -92,10 +92,10 @@ class Tables(NamedTuple):
         >>> tables.next_state[0].tolist(), tables.reward[0].tolist(), tables.outcome_cum[0].tolist()
         ([[0, 1], [0, 0]], [[0.0, 10.0], [0.0, 0.0]], [[0.5, 1.0], [1.0, 1.0]])
         """
-        from lifelore.core.matrices import checked_states, outcomes_of
+        from lifelore.core.matrices import checked_numbers, outcomes_of
 
         outcomes, ended = outcomes_of(transitions, rewards, terminal)
-        begin = np.flatnonzero(~ended) if starts is None else checked_states(starts, len(ended), "starts")
+        begin = np.flatnonzero(~ended) if starts is None else checked_numbers(starts, len(ended), "starts")
         if not begin.size or ended[begin].any():
             raise InputError(
                 f"starts must name at least one state, none of them terminal, got {begin[ended[begin]].tolist()} "
