@@ -116,7 +116,17 @@ def fit(
     if variant == "thesis":
         rule, change, models = rule or "expected-improvement", "0", "plug-in"
     settings = FitSettings(
-        name, model, types, control, incumbent, rule or DEFAULT_RULE, explore, _change(change), models, seed, variant
+        name,
+        model,
+        types,
+        control,
+        incumbent,
+        rule or DEFAULT_RULE,
+        explore,
+        _change(change),
+        models,
+        seed,
+        variant,
     )
     form = log_format(
         columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features

@@ -149,7 +149,9 @@ def _of_dictionaries(rows: Mapping, name: str) -> tuple[int, int, Moves]:
 def _sorted(state: Ints, action: Ints, following: Ints, number: Floats) -> Moves:
     order = np.lexsort((following, action, state))
     order = order[number[order] != 0]
-    return Moves(*(part[order].astype(np.int64) for part in (state, action, following)), number[order].astype(float))
+    return Moves(
+        *(part[order].astype(np.int64) for part in (state, action, following)), number[order].astype(float)
+    )
 
 
 def _checked_moves(moves: Moves, n_states: int, n_actions: int, ended: NDArray[np.bool_]) -> Moves:

@@ -62,7 +62,9 @@ class Tables(NamedTuple):
         return self._replace(outcome_cum=np.broadcast_to(self.outcome_cum, self.next_state.shape))
 
     @classmethod
-    def from_matrices(cls, transitions: Any, rewards: Any, terminal: ArrayLike = (), starts: Any = None) -> "Tables":
+    def from_matrices(
+        cls, transitions: Any, rewards: Any, terminal: ArrayLike = (), starts: Any = None
+    ) -> "Tables":
         """The tables of an MDP that is given as T(s, a, s') and R.
 
         Memory and time grow with n_states · n_actions · the largest number of next states of a move.
@@ -99,7 +101,9 @@ class Tables(NamedTuple):
         if not begin.size or ended[begin].any():
             raise InputError(
                 f"starts must name at least one state, none of them terminal, got {begin[ended[begin]].tolist()} "
-                "that are terminal" if begin.size else "starts must name at least one state, got none"
+                "that are terminal"
+                if begin.size
+                else "starts must name at least one state, got none"
             )
         event = np.where(ended[outcomes.following], TERMINAL, NOTHING).astype(np.uint8)
         return cls(outcomes.following, outcomes.reward, event, outcomes.cumulative, begin.astype(np.int32))

@@ -188,7 +188,10 @@ def test_values_are_computed_and_decisions_are_those_of_the_printed_algorithm():
     sets = {"fine": [0, 1], "coarse": [2, 3]}
     beat = Beat.from_tasks(transitions, rewards, sets, 0.8, terminal=[4], epsilon=0.0)
     value = np.array(
-        [[naive_value(each, rewards, [4], chosen, 0.8)[:4].mean() for chosen in sets.values()] for each in transitions]
+        [
+            [naive_value(each, rewards, [4], chosen, 0.8)[:4].mean() for chosen in sets.values()]
+            for each in transitions
+        ]
     )
     assert beat.library.performance.mean == pytest.approx(value)
     assert beat.library.policies == ("fine", "coarse")

@@ -147,7 +147,8 @@ def minimised_transitions(tables: Tables, domain: MinimisedDomain) -> list[spars
     state = np.repeat(np.arange(tables.n_states), tables.n_outcomes)
     shape = (tables.n_states, tables.n_states)
     matrices = [
-        sparse.csr_array((mass[:, a].ravel(), (state, follow[:, a].ravel())), shape) for a in range(tables.n_actions)
+        sparse.csr_array((mass[:, a].ravel(), (state, follow[:, a].ravel())), shape)
+        for a in range(tables.n_actions)
     ]
     for matrix in matrices:
         matrix.eliminate_zeros()

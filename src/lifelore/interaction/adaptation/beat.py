@@ -150,7 +150,9 @@ class Beat:
         if len({each.next_state.shape[:2] for each in tables}) != 1:
             raise InputError("transitions must be of types with the same states and actions, at least one type")
         n_actions = tables[0].n_actions
-        sets = {name: checked_numbers(given, n_actions, f"action set '{name}'") for name, given in action_sets.items()}
+        sets = {
+            name: checked_numbers(given, n_actions, f"action set '{name}'") for name, given in action_sets.items()
+        }
         if not sets or not all(len(chosen) for chosen in sets.values()):
             raise InputError(f"action_sets must be sets of at least one action each, got {dict(action_sets)}")
         values = [[_value(each, chosen, discount) for chosen in sets.values()] for each in tables]
