@@ -19,7 +19,9 @@ GAMMA = 0.9
 def random_mdp(seed: int, n_states: int = 7, n_actions: int = 3, share: float = 0.5):
     """T with about `share` of its entries above 0, and rewards of moves."""
     random = np.random.default_rng(seed)
-    weight = random.random((n_states, n_actions, n_states)) * (random.random((n_states, n_actions, n_states)) < share)
+    weight = random.random((n_states, n_actions, n_states)) * (
+        random.random((n_states, n_actions, n_states)) < share
+    )
     weight[..., 0] += weight.sum(axis=2) == 0
     return weight / weight.sum(axis=2, keepdims=True), random.normal(size=weight.shape)
 
@@ -126,7 +128,9 @@ def test_outcomes_are_drawn_by_their_own_probabilities():
 def test_learning_approaches_the_optimal_values():
     transitions, rewards = random_mdp(2, n_states=4, n_actions=2)
     tables = Tables.from_matrices(transitions, rewards, terminal=[3])
-    learner, _ = QLearning(20_000, max_steps=50, epsilon=1.0, learning_rate=0.2, annealed=True).learn(tables, GAMMA)
+    learner, _ = QLearning(20_000, max_steps=50, epsilon=1.0, learning_rate=0.2, annealed=True).learn(
+        tables, GAMMA
+    )
     assert np.abs(learner.q - optimal_q(tables, GAMMA)).max() < 0.15
 
 
@@ -139,7 +143,10 @@ def test_a_prior_of_ten_tasks_on_an_eleventh():
     ahead = [sparse.coo_array((np.ones(n), (np.arange(n), t)), (n, n)).tocsr() for t in to]
     slips = [0.8 * a + 0.2 * sparse.eye_array(n) for a in ahead]
 
-    tasks = [Tables.from_matrices(slips, np.arange(n) == goal, terminal=goal) for goal in (0, 1, 2, 3, 4, 6, 7, 8, 9, 10, 5)]
+    tasks = [
+        Tables.from_matrices(slips, np.arange(n) == goal, terminal=goal)
+        for goal in (0, 1, 2, 3, 4, 6, 7, 8, 9, 10, 5)
+    ]
     prior = ActionPrior(n_actions=4)
     for task in tasks[:10]:
         prior.update(np.arange(n), optimal_actions(task, 0.95))
@@ -167,8 +174,8 @@ NEGATIVE[4, 0, :2] = [-0.5, 1.5]
         ((np.full_like(T, np.nan), R), "must be probabilities in .*nan"),
         ((T, R[0]), r"rewards must have shape \(7,\), \(7, 3\) or \(7, 3, 7\), got \(3, 7\)"),
         ((T, np.full(7, np.inf)), "rewards must be finite, got inf for R"),
-        ((T, R, [7]), r"terminal must be state numbers from 0 to 6, got \[7\]"),
-        ((T, R, [0.5]), "terminal must be state numbers"),
+        ((T, R, [7]), r"terminal must be whole numbers from 0 to 6, got \[7\]"),
+        ((T, R, [0.5]), "terminal must be whole numbers"),
         ((T, R, [True]), r"terminal as a mask must have shape \(7,\)"),
         ((T, R, [1], [1, 2]), r"starts must name at least one state, none of them terminal, got \[1\]"),
         ((T, R, range(7)), "starts must name at least one state, got none"),

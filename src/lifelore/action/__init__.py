@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from lifelore.action.search.domain_reduction import domain_futile_states as domain_futile_states
     from lifelore.action.search.domain_reduction import futile_goal_probability as futile_goal_probability
     from lifelore.action.search.domain_reduction import minimised_domain as minimised_domain
+    from lifelore.action.search.domain_reduction import minimised_transitions as minimised_transitions
     from lifelore.action.search.domain_reduction import reachable_states as reachable_states
 
 _HOME = {
@@ -75,6 +76,7 @@ _HOME = {
     "independent_features": ".features.feature_selection",
     "load_prior": ".priors.prior_file",
     "minimised_domain": ".search.domain_reduction",
+    "minimised_transitions": ".search.domain_reduction",
     "prior_report": ".priors.prior_report",
     "prior_rows": ".priors.exploration",
     "reachable_states": ".search.domain_reduction",

@@ -87,6 +87,10 @@ def fit(
         str,
         Option(help="uncertain: models of few runs learn from each user too. plug-in: estimates are the truth."),
     ] = "uncertain",
+    variant: Annotated[
+        str,
+        Option(help="thesis: the rule as printed [expected-improvement], plug-in models, and types that stay."),
+    ] = "standard",
     columns: Columns = None,
     separator: Separator = None,
     decimal_comma: DecimalComma = False,
@@ -109,8 +113,21 @@ def fit(
     from lifelore.interaction.selection import DEFAULT_RULE
     from lifelore.memory import open_memory
 
-    rule = rule or DEFAULT_RULE
-    settings = FitSettings(name, model, types, control, incumbent, rule, explore, _change(change), models, seed)
+    if variant == "thesis":
+        rule, change, models = rule or "expected-improvement", "0", "plug-in"
+    settings = FitSettings(
+        name,
+        model,
+        types,
+        control,
+        incumbent,
+        rule or DEFAULT_RULE,
+        explore,
+        _change(change),
+        models,
+        seed,
+        variant,
+    )
     form = log_format(
         columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features
     )

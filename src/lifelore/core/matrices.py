@@ -5,13 +5,16 @@ reward.
 """
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
 from lifelore.core.errors import InputError
+
+if TYPE_CHECKING:
+    from lifelore.core.mdp import Tables
 
 ROW_TOLERANCE = 1e-9
 """Largest distance from 1 of the sum of a row of probabilities; a larger one is a mistake."""
@@ -46,7 +49,7 @@ def outcomes_of(transitions: Any, rewards: Any, terminal: Any) -> tuple[Outcomes
     """Outcomes, and which states are terminal, (n_states,) bool; see `Tables.from_matrices` for the forms."""
     n_states, n_actions, given = _moves(transitions, "transitions")
     ended = np.zeros(n_states, bool)
-    ended[checked_states(terminal, n_states, "terminal")] = True
+    ended[checked_numbers(terminal, n_states, "terminal")] = True
     moves = _with_ends(_checked_moves(given, n_states, n_actions, ended), n_actions, ended)
     paid = np.where(ended[moves.state], 0.0, _paid(rewards, moves, n_states, n_actions))
     shape = (n_states, n_actions)
@@ -59,24 +62,33 @@ def outcomes_of(transitions: Any, rewards: Any, terminal: Any) -> tuple[Outcomes
     return Outcomes(moves.following[place].astype(np.int32), paid[place], cumulative), ended
 
 
-def checked_states(given: Any, n_states: int, name: str) -> Ints:
-    """State numbers (n,) from numbers, or from a mask (n_states,) bool.
+def checked_numbers(given: Any, n: int, name: str) -> Ints:
+    """Numbers of states or actions below `n`, (m,), from numbers or from a mask (n,) bool.
 
     Raises
     ------
     InputError
-        The mask has another length, or a number is not whole or is no state.
+        The mask has another length, or a number is not whole or not below `n`.
     """
-    states = np.atleast_1d(np.asarray(given))
-    if states.dtype == bool:
-        if states.shape != (n_states,):
-            raise InputError(f"{name} as a mask must have shape ({n_states},), one a state, got {states.shape}")
-        return np.flatnonzero(states)
-    if not states.size:
+    numbers = np.atleast_1d(np.asarray(given))
+    if numbers.dtype == bool:
+        if numbers.shape != (n,):
+            raise InputError(f"{name} as a mask must have shape ({n},), got {numbers.shape}")
+        return np.flatnonzero(numbers)
+    if not numbers.size:
         return np.empty(0, np.int64)
-    if states.ndim != 1 or states.dtype.kind not in "iu" or states.min() < 0 or states.max() >= n_states:
-        raise InputError(f"{name} must be state numbers from 0 to {n_states - 1}, got {given!r:.80}")
-    return states.astype(np.int64)
+    if numbers.ndim != 1 or numbers.dtype.kind not in "iu" or numbers.min() < 0 or numbers.max() >= n:
+        raise InputError(f"{name} must be whole numbers from 0 to {n - 1}, got {given!r:.80}")
+    return numbers.astype(np.int64)
+
+
+def dense_transitions(tables: "Tables") -> Floats:
+    """T(s, a, s') of a task, (n_states, n_actions, n_states); rows sum to 1."""
+    probability = np.diff(tables.by_pair.outcome_cum, axis=2, prepend=0.0)
+    dense = np.zeros((tables.n_states, tables.n_actions, tables.n_states))
+    state, action, _ = np.indices(tables.next_state.shape, sparse=True)
+    np.add.at(dense, (state, action, tables.next_state), probability)
+    return dense
 
 
 def _moves(given: Any, name: str) -> tuple[int, int, Moves]:
@@ -137,7 +149,9 @@ def _of_dictionaries(rows: Mapping, name: str) -> tuple[int, int, Moves]:
 def _sorted(state: Ints, action: Ints, following: Ints, number: Floats) -> Moves:
     order = np.lexsort((following, action, state))
     order = order[number[order] != 0]
-    return Moves(*(part[order].astype(np.int64) for part in (state, action, following)), number[order].astype(float))
+    return Moves(
+        *(part[order].astype(np.int64) for part in (state, action, following)), number[order].astype(float)
+    )
 
 
 def _checked_moves(moves: Moves, n_states: int, n_actions: int, ended: NDArray[np.bool_]) -> Moves:

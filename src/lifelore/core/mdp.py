@@ -62,7 +62,9 @@ class Tables(NamedTuple):
         return self._replace(outcome_cum=np.broadcast_to(self.outcome_cum, self.next_state.shape))
 
     @classmethod
-    def from_matrices(cls, transitions: Any, rewards: Any, terminal: ArrayLike = (), starts: Any = None) -> "Tables":
+    def from_matrices(
+        cls, transitions: Any, rewards: Any, terminal: ArrayLike = (), starts: Any = None
+    ) -> "Tables":
         """The tables of an MDP that is given as T(s, a, s') and R.
 
         Memory and time grow with n_states · n_actions · the largest number of next states of a move.
@@ -92,14 +94,16 @@ class Tables(NamedTuple):
         >>> tables.next_state[0].tolist(), tables.reward[0].tolist(), tables.outcome_cum[0].tolist()
         ([[0, 1], [0, 0]], [[0.0, 10.0], [0.0, 0.0]], [[0.5, 1.0], [1.0, 1.0]])
         """
-        from lifelore.core.matrices import checked_states, outcomes_of
+        from lifelore.core.matrices import checked_numbers, outcomes_of
 
         outcomes, ended = outcomes_of(transitions, rewards, terminal)
-        begin = np.flatnonzero(~ended) if starts is None else checked_states(starts, len(ended), "starts")
+        begin = np.flatnonzero(~ended) if starts is None else checked_numbers(starts, len(ended), "starts")
         if not begin.size or ended[begin].any():
             raise InputError(
                 f"starts must name at least one state, none of them terminal, got {begin[ended[begin]].tolist()} "
-                "that are terminal" if begin.size else "starts must name at least one state, got none"
+                "that are terminal"
+                if begin.size
+                else "starts must name at least one state, got none"
             )
         event = np.where(ended[outcomes.following], TERMINAL, NOTHING).astype(np.uint8)
         return cls(outcomes.following, outcomes.reward, event, outcomes.cumulative, begin.astype(np.int32))

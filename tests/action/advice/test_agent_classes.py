@@ -71,7 +71,10 @@ def test_advised_steps_do_not_confirm_a_class(models):
 
 def test_one_class_is_one_prior_over_all_goals(models):
     every = [*models["staff"], *models["visitor"]]
-    ours, thesis = pooled_classes({"anyone": every}, PLAIN).advisor, Advisor([GoalModel.pooled(every)], None, PLAIN)
+    ours, thesis = (
+        pooled_classes({"anyone": every}, PLAIN).advisor,
+        Advisor([GoalModel.pooled(every)], None, PLAIN),
+    )
     steps = np.random.default_rng(0).integers(0, 2, (2, 60))
     for found, wanted in zip(ours.assess(*steps), thesis.assess(*steps), strict=True):
         assert np.array_equal(found, wanted)

@@ -334,3 +334,19 @@ def test_columns_name_themselves():
     case = CountedFeatures.from_columns([[0, 2], [1, 0]], [[1, 0], [0, 1]])
     assert (case.features.names, case.features.sizes) == (("f0", "f1"), (2, 3))
     assert action_set_entropy(np.zeros((3, 2))) == 0.0
+
+
+def test_the_entropy_of_one_action_by_hand_and_their_sum():
+    # Two configurations of 4 counts each, so P = ½: θ = (½, ½) and (1, 0). Eq. 3.9: H̄(0) = H̄(1) = ½ · ½ bit.
+    found = CountedFeatures.from_columns([[0], [1]], [[2, 2], [4, 0]])
+    assert found.action_entropies().tolist() == [0.25, 0.25]
+    # Without the feature θ = (¾, ¼).
+    assert found.action_entropies([]) == pytest.approx([0.75 * math.log2(4 / 3), 0.25 * 2])
+    assert CountedFeatures.from_columns([[0]], [[0, 0]]).action_entropies().tolist() == [0.0, 0.0]
+
+
+@settings(max_examples=30, deadline=None)
+@given(tables)
+def test_the_entropies_of_the_actions_sum_to_that_of_the_action_set(rows):
+    found = counted(rows)
+    assert found.action_entropies().sum() == pytest.approx(found.entropy(), abs=1e-12)

@@ -12,6 +12,7 @@ from lifelore.action.search.domain_reduction import (
     domain_futile_states,
     futile_goal_probability,
     minimised_domain,
+    minimised_transitions,
     reachable_states,
     tables_within,
     task_futile_actions,
@@ -320,3 +321,37 @@ def test_unknown_words_name_the_known_ones():
         minimised_domain([TASK], [BEST], "fixed")
     with pytest.raises(NotFoundError, match="dead_ends must be one of stay, free"):
         tables_within(TASK, BEST, "leave")
+
+
+# ---- T̂, and what is refused --------------------------------------------------------------------------------
+
+
+@settings(deadline=None, max_examples=40)
+@given(task_sets(), st.sampled_from(["printed", "repaired", "closed"]))
+def test_the_transitions_of_the_minimised_domain_term_by_term(drawn, form):
+    tasks, policies = drawn
+    tables, domain = tasks[0], minimised_domain(tasks, policies, form)
+    found = minimised_transitions(tables, domain)
+    probs = np.diff(tables.outcome_cum, prepend=0.0)
+    for s in range(tables.n_states):
+        for a in range(tables.n_actions):
+            own = {}
+            for following, p in zip(tables.next_state[s, a].tolist(), probs, strict=True):
+                if domain.pairs[s, a] and domain.states[following]:
+                    own[following] = own.get(following, 0.0) + p
+            eta = 1 / sum(own.values()) if own else 0.0
+            row = found[a][[s]].toarray()[0]
+            assert row == pytest.approx([eta * own.get(t, 0.0) for t in range(tables.n_states)])
+            assert row.sum() == pytest.approx(float(domain.pairs[s, a] and not domain.without_successor[s, a]))
+
+
+def test_what_is_not_boolean_is_refused():
+    task = goal_task(CORRIDOR, 3, [1])
+    policy = np.where(best_of(task, 3), 0.9, 0.1)
+    for call in (
+        lambda: reachable_states(task, policy),
+        lambda: task_futile_actions(policy),
+        lambda: minimised_domain([task], [policy]),
+    ):
+        with pytest.raises(InputError, match="best must be boolean.*got float64: apply best_actions"):
+            call()

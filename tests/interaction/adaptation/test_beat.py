@@ -160,3 +160,66 @@ def test_many_users_equal_single_ones():
             singles[u].update(int(p), [triple])
     for u, beat in enumerate(singles):
         np.testing.assert_allclose(users.log_belief[u], beat.log_belief, atol=1e-12)
+
+
+# ---- from the types' MDPs ----------------------------------------------------------------------------
+
+
+def naive_value(transitions, rewards, terminal, actions, discount) -> np.ndarray:
+    """Line 2 of Alg. 9: the value of each state under the best policy that takes `actions` alone."""
+    value = np.zeros(len(transitions))
+    for _ in range(500):
+        value = np.array(
+            [
+                0.0 if s in terminal
+                else max(
+                    sum(p * (rewards[t] + discount * value[t]) for t, p in enumerate(transitions[s, a]))
+                    for a in actions
+                )
+                for s in range(len(transitions))
+            ]
+        )  # fmt: skip
+    return value
+
+
+def test_values_are_computed_and_decisions_are_those_of_the_printed_algorithm():
+    random = np.random.default_rng(4)
+    transitions, rewards = random.dirichlet(np.ones(5), (3, 5, 4)), random.normal(size=5)
+    sets = {"fine": [0, 1], "coarse": [2, 3]}
+    beat = Beat.from_tasks(transitions, rewards, sets, 0.8, terminal=[4], epsilon=0.0)
+    value = np.array(
+        [
+            [naive_value(each, rewards, [4], chosen, 0.8)[:4].mean() for chosen in sets.values()]
+            for each in transitions
+        ]
+    )
+    assert beat.library.performance.mean == pytest.approx(value)
+    assert beat.library.policies == ("fine", "coarse")
+    belief, chosen = np.full(3, 1 / 3), set()
+    for _ in range(12):
+        z = int(np.argmax(belief @ value))  # Eq. 4.8, 4.9
+        assert beat.select() == z
+        s, a, t = random.integers(4), random.integers(4), random.integers(5)
+        beat.update(z, (s, a, t))
+        belief *= transitions[:, s, a, t]  # line 6
+        assert beat.belief == pytest.approx(belief / belief.sum())
+        chosen.add(z)
+    assert chosen == {0, 1}
+
+
+def test_from_tasks_starts_explore_as_printed_and_rules():
+    transitions = np.random.default_rng(0).dirichlet(np.ones(3), (2, 3, 2))
+    beat = Beat.from_tasks(transitions, np.arange(3.0), {"a": [0], "b": [1]}, 0.9, starts=[1], prior=[0.9, 0.1])
+    assert beat.rule == EpsilonGreedy(1.0)  # 1/n at the first step
+    assert beat.belief.tolist() == pytest.approx([0.9, 0.1])
+    assert beat.library.performance.mean[1, 0] == pytest.approx(
+        naive_value(transitions[1], np.arange(3.0), [], [0], 0.9)[1]
+    )
+    for arguments, message in (
+        (([transitions[0], transitions[0][:, :1]], np.arange(3.0), {"a": [0]}, 0.9), "same states and actions"),
+        ((transitions, np.arange(3.0), {"a": []}, 0.9), "sets of at least one action"),
+        ((transitions, np.arange(3.0), {"a": [2]}, 0.9), "action set 'a' must be whole numbers from 0 to 1"),
+        ((transitions, np.arange(3.0), {}, 0.9), "sets of at least one action"),
+    ):
+        with pytest.raises(InputError, match=message):
+            Beat.from_tasks(*arguments)

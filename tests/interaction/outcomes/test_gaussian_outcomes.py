@@ -67,9 +67,18 @@ def test_what_is_no_model_is_refused(arguments, message):
         GaussianOutcomes(*arguments)
 
 
-def test_shrinkage_must_be_positive():
-    for shrinkage in (0.0, -1.0, np.nan, np.inf):
-        with pytest.raises(InputError, match="shrinkage must be positive"):
+def test_without_shrinkage_each_pair_has_its_own_variance():
+    samples = np.random.default_rng(1).normal(size=(2, 3, 6))
+    model = GaussianOutcomes.from_samples(samples, shrinkage=0)
+    assert model.deviation == pytest.approx(samples.std(axis=2, ddof=1))
+    samples[0, 1] = 4.0
+    with pytest.raises(InputError, match="shrinkage must be positive where a pair's own samples do not differ"):
+        GaussianOutcomes.from_samples(samples, shrinkage=0)
+
+
+def test_shrinkage_must_not_be_negative():
+    for shrinkage in (-1.0, np.nan, np.inf):
+        with pytest.raises(InputError, match="shrinkage must be at least 0"):
             GaussianOutcomes.from_samples([[[1.0, 2.0]]], shrinkage=shrinkage)
 
 

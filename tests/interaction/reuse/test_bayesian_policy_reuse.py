@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.stats import norm
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.beliefs.learnt_dynamics import HAZARD_WEIGHTS, HAZARDS
@@ -298,3 +299,45 @@ def test_evidence_is_kept_where_a_model_answers_in_one_array_each_time():
     agent.update(0, 1.0)
     agent.update(0, 3.0)
     assert agent.explain().evidence["type 1"] == [-1.0, -3.0]
+
+
+# ---- the printed form --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("rule", ["greedy", "expected-improvement", "probability-of-improvement"])
+def test_the_printed_algorithm_from_samples_step_by_step(rule):
+    # Eq. 4.1, 4.5 and the indices of §4.5.2.1 with the Gaussian of each pair's own samples.
+    random = np.random.default_rng(7)
+    runs = random.normal(random.normal(scale=3, size=(4, 3, 1)), 2.0, (4, 3, 9))
+    mean, deviation = runs.mean(axis=2), runs.std(axis=2, ddof=1)
+    agent = BayesianPolicyReuse.of_thesis(PolicyLibrary.from_samples(runs, shrinkage=0), rule, seed=1)
+    belief = np.full(4, 0.25)
+    for _ in range(10):
+        utility = belief @ mean
+        index = {
+            "greedy": utility,
+            "expected-improvement": belief @ norm.sf(utility.max(), mean, deviation),
+            # U⁺ "larger than the current best estimate", here by 2 % of the range of the means.
+            "probability-of-improvement": belief @ norm.pdf(utility.max() + 0.02 * np.ptp(mean), mean, deviation),
+        }[rule]
+        policy = agent.select()
+        assert policy == int(np.argmax(index))
+        outcome = random.normal(mean[2, policy], deviation[2, policy])
+        agent.update(policy, outcome)
+        belief = belief * norm.pdf(outcome, mean[:, policy], deviation[:, policy])
+        belief /= belief.sum()
+        assert agent.belief == pytest.approx(belief, abs=1e-12)
+
+
+def test_the_printed_algorithm_takes_a_rule_and_refuses_one_of_our_own():
+    library = PolicyLibrary.from_means([[10.0, 0.0], [0.0, 10.0]], 2.0)
+    for name in RULES:
+        if name == "information-directed":
+            with pytest.raises(NotFoundError, match="rule must be one that the thesis prints, greedy"):
+                BayesianPolicyReuse.of_thesis(library, name)
+        else:
+            agent = BayesianPolicyReuse.of_thesis(library, name, prior=[0.2, 0.8])
+            assert getattr(agent.rule, "variant", "thesis") == "thesis"
+            assert agent.belief.tolist() == pytest.approx([0.2, 0.8])
+    own = Greedy()
+    assert BayesianPolicyReuse.of_thesis(library, own).rule is own

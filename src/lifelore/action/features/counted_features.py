@@ -60,8 +60,20 @@ class CountedFeatures:
 
     def entropy(self, names: Sequence[str] | None = None) -> float:
         """H_φ in bits (Eq. 3.11) of the features `names`, default all; 0 without counts."""
+        return action_set_entropy(self._pooled(names))
+
+    def action_entropies(self, names: Sequence[str] | None = None) -> NDArray[np.float64]:
+        """H̄_φ(a) in bits (Eq. 3.9) of each action, (n_actions,); their sum is `entropy`. All 0 without counts."""
+        counts = self._pooled(names)
+        total = counts.sum()
+        of_context = counts.sum(axis=1, keepdims=True)
+        theta = np.divide(counts, of_context, out=np.ones_like(counts), where=counts > 0)
+        return -(counts * np.log2(theta)).sum(axis=0) / total if total else np.zeros(counts.shape[1])
+
+    def _pooled(self, names: Sequence[str] | None) -> NDArray[np.float64]:
+        """Counts by configuration of the features `names`, (n_configurations, n_actions)."""
         names = self.features.names if names is None else names
-        return action_set_entropy(pooled_counts(self.features.coarser(self.codes, names), self.counts)[1])
+        return pooled_counts(self.features.coarser(self.codes, names), self.counts)[1]
 
 
 def action_set_entropy(counts: ArrayLike) -> float:

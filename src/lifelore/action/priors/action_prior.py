@@ -343,7 +343,9 @@ class ActionPrior:
 
     def _sample_many(self, contexts: NDArray[np.int64], uniform: NDArray[np.float64]) -> NDArray[np.int64]:
         if len(self) < MANY or rising(contexts):
-            return draw_by_proportion(self._counts, self._index.places(contexts), 1 / ONE, self.uniform_alpha0, uniform)
+            return draw_by_proportion(
+                self._counts, self._index.places(contexts), 1 / ONE, self.uniform_alpha0, uniform
+            )
         order, in_order = sorted_order(np.ascontiguousarray(contexts))
         actions = np.empty(len(contexts), np.int64)
         actions[order] = self._sample_many(in_order, uniform[order])

@@ -59,7 +59,12 @@ def prior_about(path: str | Path) -> dict[str, Any]:
 
 def prior_bytes(prior: ActionPrior, about: Mapping[str, Any] | None = None) -> bytes:
     """The prior as the bytes of an npz file."""
-    header = {"n_actions": prior.n_actions, "alpha0": prior.uniform_alpha0, "key": prior.key, "about": dict(about or {})}
+    header = {
+        "n_actions": prior.n_actions,
+        "alpha0": prior.uniform_alpha0,
+        "key": prior.key,
+        "about": dict(about or {}),
+    }
     contexts, counts = prior.fixed_point_counts()
     return FORMAT.pack(header, {"contexts": contexts, "counts": counts})
 

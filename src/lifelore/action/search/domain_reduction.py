@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy import sparse
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.mdp import TERMINAL, Tables
@@ -135,6 +136,28 @@ def minimised_domain(
     # Exactly 1 where every outcome lies in Ŝ, because the sum of the probabilities may round to another number.
     mass = np.where(inside.all(axis=2), 1.0, np.minimum((inside * outcome_probs).sum(axis=2), 1 - 1e-16))
     return MinimisedDomain(form, states, pairs, np.where(pairs, mass, 0.0))
+
+
+def minimised_transitions(tables: Tables, domain: MinimisedDomain) -> list[sparse.csr_array]:
+    """T̂(s, a, s') = η(s, a) T(s, a, s') of Def. 3.2.5: one (n_states, n_states) matrix an action.
+
+    Rows of pairs in the domain sum to 1, other rows are 0. With the form "printed" a pair all of whose outcomes
+    leave Ŝ (`MinimisedDomain.without_successor`, η = 1/0) has a row of zeros, too.
+    """
+    follow = tables.next_state
+    inside = domain.pairs[:, :, None] & domain.states[follow]
+    mass = np.where(inside, np.diff(tables.by_pair.outcome_cum, prepend=0.0), 0.0)
+    kept = mass.sum(axis=2, keepdims=True)
+    mass = np.divide(mass, kept, out=np.zeros_like(mass), where=kept > 0)
+    state = np.repeat(np.arange(tables.n_states), tables.n_outcomes)
+    shape = (tables.n_states, tables.n_states)
+    matrices = [
+        sparse.csr_array((mass[:, a].ravel(), (state, follow[:, a].ravel())), shape)
+        for a in range(tables.n_actions)
+    ]
+    for matrix in matrices:
+        matrix.eliminate_zeros()
+    return matrices
 
 
 def _closure(paired: Sequence[tuple[Tables, Pairs]], kept: Pairs) -> States:

@@ -146,7 +146,9 @@ def _solve_all(tables, layer_size, discount, tolerance, value, q):
     for layer in range(value.size // layer_size - 1, -1, -1):
         first = layer * layer_size
         last = first + layer_size
-        rows = Tables(next_state[first:last], reward[first:last], event[first:last], outcome_cum[first:last], starts)
+        rows = Tables(
+            next_state[first:last], reward[first:last], event[first:last], outcome_cum[first:last], starts
+        )
         if _leads_before(rows, first):
             return layer
         _solve_layer(rows, first, discount, tolerance, value)

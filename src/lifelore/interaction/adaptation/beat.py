@@ -10,18 +10,22 @@ The printed ε falls from 0.5 by 0.1 an episode. Every action set gives evidence
 gains no information, and the default is 0.
 """
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.core.matrices import checked_numbers, dense_transitions
+from lifelore.core.mdp import Tables
+from lifelore.core.planning.planning import mean_start_value, optimal_q
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
+from lifelore.interaction.signals.transition_signal import TransitionSignal
 
 Array = NDArray[np.float64]
 
@@ -93,6 +97,69 @@ class Beat:
         self._epsilon = epsilon
         self._generator = seed if isinstance(seed, np.random.Generator) else stream(seed, "beat")
 
+    @classmethod
+    def from_tasks(
+        cls,
+        transitions: Sequence[Any],
+        rewards: Any,
+        action_sets: Mapping[str, ArrayLike],
+        discount: float,
+        *,
+        terminal: ArrayLike = (),
+        starts: ArrayLike | None = None,
+        epsilon: float | str = "1/n",
+        prior: ArrayLike | None = None,
+        seed: int | np.random.Generator = 0,
+    ) -> Self:
+        """Algorithm 9 from the types' MDPs (Eq. 4.7): V is computed by value iteration (line 2).
+
+        V(τ, α) is the mean, over the starts, of the value of the best policy of type τ restricted to the actions
+        of α (§4.8.3.1).
+
+        Parameters
+        ----------
+        transitions : (n_types, n_states, n_actions, n_states) float, or sequence
+            T(s' | s, a; τ) of each type, in any form of `Tables.from_matrices`.
+        rewards, terminal, starts
+            As for `Tables.from_matrices`; the same for all types.
+        action_sets : mapping of str to (n,) int
+            The actions of each set α; in the thesis no two sets share one.
+        discount : float
+            γ in [0, 1).
+        epsilon, prior, seed
+            As for `Beat`; ε is 1/n by default, as printed.
+
+        Raises
+        ------
+        InputError
+            A matrix breaks its rule, types differ in states or actions, or a set is empty or names no action.
+
+        Examples
+        --------
+        >>> sure = [[[0, 1], [1, 0], [0, 1]], [[0, 1], [0, 1], [0, 1]]]
+        >>> shaky = [[[0.8, 0.2], [1, 0], [0.1, 0.9]], [[0, 1], [0, 1], [0, 1]]]
+        >>> sets = {"fast": [0, 1], "slow": [2]}
+        >>> beat = Beat.from_tasks([sure, shaky], [0.0, 1.0], sets, 0.9, terminal=1, epsilon=0.0)
+        >>> beat.library.performance.mean.round(2).tolist()
+        [[1.0, 1.0], [0.71, 0.99]]
+        >>> beat.update("fast", (0, 0, 0))
+        >>> beat.belief.tolist(), beat.library.policies[beat.select()]
+        ([0.0, 1.0], 'slow')
+        """
+        tables = [Tables.from_matrices(each, rewards, terminal, starts) for each in transitions]
+        if len({each.next_state.shape[:2] for each in tables}) != 1:
+            raise InputError("transitions must be of types with the same states and actions, at least one type")
+        n_actions = tables[0].n_actions
+        sets = {
+            name: checked_numbers(given, n_actions, f"action set '{name}'") for name, given in action_sets.items()
+        }
+        if not sets or not all(len(chosen) for chosen in sets.values()):
+            raise InputError(f"action_sets must be sets of at least one action each, got {dict(action_sets)}")
+        values = [[_value(each, chosen, discount) for chosen in sets.values()] for each in tables]
+        signal = TransitionSignal(np.stack([dense_transitions(each) for each in tables]))
+        library = PolicyLibrary.from_means(values, 1.0, policies=tuple(sets), signal=signal)
+        return cls(library, epsilon=epsilon, prior=prior, seed=seed)
+
     @property
     def log_belief(self) -> Array:
         """log β(τ), (n_types,); a copy."""
@@ -136,3 +203,10 @@ class Beat:
     def end_episode(self) -> None:
         """Count a finished episode; the belief about the user stays."""
         self.episode += 1
+
+
+def _value(tables: Tables, actions: NDArray[np.int64], discount: float) -> float:
+    """V of the best policy that takes only these actions, mean over the starts."""
+    by_pair = tables.by_pair
+    parts = {name: getattr(by_pair, name)[:, actions] for name in ("next_state", "reward", "event", "outcome_cum")}
+    return mean_start_value(tables, optimal_q(by_pair._replace(**parts), discount).max(axis=1))

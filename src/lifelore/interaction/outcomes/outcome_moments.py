@@ -157,10 +157,11 @@ def moments(rows: OutcomeRows, shrinkage: float = 5.0, gaps: bool = False) -> Ou
     Raises
     ------
     InputError
-        `shrinkage` is not positive and finite, a pair has no sample and `gaps` is false, or the values overflow.
+        `shrinkage` is negative or infinite, or 0 and a pair's own samples do not differ; a pair has no sample and
+        `gaps` is false; or the values overflow.
     """
-    if not (shrinkage > 0 and np.isfinite(shrinkage)):
-        raise InputError(f"shrinkage must be positive and finite, got {shrinkage}")
+    if not (shrinkage >= 0 and np.isfinite(shrinkage)):
+        raise InputError(f"shrinkage must be at least 0 and finite, got {shrinkage}")
     found = _moments(checked_rows(rows, gaps), shrinkage)
     found.guess_gaps()
     return found
@@ -174,6 +175,8 @@ def _moments(rows: OutcomeRows, shrinkage: float, pooled: float | None = None) -
     if pooled is None:
         pooled = max(_pooled(squares, count, mean), least_variance(rows.values))
     freedom = np.where(count > 0, shrinkage + count - 1, shrinkage)
+    if not shrinkage and not ((count > 1) & (squares > LEAST_DEVIATION**2 * freedom)).all():
+        raise InputError("shrinkage must be positive where a pair's own samples do not differ, got 0")
     return OutcomeMoments(mean, (shrinkage * pooled + squares) / freedom, count, freedom, pooled, shrinkage)
 
 

@@ -9,19 +9,20 @@ signal is from. Signals may come late, in any order, or not at all. Where an epi
 """
 
 from collections import deque
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Models
 from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, Evidence, Explanation, relative_evidence, two_best
 from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.reuse.reuse_algorithm import Dynamics, ReuseAlgorithm
-from lifelore.interaction.selection import SelectionRule, rule_of
+from lifelore.interaction.selection import SelectionRule, printed_rule, rule_of
 from lifelore.interaction.selection.choice import Available, available_mask, best_policies
 
 Array = NDArray[np.float64]
@@ -116,6 +117,43 @@ class BayesianPolicyReuse:
         self._evidence: deque[Evidence] = deque(maxlen=MAX_EVIDENCE)
         if horizon is not None and not horizon >= 1:
             raise InputError(f"horizon must be at least 1, got {horizon}")
+
+    @classmethod
+    def of_thesis(
+        cls,
+        library: PolicyLibrary,
+        rule: SelectionRule | str = "expected-improvement",
+        *,
+        prior: ArrayLike | None = None,
+        seed: int | np.random.Generator = 0,
+    ) -> Self:
+        """Algorithm 8 as printed: models taken for the truth, a type that never changes, a rule in its printed form.
+
+        Parameters
+        ----------
+        library : PolicyLibrary
+            Where it is fitted to samples, ``from_samples(…, shrinkage=0)`` gives each pair its own variance.
+        rule : str or SelectionRule
+            A name stands for `printed_rule`; a rule is taken as it is.
+        prior : (n_types,) float, optional
+            G₀; the library's prior by default.
+        seed : int or numpy generator
+
+        Raises
+        ------
+        NotFoundError
+            The thesis prints no rule of that name.
+
+        Examples
+        --------
+        >>> library = PolicyLibrary.from_means([[10.0, 0.0], [0.0, 10.0]], 2.0)
+        >>> agent = BayesianPolicyReuse.of_thesis(library, "greedy")
+        >>> agent.update(0, 4.0)
+        >>> agent.belief.round(3).tolist()  # densities of 4 under 10 ± 2 and 0 ± 2: 4.5 and 2 squared deviations
+        [0.076, 0.924]
+        """
+        chosen = printed_rule(rule) if isinstance(rule, str) else rule
+        return cls(library, chosen, prior, TypeDynamics.static(), seed=seed, models="plug-in")
 
     # ---- the two halves of an episode ------------------------------------------------------------------
 

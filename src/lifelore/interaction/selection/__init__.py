@@ -51,7 +51,7 @@ BEFORE: dict[str, dict[str, Any]] = {
 __all__ = [
     "DEFAULT_RULE", "RULES", "BeliefEntropy", "BeliefSampling", "EpsilonGreedy", "ExpectedImprovement", "Greedy",
     "InformationDirected", "KnowledgeGradient", "ProbabilityOfImprovement", "SelectionRule",
-    "ValueOfPerfectInformation", "choose", "default_rule", "propensities", "restored_rule", "rule_named",
+    "ValueOfPerfectInformation", "choose", "default_rule", "printed_rule", "propensities", "restored_rule", "rule_named",
     "rule_of", "tied_shares",
 ]  # fmt: skip
 
@@ -67,6 +67,26 @@ def rule_named(name: str, **settings) -> SelectionRule:
     if name not in RULES:
         raise NotFoundError(f"rule must be one of {', '.join(RULES)}, got {name!r}")
     return RULES[name](**settings)
+
+
+def printed_rule(name: str) -> SelectionRule:
+    """The rule of that name as the thesis prints it, §4.5: ``variant="thesis"`` where it has variants.
+
+    Raises
+    ------
+    NotFoundError
+        There is no rule of that name, or it is not one of the thesis's.
+
+    Examples
+    --------
+    >>> printed_rule("knowledge-gradient").variant
+    'thesis'
+    """
+    rule = rule_named(name)
+    if isinstance(rule, InformationDirected):
+        printed = ", ".join(other for other in RULES if other != name)
+        raise NotFoundError(f"rule must be one that the thesis prints, {printed}, got '{name}'")
+    return rule_named(name, variant="thesis") if hasattr(rule, "variant") else rule
 
 
 def default_rule(library: Any) -> SelectionRule:

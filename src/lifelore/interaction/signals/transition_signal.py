@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 
 class TransitionSignal(StepModel):
-    """Signals that are sequences of (s, a, s'), or (s, s') where there is a single action.
+    """Signals that are sequences of (s, a, s'), or (s, s') where there is a single action; or one such step.
 
     Parameters
     ----------
@@ -93,6 +93,8 @@ def _triples(signal: ArrayLike) -> NDArray[np.int64]:
         found = np.array(None)
     if not found.size:
         return np.empty((0, 3), np.int64)
+    if found.ndim == 1:
+        found = found[None]  # a single step
     if (
         found.dtype.kind in "iuf"
         and found.ndim == 2

@@ -3,7 +3,7 @@
 import time
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -29,7 +29,8 @@ from lifelore.agent.personalise.study import (
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.feature_prior import FeaturePrior
-from lifelore.interaction.selection import DEFAULT_RULE
+from lifelore.interaction.selection import DEFAULT_RULE, printed_rule, rule_named
+from lifelore.interaction.selection.rule import check_variant
 from lifelore.memory import Memory
 
 MODELS = ("auto", "gaussian", "student-t", "categorical", "joint-normal")
@@ -54,6 +55,8 @@ class FitSettings:
         As in `Study`.
     seed : int
         For finding types.
+    variant : {"standard", "thesis"}
+        ``thesis``: the rule in its printed form, see `printed_rule`.
     """
 
     name: str = "default"
@@ -66,9 +69,13 @@ class FitSettings:
     change: Change = LEARNT
     models: str = "uncertain"
     seed: int = 0
+    variant: str = "standard"
 
     def __post_init__(self) -> None:
         check_study_name(self.name)
+        check_variant(self.variant)
+        if self.variant == "thesis":
+            printed_rule(self.rule)
         if self.model not in MODELS:
             raise NotFoundError(f"model must be one of {', '.join(MODELS)}, got '{self.model}'")
         if self.types is not None and self.types < 1:
@@ -170,9 +177,11 @@ def _study(log: ReuseLog, found: Fitted, settings: FitSettings, earlier: dict[st
         raise InputError("the logs must hold a policy that is not retired, got none")
     fitted = {"rows": _used(log, typed), "users": len(typed.users(log)[0]), "found": typed.found}
     fitted["time"] = int(time.time())
+    rule = printed_rule(settings.rule) if settings.variant == "thesis" else rule_named(settings.rule)
     return Study(
         settings.name, library, states, priors_by_context(log, found), settings.control,
         settings.incumbent, settings.rule, settings.explore, settings.change, settings.models, fitted,
+        asdict(rule),  # pyright: ignore[reportArgumentType]
         feature_prior=_feature_prior(log, typed, library.prior, settings.seed),
     )  # fmt: skip
 
