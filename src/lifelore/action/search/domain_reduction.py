@@ -249,16 +249,28 @@ def _paired(tasks: Sequence[Tables], policies: Sequence[ArrayLike]) -> list[tupl
     if not tasks or len(tasks) != len(policies):
         raise InputError(f"give a policy for each task, at least one, got {len(tasks)} and {len(policies)}")
     paired = [(tables, _checked(tables, best)) for tables, best in zip(tasks, policies, strict=True)]
-    first = tasks[0]
     for number, tables in enumerate(tasks):
-        same = tables.next_state.shape == first.next_state.shape
-        if not (same and np.array_equal(tables.outcome_cum, first.outcome_cum)):
-            raise InputError(
-                f"tasks must be of one domain, got task {number} with other states, actions or outcomes"
-            )
-        if not np.array_equal(tables.next_state, first.next_state):
-            raise InputError(f"tasks must share their transitions (§3.2.2), got others in task {number}")
+        _check_shared(tables, tasks[0], number)
     return paired
+
+
+def _check_shared(tables: Tables, first: Tables, number: int) -> None:
+    """Refuse a task with other transitions than the first, wherever both have an action to take."""
+    if tables.next_state.shape != first.next_state.shape:
+        raise InputError(f"tasks must be of one domain, got task {number} with other states, actions or outcomes")
+    acting = ~(_ended(tables) | _ended(first))
+    one, other = (
+        (task.next_state[acting], np.broadcast_to(task.outcome_cum, task.next_state.shape)[acting])
+        for task in (tables, first)
+    )
+    if not all(np.array_equal(mine, its) for mine, its in zip(one, other, strict=True)):
+        raise InputError(f"tasks must share their transitions (§3.2.2), got others in task {number}")
+
+
+def _ended(tables: Tables) -> NDArray[np.bool_]:
+    """States that a task never leaves because they end it, (n_states,)."""
+    stays = tables.next_state == np.arange(tables.n_states)[:, None, None]
+    return (stays & ((tables.event & TERMINAL) != 0)).all(axis=(1, 2))
 
 
 def _boolean(best: ArrayLike) -> Pairs:
