@@ -42,7 +42,7 @@ def read_results(results: str | Path = RESULTS) -> list[dict]:
 
 def render_pages(results: Sequence[Mapping]) -> dict[str, str]:
     """The pages as Markdown, by file name under ``docs``."""
-    pages = {"reproduction/index.md": index_page(results), "gallery.md": gallery(results)}
+    pages = {"reproduction/index.md": index_page(results), "reproduction/gallery.md": gallery(results)}
     for chapter, title in CHAPTERS.items():
         sections = [section(result) for result in results if chapter_of(result["claim"]) == chapter]
         if sections:
@@ -134,12 +134,12 @@ def section(result: Mapping) -> str:
 
 def gallery(results: Sequence[Mapping]) -> str:
     """Every figure that was drawn again, as the thesis numbers them, two a row; then claims without a figure."""
-    found = {number: (f"pictures/{name}.png", "") for number, name in PICTURES.items()}
+    found = {number: (f"../pictures/{name}.png", "") for number, name in PICTURES.items()}
     rest = {}
     for result in results:
         claim = claim_of(result["claim"])
-        file = f"../reproduction/results/{claim.id}/figure.png"
-        words = f"[{claim.id}](reproduction/{_file(chapter_of(claim.id))}#{anchor(claim.id)}) {claim.title}"
+        file = f"../../reproduction/results/{claim.id}/figure.png"
+        words = f"[{claim.id}]({_file(chapter_of(claim.id))}#{anchor(claim.id)}) {claim.title}"
         for number in claim.figure:
             found.setdefault(number, (file, words))
         if not claim.figure:

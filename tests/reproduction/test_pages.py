@@ -46,7 +46,7 @@ def test_every_claim_has_its_section_and_its_place_on_the_first_page():
 
 
 def test_the_gallery_is_in_the_thesis_s_order():
-    names = re.findall(r"\*\*(Figure|Table) (\d)\.(\d+)", PAGES["gallery.md"])
+    names = re.findall(r"\*\*(Figure|Table) (\d)\.(\d+)", PAGES["reproduction/gallery.md"])
     places = [(int(chapter), int(number), kind) for kind, chapter, number in names]
     assert places == sorted(set(places))
     assert {(3, 3), (3, 7), (4, 8), (4, 10), (4, 16)} <= {place[:2] for place in places}
