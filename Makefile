@@ -20,7 +20,7 @@ DEEP_TESTS = $(shell grep -rl --include='*.py' 'mark\.deep' tests)
 
 PYTHON_FILES := src reproduction benchmarks tests examples docs/conf.py docs/pictures
 
-.PHONY: help setup setup-test demo test test-fast test-deep test-cluster coverage check format bench soak docs reproduction-pages \
+.PHONY: help setup setup-test demo test test-fast test-deep test-cluster coverage check format bench soak fuzz docs reproduction-pages \
 	wheel-test reproduce clean
 
 help: ## Name every target
@@ -97,6 +97,10 @@ $(BIN)/.docs: $(BIN)/.test
 
 wheel-test: setup-test ## The wheel in a clean environment outside the checkout; PYTHONS="python3.12 python3.13"
 	BUILDER=$(abspath $(BIN)/python) .ci/wheel-test $(PYTHONS)
+
+fuzz: setup-test ## Readers under damaged input, an hour each; NAME=pcd SECONDS=60
+	$(PIP) --editable '.[fuzz]'
+	$(BIN)/python -m fuzz $(NAME) --seconds $(or $(SECONDS),3600)
 
 reproduce: setup ## Every built claim at full size
 	$(BIN)/lifelore reproduce --full
