@@ -59,7 +59,7 @@ if TYPE_CHECKING:
     from lifelore.perception.scene_perception import perceived_scene as perceived_scene
     from lifelore.perception.segmentation.table_frame import to_scene as to_scene
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 _HOME = {
     "ActionPrior": "lifelore.action.priors.action_prior",

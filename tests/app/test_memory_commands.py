@@ -3,6 +3,7 @@
 import json
 import re
 import sqlite3
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from lifelore.app.memory_table import print_memory
 from lifelore.core.errors import InputError
 from lifelore.memory import open_memory
 
+ROOT = Path(__file__).parents[2]
 OVERVIEW = {"location", "schema", "robots", "lore", "forgotten", "forgotten_records", "buildings"}
 REPORT = {"lifelore", "python", "system", "cores", "packages", "checks"}
 
@@ -175,7 +177,9 @@ def test_ten_thousand_of_a_sort_are_one_line(capsys):
 def test_doctor(ask, known):
     report = ask("doctor", "--memory", known, "--json").document
     assert set(report) == REPORT
-    assert all(set(entry) == {"name", "version", "for"} for entry in report["packages"])
+    assert all(set(entry) == {"name", "version", "for", "extra"} for entry in report["packages"])
+    extras = {entry["extra"] for entry in report["packages"]} - {None}
+    assert extras <= set(tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"])
     assert all(set(entry) == {"what", "ok", "finding", "advice"} for entry in report["checks"])
     checks = {entry["what"]: entry for entry in report["checks"]}
     assert set(checks) == {"kernels", "kernel cache", "memory", "C compiler"}

@@ -30,16 +30,21 @@ PACKAGES = {
     "pypcd4": "PCD clouds",
     "trimesh": "PLY clouds and meshes",
     "clingo": "logic over scenes",
-    "psycopg": "memory on PostgreSQL (extra postgres)",
-    "minigrid": "MiniGrid worlds (extra envs)",
-    "mujoco": "simulated tabletop scenes (extra sim)",
-    "unified-planning": "solving scenes as planning problems (extra planning)",
-    "rosbags": "clouds from rosbags (extra ros)",
-    "rerun-sdk": "logs of scenes for Rerun (extra view)",
-    "stable-baselines3": "priors in deep Q-learning (extra deep)",
-    "mabwiser": "a peer in benchmarks (extra peers)",
-    "vowpalwabbit": "a peer in benchmarks (extra peers)",
 }
+"""Packages that every installation has, and what they are for."""
+EXTRAS = {
+    "fastapi": ("web", "serve, live --serve"),
+    "psycopg": ("postgres", "--memory postgresql://… of every verb"),
+    "rosbags": ("ros", "perceive and learn-from of rosbags, perceive --log *.mcap"),
+    "rerun-sdk": ("view", "perceive --log *.rrd"),
+    "mujoco": ("sim", "scenes, live --domain tabletop"),
+    "unified-planning": ("planning", "perceive --plan"),
+    "minigrid": ("envs", "bridges.minigrid_view: MiniGrid worlds for live_in"),
+    "stable-baselines3": ("deep", "bridges.sb3: action priors in deep Q-learning"),
+    "openfeature-sdk": ("openfeature", "bridges.openfeature_provider: studies as flags"),
+    "distributed": ("cluster", "reproduce --engine dask"),
+}
+"""Packages of extras: the extra, and the verbs and options that need it."""
 SLOW = 5.0
 """Million Q-learning steps a second; slower kernels are probably not compiled."""
 RESTORE = "restore an export into a new memory: lifelore memory import EXPORT --memory NEW"
@@ -51,7 +56,8 @@ def examine(memory: str | None = None) -> dict:
     Returns
     -------
     dict
-        ``lifelore``, ``python``, ``system``, ``cores``; ``packages``: [{"name", "version" or None, "for"}];
+        ``lifelore``, ``python``, ``system``, ``cores``; ``packages``: [{"name", "version" or None, "for", "extra" or
+        None}];
         ``checks``: [{"what", "ok", "finding", "advice"}]; the advice is None where the check is ok.
     """
     return {
@@ -59,7 +65,10 @@ def examine(memory: str | None = None) -> dict:
         "python": platform.python_version(),
         "system": platform.platform(terse=True),
         "cores": usable_cores(),
-        "packages": [{"name": name, "version": _version(name), "for": use} for name, use in PACKAGES.items()],
+        "packages": [
+            {"name": name, "version": _version(name), "for": use, "extra": extra}
+            for name, (extra, use) in ({name: (None, use) for name, use in PACKAGES.items()} | EXTRAS).items()
+        ],
         "checks": [_kernels(), _kernel_cache(), _memory(memory), _compiler()],
     }
 
