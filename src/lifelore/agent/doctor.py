@@ -56,8 +56,8 @@ def examine(memory: str | None = None) -> dict:
     Returns
     -------
     dict
-        ``lifelore``, ``python``, ``system``, ``cores``; ``packages``: [{"name", "version" or None, "for", "extra" or
-        None}];
+        ``lifelore``, ``python``, ``system``, ``cores``;
+        ``packages``: [{"name", "version" or None, "for", "extra" or None}];
         ``checks``: [{"what", "ok", "finding", "advice"}]; the advice is None where the check is ok.
     """
     return {

@@ -59,14 +59,14 @@ def _print(report: dict) -> None:
         f"lifelore {report['lifelore']}, Python {report['python']}, {report['cores']} cores, {report['system']}",
         highlight=False,
     )
-    always = [entry for entry in report["packages"] if entry["extra"] is None]
-    console.print(", ".join(f"{entry['name']} {entry['version'] or 'missing'}" for entry in always), highlight=False)
+    always = [f"{one['name']} {one['version'] or 'missing'}" for one in report["packages"] if not one["extra"]]
+    console.print(", ".join(always), highlight=False)
+    optional = [entry for entry in report["packages"] if entry["extra"]]
     extras = Table("extra", "here", "needed for")
-    for entry in report["packages"]:
-        if entry["extra"]:
-            extras.add_row(entry["extra"], entry["version"] or "–", entry["for"])
+    for entry in optional:
+        extras.add_row(entry["extra"], entry["version"] or "–", entry["for"])
     console.print(extras)
-    if missing := sorted({entry["extra"] for entry in report["packages"] if entry["extra"] and not entry["version"]}):
+    if missing := sorted(entry["extra"] for entry in optional if not entry["version"]):
         console.print(f"For what is missing: pip install 'lifelore[{','.join(missing)}]'", markup=False)
     for entry in report["checks"]:
         console.print(f"{'ok  ' if entry['ok'] else 'BAD '} {entry['what']}: {entry['finding']}", highlight=False)
