@@ -6,22 +6,25 @@ import math
 import numpy as np
 import pytest
 
+from lifelore.agent.live.output.move_costs import MoveCosts
 from lifelore.agent.live.output.nav2_masks import (
+    FULL_SPEED,
     KEEP_OUT,
     MOST_COST,
     NO_OPINION,
+    SLOWEST,
     body_space,
-    cost_mask,
     keepout_mask,
     on_map,
     place_costs,
+    place_mask,
+    place_speeds,
     write_directions,
     write_masks,
 )
-from lifelore.core.learning.known_world import WorldModel, unknown_world
 from lifelore.domains.buildings.building import building_from_map
 from lifelore.domains.buildings.floor import Floor, floor_of
-from lifelore.domains.buildings.occupancy_map import FREE, OccupancyMap, read_occupancy_map
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap, read_occupancy_map
 from lifelore.domains.grids.grid_world import Frame, GridWorld
 
 NORTH, SOUTH, EAST, WEST = range(4)
@@ -32,39 +35,45 @@ def corridor() -> GridWorld:
     return GridWorld.from_free("corridor", np.ones((1, 4), bool), frame=Frame(0.5, (10.0, 20.0, math.pi / 2)))
 
 
-def seen(world: GridWorld) -> WorldModel:
-    """A model in which all moves east and west are known, also the two refused ones at the ends."""
-    model = unknown_world(world.n_states, 4)
-    model.target[:, [EAST, WEST]] = world.neighbour[:, [EAST, WEST]]
-    model.target[0, WEST], model.target[3, EAST] = 0, 3
-    model.percept[:] = world.percepts
-    return model
+def costs_of(world: GridWorld, slow: dict[tuple[int, int], float], price: dict[tuple[int, int], float]) -> MoveCosts:
+    """Costs where a free move takes 1 s; some moves are slower, and some have a price of refusals."""
+    seconds, refusals = np.ones((world.n_states, 4)), np.zeros((world.n_states, 4))
+    for move, value in slow.items():
+        seconds[move] = value
+    for move, value in price.items():
+        refusals[move] = value
+    cost = np.where(world.neighbour >= 0, seconds + refusals, np.inf)
+    return MoveCosts(world, seconds, (refusals > 0) * 0.5, cost, 1.0)
 
 
-def test_bumps_cost_by_their_share_of_the_tried_moves(corridor):
-    # In both end places, one of two tried moves was refused: 100 · 0.5 · 1/2.
-    assert place_costs(corridor, seen(corridor), None).tolist() == [25, 0, 0, 25]
+ALL = np.ones(4, bool)
 
 
-def test_places_into_which_the_prior_seldom_leads_cost_more(corridor):
-    probs = np.zeros((4, 4))
-    probs[:, EAST], probs[:, WEST] = 0.75, 0.25
-    # Into place 0 leads 0.25 (from 1); into 1: 0.75 + 0.25; into 2 likewise; into 3: 0.75.
-    model = seen(corridor)
-    model.target[0, WEST] = model.target[3, EAST] = -1
-    assert place_costs(corridor, model, probs).tolist() == [38, 0, 0, 12]  # 100 · 0.5 · 0.75, and · 0.25 (rounded)
+def test_a_slow_move_costs_on_both_its_places(corridor):
+    costs = costs_of(corridor, {(1, EAST): 5.0}, {})
+    # Place 0 has two moves of 1 s; places 1 and 2 have 4 moves with 8 s in sum; 100 · (1 - 1/2).
+    assert place_costs(costs, ALL).tolist() == [0, 50, 50, 0]
+    # The mean of their moves takes 2 s.
+    assert place_speeds(costs, ALL).tolist() == [FULL_SPEED, 50, 50, FULL_SPEED]
 
 
-def test_a_refused_move_that_the_map_allows_costs_most_on_both_sides(corridor):
-    model = seen(corridor)
-    model.target[1, EAST] = 1
-    assert place_costs(corridor, model, None).tolist() == [25, MOST_COST, MOST_COST, 25]
+def test_refusals_cost_and_do_not_limit_the_speed(corridor):
+    costs = costs_of(corridor, {}, {(1, EAST): 4.0, (0, WEST): 1000.0})
+    # The move west of place 0 leads into a wall, which nav2 inflates itself.
+    assert place_costs(costs, ALL).tolist() == [0, 50, 50, 0]
+    assert set(place_speeds(costs, ALL)) == {FULL_SPEED}
 
 
-def test_places_never_visited_have_no_cost(corridor):
-    model = seen(corridor)
-    model.percept[2] = -1
-    assert place_costs(corridor, model, None).tolist() == [25, 0, NO_OPINION, 25]
+def test_costs_and_speeds_have_their_limits(corridor):
+    costs = costs_of(corridor, {(1, EAST): 1e4}, {})
+    assert place_costs(costs, ALL).tolist() == [0, MOST_COST, MOST_COST, 0]
+    assert place_speeds(costs, ALL).tolist() == [FULL_SPEED, SLOWEST, SLOWEST, FULL_SPEED]
+
+
+def test_places_never_visited_have_no_opinion(corridor):
+    costs, known = costs_of(corridor, {(1, EAST): 5.0}, {}), np.array([True, True, False, True])
+    assert place_costs(costs, known).tolist() == [0, 50, NO_OPINION, 0]
+    assert place_speeds(costs, known).tolist() == [FULL_SPEED, 50, FULL_SPEED, FULL_SPEED]
 
 
 def room(origin=(0.0, 0.0, 0.0)) -> tuple[OccupancyMap, GridWorld, Floor]:
@@ -95,7 +104,7 @@ def test_masks_of_a_half_known_room():
     assert keepout[10, 12] == 0
     assert keepout[10, 16] == 0  # the robot's body at 1.45 m reaches to 1.65 m
     assert keepout[10, 17] == KEEP_OUT
-    costs = cost_mask(floor, np.where(known, 7, NO_OPINION).astype(np.uint8))
+    costs = place_mask(floor, np.full(world.n_states, 7, np.uint8), known, NO_OPINION)
     assert costs[10, 12] == 7
     assert costs[10, 20] == costs[0, 5] == NO_OPINION
     assert ((costs == 7) <= (occupancy.state == FREE)).all()
@@ -115,18 +124,50 @@ def test_a_mask_is_laid_on_the_users_own_map():
 
 def test_masks_are_written_in_the_scale_of_nav2(tmp_path):
     occupancy, world, floor = room((-1.0, 2.0, 0.0))
-    model = unknown_world(world.n_states, 4)
-    model.percept[:] = world.percepts
-    write_masks(tmp_path, world, model, None, floor, occupancy)
+    write_masks(tmp_path, costs_of(world, {}, {}), np.ones(world.n_states, bool), floor, occupancy)
     keepout = read_occupancy_map(tmp_path / "keepout.yaml")
     assert (keepout.state.shape, keepout.resolution, keepout.origin) == ((22, 32), 0.1, (-1.0, 2.0, 0.0))
     assert np.array_equal(keepout.state == FREE, body_space(floor, np.ones(world.n_states, bool)))
-    text = (tmp_path / "costs.yaml").read_text(encoding="utf-8")
-    assert text.startswith("# Cost of driving here")
-    assert "mode: raw" in text
-    header, pixels = (tmp_path / "costs.pgm").read_bytes().split(b"\n255\n", 1)
-    assert header == b"P5\n32 22"
-    assert set(pixels) == {0, NO_OPINION}
+    for name, first, values in (("costs", "Time and risk", {0, NO_OPINION}), ("speed", "Percent", {FULL_SPEED})):
+        text = (tmp_path / f"{name}.yaml").read_text(encoding="utf-8")
+        assert text.startswith(f"# {first}")
+        assert "mode: raw" in text
+        header, pixels = (tmp_path / f"{name}.pgm").read_bytes().split(b"\n255\n", 1)
+        assert header == b"P5\n32 22"
+        assert set(pixels) == values
+
+
+def test_the_masks_of_a_turned_map_have_no_yaw_and_keep_out_of_its_walls(tmp_path):
+    """nav2 ignores the yaw of a mask's origin: pixel (i, j) covers origin + (j, i) · resolution."""
+    occupancy, world, floor = room((-1.0, 2.0, 0.3))
+    write_masks(tmp_path, costs_of(world, {}, {}), np.ones(world.n_states, bool), floor, occupancy)
+    keepout = read_occupancy_map(tmp_path / "keepout.yaml")
+    assert keepout.origin[2] == 0
+
+    def seen(points: np.ndarray) -> np.ndarray:
+        column, row = np.floor((points - keepout.origin[:2]) / keepout.resolution).astype(int).T
+        return keepout.state[len(keepout.state) - 1 - row, column]
+
+    assert (seen(floor.metres(np.argwhere(occupancy.state == OCCUPIED))) == OCCUPIED).all()
+    # Two pixels off the walls on, the robot drives: at each of its places nothing is kept out.
+    assert (seen(floor.metres(np.argwhere(floor.state >= 0))) == FREE).all()
+    assert seen(np.array([keepout.origin[:2]]) + 0.05) == OCCUPIED  # outside of the picture
+
+
+def test_equal_obstacles_cost_alike(tmp_path):
+    """Table legs at distances that are no multiple of a cell: none costs anything, whatever cell it lies in."""
+    state = np.ones((62, 122), np.uint8)
+    state[1:-1, 1:-1] = FREE
+    legs = [(row, column) for row in (15, 40) for column in range(13, 115, 17)]
+    for leg in legs:
+        state[leg] = OCCUPIED
+    occupancy = OccupancyMap(state, 0.05)
+    world = building_from_map(occupancy, 0.5, 0.2)
+    floor, known = floor_of(occupancy, world), np.ones(world.n_states, bool)
+    write_masks(tmp_path, costs_of(world, {}, {}), known, floor, occupancy)
+    costs = np.frombuffer((tmp_path / "costs.pgm").read_bytes()[-state.size :], np.uint8).reshape(state.shape)
+    assert set(np.unique(costs)) == {0, NO_OPINION}
+    assert len({costs[row - 3 : row + 4, column - 3 : column + 4].tobytes() for row, column in legs}) == 1
 
 
 def test_directions_turn_with_the_map(corridor, tmp_path):
