@@ -49,12 +49,13 @@ def test_memory_adds_what_two_robots_observe_in_any_order(tmp_path):
     drives = {"a": ([2, 3], [2, 2], [NOON, NOON + 2], [3.0, np.nan]), "b": ([2], [2], [NOON], [5.0])}
     for order in ("ab", "ba"):
         with open_memory(str(tmp_path / f"{order}.db")) as memory:
+            grid = travel_in(world).grid
             for robot in order:
                 travel = travel_in(world)
                 travel.observe(*drives[robot])
                 memory.contribute(robot, travel.news(), process=robot, seq=0, task={})
                 assert travel.news() == []
-            recalled = Travel.recalled(world, travel.grid, memory)
+            recalled = Travel.recalled(world, grid, memory)
         assert recalled.passes.passes.tolist() == [2, 0]
         assert recalled.passes.refusals.tolist() == [0, 1]
         assert recalled.passes.log_seconds[0] == pytest.approx(np.log(15), abs=1e-5)

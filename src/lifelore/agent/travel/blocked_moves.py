@@ -1,9 +1,9 @@
 """Probability that each move is refused now: a belief that refusals raise, passes lower and age brings back.
 
 A place is blocked or open, and all moves into it are refused or not. A refusal is seen with probability
-`REFUSED_IF_BLOCKED` or `REFUSED_IF_OPEN`. After a half-life without news, half of the difference from the base rate
-is left. The base rate is the share of refusals, shrunk from the building to the hours of the place, so that a door
-that is closed every night is expected to be closed at night and not by day.
+`REFUSED_IF_BLOCKED` or `REFUSED_IF_OPEN`. After a half-life without news, half of the difference from the base
+rate is left. The base rate is the share of refusals, shrunk from the building to the hours of the place, so that a
+door that is closed every night is expected to be closed at night and not by day.
 """
 
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.travel.edge_times import DAY, N_HOURS, hour_of, smoothed_hours
+from lifelore.agent.travel.edge_times import DAY, N_HOURS, hour_of, smoothed_hours, summed
 from lifelore.agent.travel.passes import Passes
 from lifelore.domains.grids.grid_world import GridWorld
 
@@ -80,9 +80,8 @@ def _events(world: GridWorld, passes: Passes) -> _Events:
 def _base_rates(world: GridWorld, events: _Events, minute: int) -> NDArray[np.float64]:
     """Share of refusals by place and hour, (n_states, 48)."""
     weight = 0.5 ** (np.maximum(minute - events.minute, 0) / DAY / BASE_HALF_LIFE)
-    slot, n = events.place * N_HOURS + hour_of(events.minute), world.n_states * N_HOURS
-    refused = np.bincount(slot, weight * events.refused, minlength=n).reshape(-1, N_HOURS)
-    every = np.bincount(slot, weight, minlength=n).reshape(-1, N_HOURS)
+    slot, shape = events.place * N_HOURS + hour_of(events.minute), (world.n_states, N_HOURS)
+    refused, every = summed(slot, weight * events.refused, shape), summed(slot, weight, shape)
     building = (STRENGTH * BASE + refused.sum()) / (STRENGTH + every.sum())
     return (STRENGTH * building + smoothed_hours(refused)) / (STRENGTH + smoothed_hours(every))
 

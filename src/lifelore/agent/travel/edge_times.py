@@ -4,8 +4,8 @@ log seconds = log(cell / speed) + pace of the building + neighbourhood + move + 
 + hour of the neighbourhood + hour of the move + noise.
 
 Each level explains what the levels before it left: its effect is the sum of weighted residuals divided by the sum
-of weights plus a strength. A level without passes adds nothing. Weights halve with age, so that a corridor that has
-become slow is noticed. Neighbouring hours are smoothed; hours of weekend days are hours of their own.
+of weights plus a strength. A level without passes adds nothing. Weights halve with age, so that a corridor that
+has become slow is noticed. Neighbouring hours are smoothed; hours of weekend days are hours of their own.
 """
 
 from typing import NamedTuple
@@ -103,11 +103,15 @@ def _effects(
     """The effect of each group, (n, 48) or (n, 1)."""
     width = N_HOURS if level.hourly else 1
     slot = group * width + (hour if level.hourly else 0)
-    sums = np.bincount(slot, weight * left, minlength=n * width).reshape(n, width)
-    counts = np.bincount(slot, weight, minlength=n * width).reshape(n, width)
+    sums, counts = summed(slot, weight * left, (n, width)), summed(slot, weight, (n, width))
     if level.hourly:
         sums, counts = smoothed_hours(sums), smoothed_hours(counts)
     return sums / (counts + level.strength)
+
+
+def summed(slot: NDArray[np.int64], values: NDArray[np.float64], shape: tuple[int, int]) -> NDArray[np.float64]:
+    """The sum of the values of each slot, a table of `shape` in row order; `slot` and `values` (n,)."""
+    return np.bincount(slot, values, minlength=shape[0] * shape[1]).reshape(shape).astype(np.float64)
 
 
 def smoothed_hours(by_hour: NDArray[np.float64]) -> NDArray[np.float64]:

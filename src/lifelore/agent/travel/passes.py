@@ -42,7 +42,7 @@ class Passes(NamedTuple):
 
     def where(self, chosen: NDArray[np.bool_]) -> "Passes":
         """The chosen rows; `chosen` (n,)."""
-        return Passes(*(column[chosen] for column in self))
+        return Passes._make(column[chosen] for column in self)
 
 
 def observed(
@@ -85,8 +85,8 @@ def observed(
 
 def joined(parts: list[Passes]) -> Passes:
     """The rows of all parts in their order; no rows of no parts."""
-    empty = Passes(*(np.zeros(0, kind) for kind in (np.int64, np.int64, np.int64, float, np.int64)))
-    return Passes(*(np.concatenate(columns) for columns in zip(empty, *parts, strict=True)))
+    empty = [np.zeros(0, kind) for kind in (np.int64, np.int64, np.int64, np.float64, np.int64)]
+    return Passes._make(np.concatenate(columns) for columns in zip(empty, *parts, strict=True))
 
 
 def key_of(world: GridWorld, grid: BuildingGrid) -> str:
@@ -122,5 +122,5 @@ def from_record(world: GridWorld, grid: BuildingGrid, record: Record | None) -> 
     cell = ((cell >> _COLUMNS) << COLUMN_BITS) | (cell & (2**_COLUMNS - 1))
     state = states_in_building(world, cell, grid.corner)
     known = (state >= 0) & (world.neighbour[state, action] >= 0)
-    found = Passes(state * N_ACTIONS + action, minute, sums[:, 0], sums[:, 1] * UNIT, sums[:, 2])
+    found = Passes._make((state * N_ACTIONS + action, minute, sums[:, 0], sums[:, 1] * UNIT, sums[:, 2]))
     return found.where(known)

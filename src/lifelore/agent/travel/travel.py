@@ -95,8 +95,8 @@ class Travel:
     def blocked(self, clock: float) -> NDArray[np.float64]:
         """Probability (n_states, 4) that each move is refused at `clock`; 1 where the map has no move.
 
-        All moves into one cell share it. A refusal raises it, a pass lowers it, and age brings it back to the share
-        of refusals at this hour.
+        All moves into one cell share it. A refusal raises it, a pass lowers it, and age brings it back to the
+        share of refusals at this hour.
         """
         return blocked_probability(self.world, self.passes, clock, self.half_life)
 

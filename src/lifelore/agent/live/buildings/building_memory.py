@@ -20,7 +20,7 @@ def buildings_in(memory: Memory) -> list[dict]:
 
 
 def forget_building(memory: Memory, name: str) -> dict:
-    """Forget a building's map, transitions, named destinations, found goals and passes for ever; other records stay.
+    """Forget a building's map, transitions, named destinations, found goals and passes; other records stay.
 
     Returns
     -------
