@@ -35,45 +35,60 @@ def corridor() -> GridWorld:
     return GridWorld.from_free("corridor", np.ones((1, 4), bool), frame=Frame(0.5, (10.0, 20.0, math.pi / 2)))
 
 
-def costs_of(world: GridWorld, slow: dict[tuple[int, int], float], price: dict[tuple[int, int], float]) -> MoveCosts:
-    """Costs where a free move takes 1 s; some moves are slower, and some have a price of refusals."""
-    seconds, refusals = np.ones((world.n_states, 4)), np.zeros((world.n_states, 4))
-    for move, value in slow.items():
+def costs_of(
+    world: GridWorld,
+    slow: dict[tuple[int, int], float] | None = None,
+    refused: dict[tuple[int, int], float] | None = None,
+) -> MoveCosts:
+    """Costs where a usual move takes 1 s; `slow` moves take longer, `refused` ones cost ten times their probability."""
+    seconds, blocked = np.ones((world.n_states, 4)), np.zeros((world.n_states, 4))
+    for move, value in (slow or {}).items():
         seconds[move] = value
-    for move, value in price.items():
-        refusals[move] = value
-    cost = np.where(world.neighbour >= 0, seconds + refusals, np.inf)
-    return MoveCosts(world, seconds, (refusals > 0) * 0.5, cost, 1.0)
+    for move, value in (refused or {}).items():
+        blocked[move] = value
+    cost = np.where(world.neighbour >= 0, seconds + 10 * blocked, np.inf)
+    return MoveCosts(world, seconds, blocked, cost)
 
 
-ALL = np.ones(4, bool)
+@pytest.fixture
+def long_corridor() -> GridWorld:
+    return GridWorld.from_free("corridor", np.ones((1, 7), bool))
 
 
-def test_a_slow_move_costs_on_both_its_places(corridor):
-    costs = costs_of(corridor, {(1, EAST): 5.0}, {})
-    # Place 0 has two moves of 1 s; places 1 and 2 have 4 moves with 8 s in sum; 100 · (1 - 1/2).
-    assert place_costs(costs, ALL).tolist() == [0, 50, 50, 0]
-    # The mean of their moves takes 2 s.
-    assert place_speeds(costs, ALL).tolist() == [FULL_SPEED, 50, 50, FULL_SPEED]
+ALL = np.ones(7, bool)
 
 
-def test_refusals_cost_and_do_not_limit_the_speed(corridor):
-    costs = costs_of(corridor, {}, {(1, EAST): 4.0, (0, WEST): 1000.0})
+def test_a_slow_move_costs_on_both_its_places(long_corridor):
+    costs = costs_of(long_corridor, {(2, EAST): 5.0})
+    # Places 2 and 3 have 4 moves with 8 s in sum; 100 · (1 - 1/2). A usual place has moves of 1 s.
+    assert place_costs(costs, ALL).tolist() == [0, 0, 50, 50, 0, 0, 0]
+    assert place_speeds(costs, ALL).tolist() == [FULL_SPEED] * 2 + [50] * 2 + [FULL_SPEED] * 3
+
+
+def test_a_building_that_is_slow_everywhere_is_usual(long_corridor):
+    everywhere = {(state, action): 7.0 for state in range(7) for action in range(4)}
+    assert set(place_costs(costs_of(long_corridor, everywhere), ALL)) == {0}
+    assert set(place_speeds(costs_of(long_corridor, everywhere), ALL)) == {FULL_SPEED}
+
+
+def test_refusals_cost_and_do_not_limit_the_speed(long_corridor):
+    costs = costs_of(long_corridor, refused={(2, EAST): 0.4, (0, WEST): 1.0})
     # The move west of place 0 leads into a wall, which nav2 inflates itself.
-    assert place_costs(costs, ALL).tolist() == [0, 50, 50, 0]
+    assert place_costs(costs, ALL).tolist() == [0, 0, 50, 50, 0, 0, 0]
     assert set(place_speeds(costs, ALL)) == {FULL_SPEED}
 
 
-def test_costs_and_speeds_have_their_limits(corridor):
-    costs = costs_of(corridor, {(1, EAST): 1e4}, {})
-    assert place_costs(costs, ALL).tolist() == [0, MOST_COST, MOST_COST, 0]
-    assert place_speeds(costs, ALL).tolist() == [FULL_SPEED, SLOWEST, SLOWEST, FULL_SPEED]
+def test_costs_and_speeds_have_their_limits(long_corridor):
+    costs = costs_of(long_corridor, {(2, EAST): 1e4, (5, EAST): 1.2})
+    assert place_costs(costs, ALL).tolist() == [0, 0, MOST_COST, MOST_COST, 0, 0, 0]
+    assert place_speeds(costs, ALL).tolist()[2:] == [SLOWEST] * 2 + [FULL_SPEED] * 3
 
 
-def test_places_never_visited_have_no_opinion(corridor):
-    costs, known = costs_of(corridor, {(1, EAST): 5.0}, {}), np.array([True, True, False, True])
-    assert place_costs(costs, known).tolist() == [0, 50, NO_OPINION, 0]
-    assert place_speeds(costs, known).tolist() == [FULL_SPEED, 50, FULL_SPEED, FULL_SPEED]
+def test_places_never_visited_have_no_opinion(long_corridor):
+    costs, known = costs_of(long_corridor, {(2, EAST): 5.0}), np.arange(7) != 3
+    assert place_costs(costs, known).tolist() == [0, 0, 50, NO_OPINION, 0, 0, 0]
+    assert place_speeds(costs, known)[3] == FULL_SPEED
+    assert set(place_costs(costs, np.zeros(7, bool))) == {NO_OPINION}
 
 
 def room(origin=(0.0, 0.0, 0.0)) -> tuple[OccupancyMap, GridWorld, Floor]:
@@ -124,7 +139,7 @@ def test_a_mask_is_laid_on_the_users_own_map():
 
 def test_masks_are_written_in_the_scale_of_nav2(tmp_path):
     occupancy, world, floor = room((-1.0, 2.0, 0.0))
-    write_masks(tmp_path, costs_of(world, {}, {}), np.ones(world.n_states, bool), floor, occupancy)
+    write_masks(tmp_path, costs_of(world), np.ones(world.n_states, bool), floor, occupancy)
     keepout = read_occupancy_map(tmp_path / "keepout.yaml")
     assert (keepout.state.shape, keepout.resolution, keepout.origin) == ((22, 32), 0.1, (-1.0, 2.0, 0.0))
     assert np.array_equal(keepout.state == FREE, body_space(floor, np.ones(world.n_states, bool)))
@@ -140,7 +155,7 @@ def test_masks_are_written_in_the_scale_of_nav2(tmp_path):
 def test_the_masks_of_a_turned_map_have_no_yaw_and_keep_out_of_its_walls(tmp_path):
     """nav2 ignores the yaw of a mask's origin: pixel (i, j) covers origin + (j, i) · resolution."""
     occupancy, world, floor = room((-1.0, 2.0, 0.3))
-    write_masks(tmp_path, costs_of(world, {}, {}), np.ones(world.n_states, bool), floor, occupancy)
+    write_masks(tmp_path, costs_of(world), np.ones(world.n_states, bool), floor, occupancy)
     keepout = read_occupancy_map(tmp_path / "keepout.yaml")
     assert keepout.origin[2] == 0
 
@@ -154,6 +169,16 @@ def test_the_masks_of_a_turned_map_have_no_yaw_and_keep_out_of_its_walls(tmp_pat
     assert seen(np.array([keepout.origin[:2]]) + 0.05) == OCCUPIED  # outside of the picture
 
 
+def test_a_place_that_is_now_blocked_is_kept_out(tmp_path):
+    occupancy, world, floor = room()
+    known, (east,) = np.ones(world.n_states, bool), world.states_at([(2.75, 1.25)])
+    into = {(int(world.neighbour[east, back]), back ^ 1): 0.9 for back in range(4) if world.neighbour[east, back] >= 0}
+    write_masks(tmp_path, costs_of(world, refused=into), known, floor, occupancy)
+    keepout = read_occupancy_map(tmp_path / "keepout.yaml").state
+    assert keepout[9, 29] == OCCUPIED
+    assert keepout[9, 12] == FREE
+
+
 def test_equal_obstacles_cost_alike(tmp_path):
     """Table legs at distances that are no multiple of a cell: none costs anything, whatever cell it lies in."""
     state = np.ones((62, 122), np.uint8)
@@ -164,7 +189,7 @@ def test_equal_obstacles_cost_alike(tmp_path):
     occupancy = OccupancyMap(state, 0.05)
     world = building_from_map(occupancy, 0.5, 0.2)
     floor, known = floor_of(occupancy, world), np.ones(world.n_states, bool)
-    write_masks(tmp_path, costs_of(world, {}, {}), known, floor, occupancy)
+    write_masks(tmp_path, costs_of(world), known, floor, occupancy)
     costs = np.frombuffer((tmp_path / "costs.pgm").read_bytes()[-state.size :], np.uint8).reshape(state.shape)
     assert set(np.unique(costs)) == {0, NO_OPINION}
     assert len({costs[row - 3 : row + 4, column - 3 : column + 4].tobytes() for row, column in legs}) == 1

@@ -30,7 +30,7 @@ def two_rooms():
     rng = np.random.default_rng(0)
     seconds, blocked = rng.uniform(1, 2, (world.n_states, 4)), rng.uniform(0, 0.2, (world.n_states, 4))
     cost = np.where(world.neighbour >= 0, seconds + 30 * blocked, np.inf)
-    return MoveCosts(world, seconds, blocked, cost, 1.0), floor_of(occupancy, world)
+    return MoveCosts(world, seconds, blocked, cost), floor_of(occupancy, world)
 
 
 def turned(point: tuple[float, float]) -> tuple[float, float]:

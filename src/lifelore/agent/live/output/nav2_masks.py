@@ -28,15 +28,15 @@ MOST_COST = 90
 """Largest cost of a place; nav2 takes values from 99 on nearly as an obstacle."""
 SLOWEST = 10
 """Least percent of full speed in a speed mask; a robot that obeys a smaller one seems to stand still."""
-SLOW = 95
-"""Percent of full speed from which on a place has no limit."""
+LEAST = 10
+"""Smallest cost, and smallest loss of speed in percent, that a mask shows; less is noise of what was observed."""
 _ROWS = 512
 """Rows of a mask that are computed at a time; more need more memory."""
 _MEANINGS = {
-    "costs": "Time and risk of driving here, 0 to 90: 100 · (1 - seconds of a free move / expected seconds).\n"
+    "costs": "Time and risk of driving here, 0 to 90: 100 · (1 - cost of a usual place / cost of this place).\n"
     "# 255: no experience. A mask for nav2's KeepoutFilter",
-    "speed": "Percent of full speed with which robots drove here; 0: no limit.\n# A mask for nav2's SpeedFilter",
-    "keepout": "100: no place that the robot knows, 0: space of known places.\n# A mask for nav2's KeepoutFilter",
+    "speed": "Percent of the usual speed with which robots drive here; 0: no limit.\n# A mask for nav2's SpeedFilter",
+    "keepout": "100: no place that the robot knows, or one that is blocked; 0: known space.\n# A mask for nav2's KeepoutFilter",
 }
 
 
@@ -46,21 +46,31 @@ def known_places(model: WorldModel) -> NDArray[np.bool_]:
 
 
 def place_costs(costs: MoveCosts, known: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """What driving in each place costs beyond a free move, (n_states,) in [0, `MOST_COST`]; else `NO_OPINION`.
+    """What driving in each place costs beyond the usual, (n_states,) in [0, `MOST_COST`]; else `NO_OPINION`.
 
-    cost = 100 · (1 - seconds of a free move / expected seconds), where the expected seconds include the price of
-    refused moves. The moves into and out of a place count alike. Walls cost nothing: nav2 inflates them itself.
+    cost = 100 · (1 - usual cost / cost here), 0 below `LEAST`. The cost of a place is the mean of the moves into and
+    out of it, their refusals included; usual is the median of the known places. Walls cost nothing: nav2 inflates
+    them itself.
     """
-    share = 1 - costs.free_seconds / costs.mean_at_places(costs.cost)
-    value = np.clip(np.rint(100 * np.nan_to_num(share)), 0, MOST_COST)
+    value = 100 * _beyond_usual(costs.at_places(costs.cost), known)
+    value = np.where(value >= LEAST, np.minimum(np.rint(value), MOST_COST), 0)
     return np.where(known, value, NO_OPINION).astype(np.uint8)
 
 
 def place_speeds(costs: MoveCosts, known: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """Percent of full speed at each known place, (n_states,) in [`SLOWEST`, `SLOW`); `FULL_SPEED` elsewhere."""
-    percent = np.nan_to_num(100 * costs.free_seconds / costs.mean_at_places(costs.seconds), nan=100.0)
-    limited = np.clip(np.rint(percent), SLOWEST, None)
-    return np.where(known & (limited < SLOW), limited, FULL_SPEED).astype(np.uint8)
+    """Percent of the usual speed at each known place that is slow, (n_states,); `FULL_SPEED` elsewhere.
+
+    Usual is the median of the known places.
+    """
+    loss = 100 * _beyond_usual(costs.at_places(costs.seconds), known)
+    percent = np.maximum(np.rint(100 - loss), SLOWEST)
+    return np.where(known & (loss >= LEAST), percent, FULL_SPEED).astype(np.uint8)
+
+
+def _beyond_usual(values: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """1 - usual value / value; 0 where a place has no moves."""
+    usual = np.nanmedian(values[known]) if np.isfinite(values[known]).any() else np.nan
+    return np.nan_to_num(1 - usual / values)
 
 
 def body_space(floor: Floor, known: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -113,7 +123,8 @@ def write_masks(
     """Write ``costs``, ``speed`` and ``keepout``, each as YAML and image, for the user's map `given`.
 
     nav2's costmaps ignore the yaw of an origin, so a turned map gets masks on its axis-aligned copy, in the same
-    frame. Every point that the given map shows as occupied lies in a pixel with `KEEP_OUT`.
+    frame. Every point that the given map shows as occupied lies in a pixel with `KEEP_OUT`, and so does a place that
+    is now more likely blocked than open.
 
     Raises
     ------
@@ -124,7 +135,7 @@ def write_masks(
     masks = {
         "costs": (place_mask(floor, place_costs(costs, known), known, NO_OPINION), NO_OPINION),
         "speed": (place_mask(floor, place_speeds(costs, known), known, FULL_SPEED), FULL_SPEED),
-        "keepout": (keepout_mask(floor, known), KEEP_OUT),
+        "keepout": (keepout_mask(floor, known & ~costs.closed()), KEEP_OUT),
     }
     for name, (mask, outside) in masks.items():
         path = folder / f"{name}.yaml"

@@ -199,7 +199,7 @@ def _edge_feature(
 ) -> dict[str, Any]:
     # The loader takes a number without a decimal point for an integer, and its scorers read floats only.
     metadata = {name: float(round(value, 6)) for name, value in about.items()}
-    cost = metadata["abs_time_taken"] + metadata["penalty"]
+    cost = float(round(metadata["abs_time_taken"] + metadata["penalty"], 6))
     properties = {"id": number, "startid": start, "endid": end, "cost": cost, "overridable": True}
     geometry = {"type": "MultiLineString", "coordinates": [[_rounded(point) for point in points]]}
     return {"type": "Feature", "properties": properties | {"metadata": metadata}, "geometry": geometry}
