@@ -9,7 +9,10 @@ from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, Oc
 
 MAP = OccupancyMap(np.array([[FREE, OCCUPIED], [UNKNOWN, FREE]], np.uint8), 0.5, (1.0, 2.0, np.pi / 2))
 COSTS = np.array([[30, 255], [255, 0]], np.uint8)
-WAYS = [("to lab", 20.5, np.array([[1.0, 2.0], [1.0, 4.0]])), ("to dock", 10.25, np.array([[0.0, 0.0], [3.0, 0.0]]))]
+WAYS = [
+    ("to lab", 20.5, np.array([[1.0, 2.0], [1.0, 4.0]])),
+    ("to dock", 10.25, np.array([[0.0, 0.0], [3.0, 0.0]])),
+]
 EVENTS = [("reached", 30.0, (1.0, 4.0)), ("refused east", 15.0, (1.0, 3.0))]
 
 

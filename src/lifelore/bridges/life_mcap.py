@@ -1,7 +1,7 @@
-"""Logs a life in a building as an MCAP file of ROS 2 messages, as Foxglove, RViz and ``ros2 bag`` read it; extra ``ros``.
+"""Logs a life in a building as an MCAP file of ROS 2 messages, for Foxglove and ``ros2 bag``; extra ``ros``.
 
-Topics: ``/map`` and ``/lifelore/costs`` (`nav_msgs/OccupancyGrid`), ``/lifelore/way`` (`nav_msgs/Path`, a message a
-way) and ``/lifelore/events`` (`visualization_msgs/MarkerArray`, a point and its name an event), in the frame map.
+All is in the frame map: ``/map`` and ``/lifelore/costs`` are OccupancyGrids, ``/lifelore/way`` has a Path for each
+way, and ``/lifelore/events`` a MarkerArray for each event, with its point and its name.
 """
 
 import math
@@ -67,7 +67,12 @@ def _header(seconds: float) -> dict[str, Any]:
 def _grid(occupancy: "OccupancyMap", grey: NDArray[np.uint8], seconds: float) -> dict[str, Any]:
     """A grid has the lowest row first; values above 100 are unknown."""
     rows, columns = grey.shape
-    about = {"resolution": occupancy.resolution, "width": columns, "height": rows, "origin": _pose(*occupancy.origin)}
+    about = {
+        "resolution": occupancy.resolution,
+        "width": columns,
+        "height": rows,
+        "origin": _pose(*occupancy.origin),
+    }
     data = np.where(grey <= 100, grey.astype(np.int8), -1)[::-1].ravel()
     return {"header": _header(seconds), "info": about, "data": data}
 

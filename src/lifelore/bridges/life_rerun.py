@@ -41,7 +41,9 @@ def write_life_rrd(
     rr = rerun()
     Path(path).touch()  # the library only warns of a file that it cannot write
     dear = (costs > 0) & (costs <= MOST)
-    heat = np.column_stack([np.full(dear.sum(), 255), 255 - 2 * costs[dear], np.zeros(dear.sum())]).astype(np.uint8)
+    heat = np.column_stack([np.full(dear.sum(), 255), 255 - 2 * costs[dear], np.zeros(dear.sum())]).astype(
+        np.uint8
+    )
     half = occupancy.resolution / 2
     with rr.RecordingStream("lifelore") as log:
         log.save(path)

@@ -40,7 +40,7 @@ def costs_of(
     slow: dict[tuple[int, int], float] | None = None,
     refused: dict[tuple[int, int], float] | None = None,
 ) -> MoveCosts:
-    """Costs where a usual move takes 1 s; `slow` moves take longer, `refused` ones cost ten times their probability."""
+    """Costs where a usual move takes 1 s; `slow` ones take longer, `refused` ones cost 10 s by their probability."""
     seconds, blocked = np.ones((world.n_states, 4)), np.zeros((world.n_states, 4))
     for move, value in (slow or {}).items():
         seconds[move] = value
@@ -172,7 +172,9 @@ def test_the_masks_of_a_turned_map_have_no_yaw_and_keep_out_of_its_walls(tmp_pat
 def test_a_place_that_is_now_blocked_is_kept_out(tmp_path):
     occupancy, world, floor = room()
     known, (east,) = np.ones(world.n_states, bool), world.states_at([(2.75, 1.25)])
-    into = {(int(world.neighbour[east, back]), back ^ 1): 0.9 for back in range(4) if world.neighbour[east, back] >= 0}
+    into = {
+        (int(world.neighbour[east, back]), back ^ 1): 0.9 for back in range(4) if world.neighbour[east, back] >= 0
+    }
     write_masks(tmp_path, costs_of(world, refused=into), known, floor, occupancy)
     keepout = read_occupancy_map(tmp_path / "keepout.yaml").state
     assert keepout[9, 29] == OCCUPIED

@@ -1,7 +1,7 @@
 """Route graphs are read by the rules of nav2's loader, and their routes cost what the cells cost."""
 
 import json
-from itertools import permutations
+from itertools import pairwise, permutations
 from pathlib import Path
 
 import networkx as nx
@@ -90,7 +90,7 @@ def test_a_route_costs_what_its_cells_cost(two_rooms, tmp_path):
         cost = nx.shortest_path_length(graph, node[a], node[b], "cost")
         assert cost == pytest.approx(nx.shortest_path_length(cells, *ends, "cost"), rel=1e-5)
         route = nx.shortest_path(graph, node[a], node[b], "cost")
-        pieces = [graph.edges[piece] for piece in zip(route, route[1:], strict=False)]
+        pieces = [graph.edges[piece] for piece in pairwise(route)]
         # With nav2's TimeScorer and PenaltyScorer the route costs the same.
         assert sum(piece["abs_time_taken"] + piece["penalty"] for piece in pieces) == pytest.approx(cost)
         assert all(0 < piece["blocked"] < 1 for piece in pieces)

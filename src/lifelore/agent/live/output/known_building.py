@@ -35,31 +35,38 @@ class KnownBuilding:
     occupancy : the map of the building, laid on the grid of its first map
     given : the user's map
     known : (n_states,) whether the robot has visited a place
-    costs : of the moves
+    travel : what was observed of its moves
     places : points in metres by name
     """
 
     occupancy: OccupancyMap
     given: OccupancyMap
     known: NDArray[np.bool_]
-    costs: MoveCosts
+    travel: Travel
     places: Mapping[str, Point]
 
     @classmethod
     def recalled(cls, place: Place, given: OccupancyMap, memory: Memory, model: WorldModel | None = None) -> Self:
         """What memory knows; `model` in place of the remembered moves, for an agent that does not share them."""
         if model is None:
-            model = Lore.recalled(place.world, prior_scope(place.world, "observation"), 1.0, memory, place.grid).model
+            model = Lore.recalled(
+                place.world, prior_scope(place.world, "observation"), 1.0, memory, place.grid
+            ).model
         names = NamedPlaces.of(place)
         ends = [names.located("places", Destination(name=name), memory) for name in names.names(memory)]
-        costs = MoveCosts.latest(Travel.recalled(place.world, place.grid, memory))
+        travel = Travel.recalled(place.world, place.grid, memory)
         places = {str(end): end.located_point for end in ends}
-        return cls(place.occupancy or given, given, known_places(model), costs, places)
+        return cls(place.occupancy or given, given, known_places(model), travel, places)
 
     @cached_property
     def floor(self) -> Floor:
         """The building at the resolution of its map."""
-        return floor_of(self.occupancy, self.costs.world)
+        return floor_of(self.occupancy, self.travel.world)
+
+    @cached_property
+    def costs(self) -> MoveCosts:
+        """The costs of its moves at the newest observation."""
+        return MoveCosts.latest(self.travel)
 
     def write(self, folder: Path, more_places: Mapping[str, Point] | None = None) -> list[str]:
         """Write `NAV2_FILES` into a folder; the names of those that were written.

@@ -32,7 +32,7 @@ class MoveCosts:
         return cls(travel.world, travel.seconds(clock), travel.blocked(clock), travel.cost(clock))
 
     def at_places(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(n_states,) mean of `values` (n_states, 4) over the moves out of a place and into it; NaN without moves."""
+        """(n_states,) mean of `values` (n_states, 4) over the moves out of and into a place; NaN without moves."""
         tail, action = np.nonzero(self.world.neighbour >= 0)
         head, value, n = self.world.neighbour[tail, action], values[tail, action], self.world.n_states
         total = np.bincount(tail, value, n) + np.bincount(head, value, n)

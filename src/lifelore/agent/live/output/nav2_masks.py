@@ -35,8 +35,10 @@ _ROWS = 512
 _MEANINGS = {
     "costs": "Time and risk of driving here, 0 to 90: 100 · (1 - cost of a usual place / cost of this place).\n"
     "# 255: no experience. A mask for nav2's KeepoutFilter",
-    "speed": "Percent of the usual speed with which robots drive here; 0: no limit.\n# A mask for nav2's SpeedFilter",
-    "keepout": "100: no place that the robot knows, or one that is blocked; 0: known space.\n# A mask for nav2's KeepoutFilter",
+    "speed": "Percent of the usual speed with which robots drive here; 0: no limit.\n"
+    "# A mask for nav2's SpeedFilter",
+    "keepout": "100: no place that the robot knows, or one that is blocked; 0: known space.\n"
+    "# A mask for nav2's KeepoutFilter",
 }
 
 
@@ -48,9 +50,9 @@ def known_places(model: WorldModel) -> NDArray[np.bool_]:
 def place_costs(costs: MoveCosts, known: NDArray[np.bool_]) -> NDArray[np.uint8]:
     """What driving in each place costs beyond the usual, (n_states,) in [0, `MOST_COST`]; else `NO_OPINION`.
 
-    cost = 100 · (1 - usual cost / cost here), 0 below `LEAST`. The cost of a place is the mean of the moves into and
-    out of it, their refusals included; usual is the median of the known places. Walls cost nothing: nav2 inflates
-    them itself.
+    cost = 100 · (1 - usual cost / cost here), 0 below `LEAST`. The cost of a place is the mean of the moves into
+    and out of it, their refusals included; usual is the median of the known places. Walls cost nothing: nav2
+    inflates them itself.
     """
     value = 100 * _beyond_usual(costs.at_places(costs.cost), known)
     value = np.where(value >= LEAST, np.minimum(np.rint(value), MOST_COST), 0)
@@ -98,7 +100,7 @@ def keepout_mask(floor: Floor, known: NDArray[np.bool_]) -> NDArray[np.uint8]:
 
 
 def on_map(mask: NDArray[np.uint8], floor: Floor, occupancy: OccupancyMap, outside: int) -> NDArray[np.uint8]:
-    """A mask of the floor's pixels on the pixels of another map of the ground; `outside` where the floor has none."""
+    """A mask of the floor's pixels on those of another map of the ground; `outside` where the floor has none."""
     rows, columns = occupancy.state.shape
     own = _pixels_of(occupancy)
     found = np.full((rows, columns), outside, np.uint8)
@@ -123,8 +125,8 @@ def write_masks(
     """Write ``costs``, ``speed`` and ``keepout``, each as YAML and image, for the user's map `given`.
 
     nav2's costmaps ignore the yaw of an origin, so a turned map gets masks on its axis-aligned copy, in the same
-    frame. Every point that the given map shows as occupied lies in a pixel with `KEEP_OUT`, and so does a place that
-    is now more likely blocked than open.
+    frame. Every point that the given map shows as occupied lies in a pixel with `KEEP_OUT`, and so does a place
+    that is now more likely blocked than open.
 
     Raises
     ------

@@ -73,7 +73,7 @@ def route_graph(
     tail, action = np.nonzero(np.isfinite(costs.cost) & (costs.world.neighbour >= 0) & known[:, None])
     head = costs.world.neighbour[tail, action]
     there = known[head]
-    moves, cost = np.column_stack([tail, head])[there], costs.cost[tail, action][there]
+    moves, cost = np.column_stack([tail, head])[there].astype(np.int64), costs.cost[tail, action][there]
     used = _moves_of_routes(moves, cost, sorted(graph.names), costs.world.n_states)
     for chain in _chains(used, set(graph.names)):
         graph.add_chain(chain, moves)
@@ -163,8 +163,8 @@ class _Graph:
         """The nodes of a clear path along a chain; its ends and its corners."""
         first, last = (self._node(state) for state in (chain[0], chain[-1]))
         own = np.array(list(pairwise(chain)))
-        ends = [(float(x), float(y)) for x, y in (self._nodes[first], self._nodes[last])]
-        path = clear_path(self.floor, np.concatenate([own, own[:, ::-1]]), *ends, moves)
+        (a, b), (c, d) = self._nodes[first].tolist(), self._nodes[last].tolist()
+        path = clear_path(self.floor, np.concatenate([own, own[:, ::-1]]), (a, b), (c, d), moves)
         assert path is not None, "a route follows the moves of its floor"
         self._nodes.extend(path[1:-1])
         inner = range(len(self._nodes) - len(path) + 2, len(self._nodes))
@@ -172,9 +172,10 @@ class _Graph:
 
     def _node(self, state: int) -> int:
         if state not in self._node_of:
-            anchor = self.floor.metres(self.floor.anchors[[state]])[0]
+            if state not in self._points:
+                self._points[state] = self.floor.metres(self.floor.anchors[[state]])[0]
             self._node_of[state] = len(self._nodes)
-            self._nodes.append(self._points.get(state, anchor))
+            self._nodes.append(self._points[state])
         return self._node_of[state]
 
     def features(self) -> list[dict[str, Any]]:
