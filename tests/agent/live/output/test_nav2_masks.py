@@ -40,7 +40,7 @@ def costs_of(
     slow: dict[tuple[int, int], float] | None = None,
     refused: dict[tuple[int, int], float] | None = None,
 ) -> MoveCosts:
-    """Costs where a usual move takes 1 s; `slow` ones take longer, `refused` ones cost 10 s by their probability."""
+    """Costs where a usual move takes 1 s, and a refusal costs 10 s; `refused` are probabilities."""
     seconds, blocked = np.ones((world.n_states, 4)), np.zeros((world.n_states, 4))
     for move, value in (slow or {}).items():
         seconds[move] = value
