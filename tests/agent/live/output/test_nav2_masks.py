@@ -17,7 +17,7 @@ from lifelore.agent.live.output.nav2_masks import (
     keepout_mask,
     on_map,
     place_costs,
-    place_mask,
+    place_masks,
     place_speeds,
     write_directions,
     write_masks,
@@ -119,7 +119,7 @@ def test_masks_of_a_half_known_room():
     assert keepout[10, 12] == 0
     assert keepout[10, 16] == 0  # the robot's body at 1.45 m reaches to 1.65 m
     assert keepout[10, 17] == KEEP_OUT
-    costs = place_mask(floor, np.full(world.n_states, 7, np.uint8), known, NO_OPINION)
+    (costs,) = place_masks(floor, known, (np.full(world.n_states, 7, np.uint8), NO_OPINION))
     assert costs[10, 12] == 7
     assert costs[10, 20] == costs[0, 5] == NO_OPINION
     assert ((costs == 7) <= (occupancy.state == FREE)).all()
