@@ -85,6 +85,7 @@ def test_a_model_of_its_own_decides_which_places_are_known(settings, memory, tmp
         model.percept[state] = place.world.percepts[state]
         known = KnownBuilding.recalled(place, given, opened, model)
     (tmp_path / "one").mkdir()
+    (tmp_path / "one" / "route_graph.geojson").write_text("of earlier ways")
     assert known.write(tmp_path / "one") == list(MASK_FILES)
     assert set(MASK_FILES) == {path.name for path in (tmp_path / "one").iterdir()}
 

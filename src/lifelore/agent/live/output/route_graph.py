@@ -181,18 +181,17 @@ class _Graph:
         return np.column_stack([cells[tail], neighbour[cells[tail], action]]).astype(np.int64)
 
     def _part(self, states: NDArray[np.int64]) -> Floor:
-        """The part of the floor with some cells, and with what the robot could touch there; so searches are fast."""
+        """The part of the floor around some cells, with what the robot could touch there, to search in."""
         floor, world = self.floor, self.costs.world
         centres = floor.pixels(world.positions(states.astype(np.int32)))
         reach = world.frame.cell / floor.occupancy.resolution + floor.radius + _MARGIN
         top, left = np.maximum(np.floor(centres.min(axis=0) - reach), 0).astype(int)
         low, right = np.ceil(centres.max(axis=0) + reach).astype(int)
-        seen, state, solid = (
-            pixels[top:low, left:right] for pixels in (floor.occupancy.state, floor.state, floor.solid)
-        )
+        part = slice(top, low), slice(left, right)
+        seen = floor.occupancy.state[part]
         x, y = floor.metres((top + len(seen) - 0.5, left - 0.5))[0].tolist()
         occupancy = OccupancyMap(seen, floor.occupancy.resolution, (x, y, floor.occupancy.origin[2]))
-        return Floor(occupancy, state, solid, floor.robot_radius, floor.n_states)
+        return Floor(occupancy, floor.state[part], floor.solid[part], floor.robot_radius, floor.n_states)
 
     @cached_property
     def _closed(self) -> NDArray[np.bool_]:
