@@ -18,7 +18,7 @@ from lifelore.domains.grids.grid_world import GridWorld
 REFUSED_IF_BLOCKED, REFUSED_IF_OPEN = 0.98, 0.1
 BASE = 0.01
 """Share of refusals where nothing was observed; counts as `STRENGTH` observations."""
-STRENGTH = 8.0
+STRENGTH = 4.0
 """Observations of the base rate that each hour of a place has before any observation of its own."""
 BASE_HALF_LIFE = 60.0
 """Days after which an observation counts half in a base rate."""
