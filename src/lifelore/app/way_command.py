@@ -59,7 +59,7 @@ def way(
         return
     print(
         f"{found.length:.2f} m from {found.start} to {found.goal} over {found.places} remembered places, "
-        f"{len(found.poses)} poses"
+        f"about {found.seconds:.0f} s, {len(found.poses)} poses"
     )
     if len(found.contradicted):
         x, y = found.contradicted[0]

@@ -5,8 +5,8 @@ four directions make a path up to √2 times too long. Here Lazy Theta* searches
 pieces of free space: a path turns at any pixel, in any direction. The corners that it finds are then moved by
 fractions of a pixel until no move makes the path cheaper.
 
-Source: Nash, Koenig and Tovey, Lazy Theta*: Any-Angle Path Planning and Path Length Analysis in 3D, AAAI 2010. Added here:
-lines have prices, so a line's cost is known only when it is measured, and its end is then queued again.
+Source: Nash, Koenig and Tovey, Lazy Theta*: Any-Angle Path Planning and Path Length Analysis in 3D, AAAI 2010.
+Added here: lines have prices, so the cost of a line is known when it is measured; its end is then queued again.
 """
 
 import heapq
@@ -19,8 +19,9 @@ from lifelore.core.compiled.jit import kernel
 from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.buildings.line_of_sight import TIGHT, ground_of, line_cost
 
-_SHIFTS = np.array([2.0, 1.0, 0.5, 0.25, 0.1])
-"""Pixels: how far corners are moved in the end; more and smaller shifts make the path shorter, slower."""
+_SHIFTS = 0.618 ** np.arange(-1, 6)
+"""Pixels: how far corners are moved in the end, 1.6 to 0.09; smaller ones make the path shorter, slower. Powers of
+the golden ratio never add up to the border between two pixels."""
 
 
 def clear_path(
@@ -36,8 +37,8 @@ def clear_path(
     ----------
     floor : Floor
     price : (n_states, 4) float
-        Metres, at least 0, that each move costs in addition to its length: time lost, risk. A path changes from the
-        piece of one state to that of another only by moves of finite price.
+        Metres, at least 0, that each move costs in addition to its length: time lost, risk. A path changes from
+        the piece of one state to that of another only by moves of finite price.
     start, goal : (x, y)
         Points in metres, free places of the floor (`Floor.state_at`).
     clearance : float, optional
@@ -85,7 +86,7 @@ def _around(ground, ends, node, found):
     """Write the nodes next to a node to `found`: pixels of the floor, and ends that lie in them; their number."""
     rows, columns = ground.state.shape
     row, column = _point(ends, columns, node)
-    at_row, at_column = int(math.floor(row + 0.5)), int(math.floor(column + 0.5))
+    at_row, at_column = math.floor(row + 0.5), math.floor(column + 0.5)
     n = 0
     for i in range(max(at_row - 1, 0), min(at_row + 2, rows)):
         for j in range(max(at_column - 1, 0), min(at_column + 2, columns)):
@@ -145,7 +146,7 @@ def _search(ground, ends):
 
 @kernel
 def _measure(ground, ends, node, beside, cost, before, closed):
-    """Set the node's cost by measured lines: from the point assumed, or from closed neighbours and their origins."""
+    """Set the node's cost by measured lines: from the origin assumed, closed neighbours, or their origins."""
     origin = before[node]
     lower, best, chosen = cost[node], cost[origin] + _line(ground, ends, origin, node), origin
     if best > lower + 1e-9:
@@ -210,7 +211,7 @@ def _pulled(ground, points, shifts):
 
 @kernel
 def _is_floor(ground, point):
-    row, column = int(math.floor(point[0] + 0.5)), int(math.floor(point[1] + 0.5))
+    row, column = math.floor(point[0] + 0.5), math.floor(point[1] + 0.5)
     inside = 0 <= row < ground.state.shape[0] and 0 <= column < ground.state.shape[1]
     return inside and ground.state[row, column] >= 0
 

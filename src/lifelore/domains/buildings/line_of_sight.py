@@ -53,20 +53,18 @@ def ground_of(floor: Floor, price: NDArray[np.floating], clearance: float | None
 def line_cost(ground, row, column, last_row, last_column):
     """Cost of the line between two points of the floor, in pixels; inf where the robot cannot drive it.
 
-    The length; `TIGHT` times the length if the line is tight; and the price of every move on the way, times the
-    cosine of the angle at which the line crosses the border. A line through the corner of pixels needs both
-    pixels beside the corner, and the moves of either.
+    The length; `TIGHT` times the length if the line is tight; and the price of every move on the way. A line
+    through the corner of pixels needs both pixels beside the corner, and the moves of either.
     """
     down, right = last_row - row, last_column - column
     length = math.hypot(down, right)
-    at_row, at_column = int(math.floor(row + 0.5)), int(math.floor(column + 0.5))
-    rows_left = abs(int(math.floor(last_row + 0.5)) - at_row)
-    columns_left = abs(int(math.floor(last_column + 0.5)) - at_column)
+    at_row, at_column = math.floor(row + 0.5), math.floor(column + 0.5)
+    rows_left = abs(math.floor(last_row + 0.5) - at_row)
+    columns_left = abs(math.floor(last_column + 0.5) - at_column)
     one_down, one_right = (1 if down > 0 else -1), (1 if right > 0 else -1)
     south, east = (1 if down > 0 else 0), (2 if right > 0 else 3)
     next_row = (at_row + 0.5 * one_down - row) / down if rows_left else np.inf
     next_column = (at_column + 0.5 * one_right - column) / right if columns_left else np.inf
-    share_down, share_right = abs(down) / max(length, 1e-12), abs(right) / max(length, 1e-12)
     price, clearance = 0.0, ground.wanted
     while True:
         if ground.distance[at_row, at_column] < ground.wanted + HALF_DIAGONAL:
@@ -81,9 +79,8 @@ def line_cost(ground, row, column, last_row, last_column):
             there = ground.state[at_row + one_down, at_column + one_right]
             if below < 0 or beside < 0 or there < 0:
                 return np.inf
-            by_row = _move(ground, here, below, south) * share_down + _move(ground, below, there, east) * share_right
-            by_column = _move(ground, here, beside, east) * share_right
-            by_column += _move(ground, beside, there, south) * share_down
+            by_row = _move(ground, here, below, south) + _move(ground, below, there, east)
+            by_column = _move(ground, here, beside, east) + _move(ground, beside, there, south)
             price += min(by_row, by_column)
             at_row += one_down
             at_column += one_right
@@ -96,7 +93,7 @@ def line_cost(ground, row, column, last_row, last_column):
             there = ground.state[at_row, at_column]
             if there < 0:
                 return np.inf
-            price += _move(ground, here, there, south) * share_down
+            price += _move(ground, here, there, south)
             rows_left -= 1
             next_row += 1 / abs(down)
         else:
@@ -104,7 +101,7 @@ def line_cost(ground, row, column, last_row, last_column):
             there = ground.state[at_row, at_column]
             if there < 0:
                 return np.inf
-            price += _move(ground, here, there, east) * share_right
+            price += _move(ground, here, there, east)
             columns_left -= 1
             next_column += 1 / abs(right)
         if rows_left == 0:
