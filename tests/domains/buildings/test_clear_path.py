@@ -99,9 +99,9 @@ def shortest_lengths(floor: Floor, ends: np.ndarray) -> np.ndarray:
     """Lengths in metres of the shortest paths that keep the radius and half a pixel; `ends` (n, 2, 2) pixels.
 
     A visibility graph: nodes lie on circles about the solid pixels at which the solid part is convex. Lines keep
-    the clearance, and their samples lie on pixels of the floor or beside one. It keeps 0.05 pixels more, so that no
-    path depends on a passage of exactly this width. The lines between the 32 points of a circle stay outside of it,
-    and make its arc 0.5 % longer.
+    the clearance, and their samples lie on pixels of the floor or beside one. It keeps 0.05 pixels more, so that
+    no path depends on a passage of exactly this width. The lines between the 32 points of a circle stay outside of
+    it, and make its arc 0.5 % longer.
     """
     keep = floor.radius + 0.55
     floor_or_beside = ndimage.binary_dilation(floor.state >= 0, np.ones((3, 3)))
