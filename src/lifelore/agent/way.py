@@ -3,6 +3,7 @@
 import csv
 import math
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from itertools import pairwise
 from pathlib import Path
 
@@ -108,10 +109,27 @@ def way(
     minutes = travel.passes.minute
     now = float(clock if clock is not None else 60 * minutes.max(initial=0))
     price = price_of_moves(np.where(moves.open, travel.cost(now), np.inf), place.world.frame.cell)
-    path = clear_path(floor, price, start.located_point, goal.located_point)
+    path = clear_path(floor, start.located_point, goal.located_point, price)
     assert path is not None, "open moves join the pieces of their cells"
     states, seconds = _driven(path, floor, travel.seconds(now) / place.world.frame.cell)
     return Way(start, goal, poses_along(path, spacing), states, seconds, contradicted)
+
+
+def clock_from_text(text: str) -> float:
+    """Seconds since 1970 of a date and time without a time zone, by the robot's clock.
+
+    Raises
+    ------
+    InputError
+        The text is no date and time, or has a time zone.
+    """
+    try:
+        time = datetime.fromisoformat(text)
+    except ValueError:
+        time = None
+    if time is None or time.tzinfo is not None or time.year < 1970:
+        raise InputError(f"at must be a date and time by the robot's clock, as 2024-05-13T08:30, got {text!r}")
+    return time.replace(tzinfo=UTC).timestamp()
 
 
 def price_of_moves(cost: NDArray[np.float64], cell: float) -> NDArray[np.float64]:

@@ -86,7 +86,7 @@ def check_chains(world: GridWorld, floor: Floor, n: int, seed: int) -> None:
     for _ in range(n):
         chain = random_chain(world, rng)
         ends = floor.metres(floor.anchors[chain[[0, -1]]])
-        along, free = (clear_path(floor, price, *ends) for price in (moves_among(world, chain), open_moves(world)))
+        along, free = (clear_path(floor, *ends, price) for price in (moves_among(world, chain), None))
         for path in (along, free):
             assert path is not None
             assert np.array_equal(path[[0, -1]], ends) or len(path) == 1
@@ -150,11 +150,11 @@ def hall(side: int, seed: int) -> OccupancyMap:
 
 
 def check_lengths(occupancy: OccupancyMap, n: int) -> None:
-    world, floor = building(occupancy, 0.5, 0.2)
+    _, floor = building(occupancy, 0.5, 0.2)
     roomy = np.flatnonzero(floor.distance[tuple(floor.anchors.T)] > floor.radius + 0.55)
     ends = floor.anchors[np.random.default_rng(0).choice(roomy, (n, 2))].astype(float)
     ends = ends[np.hypot(*(ends[:, 0] - ends[:, 1]).T) > 10]
-    paths = [clear_path(floor, open_moves(world), *floor.metres(pair)) for pair in ends]
+    paths = [clear_path(floor, *floor.metres(pair)) for pair in ends]
     ratio = np.array([length_of(path) for path in paths]) / shortest_lengths(floor, ends)
     assert len(ratio) > 0.7 * n
     assert ratio.max() < 1.03
@@ -162,7 +162,7 @@ def check_lengths(occupancy: OccupancyMap, n: int) -> None:
     assert min(least_clearance(path, floor) for path in paths) > floor.radius + 0.5 - 1e-6
 
 
-@pytest.mark.parametrize("occupancy", [hall(80, 0), part_of(office_map(0), 10, 10, 80)], ids=["hall", "office"])
+@pytest.mark.parametrize("occupancy", [hall(64, 0), part_of(office_map(0), 10, 10, 80)], ids=["hall", "office"])
 def test_paths_are_at_most_3_percent_longer_than_the_shortest_and_as_clear(occupancy):
     check_lengths(occupancy, 25)
 
@@ -174,17 +174,17 @@ def test_paths_in_a_part_of_the_willow_building_are_at_most_3_percent_longer_and
 
 
 def test_an_empty_room_is_crossed_in_a_straight_line():
-    world, floor = building(room(62, 82), 0.5, 0.2)
-    path = clear_path(floor, open_moves(world), (0.55, 0.55), (7.55, 5.55))
+    _, floor = building(room(62, 82), 0.5, 0.2)
+    path = clear_path(floor, (0.55, 0.55), (7.55, 5.55))
     assert np.allclose(path, [[0.55, 0.55], [7.55, 5.55]])
 
 
 def test_the_path_around_the_end_of_a_wall_touches_the_circle_about_it():
     plan = room(62, 82)
     plan.state[20:, 40] = OCCUPIED  # a wall from the bottom up; its end is at row 20, x = 4.05 m, y = 4.15 m
-    world, floor = building(plan, 0.5, 0.2)
+    _, floor = building(plan, 0.5, 0.2)
     start, goal, corner, keep = (2.05, 1.05), (6.05, 1.05), np.array([4.05, 4.15]), 0.25
-    path = clear_path(floor, open_moves(world), start, goal)
+    path = clear_path(floor, start, goal)
     assert_clear(path, floor)
     # Two tangents, and the arc between the points where they touch: the angle between the lines to the ends, less
     # that between each line and the radius to the point of contact.
@@ -199,16 +199,15 @@ def test_a_narrow_passage_is_used_where_there_is_no_other():
     plan = room(32, 62)
     plan.state[:, 30] = OCCUPIED
     plan.state[13:17, 30] = FREE  # between solid pixels 12 and 17: 0.25 m at the centre line, 0.2 m at its pixels
-    world, floor = building(plan, 0.5, 0.19)
-    path = clear_path(floor, open_moves(world), (1.05, 2.55), (5.05, 0.55), 0.27)
+    _, floor = building(plan, 0.5, 0.19)
+    path = clear_path(floor, (1.05, 2.55), (5.05, 0.55), clearance=0.27)
     assert_clear(path, floor)
     near = np.abs(floor.pixels(path)[:, 1] - 30) < 5
     assert (np.abs(floor.pixels(path)[near, 0] - 14.5) <= 0.6).all()
     plan.state[2:9, 30] = FREE  # a wider passage near by
-    world, floor = building(plan, 0.5, 0.19)
-    assert (
-        least_clearance(clear_path(floor, open_moves(world), (1.05, 2.55), (5.05, 0.55), 0.27), floor) > 2.7 - 1e-6
-    )
+    _, floor = building(plan, 0.5, 0.19)
+    path = clear_path(floor, (1.05, 2.55), (5.05, 0.55), clearance=0.27)
+    assert least_clearance(path, floor) > 2.7 - 1e-6
 
 
 def test_a_slow_passage_is_avoided_where_the_way_around_is_cheaper():
@@ -217,20 +216,18 @@ def test_a_slow_passage_is_avoided_where_the_way_around_is_cheaper():
     plan.state[:, 40] = OCCUPIED
     plan.state[5:15, 40] = plan.state[40:50, 40] = FREE
     world, floor = building(plan, 0.5, 0.2)
-    price, near_door = open_moves(world), (world.cells[:, 0] > 6) & (world.cells[:, 1] == 7)
+    into_near_door = (world.cells[:, 0] > 6) & (world.cells[:, 1] == 7)
+    eastward = into_near_door[:, None] & (np.arange(4) == 2)
     ends = (2.05, 1.55), (6.05, 1.55)
-    near, far = (
-        clear_path(floor, price, *ends),
-        clear_path(floor, np.where(near_door[:, None], np.inf, price), *ends),
-    )
+    near, far = clear_path(floor, *ends), clear_path(floor, *ends, np.where(eastward, np.inf, 0))
     assert near[:, 1].max() < 2.5
     assert far[:, 1].max() > 4.5
     detour = length_of(far) - length_of(near)
-    for extra, expected in ((0.9 * detour, near), (1.1 * detour, far)):
-        found = clear_path(floor, price + extra * (near_door[:, None] & (np.arange(4) == 2)), *ends)
-        assert length_of(found) == pytest.approx(length_of(expected), rel=0.02)
-    back = clear_path(floor, price + 1.1 * detour * (near_door[:, None] & (np.arange(4) == 2)), *ends[::-1])
-    assert length_of(back) == pytest.approx(length_of(near), rel=0.005)  # only eastward moves have a price
+    for share, expected in ((0.9, near), (1.1, far)):
+        found = clear_path(floor, *ends, share * detour * eastward)
+        assert length_of(found) == pytest.approx(length_of(expected), rel=0.01)
+    back = clear_path(floor, *ends[::-1], 1.1 * detour * eastward)
+    assert length_of(back) == pytest.approx(length_of(near), rel=0.005)
 
 
 def test_without_moves_there_is_no_path():
@@ -238,16 +235,16 @@ def test_without_moves_there_is_no_path():
     half = np.arange(world.n_states) < world.n_states // 2
     cut = np.where(half[:, None] == half[world.neighbour], open_moves(world), np.inf)
     ends = floor.metres(floor.anchors[[0, world.n_states - 1]])
-    assert clear_path(floor, cut, *ends) is None
-    assert clear_path(floor, open_moves(world), *ends) is not None
+    assert clear_path(floor, *ends, cut) is None
+    assert clear_path(floor, *ends) is not None
 
 
 def test_moves_have_a_direction():
     world, floor = building(room(12, 32), 1.0, 0.2)
     east = np.where(np.arange(4) == 2, open_moves(world), np.inf)
     ends = floor.metres(floor.anchors[[0, 2]])
-    assert clear_path(floor, east, *ends) is not None
-    assert clear_path(floor, east, *ends[::-1]) is None
+    assert clear_path(floor, *ends, east) is not None
+    assert clear_path(floor, *ends[::-1], east) is None
 
 
 def test_a_path_changes_places_by_open_moves_alone():
@@ -255,14 +252,14 @@ def test_a_path_changes_places_by_open_moves_alone():
     row, column = world.cells.T
     rim = np.flatnonzero((row == 5) | (column == 0))
     ends = floor.metres(floor.anchors[[world.state_of[0, 0], world.state_of[5, 5]]])
-    around, across = (clear_path(floor, price, *ends) for price in (moves_among(world, rim), open_moves(world)))
+    around, across = (clear_path(floor, *ends, price) for price in (moves_among(world, rim), None))
     assert len(across) == 2
     assert {floor.state_at("path", tuple(point)) for point in around} <= set(rim.tolist())
 
 
 def test_a_path_to_the_place_itself_is_a_point():
     world, floor = building(room(22, 32), 0.5, 0.2)
-    path = clear_path(floor, np.full((world.n_states, 4), np.inf), (1.05, 1.05), (1.05, 1.05))
+    path = clear_path(floor, (1.05, 1.05), (1.05, 1.05), np.full((world.n_states, 4), np.inf))
     assert path.tolist() == [[1.05, 1.05]]
 
 

@@ -26,9 +26,9 @@ the golden ratio never add up to the border between two pixels."""
 
 def clear_path(
     floor: Floor,
-    price: NDArray[np.floating],
     start: tuple[float, float],
     goal: tuple[float, float],
+    price: NDArray[np.floating] | None = None,
     clearance: float | None = None,
 ) -> NDArray[np.float64] | None:
     """The cheapest path of straight segments from `start` to `goal`, (n, 2) in metres of the map's frame.
@@ -36,11 +36,11 @@ def clear_path(
     Parameters
     ----------
     floor : Floor
-    price : (n_states, 4) float
-        Metres, at least 0, that each move costs in addition to its length: time lost, risk. A path changes from
-        the piece of one state to that of another only by moves of finite price.
     start, goal : (x, y)
         Points in metres, free places of the floor (`Floor.state_at`).
+    price : (n_states, 4) float, optional
+        Metres, at least 0, that each move costs in addition to its length: time lost, risk. A path changes from
+        the piece of one state to that of another only by moves of finite price. Default: 0 wherever pieces touch.
     clearance : float, optional
         Metres from the centres of solid pixels that the path keeps wherever it can; default: the robot's radius
         and half a pixel. A passage that leaves less costs `TIGHT` times its length more.
@@ -52,7 +52,7 @@ def clear_path(
         than the robot's radius from the centre of every solid pixel.
     """
     ends = floor.pixels([start, goal])
-    ground = ground_of(floor, price, clearance)
+    ground = ground_of(floor, np.zeros((floor.n_states, 4)) if price is None else price, clearance)
     corners = _search(ground, ends)
     if not len(corners):
         return None

@@ -33,23 +33,18 @@ def write_paths(path: Path, world: GridWorld, tasks: Sequence[GreedyPaths], floo
         writer.writerow(["task", "path", "step", "x", "y"])
         for task in tasks:
             for number, states in enumerate(task.paths):
-                points = (
-                    world.positions(states) if floor is None else _clear(floor, world, states, task.goal_point)
-                )
+                points = world.positions(states) if floor is None else _clear(floor, states, task.goal_point)
                 for step, (x, y) in enumerate(points):
                     writer.writerow([task.task, number, step, f"{x:.4f}", f"{y:.4f}"])
 
 
-def _clear(
-    floor: Floor, world: GridWorld, states: NDArray[np.int32], goal: tuple[float, float] | None
-) -> NDArray[np.float64]:
+def _clear(floor: Floor, states: NDArray[np.int32], goal: tuple[float, float] | None) -> NDArray[np.float64]:
     """The shortest clear path between the ends of a greedy path, or to the goal's point if the user gave one."""
     from lifelore.domains.buildings.clear_path import clear_path
 
     start, end = floor.metres(floor.anchors[states[[0, -1]]])
-    price = np.where(world.neighbour >= 0, 0.0, np.inf)
-    path = clear_path(floor, price, start, end if goal is None else goal)
-    assert path is not None, "a greedy path follows the moves of its floor"
+    path = clear_path(floor, start, end if goal is None else goal)
+    assert path is not None, "the places of a floor are joined"
     return path
 
 
