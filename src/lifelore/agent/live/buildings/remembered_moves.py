@@ -66,8 +66,9 @@ class RememberedMoves:
         moved = (column < width - 1) & (record.values >= 0) & (record.values != source)
         source, column, target = source[moved], column[moved], record.values[moved]
         back = _OPPOSITE[column]
-        value = dict(zip(record.slots.tolist(), record.values.tolist(), strict=True))
-        untold = np.array([value.get(slot, -1) < 0 for slot in (target * width + back).tolist()], bool)
+        slots = np.append(record.slots, -1)
+        behind = np.searchsorted(record.slots, target * width + back)
+        untold = (slots[behind] != target * width + back) | (np.append(record.values, -1)[behind] < 0)
         source, target = np.r_[source, target[untold]], np.r_[target, source[untold]]
         column = np.r_[column, back[untold]]
         source, target = (transitions.cells_from(record, cells, corner) for cells in (source, target))
@@ -106,22 +107,14 @@ class RememberedMoves:
         wrong = [move for move in pairwise(chain) if move not in true]
         return self.points(np.array(wrong, int).reshape(-1, 2).ravel()).reshape(-1, 2, 2).mean(axis=1)
 
-    def near(self, chain: list[int], reach: int) -> NDArray[np.int64]:
-        """The true moves among cells at most `reach` moves from a chain, (n, 2) states."""
-        inside = np.zeros(len(self.cells), bool)
-        inside[chain] = True
-        tail, head = self.tail[self.true], self.head[self.true]
-        for _ in range(reach):
-            grown = inside.copy()
-            grown[head[inside[tail]]] = True
-            inside = grown
-        among = inside[tail] & inside[head]
-        return np.column_stack([self.states[tail[among]], self.states[head[among]]])
-
     @property
-    def true_moves(self) -> NDArray[np.int64]:
-        """(n, 2) states of all true moves."""
-        return np.column_stack([self.states[self.tail[self.true]], self.states[self.head[self.true]]])
+    def open(self) -> NDArray[np.bool_]:
+        """(n_states, 4) bool, the moves of the map that memory holds."""
+        tail, head = self.states[self.tail[self.true]], self.states[self.head[self.true]]
+        joins = self.world.neighbour[tail] == head[:, None]
+        known = np.zeros(self.world.neighbour.shape, np.bool_)
+        np.logical_or.at(known, tail, joins)
+        return known
 
     def points(self, index: NDArray[np.int64]) -> NDArray[np.float64]:
         """Centres (n, 2) in metres of the map's frame, of cells by index."""
