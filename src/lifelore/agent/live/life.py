@@ -42,8 +42,8 @@ class Life:
         The JSON document of ``lifelore live``.
     world : GridWorld
     results : list of dict
-        For each task: agent name to `TaskResult`, or `Drive` where the goal is known; policies and states passed
-        only in the last `TASKS_WITH_POLICY`.
+        For each task: agent name to `TaskResult`, or `DrivenJob` where the goal is known; policies and states
+        passed only in the last `TASKS_WITH_POLICY`.
     lore : Lore
         Knowledge of the first agent at the end.
     stopped : bool

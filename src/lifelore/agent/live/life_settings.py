@@ -270,6 +270,11 @@ class LifeSettings:
         return self.world.domain == "building" and (self.goal is not None or bool(self.goals))
 
     @property
+    def in_busy_building(self) -> bool:
+        """Whether the simulated building slows and refuses moves: by default in a generated office."""
+        return self.world.map is None if self.busy is None else self.busy
+
+    @property
     def n_tasks(self) -> int:
         """Number of tasks of this life: that of the jobs, if there are any."""
         return len(self.goals) or self.tasks

@@ -6,7 +6,7 @@ from threading import Event
 from typing import Any, Protocol
 
 from lifelore.agent.live.buildings.recognition import Place
-from lifelore.agent.live.driven.drive import Drive
+from lifelore.agent.live.driven.driven_job import DrivenJob
 from lifelore.agent.live.goals.own_places import OwnGoal, OwnPlaces
 from lifelore.agent.live.lore import Lore
 from lifelore.agent.live.task_result import TaskResult
@@ -16,7 +16,7 @@ from lifelore.core.protocols import Record
 SEARCHED, DRIVEN = "searched", "driven"
 """How a goal is reached: it is hidden, or the robot knows where it is."""
 
-Result = TaskResult | Drive
+Result = TaskResult | DrivenJob
 
 
 @dataclass(frozen=True, eq=False)

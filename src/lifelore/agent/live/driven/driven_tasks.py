@@ -3,13 +3,14 @@
 from threading import Event
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.agent.life.loop import Stopped
 from lifelore.agent.live.buildings.carried_model import carried_model
 from lifelore.agent.live.buildings.recognition import Place
-from lifelore.agent.live.driven.drive import Drive
-from lifelore.agent.live.driven.drive_job import Building, drive_job
+from lifelore.agent.live.driven.drive_job import drive_job
 from lifelore.agent.live.driven.drive_summary import summarise_drives
+from lifelore.agent.live.driven.driven_job import DrivenJob
 from lifelore.agent.live.driven.robot_clock import RobotClock, clock_text, job_start, list_day, next_start
 from lifelore.agent.live.driven.route import RoutePlanner
 from lifelore.agent.live.goals.job_progress import JobProgress
@@ -20,6 +21,8 @@ from lifelore.agent.live.lore import Lore, prior_scope
 from lifelore.agent.travel.edge_times import nominal_seconds
 from lifelore.agent.travel.travel import Travel
 from lifelore.core.streams import stream
+from lifelore.domains.buildings.busy_building import BusyBuilding, Drive
+from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.memory import Memory
 
 MEMORY, MAP_ONLY = "lore", "map only"
@@ -57,7 +60,7 @@ class DrivenTasks:
         """Live in this place from now on."""
         self._place, self._places = place, places
         self._planner = RoutePlanner(place.world)
-        self._building = building_of(place, self._settings)
+        self._busy = BusyBuilding(place.world, self._settings.seed) if self._settings.in_busy_building else None
 
     def recall(self) -> None:
         """Know what memory holds of the building, and where the robot stands."""
@@ -82,7 +85,7 @@ class DrivenTasks:
         clock, start = self._begin(own), self._start(number, seq, own.state)
         know_nothing = Travel(self._place.world, self._place.grid)
         travels = {MEMORY: self._travel, MAP_ONLY: know_nothing}
-        results = {name: self._drive(start, own.state, clock, travels[name]) for name in self.names}
+        results = {name: self._drive(number, start, own.state, clock, travels[name]) for name in self.names}
         first = results[MEMORY]
         self._walked(first)
         stands = int(first.legs[-1][-1]) if first.legs else start
@@ -114,9 +117,14 @@ class DrivenTasks:
         others = np.delete(np.arange(self._place.world.n_states), goal)
         return int(stream(self._settings.seed, "task", number, "start").choice(others))
 
-    def _drive(self, start: int, goal: int, clock: float, travel: Travel) -> Drive:
-        world = self._place.world
-        return drive_job(world, self._planner, start, goal, clock, travel.cost, self._building, travel.observe)
+    def _drive(self, number: int, start: int, goal: int, clock: float, travel: Travel) -> DrivenJob:
+        """Drive a job; the noise of the building is the same for both agents."""
+        world, noise = self._place.world, stream(self._settings.seed, "task", number, "drive")
+
+        def building(way: NDArray[np.int64], clock: float) -> Drive:
+            return quiet_building(way, clock, world) if self._busy is None else self._busy.drive(way, clock, noise)
+
+        return drive_job(world, self._planner, start, goal, clock, travel.cost, building, travel.observe)
 
     def _map_metres(self, start: int, goal: int) -> float:
         """Length of the shortest route on the map; 0 where there is none."""
@@ -124,7 +132,7 @@ class DrivenTasks:
         route = self._planner.route(start, goal, np.where(world.neighbour >= 0, 1.0, np.inf))
         return 0.0 if route is None else float(route.lengths.sum()) * world.frame.cell
 
-    def _walked(self, drive: Drive) -> None:
+    def _walked(self, drive: DrivenJob) -> None:
         """Remember the moves that were made, for ways over known places."""
         world, model = self._place.world, self._lore.model
         for leg in drive.legs:
@@ -138,7 +146,9 @@ class DrivenTasks:
         return summarise_drives(tasks)
 
 
-def building_of(place: Place, settings: LifeSettings) -> Building:
-    """The simulated building: every move takes the nominal time, and none is refused."""
-    seconds = nominal_seconds(place.world)
-    return lambda states, actions, clocks: np.full(len(states), seconds)
+def quiet_building(way: NDArray[np.int64], clock: float, world: GridWorld) -> Drive:
+    """A building in which every move takes the nominal time, and none is refused."""
+    seconds = np.full(len(way) - 1, nominal_seconds(world))
+    actions = (world.neighbour[way[:-1]] == way[1:, None]).argmax(axis=1)
+    ends = clock + seconds.cumsum()
+    return Drive(way[:-1], actions, ends - seconds, seconds, float(ends[-1]))

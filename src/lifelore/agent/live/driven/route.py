@@ -21,14 +21,13 @@ _CORNERS = ((0, 2), (0, 3), (1, 2), (1, 3))
 
 @dataclass(frozen=True, eq=False)
 class Route:
-    """Moves from a start to a goal; no moves if they are the same place.
+    """Moves from a start to a goal.
 
-    states, actions : (n,) int, the place before each move, and the move
+    states : (n + 1,) int, from the start to the goal
     lengths : (n,) float, length of each move in cells: 1, or `DIAGONAL`
     """
 
     states: NDArray[np.int64]
-    actions: NDArray[np.int64]
     lengths: NDArray[np.float64]
 
 
@@ -80,24 +79,19 @@ class RoutePlanner:
         return np.column_stack([seconds, *corners])
 
     def _moves(self, chain: list[int], steps: NDArray[np.float64], seconds: NDArray[np.float64]) -> Route:
-        states, actions, lengths = [], [], []
+        states, lengths = chain[:1], []
         for place, following in pairwise(chain):
-            fitting = np.where(self._targets[place] == following, steps[place], np.inf)
-            step = int(fitting.argmin())
-            if step < 4:
-                moves, length = [step], 1.0
-            else:
-                moves, length = self._cheaper_order(place, _CORNERS[step - 4], seconds), DIAGONAL
-            for move in moves:
-                states.append(place)
-                actions.append(move)
-                lengths.append(length)
-                place = int(self._neighbour[place, move])
-        return Route(np.array(states, np.int64), np.array(actions, np.int64), np.array(lengths))
+            step = int(np.where(self._targets[place] == following, steps[place], np.inf).argmin())
+            if step >= 4:
+                first = self._cheaper_first(place, _CORNERS[step - 4], seconds)
+                states.append(int(self._neighbour[place, first]))
+            states.append(following)
+            lengths += [1.0] if step < 4 else [DIAGONAL, DIAGONAL]
+        return Route(np.array(states, np.int64), np.array(lengths))
 
-    def _cheaper_order(self, place: int, corner: tuple[int, int], seconds: NDArray[np.float64]) -> list[int]:
-        """The order of a corner's two moves that takes less time."""
-        orders = [list(corner), list(corner[::-1])]
+    def _cheaper_first(self, place: int, corner: tuple[int, int], seconds: NDArray[np.float64]) -> int:
+        """The first of a corner's two moves in the order that takes less time."""
+        orders = (corner, corner[::-1])
         return min(
             orders, key=lambda two: seconds[place, two[0]] + seconds[self._neighbour[place, two[0]], two[1]]
-        )
+        )[0]

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from lifelore.agent.live.baselines import AGENTS
-from lifelore.agent.live.driven.drive import Drive
+from lifelore.agent.live.driven.driven_job import DrivenJob
 from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
 from lifelore.agent.live.lived_tasks import Result
 from lifelore.agent.live.output.drive_figure import drives_figure
@@ -206,7 +206,7 @@ def _last_paths(life: Life) -> list[GreedyPaths]:
     for task, result in last:
         goal = int(world.state_of[tuple(task["goal"])])
         of, point = result[name], task.get("position")
-        if isinstance(of, Drive):
+        if isinstance(of, DrivenJob):
             found = GreedyPaths(task["index"], goal, of.paths(), float(of.reached))
         else:
             found = greedy_paths_of(world, of.policy, task["index"], goal, life.start)

@@ -1,4 +1,4 @@
-"""`Drive`: the result of a job that was driven."""
+"""`DrivenJob`: the result of a job that was driven."""
 
 from dataclasses import dataclass, field
 
@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 
 @dataclass
-class Drive:
-    """A drive to a known goal.
+class DrivenJob:
+    """The drive to a known goal.
 
     reached : whether the robot arrived; otherwise no way was left
     metres : driven, along moves and diagonal steps
