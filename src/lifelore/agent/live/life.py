@@ -33,6 +33,8 @@ from lifelore.memory import Memory, open_memory
 TASKS_WITH_POLICY = 4
 """Last tasks whose policies stay in main memory for the pictures; more cost an array of the world's size each."""
 
+_KNOWN_GOALS = "destinations draws hidden goals alone; these goals are known, and driven to"
+
 
 @dataclass
 class Life:
@@ -126,10 +128,10 @@ def live(
         first = agents_for(settings.agent, settings.learner)[0]
         place = _place(settings, world, occupancy, memory, first)
         names, notice = size_of_life(settings, place.world.n_states)
+        if settings.driven:
+            notice = _KNOWN_GOALS if settings.destinations else None
         if notify and notice:
             notify(notice)
-        if notify and settings.driven and settings.destinations:
-            notify("destinations draws hidden goals alone; these goals are known, and driven to")
         jobs = _job_progress(settings, place, memory)
         if jobs and jobs.finished:
             settings = replace(settings, goals=jobs.unfinished(settings.goals))
