@@ -115,6 +115,8 @@ def _short(x: float) -> str:
     for size, letter in ((1e6, "M"), (1e3, "k")):
         if abs(x) >= size:
             return f"{x / size:,.1f}{letter}"
+    if 0.05 <= abs(x) < 9.95 and not float(x).is_integer():
+        return f"{x:.1f}"
     return f"{round(x) or 0:,}"  # no "-0"
 
 

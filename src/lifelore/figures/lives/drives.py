@@ -71,8 +71,6 @@ def draw_drives(
 
 def draw_lost_time(axes: "Axes", jobs: ArrayLike, agents: Mapping[str, Mapping[str, ArrayLike]]) -> None:
     """Minutes lost, added up over jobs; a mark for each job in which a move was refused."""
-    from matplotlib.ticker import MaxNLocator
-
     jobs = np.asarray(jobs)
     for name, of in agents.items():
         minutes = np.cumsum(np.asarray(of["lost"], float)) / 60
@@ -91,9 +89,17 @@ def draw_lost_time(axes: "Axes", jobs: ArrayLike, agents: Mapping[str, Mapping[s
         )  # fmt: skip
     axes.set_title("Known goals: minutes lost to the building, added up")
     axes.set(xlabel="job (a cross: a move was refused)", ylim=(0, None))
-    axes.set_xlim(jobs.min() - 0.6, jobs.max() + 0.33 * max(np.ptp(jobs), 1))
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=7, min_n_ticks=1))
+    draw_task_axis(axes, jobs)
     axes.grid(axis="y")
+
+
+def draw_task_axis(axes: "Axes", tasks: NDArray) -> None:
+    """Whole numbers along the tasks, with room for the names of the lines on their right."""
+    from matplotlib.ticker import MaxNLocator
+
+    ticks = MaxNLocator(integer=True, nbins=6, min_n_ticks=1).tick_values(tasks.min(), tasks.max())
+    axes.set_xticks([tick for tick in ticks if tasks.min() <= tick <= tasks.max()])
+    axes.set_xlim(tasks.min() - 0.6, tasks.max() + 0.33 * max(np.ptp(tasks), 1))
 
 
 def draw_learnt_floor(axes: "Axes", floor: LearntFloor) -> None:
@@ -105,4 +111,13 @@ def draw_learnt_floor(axes: "Axes", floor: LearntFloor) -> None:
         rows, columns = np.asarray(floor.refused).T
         axes.plot(columns, rows, "X", color=INK, markersize=6, markeredgecolor=PAPER, zorder=6)
     draw_scale_bar(axes, floor.cell)
-    axes.set_title("What was learnt: grey as fast as expected, red slow; cross: blocked at times")
+    axes.set_title("What the drives taught of the floor")
+    for colour, words in (
+        (LIGHT, "full speed"),
+        (ORANGE, "half the speed"),
+        (VERMILION, f"1/{SLOWEST:.0f} of it"),
+    ):
+        axes.plot([], [], "s", color=colour, markersize=8, label=words)
+    axes.plot([], [], "X", color=INK, markersize=6, markeredgecolor=PAPER, label="blocked at times")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.01), ncols=4, columnspacing=1.2, handletextpad=0.2)
+    axes.set_anchor("N")

@@ -34,7 +34,7 @@ class Ring:
         if len(refused):
             seconds[-1] = np.nan
         actions = (self.world.neighbour[way[:end]] == way[1 : end + 1, None]).argmax(axis=1)
-        return Drive(way[:end], actions, clock + np.arange(end), seconds, clock + end)
+        return Drive(way[:end], actions, np.full(end, clock) + np.arange(end), seconds, clock + end)
 
     def drive(self, start: int, goal: int, clock: float) -> DrivenJob:
         travel = self.travel

@@ -74,7 +74,7 @@ def list_day(clock: float, first_time: str | None) -> float:
     """Midnight of the first working day on which a job list can start at the time of its first job."""
     day = BEGIN + (clock - BEGIN) // DAY * DAY
     of_day = None if first_time is None else _parsed(first_time)
-    earliest = day + of_day if isinstance(of_day, float) else math.inf
+    earliest = math.inf if of_day is None or isinstance(of_day, datetime) else day + of_day
     while not _is_working_day(day) or earliest < clock:
         day, earliest = day + DAY, earliest + DAY
     return day
@@ -83,7 +83,7 @@ def list_day(clock: float, first_time: str | None) -> float:
 def job_start(text: str, day: float) -> float:
     """The clock that a time of a job list means: a number of seconds or HH:MM on `day`, or a date in ISO 8601."""
     when = _parsed(text)
-    return day + when if isinstance(when, float) else when.timestamp()
+    return when.timestamp() if isinstance(when, datetime) else day + when
 
 
 def _parsed(text: str) -> float | datetime:

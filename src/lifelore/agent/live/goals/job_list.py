@@ -12,7 +12,8 @@ from lifelore.agent.live.goals.destinations import Destination, Point
 from lifelore.core.errors import InputError, NotFoundError
 
 COLUMNS = ("time", "name", "x", "y")
-T, R = TypeVar("T"), TypeVar("R")
+T = TypeVar("T")
+R = TypeVar("R")
 SHOWN = 10
 """Number of wrong lines, at most, that a message names."""
 

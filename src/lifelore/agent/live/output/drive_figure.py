@@ -4,37 +4,39 @@ import numpy as np
 
 from lifelore.agent.live.life import Life
 from lifelore.agent.travel.edge_times import nominal_seconds
+from lifelore.agent.travel.travel import Travel
+from lifelore.domains.buildings.busy_building import SPEED
 from lifelore.figures.lives.drives import LearntFloor, draw_drives
 
 
 def drives_figure(life: Life, place: str):
     """Minutes that each agent lost, beside what was learnt; `place` names the building."""
+    assert life.travel is not None, "goals were driven to"
     tasks = life.report["tasks"]
     totals = life.report["summary"].get("lore_vs_map_only", {}).get("all")
     title = f"{len(tasks):,} jobs driven in {place}"
     if totals and totals["seconds_ratio"]["value"] is not None:
         title += f": seconds with memory × {totals['seconds_ratio']['value']:.2f} of those on the map alone"
-    lost = lost_time(life.report, nominal_seconds(life.world) / life.world.frame.cell)
-    return draw_drives([task["index"] for task in tasks], lost, learnt_floor(life), title=title)
+    return draw_drives(
+        [task["index"] for task in tasks], lost_time(life.report), learnt_floor(life.travel), title=title
+    )
 
 
-def lost_time(report: dict, pace: float) -> dict[str, dict[str, list[float]]]:
-    """The seconds ``lost`` and the ``refusals`` of each job, by agent; `pace` is in nominal seconds a metre."""
+def lost_time(report: dict) -> dict[str, dict[str, list[float]]]:
+    """The ``refusals`` of each job by agent, and the seconds ``lost`` beside the shortest way at full speed."""
     tasks = report["tasks"]
     return {
         name: {
-            "lost": [task["agents"][name]["seconds"] - pace * task["map_metres"] for task in tasks],
+            "lost": [task["agents"][name]["seconds"] - task["map_metres"] / SPEED for task in tasks],
             "refusals": [task["agents"][name]["refusals"] for task in tasks],
         }
         for name in tasks[0]["agents"]
     }
 
 
-def learnt_floor(life: Life) -> LearntFloor:
-    """What was learnt by the end of a life, at noon of its last day."""
-    world, travel = life.world, life.travel
-    assert travel is not None, "goals were driven to"
-    passes = travel.passes
+def learnt_floor(travel: Travel) -> LearntFloor:
+    """What was learnt of a building, as it is at noon of the last day on which something was observed."""
+    world, passes = travel.world, travel.passes
     state, into = passes.move // 4, world.neighbour.ravel()[passes.move]
     minute = int(passes.minute.max(initial=0))
     expected = travel.seconds(60.0 * (minute // 1440 * 1440 + 720)) / nominal_seconds(world)
