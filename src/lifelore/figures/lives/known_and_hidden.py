@@ -48,7 +48,7 @@ def draw_known_and_hidden(
 
 
 def draw_searches(axes: "Axes", searched: Mapping[str, ArrayLike]) -> None:
-    """Metres of each search, on a logarithmic scale: a point a task, a line for the geometric mean of the last ones."""
+    """Metres of each search, on a logarithmic scale: a point a task, and a line for their geometric mean."""
     from matplotlib.ticker import FuncFormatter
 
     for name, values in searched.items():
