@@ -1,9 +1,9 @@
 """A building that does things to a robot: rush hours, slow corridors, places blocked for days, closed doors.
 
-The seconds of a move are cell / speed, times the factors of the zones that it enters, times noise:
+The seconds of a move are cell / speed, times the factor of the zone that it enters, times noise:
 
 - *floor*: some zones are always slow (a ramp, a carpet);
-- *rush*: some zones are slow at certain hours of weekdays;
+- *rush*: some zones are slow twice a day at their own hours of weekdays;
 - *drift*: some zones become slower and faster again over weeks;
 - *noise*: whole drives and single moves are slower or faster, and now and then somebody stands in the way.
 
@@ -30,19 +30,21 @@ SPEED = 0.5
 """Metres a second on an empty floor."""
 REFUSED_SECONDS = 5.0
 """Seconds until a robot gives up a refused move."""
-N_FLOOR, N_RUSH, N_DRIFT, N_BLOCKED, N_DOORS = 6, 8, 6, 6, 2
+N_FLOOR, N_RUSH, N_DRIFT, N_BLOCKED, N_DOORS = 6, 10, 8, 6, 2
 """Number of zones of each kind, of places that are blocked at times, and of doors."""
-RUSH_HOURS, DRIFT_WEEKS = 2.0, 6.0
-"""Hours of a rush, and weeks from slow to slow in a zone that drifts."""
+RUSH_HOURS, DRIFT_WEEKS = 3.0, 6.0
+"""Hours of each of a zone's two rushes a day, and weeks from slow to slow in a zone that drifts."""
+FACTORS = 1.5, 3.0
+"""Least and largest factor of seconds in a zone; where zones overlap, the larger one counts."""
 ZONE_M, PLACE_M = 2.0, 0.5
 """Metres from the middle of a zone, and of a blocked place or door, to its border."""
 NIGHT = 20, 6
 """Hours from which and until which doors are closed."""
 OPEN_DAYS, BLOCKED_DAYS = 10.0, 1.5
 """Mean days (exponential) for which a place is open, and blocked."""
-DRIVE_NOISE, MOVE_NOISE = 0.08, 0.25
+DRIVE_NOISE, MOVE_NOISE = 0.08, 0.15
 """Standard deviations of log seconds, of whole drives and of moves."""
-WAIT_CHANCE, WAIT_SECONDS = 0.01, 8.0
+WAIT_CHANCE, WAIT_SECONDS = 0.005, 8.0
 """Probability a move that somebody stands in the way, and mean seconds (exponential) of the wait."""
 
 
@@ -64,12 +66,12 @@ class Drive(NamedTuple):
 
 
 class _Zones(NamedTuple):
-    """Squares of cells, n of them: kind (n,), cells (n, n_states) 0 or 1, log factor (n,), hour or phase (n,)."""
+    """Squares of cells, n of them: kind (n,), cells (n, n_states) 0 or 1, log factor (n,), hours (2, n)."""
 
     kind: NDArray[np.str_]
     cells: NDArray[np.float64]
     size: NDArray[np.float64]
-    phase: NDArray[np.float64]
+    hours: NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,13 +91,13 @@ class BusyBuilding:
 
     def seconds(self, clock: float) -> NDArray[np.float64]:
         """Median seconds (n_states,) of a move into each cell at `clock`, if it is not refused."""
-        kind, size, phase = self._zones.kind, self._zones.size, self._zones.phase
+        kind, cells, size, start = self._zones
         hour, weekday = clock % DAY / HOUR, (clock - MONDAY) // DAY % 7 < 5
-        rush = (kind == "rush") & weekday & ((hour - phase) % 24 < RUSH_HOURS)
+        rush = (kind == "rush") & weekday & ((hour - start) % 24 < RUSH_HOURS).any(axis=0)
         weeks = (clock - MONDAY) / (7 * DAY)
-        drift = (kind == "drift") * (0.5 + 0.5 * np.sin(2 * np.pi * (weeks / DRIFT_WEEKS + phase / 24)))
+        drift = (kind == "drift") * (0.5 + 0.5 * np.sin(2 * np.pi * (weeks / DRIFT_WEEKS + start[0] / 10)))
         log_factor = size * np.where(kind == "floor", 1.0, rush + drift)
-        return self.world.frame.cell / SPEED * np.exp(log_factor @ self._zones.cells)
+        return self.world.frame.cell / SPEED * np.exp((log_factor[:, None] * cells).max(axis=0))
 
     def blocked(self, clock: float) -> NDArray[np.bool_]:
         """Cells (n_states,) into which all moves are refused at `clock`."""
@@ -162,9 +164,8 @@ class BusyBuilding:
         middles = rng.choice(self.world.n_states, size=len(kind), replace=False, p=self._busy)
         radius = round(ZONE_M / self.world.frame.cell)
         cells = np.array([around(self.world, int(middle), radius) for middle in middles], float)
-        size = np.log(rng.uniform(1.2, 2.5, len(kind)))
-        phase = np.where(kind == "rush", rng.uniform(7, 17, len(kind)), rng.uniform(0, 24, len(kind)))
-        return _Zones(kind, cells, size, phase)
+        size = np.log(rng.uniform(*FACTORS, len(kind)))
+        return _Zones(kind, cells, size, rng.uniform(7, 17, (2, len(kind))))
 
     @cached_property
     def _passages(self) -> tuple[NDArray[np.bool_], list[NDArray[np.float64]]]:
