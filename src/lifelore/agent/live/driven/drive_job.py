@@ -16,6 +16,9 @@ from lifelore.agent.live.driven.route import RoutePlanner
 from lifelore.domains.buildings.busy_building import REFUSED_SECONDS, Drive
 from lifelore.domains.grids.grid_world import GridWorld
 
+DOUBT = 10.0
+"""Seconds that are added in a drive to a move into a place beside a refused one: what blocks is often wider."""
+
 Expected = Callable[[float], NDArray[np.float64]]
 """Clock to (n_states, 4) seconds to plan with; inf where the map has no move."""
 Building = Callable[[NDArray[np.int64], float], Drive]
@@ -39,7 +42,7 @@ def drive_job(
     metres, moves, refusals = 0.0, 0, 0
     blocked: list[int] = []
     while place != goal:
-        seconds = np.where(np.isin(world.neighbour, blocked), np.inf, expected(clock))
+        seconds = expected(clock) + _doubt(world, blocked)[world.neighbour]
         route = planner.route(place, goal, seconds)
         if route is None:
             break
@@ -56,3 +59,12 @@ def drive_job(
             refusals += 1
             blocked.append(int(route.states[made + 1]))
     return DrivenJob(place == goal, metres, clock - began, refusals, max(len(legs) - 1, 0), moves, legs)
+
+
+def _doubt(world: GridWorld, blocked: list[int]) -> NDArray[np.float64]:
+    """Seconds to add to moves into each state: infinite for blocked ones, `DOUBT` beside them, else 0."""
+    seconds = np.zeros(world.n_states)
+    for place in blocked:
+        seconds[np.abs(world.cells - world.cells[place]).max(axis=1) <= 1] = DOUBT
+    seconds[blocked] = np.inf
+    return seconds

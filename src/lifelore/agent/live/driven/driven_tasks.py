@@ -18,10 +18,9 @@ from lifelore.agent.live.goals.own_places import OwnGoal, OwnPlaces
 from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.agent.live.lived_tasks import DRIVEN, LivedByAll
 from lifelore.agent.live.lore import Lore, prior_scope
-from lifelore.agent.travel.edge_times import nominal_seconds
 from lifelore.agent.travel.travel import Travel
 from lifelore.core.streams import stream
-from lifelore.domains.buildings.busy_building import BusyBuilding, Drive
+from lifelore.domains.buildings.busy_building import SPEED, BusyBuilding, Drive
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.memory import Memory
 
@@ -147,8 +146,8 @@ class DrivenTasks:
 
 
 def quiet_building(way: NDArray[np.int64], clock: float, world: GridWorld) -> Drive:
-    """A building in which every move takes the nominal time, and none is refused."""
-    seconds = np.full(len(way) - 1, nominal_seconds(world))
+    """A building in which every move is made at full speed, and none is refused."""
+    seconds = np.full(len(way) - 1, world.frame.cell / SPEED)
     actions = (world.neighbour[way[:-1]] == way[1:, None]).argmax(axis=1)
     ends = clock + seconds.cumsum()
     return Drive(way[:-1], actions, ends - seconds, seconds, float(ends[-1]))

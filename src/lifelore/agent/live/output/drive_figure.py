@@ -3,7 +3,6 @@
 import numpy as np
 
 from lifelore.agent.live.life import Life
-from lifelore.agent.travel.edge_times import nominal_seconds
 from lifelore.agent.travel.travel import Travel
 from lifelore.domains.buildings.busy_building import SPEED
 from lifelore.figures.lives.drives import LearntFloor, draw_drives
@@ -39,7 +38,7 @@ def learnt_floor(travel: Travel) -> LearntFloor:
     world, passes = travel.world, travel.passes
     state, into = passes.move // 4, world.neighbour.ravel()[passes.move]
     minute = int(passes.minute.max(initial=0))
-    expected = travel.seconds(60.0 * (minute // 1440 * 1440 + 720)) / nominal_seconds(world)
+    expected = travel.seconds(60.0 * (minute // 1440 * 1440 + 720)) * SPEED / world.frame.cell
     observed = np.isin(np.arange(world.n_states), np.r_[state, into])
     delay = np.where(observed, np.where(world.neighbour >= 0, expected, -np.inf).max(axis=1), np.nan)
     refused = world.cells[np.unique(into[passes.refusals > 0])]
