@@ -52,6 +52,23 @@ def make_jobs(folder: Path) -> None:
     (folder / "jobs.csv").write_text("\n".join(["time,name,x,y", *jobs]) + "\n")
 
 
+def make_courier_jobs(folder: Path) -> None:
+    """200 jobs between six rooms of the office that ``lifelore live`` generates: ten working days."""
+    world, random = make_world(), stream(1, "courier jobs")
+    floor = floor_of(office_map(0), world)
+    points = floor.metres(floor.anchors)
+    places = points[:1]
+    while len(places) < 6:  # each place is as far as can be from those before it
+        away = np.hypot(*(points[:, None] - places).T).min(axis=0)
+        places = np.vstack([places, points[away.argmax()]])
+    ends = dict(zip(("post", "lab", "kitchen", "store", "printer", "desk"), places, strict=True))
+    rows, place = [f"{name},{x:.3f},{y:.3f}" for name, (x, y) in ends.items()], "desk"
+    while len(rows) < 200:
+        place = str(random.choice([name for name in ends if name != place]))
+        rows.append(f"{place},,")
+    (folder / "courier.csv").write_text("\n".join(["name,x,y", *rows]) + "\n")
+
+
 def steps_of(world: GridWorld, start: int, goal: int) -> Iterator[tuple[int, int]]:
     """State and action of each step of a shortest path."""
     best = greedy_policy(optimal_q(world.task(goal).tables(), world.discount))
@@ -167,5 +184,5 @@ def make_log(folder: Path) -> None:
 
 if __name__ == "__main__":
     place = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
-    for make in (make_map, make_jobs, make_runs, make_log, make_walks, make_clouds):
+    for make in (make_map, make_jobs, make_courier_jobs, make_runs, make_log, make_walks, make_clouds):
         make(place)

@@ -44,12 +44,12 @@ def live(
         str | None,
         Option(
             metavar="X,Y|NAME|ROW,COL",
-            help="Goal of every task: in a building metres or a known name; default: drawn for each task.",
+            help="Goal of every task; in a building, the robot drives there. Default: each task hides one.",
         ),
     ] = None,
     goals: Annotated[
         str | None,
-        Option(metavar="CSV", help="building: job list with time (optional), name, x, y; one task a job."),
+        Option(metavar="CSV", help="building: job list with time (optional), name, x, y; the robot drives there."),
     ] = None,
     agent: Annotated[
         str | None,
@@ -92,9 +92,9 @@ def live(
 ) -> int:
     """Live through tasks in one world and learn from each.
 
-    Use it to see what an agent gains from its earlier tasks, in your own map or in a generated office. Memory
-    stores what the agent learnt after each task: the next run continues the life, in this building or in another
-    one.
+    With known goals (--goal, --goals) the robot drives, and learns what its building does to it: slow hours,
+    blocked places. Without, each goal is hidden, and the agent searches. Memory stores what was learnt after each
+    task: the next run continues the life, in this building or in another one.
     """
     from lifelore.agent.long_lived.families.by_name import FAMILIES
 
@@ -146,12 +146,15 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.life_table import print_life
     from lifelore.app.pages_beside import pages_beside
+    from lifelore.core.errors import InputError
 
     domain, memory = values["domain"], values.get("memory")
     out, csv, l2log = (values.get(name) for name in ("out", "csv", "l2log"))
     places = {name: _place(name, values[name], domain) for name in ("start", "goal") if name in values}
     jobs = {"goals": _jobs(values["goals"], values.get("tasks"))} if "goals" in values else {}
     settings = LifeSettings(**keys.arguments(LifeSettings, values | places | jobs))
+    if l2log is not None and settings.driven:
+        raise InputError(f"l2log logs episodes of searches, got {l2log} with known goals; leave it out")
     new_folders = _missing_folders(memory, out)
     if out is not None:
         check_folder(out)

@@ -3,10 +3,21 @@
 from lifelore.agent.live import transitions
 from lifelore.agent.live.buildings import building_record
 from lifelore.agent.live.buildings.building_record import remembered_buildings
+from lifelore.agent.live.driven import robot_clock
 from lifelore.agent.live.goals import destinations, goal_counts
 from lifelore.agent.travel import passes
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import Memory
+
+_OF_A_BUILDING = (
+    building_record.MAP_KIND,
+    transitions.KIND,
+    destinations.KIND,
+    goal_counts.KIND,
+    passes.KIND,
+    robot_clock.KIND,
+)
+"""Kinds of records that are forgotten with their building."""
 
 
 def buildings_in(memory: Memory) -> list[dict]:
@@ -42,7 +53,7 @@ def forget_building(memory: Memory, name: str) -> dict:
     if len(keys) > 1:
         raise InputError(f"building {name!r} is the name of {len(keys)} buildings; give a key: {', '.join(keys)}")
     names = [(building_record.KIND, keys[0], building_record.VERSION)]
-    for kind in (building_record.MAP_KIND, transitions.KIND, destinations.KIND, goal_counts.KIND, passes.KIND):
+    for kind in _OF_A_BUILDING:
         names += [
             (kind, key, version) for key, version, about in memory.keys(kind) if about.get("building") == keys[0]
         ]

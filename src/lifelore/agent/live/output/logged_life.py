@@ -63,7 +63,7 @@ def logged_life(life: Life, building: KnownBuilding, last: list[GreedyPaths]) ->
     ways = [
         (_named(tasks[paths.task]), _seconds(tasks[paths.task]), points)
         for paths in last
-        for points in path_points(life.world, paths, building.floor)[:1]
+        for points in _corners(life, building, paths)
     ]
     first = next(iter(life.results), {})
     name = next(iter(first), "")
@@ -76,6 +76,13 @@ def logged_life(life: Life, building: KnownBuilding, last: list[GreedyPaths]) ->
     (costs,) = place_masks(building.floor, building.known, values)
     laid = on_map(costs, building.floor, building.given, NO_OPINION)
     return LoggedLife(building.given, laid, ways, ends + _refusals(building, begin))
+
+
+def _corners(life: Life, building: KnownBuilding, paths: GreedyPaths) -> list[NDArray[np.float64]]:
+    """The ways of a task that was driven; of a searched goal the first path that was learnt."""
+    if life.driven:
+        return [building.floor.metres(building.floor.anchors[states]) for states in paths.paths]
+    return path_points(life.world, paths, building.floor)[:1]
 
 
 def goal_points(life: Life, building: KnownBuilding, tasks: list[dict[str, Any]]) -> list[Point]:

@@ -165,20 +165,20 @@ class _Graph:
         """The nodes of a clear path along a chain; its ends and its corners."""
         first, last = (self._node(state) for state in (chain[0], chain[-1]))
         (a, b), (c, d) = self._nodes[first].tolist(), self._nodes[last].tolist()
-        beside = self._moves_beside(chain)
-        path = clear_path(self._part(beside.ravel()), beside, (a, b), (c, d), beside)
+        cells = self._cells_beside(chain)
+        price = np.full(self.possible.shape, np.inf)
+        inside = np.isin(self.costs.world.neighbour[cells], cells)
+        price[cells] = np.where(self.possible[cells] & inside, 0.0, np.inf)
+        path = clear_path(self._part(cells), (a, b), (c, d), price)
         assert path is not None, "a route follows the moves of its floor"
         self._nodes.extend(path[1:-1])
         inner = range(len(self._nodes) - len(path) + 2, len(self._nodes))
         return [first, *inner, last]
 
-    def _moves_beside(self, chain: Chain) -> NDArray[np.int64]:
-        """Possible moves (n, 2) between the cells of a chain and those beside it that are not closed."""
-        neighbour = self.costs.world.neighbour
-        beside = neighbour[list(chain)][self.possible[list(chain)]]
-        cells = np.union1d(chain, beside[~self._closed[beside]])
-        tail, action = np.nonzero(self.possible[cells] & np.isin(neighbour[cells], cells))
-        return np.column_stack([cells[tail], neighbour[cells[tail], action]]).astype(np.int64)
+    def _cells_beside(self, chain: Chain) -> NDArray[np.int64]:
+        """The cells of a chain, and those beside it that are not closed."""
+        beside = self.costs.world.neighbour[list(chain)][self.possible[list(chain)]]
+        return np.union1d(chain, beside[~self._closed[beside]]).astype(np.int64)
 
     def _part(self, states: NDArray[np.int64]) -> Floor:
         """The part of the floor around some cells, with what the robot could touch there, to search in."""
