@@ -58,7 +58,7 @@ def _print(found: "Recognition") -> None:
 
     dx, dy, turn = found.pose
     print(f"{found.building}: {int(100 * found.walls)} % of the walls agree")
-    print(f"the map lies at {dx:.2f} m, {dy:.2f} m in the remembered frame, turned by {degrees(turn):.2f}°")
+    print(f"the map lies at {dx:z.2f} m, {dy:z.2f} m in the remembered frame, turned by {degrees(turn):z.2f}°")
     if not found.waypoints:
         print("memory knows no places by name here; give a job list (--goals)")
     for one in found.waypoints:

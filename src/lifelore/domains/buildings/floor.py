@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 
 from lifelore.core.errors import InputError
-from lifelore.domains.buildings.free_space import free_pixels, largest_pieces, solid_pixels, square_grid
+from lifelore.domains.buildings.free_space import pieces_of
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from lifelore.domains.grids.grid_world import GridWorld
 
@@ -160,15 +160,12 @@ class Floor:
 def floor_of(occupancy: OccupancyMap, world: GridWorld) -> Floor:
     """The floor of a building that `building_from_map` made of this map."""
     about = world.about
-    solid = solid_pixels(occupancy)
-    free = free_pixels(occupancy, solid, about["robot_radius"])
-    grid = square_grid(free.shape, occupancy.resolution, about["cell"])
+    _, _, grid, largest = pieces = pieces_of(occupancy, about["cell"], about["robot_radius"])
     state = world.state_of[np.ix_(grid.row_of, grid.column_of)]
-    piece = largest_pieces(free, grid)
     return Floor(
         occupancy,
-        np.where(piece, state, np.int32(-1)).astype(np.int32),
-        solid,
+        np.where(largest, state, np.int32(-1)).astype(np.int32),
+        pieces.solid,
         about["robot_radius"],
         world.n_states,
     )

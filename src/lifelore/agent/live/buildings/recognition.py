@@ -19,7 +19,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.domains.buildings.map_alignment import aligned_map
 from lifelore.domains.buildings.occupancy_map import OccupancyMap
-from lifelore.domains.buildings.registration import IDENTITY, Fit, Pose, register, register_near
+from lifelore.domains.buildings.registration import IDENTITY, Fit, Pose, Walls, register, register_near
 from lifelore.domains.grids.grid_world import Frame, GridWorld
 from lifelore.domains.worlds import WorldSettings, world_from_settings
 from lifelore.memory import Memory
@@ -178,7 +178,7 @@ def _in_frame(
     building = by_key.get(earlier.record.about.get("building", "")) if earlier else None
     if building is None or building.frame.origin != occupancy.origin:
         return None
-    fit = register_near(_map_of(building, memory), occupancy)
+    fit = register_near(Walls(_map_of(building, memory)), Walls(occupancy))
     return Recognised(building, IDENTITY, fit.match if fit else 0.0)
 
 
@@ -203,11 +203,12 @@ def fitting_building(
     """
     if not maps:
         return None, "no building is remembered"
-    in_place = ((register_near(known, occupancy), building) for building, known in maps.items())
+    new, walls = Walls(occupancy), {building: Walls(known) for building, known in maps.items()}
+    in_place = ((register_near(known, new), building) for building, known in walls.items())
     fits = [(fit, of) for fit, of in in_place if fit and _near_identity(fit.pose) and fit.match >= LEAST_MATCH]
     rivals: dict[Building, Fit | None] = {}
     if not fits:
-        registered = ((register(known, occupancy), building) for building, known in maps.items())
+        registered = ((register(known, new), building) for building, known in walls.items())
         found = [(result, building) for result, building in registered if result]
         fits = [(result.best, building) for result, building in found]
         rivals = {building: result.second for result, building in found}
