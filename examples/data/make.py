@@ -1,4 +1,4 @@
-"""Makes the example files of this folder again: a map, jobs and runs in it, clouds, a log, walks and keys.
+"""Makes the example files of this folder again: two maps of an office, jobs, runs, clouds, a log, walks and keys.
 
 All are simulated. The clouds need the extras `sim` and `ros`. Run: python examples/data/make.py
 """
@@ -39,6 +39,22 @@ def make_map(folder: Path) -> None:
         f"image: office.png\nresolution: {office.resolution}\norigin: [-5.0, -3.0, 0.0]\nnegate: 0\n"
         "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
     )
+
+
+def make_new_map(folder: Path) -> None:
+    """The same office, mapped again: turned by 3°, with another origin, and with a cupboard where the lab was."""
+    office = read_occupancy_map(folder / "office.yaml")
+    x, y = next(
+        map(float, row.split(",")[2:]) for row in (folder / "jobs.csv").read_text().splitlines() if "lab" in row
+    )
+    column, row = round((x + 5.0) / office.resolution), len(office.grey) - round((y + 3.0) / office.resolution)
+    grey = office.grey.copy()
+    grey[row - 6 : row + 6, column - 6 : column + 6] = 0
+    unknown = 205
+    turned = Image.fromarray(grey).rotate(3, expand=True, fillcolor=unknown)
+    turned.save(folder / "office_new.png", optimize=True)
+    text = (folder / "office.yaml").read_text().replace("office.png", "office_new.png")
+    (folder / "office_new.yaml").write_text(text.replace("[-5.0, -3.0, 0.0]", "[-2.0, -7.5, 0.0]"))
 
 
 def make_jobs(folder: Path) -> None:
@@ -184,5 +200,6 @@ def make_log(folder: Path) -> None:
 
 if __name__ == "__main__":
     place = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
-    for make in (make_map, make_jobs, make_courier_jobs, make_runs, make_log, make_walks, make_clouds):
+    makers = (make_map, make_jobs, make_courier_jobs, make_new_map, make_runs, make_log, make_walks, make_clouds)
+    for make in makers:
         make(place)

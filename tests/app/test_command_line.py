@@ -94,6 +94,7 @@ def test_the_contract_names_these_commands():
     verbs = {
         "live",
         "way",
+        "recognise",
         "perceive",
         "learn-relations",
         "scenes",

@@ -18,13 +18,6 @@ Option = typer.Option
 
 OPTIONS = ("domain", "map", "tasks", "goal", "goals", "agent", "robot", "memory", "out", "log", "csv", "seed")
 """Options of `live` that are settings too."""
-KEYS = {
-    "condition": "prior",
-    "kind": "sensor",
-    "location": "memory",
-    "family": "domain",
-}
-"""Name of a parameter of the settings to its key, where they differ."""
 
 
 def live(
@@ -113,7 +106,7 @@ def live(
 
 def setting_keys(domain: str) -> "SettingKeys":
     """The settings of a life in this domain, by key."""
-    from lifelore.agent.live.life_settings import LifeSettings
+    from lifelore.agent.live.life_settings import LIFE_KEYS, LifeSettings
     from lifelore.agent.long_lived.families.by_name import FAMILIES
     from lifelore.agent.long_lived.long_life import live_long
     from lifelore.app.setting_keys import Setting, SettingKeys
@@ -123,8 +116,8 @@ def setting_keys(domain: str) -> "SettingKeys":
     labels = Setting(
         "labels", bool, "Whether the points of the pictures carry the objects' labels, for tabletop.", False
     )
-    life = SettingKeys((LifeSettings,), KEYS, (l2log, port))
-    long_life = SettingKeys((live_long,), KEYS, (labels, port))
+    life = SettingKeys((LifeSettings,), LIFE_KEYS, (l2log, port))
+    long_life = SettingKeys((live_long,), {"location": "memory", "family": "domain"}, (labels, port))
     if domain in FAMILIES:
         own, other, where = long_life, life, f"does not apply to domain {domain}; leave it out"
     else:

@@ -6,6 +6,7 @@ import pytest
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.registration import (
+    Walls,
     composed,
     inverse,
     moved,
@@ -36,7 +37,7 @@ def test_poses_by_hand():
 
 def test_the_same_map_fits_perfectly_in_its_frame():
     for new in (OFFICE, padded(OFFICE)):
-        fit = register_near(OFFICE, new)
+        fit = register_near(Walls(OFFICE), Walls(new))
         assert fit is not None
         assert fit.pose == pytest.approx((0, 0, 0), abs=1e-3)
         assert (fit.match, fit.overlap) == (1.0, 1.0)
@@ -56,7 +57,7 @@ def test_the_same_map_fits_perfectly_in_its_frame():
 )
 def test_a_map_saved_again_is_found_below_a_pixel(edit, yaw):
     new = edit(OFFICE)
-    found = register(OFFICE, new)
+    found = register(Walls(OFFICE), Walls(new))
     assert found is not None
     assert recognised(found)
     assert np.degrees(found.best.pose[2]) == pytest.approx(yaw, abs=0.05)
@@ -65,12 +66,12 @@ def test_a_map_saved_again_is_found_below_a_pixel(edit, yaw):
 
 
 def test_another_building_does_not_fit():
-    found = register(OFFICE, office_map(2, 20.0, 14.0))
+    found = register(Walls(OFFICE), Walls(office_map(2, 20.0, 14.0)))
     assert found is None or found.best.match < 0.75
 
 
 def test_two_poses_of_a_symmetric_hall_fit_equally():
-    found = register(hall(), turned(hall(), 20.0))
+    found = register(Walls(hall()), Walls(turned(hall(), 20.0)))
     assert found is not None
     assert found.second is not None
     assert found.best.match - found.second.match < 0.05
@@ -79,10 +80,10 @@ def test_two_poses_of_a_symmetric_hall_fit_equally():
 
 def test_a_map_without_walls_fits_nothing():
     blank = OccupancyMap(np.full((40, 40), FREE, np.uint8), 0.1)
-    assert register(OFFICE, blank) is None
-    assert register_near(blank, OFFICE) is None
+    assert register(Walls(OFFICE), Walls(blank)) is None
+    assert register_near(Walls(blank), Walls(OFFICE)) is None
 
 
 def test_registration_is_deterministic():
     new = turned(cropped(OFFICE, 0.8), 33.0)
-    assert register(OFFICE, new) == register(OFFICE, new)
+    assert register(Walls(OFFICE), Walls(new)) == register(Walls(OFFICE), Walls(new))

@@ -23,6 +23,8 @@ MOST_LENGTH = 1e3
 MOST_REWARD = 1e6
 """Largest magnitude of rewards and of α⁰: a larger number hides the others by rounding."""
 LONGEST_NAME = 200
+LIFE_KEYS = {"condition": "prior", "kind": "sensor", "location": "memory"}
+"""The key of each setting whose key, flat beside all others, is not its name."""
 
 Place = tuple[float, float] | str
 """In buildings x and y in metres of the map's frame, or a name that memory knows; else row and column."""
