@@ -389,6 +389,11 @@ class Memory:
         self._store.empty_log()
         return len(found)
 
+    def is_known(self, robot: str, process: str, seq: int) -> bool:
+        """Whether the memory stores a contribution, or has forgotten it."""
+        with self._store.reading() as conn:
+            return ledger.is_known(conn, (robot, process, seq))
+
     def times_forgotten(self, robot: str, process: str) -> int:
         """Number of forgotten contributions of a process of a robot."""
         count = "SELECT COUNT(*) FROM lifelore_tombstones WHERE robot = ? AND process = ?"

@@ -1,8 +1,7 @@
 """Compares the poses of a log with the map, and finds the offset that lays a log in another frame on it.
 
-A pose lies outside if it is farther than `TOLERANCE` from every point at which the robot's centre can be. The robot's
-radius is grown from walls already, so that a pose of a good log lies outside only by localisation noise beyond the
-tolerance.
+A pose lies outside if it is farther than `TOLERANCE` from every point at which the robot's centre can be. These
+points keep the robot's radius from walls, so that only larger noise puts a pose of a good log outside.
 """
 
 from collections.abc import Sequence
@@ -92,7 +91,7 @@ def mending_shift(points: NDArray[np.float64], reachable: Reachable) -> tuple[Sh
 def _candidates(points: NDArray[np.float64], turn: float, reachable: Reachable) -> list[Shift]:
     """Shifts with this turn about the middle of the log that lay most poses inside, on coarse pixels.
 
-    The number of poses inside, for all shifts at once, is the correlation of the poses' picture with the free space.
+    The number of poses inside, for all shifts, is the correlation of the poses' picture with the free space.
     """
     floor = reachable.floor
     step = max(1, round(_PIXEL / floor.occupancy.resolution))
@@ -106,7 +105,9 @@ def _candidates(points: NDArray[np.float64], turn: float, reachable: Reachable) 
     # The part of the free space that the picture can come to cover, with nothing free beyond the map.
     window = np.zeros(np.array(picture.shape) + 2 * reach)
     first = low - reach
-    inside = [slice(max(f, 0), max(min(f + w, n), 0)) for f, w, n in zip(first, window.shape, free.shape, strict=True)]
+    inside = [
+        slice(max(f, 0), max(min(f + w, n), 0)) for f, w, n in zip(first, window.shape, free.shape, strict=True)
+    ]
     there = [slice(one.start - f, max(one.stop, one.start) - f) for one, f in zip(inside, first, strict=True)]
     window[tuple(there)] = free[tuple(inside)]
     hits = signal.fftconvolve(window, picture[::-1, ::-1], mode="valid")

@@ -1,8 +1,8 @@
 """Turns the poses of a run into moves of a building: made, refused, or contradicting the map.
 
 Between two poses the robot is taken to have driven straight. A move between two cells that the map separates is
-not learnt: a pose that is 10 cm off hops through a thin wall. Poses that tremble across the border of two cells are
-no moves. A bump counts also where the map is free, because the robot met an obstacle that the map lacks.
+not learnt: a pose that is 10 cm off hops through a thin wall. Poses that tremble across the border of two cells
+are no moves. A bump counts also where the map is free, because the robot met an obstacle that the map lacks.
 """
 
 from dataclasses import dataclass
@@ -20,8 +20,8 @@ PER_CELL = 20
 AT_REST = 0.02
 """Metres that a robot has to move for its direction to be known."""
 TREMBLE, MOST_TREMBLE = 0.02, 0.25
-"""Least depth in metres to which a robot enters a cell that it leaves by the same border, and the largest share of a
-cell that noise can make it."""
+"""Least depth in metres to which a robot enters a cell that it leaves by the same border, and the largest share of
+a cell that noise can make it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +101,9 @@ def _crossings(world: GridWorld, run: Run, pairs: NDArray[np.int64]) -> tuple[li
     of = np.repeat(np.arange(len(pairs)), parts + 1)
     share = (np.arange(len(of)) - np.repeat(np.cumsum(parts + 1) - parts - 1, parts + 1)) / parts[of]
     along = world.states_at(run.points[pairs][of] + share[:, None] * piece[of])
-    changes = np.flatnonzero((along[1:] != along[:-1]) & (of[1:] == of[:-1]) & (along[1:] >= 0) & (along[:-1] >= 0))
+    changes = np.flatnonzero(
+        (along[1:] != along[:-1]) & (of[1:] == of[:-1]) & (along[1:] >= 0) & (along[:-1] >= 0)
+    )
     crossings, contradictions = [], 0
     for at in changes.tolist():
         state, target, pair = int(along[at]), int(along[at + 1]), of[at]
