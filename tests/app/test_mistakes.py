@@ -34,7 +34,7 @@ ASKED_WRONGLY = {
     "live extra": "extra",
     "memory nonsense": "No such command 'nonsense'",
     "memory export": "Missing argument",
-    "memory forget --memory {known}": "forget needs a robot or --building NAME",
+    "memory forget --memory {known}": "forget needs one of a robot, --building NAME and --source RUNS",
     "version extra": "extra",
     "doctor --nonsense": "--nonsense",
 }

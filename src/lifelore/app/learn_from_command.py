@@ -38,9 +38,9 @@ def learn_from(
     ] = None,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Learn moves, times, blocked places and a prior from runs of a real robot.
+    """Learn moves and a prior from runs of a real robot.
 
-    Use it to teach memory what your robot tried and bumped into, before or beside lives in simulation. A run is
+    Use it to teach memory what your robot drove, how long it took and what it bumped into. A run is
     learnt once, in whatever file it comes again. The columns run, heading and outcome are optional; an outcome is
     bump, goal or failed. Of a rosbag, /tf, /tf_static, poses, bumps and the goals of nav2's
     /navigate_to_pose are read. To undo it: lifelore memory forget --source RUNS.

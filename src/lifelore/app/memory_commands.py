@@ -84,7 +84,7 @@ def forget(
     where: Where = None,
     as_json: AsJson = False,
 ) -> None:
-    """Delete all contributions of a robot, a building, or the runs of a log, for ever.
+    """Delete a robot, a building or the runs of a log for ever.
 
     No later import restores them. learn-from learns the runs of a log again.
     """

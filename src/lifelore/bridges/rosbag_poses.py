@@ -173,11 +173,11 @@ def _events(reader: "AnyReader", path: Path, bumps: str | None) -> tuple[list[tu
 
 
 def _log(rows: NDArray[np.float64], goals: list[tuple[float, str]], pressed: list[float]) -> BagLog:
-    """Events belong to the last pose before them; those before the first pose are left out."""
+    """Events belong to the last pose before them, begins to the last pose of another time, if there is one."""
     outcome, ends = [""] * len(rows), np.zeros(len(rows), bool)
     events = [*((time, "bump", False) for time in pressed), *((*goal, True) for goal in goals)]
     for time, word, ended in events:
-        last = int(np.searchsorted(rows[:, 0], time, side="right")) - 1
+        last = int(np.searchsorted(rows[:, 0], time, side="right" if word else "left")) - 1
         if last >= 0:
             ends[last] |= ended
             outcome[last] = word or outcome[last]

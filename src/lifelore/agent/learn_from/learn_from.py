@@ -122,19 +122,10 @@ def learn_from(
     """
     runs = runs if settings.shift is None else shifted_runs(runs, settings.shift)
     occupancy = map_from_settings(settings.world)
+    world, noise = world_from_settings(settings.world, occupancy), localisation_noise(runs)
+    outside = checked_log(runs, Reachable.of(floor_of(occupancy, world)), noise, world.frame.cell, source)
     with _opened(settings) as memory:
-        place = recognised_place(
-            settings.world,
-            world_from_settings(settings.world, occupancy),
-            occupancy,
-            memory,
-            settings.memory.building,
-        )
-        assert place.occupancy is not None, "a building has a map"
-        noise = localisation_noise(runs)
-        outside = checked_log(
-            runs, Reachable.of(floor_of(place.occupancy, place.world)), noise, source, place.world.frame.cell
-        )
+        place = recognised_place(settings.world, world, occupancy, memory, settings.memory.building)
         learnt = [_learnt(place.world, run, noise, settings.reached_goal) for run in runs]
         weights = _competence(place.world, learnt, settings.memory.robot)
         report = log_report(place, learnt, source, outside, noise)

@@ -20,7 +20,7 @@ MANY_CONTRADICTIONS = 0.05
 """Share of the moves that the map separates, from which a log gives a warning."""
 
 
-def checked_log(runs: Sequence[Run], reachable: Reachable, noise: float, source: str, cell: float) -> int:
+def checked_log(runs: Sequence[Run], reachable: Reachable, noise: float, cell: float, source: str) -> int:
     """The number of poses outside.
 
     Raises
