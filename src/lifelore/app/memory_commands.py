@@ -46,6 +46,32 @@ def export(
     _say({"exported": count, "file": path}, f"{count} contributions written to {path}", as_json)
 
 
+@memory.command()
+def nav2(
+    map: Annotated[str, typer.Argument(metavar="YAML", help="ROS map of the building.")],
+    out: Annotated[str, typer.Option(metavar="DIR", help="Folder for the files.")],
+    where: Where = None,
+    cell: Annotated[float | None, typer.Option(help="Side of a grid cell in metres, as in `live` [0.5].")] = None,
+    robot_radius: Annotated[
+        float | None, typer.Option(help="Radius of the robot in metres, as in `live` [0.2].")
+    ] = None,
+    building: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Name of the building; default: recognise it by its map.")
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Write nav2's masks and route graph of a building.
+
+    Use it after memory has changed, for instance by `learn-from`: the robot's costmaps then show it.
+    """
+    from lifelore.agent.live.output.known_building import write_known_building
+    from lifelore.domains.worlds import WorldSettings
+
+    settings = WorldSettings("building", map, cell=cell, robot_radius=robot_radius)
+    written = write_known_building(out, settings, where, building)
+    _say({"out": out, "files": written}, f"{len(written)} files written to {out}", as_json)
+
+
 @memory.command("import")
 def import_(
     paths: Annotated[list[str], typer.Argument(metavar="FILE…")], where: Where = None, as_json: AsJson = False
