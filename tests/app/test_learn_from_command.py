@@ -1,11 +1,14 @@
 """`lifelore learn-from` on a CSV log and on a rosbag, and its refusals."""
 
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from lifelore.agent.learn_from.run_log import Run
+from lifelore.domains.buildings.occupancy_map import FREE, read_occupancy_map
 from lifelore.domains.worlds import make_world
 
 from ..agent.learn_from.robot_runs import csv_text, driven_run
@@ -81,6 +84,38 @@ def test_a_log_with_another_origin_is_mended_as_the_message_says(ask, world):
     dry = ask(*arguments, option, "--dry-run")
     assert (dry.status, "dry run: nothing is stored" in dry.out, Path("m.db").exists()) == (0, True, False)
     assert "12 of 12 runs are new" in ask(*arguments, option).out
+
+
+def open_at(mask: str, point) -> bool:
+    """Whether nav2's mask has no keepout at a point of an unturned map."""
+    keepout = read_occupancy_map(mask)
+    column, up = ((np.asarray(point) - keepout.origin[:2]) / keepout.resolution).astype(int)
+    return bool(keepout.state[keepout.state.shape[0] - 1 - up, column] == FREE)
+
+
+def test_masks_of_last_nights_log(ask, world):
+    """Ten bumps into a place that was driven through close it on the mask; passes reopen it."""
+    start = 1_700_000_000.0
+    driven = [replace(one, time=one.time + start) for one in (driven_run(world, number) for number in range(4))]
+    path = world.states_at(driven[0].points)
+    before, after = next((a, b) for a, b in pairwise(path.tolist()[30:]) if a != b)
+    here, there = world.positions(np.array([before, after], np.int32))
+    points, none = np.array([here, 0.6 * here + 0.4 * there]), np.full(2, np.nan)
+    bumps = [Run(f"bump {k}", start + 3600 * k + np.arange(2.0), points, none, ["", "bump"]) for k in range(1, 11)]
+    passes = [
+        replace(one, name=f"pass {k}", time=one.time + 3600 * k) for k in range(11, 21) for one in driven[:1]
+    ]
+    found = []
+    for name, runs in (("driven", driven), ("bumps", bumps), ("passes", passes)):
+        Path(f"{name}.csv").write_text(csv_text(runs))
+        report = ask(
+            "learn-from", f"{name}.csv", "--map", MAP, "--memory", "m.db", "--out", name, "--json"
+        ).document
+        assert {"keepout.yaml", "costs.yaml"} <= set(report["files"])
+        found.append(
+            (open_at(f"{name}/keepout.yaml", there), open_at(f"{name}/keepout.yaml", driven[0].points[0]))
+        )
+    assert found == [(True, True), (False, True), (True, True)]
 
 
 def test_refusals(ask, tmp_path):

@@ -100,7 +100,7 @@ def test_goals_cut_the_log_into_runs_with_outcomes(bag):
     bag.goals(START + 15, {3: SUCCEEDED})
     log = read_bag_log(bag.write())
     ends = np.flatnonzero(log.ends)
-    assert np.allclose(log.time[ends] - START, [2, 6, 8, 10.5, 15], atol=0.06)
+    assert np.allclose(log.time[ends] - START, [2, 6, 8, 10.5, 15], atol=0.11)
     assert [log.outcome[i] for i in ends] == ["", "goal", "", "failed", "goal"]
 
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from lifelore.agent.learn_from.log_fit import MOST_OUTSIDE, Reachable, mending_shift
 from lifelore.agent.learn_from.run_log import Run
+from lifelore.agent.learn_from.tried_moves import TriedMoves
 from lifelore.agent.live.buildings.recognition import Place
 from lifelore.core.errors import InputError
 from lifelore.domains.grids.grid_world import MOVE_NAMES
@@ -66,14 +67,7 @@ def log_report(
         "poses": sum(len(one.run.time) for one in learnt),
         "moves": made,
         "bumps": sum(len(one.states) for one in tried) - made,
-        "new_obstacles": [
-            [
-                *(round(float(x), 3) for x in place.world.positions(one.states[i : i + 1])[0]),
-                MOVE_NAMES[one.actions[i]],
-            ]
-            for one in tried
-            for i in np.flatnonzero(one.new_obstacles)
-        ],
+        "new_obstacles": [row for one in tried for row in _new_obstacles(place, one)],
         "outside": outside,
         "noise": round(noise, 3),
         "gaps": sum(one.gaps for one in tried),
@@ -82,6 +76,13 @@ def log_report(
     }
     report["warnings"] = list(_warnings(report, place.world.frame.cell))
     return report
+
+
+def _new_obstacles(place: Place, tried: TriedMoves) -> Iterator[list]:
+    """x, y in metres of the cell, and the name of the move, of each bump where the map is free."""
+    states, actions = tried.states[tried.new_obstacles], tried.actions[tried.new_obstacles]
+    for (x, y), action in zip(place.world.positions(states.astype(np.int32)), actions, strict=True):
+        yield [round(float(x), 3), round(float(y), 3), MOVE_NAMES[action]]
 
 
 def _warnings(report: dict[str, Any], cell: float) -> Iterator[str]:
