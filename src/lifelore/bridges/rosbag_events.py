@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any
 from lifelore.core.errors import InputError, NotFoundError
 
 if TYPE_CHECKING:
-    from rosbags.highlevel import AnyReader
-    from rosbags.interfaces import Connection
+    from lifelore.bridges.rosbag import AnyReader, Connection
 
 GOAL_TOPIC = "/navigate_to_pose/_action/status"
 """End of the topics whose goals cut the log into runs."""

@@ -17,8 +17,7 @@ from lifelore.bridges.rosbag_frames import FrameTree, composed, frame_name, plan
 from lifelore.core.errors import InputError
 
 if TYPE_CHECKING:
-    from rosbags.highlevel import AnyReader
-    from rosbags.interfaces import Connection
+    from lifelore.bridges.rosbag import AnyReader, Connection
 
 MAP, BASES = "map", ("base_link", "base_footprint")
 """Frame of the map, and frames of the robot."""
