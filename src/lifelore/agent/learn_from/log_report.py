@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lifelore.agent.learn_from.log_fit import MOST_OUTSIDE, Reachable, mending_shift
+from lifelore.agent.learn_from.log_fit import MENDED, MOST_OUTSIDE, Reachable, mending_shift
 from lifelore.agent.learn_from.run_log import Run
 from lifelore.agent.learn_from.tried_moves import TriedMoves
 from lifelore.agent.live.buildings.recognition import Place
@@ -48,7 +48,7 @@ def checked_log(runs: Sequence[Run], reachable: Reachable, noise: float, cell: f
 
 def _advice(found: tuple[tuple[float, float, float], float] | None) -> str:
     if found is None:
-        return "no single offset mends it; give the map on which the robot drove, and poses in metres of its frame"
+        return "no single offset mends it; give the map on which the robot drove, or its --robot-radius"
     (x, y, yaw), share = found
     return f"--shift={x:g},{y:g},{yaw:g} leaves {share:.1%}: add it if the log has another origin than the map"
 
@@ -88,6 +88,8 @@ def _new_obstacles(place: Place, tried: TriedMoves) -> Iterator[list]:
 def _warnings(report: dict[str, Any], cell: float) -> Iterator[str]:
     if report["noise"] > MUCH_NOISE * cell:
         yield f"the poses tremble by {report['noise']:.2f} m (standard deviation); some moves may be wrong"
+    if report["outside"] > MENDED * report["poses"]:
+        yield f"{report['outside']:,} of {report['poses']:,} poses lie where the robot cannot be on this map"
     if report["contradictions"] > MANY_CONTRADICTIONS * max(report["moves"], 1):
         yield (
             f"{report['contradictions']:,} moves go through walls of the map and were not learnt; the log and the "
