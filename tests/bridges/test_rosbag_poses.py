@@ -115,6 +115,20 @@ def test_bumps_count_once_while_pressed(bag):
     assert np.allclose(other.time[[word == "bump" for word in other.outcome]] - START, [5, 8], atol=0.06)
 
 
+def test_a_bump_at_the_last_pose_of_a_goal_is_not_lost(bag):
+    for number, status in enumerate((ABORTED, SUCCEEDED)):
+        begin = START + 100 * number
+        bag.goals(begin, {number: EXECUTING})
+        for time in (1.0, 2.0, 3.0):
+            bag.pose(begin + time, "/p", "map", (time, 0.0, 0.0))
+        bag.pressed(begin + 3.2, True)
+        bag.pressed(begin + 3.3, False)
+        bag.goals(begin + 3.4, {number: status})
+    log = read_bag_log(bag.write())
+    assert log.outcome == ["", "", "bump", "", "bump", "goal"]
+    assert log.ends.tolist() == [False, False, True, False, False, True]
+
+
 def test_a_topic_that_holds_no_bumps_is_refused(bag):
     drive(bag, TIMES[:3], map_odom, odom_base)
     path = bag.write()

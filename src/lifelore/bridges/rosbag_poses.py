@@ -179,5 +179,8 @@ def _log(rows: NDArray[np.float64], goals: list[tuple[float, str]], pressed: lis
         last = int(np.searchsorted(rows[:, 0], time, side="right" if word else "left")) - 1
         if last >= 0:
             ends[last] |= ended
-            outcome[last] = word or outcome[last]
+            if outcome[last] == "bump" and word == "goal" and last:
+                outcome[last - 1] = "bump"
+            # A run that ends with a bump has failed.
+            outcome[last] = "bump" if outcome[last] == "bump" and word == "failed" else word or outcome[last]
     return BagLog(rows[:, 0], rows[:, 1:3], rows[:, 3], outcome, ends)
