@@ -6,7 +6,6 @@ become transitions of the building. Moves with their times, and bumps where the 
 observation prior, weighted by the robot's competence as for demonstrations (thesis §3.4.8).
 """
 
-import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
@@ -14,37 +13,28 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
-from uuid import uuid4
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.demonstrations.competence import competence_by_steps
-from lifelore.action.demonstrations.demonstrations import Demonstration, count_demonstrations
-from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.policy_counts import actions_to_count
+from lifelore.agent.learn_from.learnt_runs import LearntRun, RunStore, has_clock
 from lifelore.agent.learn_from.localisation_noise import localisation_noise
 from lifelore.agent.learn_from.log_fit import Reachable, Shift, shifted_runs
 from lifelore.agent.learn_from.log_report import checked_log, log_report
 from lifelore.agent.learn_from.run_log import Run
-from lifelore.agent.learn_from.tried_moves import TriedMoves, tried_moves
-from lifelore.agent.live import transitions
-from lifelore.agent.live.buildings.recognition import Place, recognised_place
+from lifelore.agent.learn_from.tried_moves import tried_moves
+from lifelore.agent.live.buildings.recognition import recognised_place
 from lifelore.agent.live.life_settings import MemorySettings, PriorSettings
-from lifelore.agent.live.lore import Lore, prior_scope
-from lifelore.agent.travel import Travel
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.core.learning.known_world import UNKNOWN, unknown_world
 from lifelore.core.planning.planning import optimal_q
-from lifelore.core.protocols import Progress, Record
+from lifelore.core.protocols import Progress
 from lifelore.domains.buildings.floor import floor_of
-from lifelore.domains.grids.grid_world import MOVE_NAMES, GridWorld
+from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
 from lifelore.memory import Memory, open_memory
 from lifelore.memory.location import locate
-
-FIRST_CLOCK = 1e9
-"""Seconds since 1970: a run that ends later has a clock, that of a run that ends earlier began with the robot."""
 
 
 @dataclass(frozen=True)
@@ -81,20 +71,6 @@ class LearnFromSettings:
             raise InputError(f"shift must be three numbers x, y (metres) and yaw (radians), got {self.shift}")
 
 
-@dataclass(frozen=True)
-class LearntRun:
-    """A run as moves in the building; the goal is the state in which it ended, None if that is no goal."""
-
-    run: Run
-    tried: TriedMoves
-    goal: int | None
-
-    def demonstration(self, robot: str, with_bumps: bool) -> Demonstration:
-        """The moves as a demonstration of the way to the goal."""
-        shown = self.tried.made | with_bumps
-        return Demonstration(str(self.goal), robot, self.tried.states[shown], self.tried.actions[shown])
-
-
 def learn_from(
     runs: Sequence[Run], settings: LearnFromSettings, source: str = "runs", progress: Progress | None = None
 ) -> dict[str, Any]:
@@ -129,10 +105,11 @@ def learn_from(
         learnt = [_learnt(place.world, run, noise, settings.reached_goal) for run in runs]
         weights = _competence(place.world, learnt, settings.memory.robot)
         report = log_report(place, learnt, source, outside, noise)
-        report["clock"] = all(_has_clock(run.time) for run in runs)
+        report["clock"] = all(has_clock(run.time) for run in runs)
         report["competence"] = weights.get(settings.memory.robot)
         report["dry_run"] = settings.dry_run
-        report["new"] = _store(place, learnt, weights, settings, source, memory, progress)
+        store = RunStore(place, memory, settings.memory.robot, settings.prior, source)
+        report["new"] = store.count_new(learnt) if settings.dry_run else store.store(learnt, weights, progress)
     return report
 
 
@@ -184,87 +161,3 @@ def _competence(world: GridWorld, learnt: Sequence[LearntRun], robot: str) -> di
         return actions_to_count(q, "all", ended=np.arange(world.n_states) == int(goal))
 
     return competence_by_steps([one.demonstration(robot, True) for one in learnt if one.goal is not None], best)
-
-
-def _store(
-    place: Place,
-    learnt: Sequence[LearntRun],
-    weights: dict[str, float],
-    settings: LearnFromSettings,
-    source: str,
-    memory: Memory,
-    progress: Progress | None,
-) -> int:
-    """Store each run, unless in a dry run; return the number of those that memory did not have."""
-    robot, new, stored = settings.memory.robot, 0, settings.dry_run
-    for done, one in enumerate(learnt, start=1):
-        process = f"run {one.run.digest}"
-        # A run that was forgotten has a tombstone, and comes again under the next number.
-        seq = memory.times_forgotten(robot, process)
-        if settings.dry_run:
-            new += not memory.is_known(robot, process, seq)
-            continue
-        if not stored:
-            _store_building(place, settings, memory)
-            stored = True
-        records = [*_moves(place, one.tried), *_prior(place.world, one, weights, settings)]
-        task = _task(place, one) | {"source": source}
-        new += memory.contribute(robot, records, process=process, seq=seq, task=task)
-        if progress:
-            progress(done, len(learnt), f"run {one.run.name}")
-    return new
-
-
-def _store_building(place: Place, settings: LearnFromSettings, memory: Memory) -> None:
-    """Store the building and what carries over from its earlier map, which stay if the runs are forgotten."""
-    lore = Lore.recalled(
-        place.world, prior_scope(place.world, "observation"), settings.prior.alpha0, memory, place.grid
-    )
-    records = [record for record in (*place.news, lore.model_news()) if len(record.slots)]
-    if records:
-        task = {"map": str(settings.world.map), "world": place.world.fingerprint}
-        memory.contribute(settings.memory.robot, records, process=uuid4().hex, seq=0, task=task)
-
-
-def _moves(place: Place, tried: TriedMoves) -> list[Record]:
-    """Records of the transitions that the map has, and of times and bumps."""
-    world, old = place.world, ~tried.new_obstacles
-    model = unknown_world(world.n_states, len(MOVE_NAMES))
-    model.target[tried.states[old], tried.actions[old]] = tried.targets[old]
-    seen = np.unique(np.concatenate([tried.states, tried.targets]))
-    model.percept[seen] = world.percepts[seen]
-    table = transitions.model_table(world, model)
-    travel = Travel(world, place.grid)
-    timed = np.isnan(tried.seconds) | (tried.seconds > 0)
-    travel.observe(tried.states[timed], tried.actions[timed], _clock(tried.time[timed]), tried.seconds[timed])
-    records = [transitions.to_record(world, table, np.full_like(table, UNKNOWN), place.grid), *travel.news()]
-    return [record for record in records if len(record.slots)]
-
-
-def _clock(seconds: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Seconds since 1970; a run without a clock ends now."""
-    return seconds if _has_clock(seconds) else time.time() + seconds - seconds[-1]
-
-
-def _has_clock(seconds: NDArray[np.float64]) -> bool:
-    return len(seconds) == 0 or seconds[-1] >= FIRST_CLOCK
-
-
-def _prior(
-    world: GridWorld, one: LearntRun, weights: dict[str, float], settings: LearnFromSettings
-) -> list[Record]:
-    """The record of the action prior of a run that reached its goal."""
-    if one.goal is None:
-        return []
-    scope, robot = prior_scope(world, "observation"), settings.memory.robot
-    news = ActionPrior(len(MOVE_NAMES), settings.prior.alpha0, scope.key)
-    scaled = {robot: weights[robot] * settings.prior.weight}
-    shown = [one.demonstration(robot, False)]
-    count_demonstrations(news, shown, lambda demonstration: scope.contexts[demonstration.states], scaled)
-    record = news.to_record({"prior": scope.kind, "actions": list(MOVE_NAMES)})
-    return [record] if len(record.slots) else []
-
-
-def _task(place: Place, one: LearntRun) -> dict[str, Any]:
-    goal = None if one.goal is None else place.world.cells[one.goal].tolist()
-    return {"run": one.run.name, "goal": goal, "world": place.world.fingerprint}

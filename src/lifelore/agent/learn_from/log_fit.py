@@ -14,6 +14,7 @@ from scipy import ndimage, signal
 from lifelore.agent.learn_from.run_log import Run
 from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.buildings.free_space import free_pixels
+from lifelore.domains.buildings.inflation import inflate
 
 Shift = tuple[float, float, float]
 """x, y in metres and yaw in radians: p becomes R(yaw)·p + (x, y)."""
@@ -48,8 +49,7 @@ class Reachable:
         free = free_pixels(floor.occupancy, floor.solid, floor.robot_radius)
         label = np.asarray(ndimage.label(free, np.ones((3, 3)))[0])  # type: ignore[index]
         joined = free & np.isin(label, np.unique(label[floor.state >= 0]))
-        away = np.asarray(ndimage.distance_transform_edt(~joined)) * floor.occupancy.resolution
-        return cls(floor, away <= TOLERANCE + floor.occupancy.resolution)
+        return cls(floor, inflate(joined, TOLERANCE / floor.occupancy.resolution + 1))
 
     def outside(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
         """(n,) whether points (n, 2), in metres of the map's frame, lie outside."""

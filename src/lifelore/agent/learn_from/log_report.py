@@ -1,19 +1,17 @@
 """Checks a log against the map before anything is stored, and reports what it teaches."""
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
+from lifelore.agent.learn_from.learnt_runs import LearntRun
 from lifelore.agent.learn_from.log_fit import MENDED, MOST_OUTSIDE, Reachable, mending_shift
 from lifelore.agent.learn_from.run_log import Run
 from lifelore.agent.learn_from.tried_moves import TriedMoves
 from lifelore.agent.live.buildings.recognition import Place
 from lifelore.core.errors import InputError
 from lifelore.domains.grids.grid_world import MOVE_NAMES
-
-if TYPE_CHECKING:
-    from lifelore.agent.learn_from.learn_from import LearntRun
 
 MUCH_NOISE, MOST_NOISE = 0.2, 0.4
 """Standard deviation of the poses, as a share of a cell, from which a log gives a warning, and is refused."""
@@ -54,7 +52,7 @@ def _advice(found: tuple[tuple[float, float, float], float] | None) -> str:
 
 
 def log_report(
-    place: Place, learnt: "Sequence[LearntRun]", source: str, outside: int, noise: float
+    place: Place, learnt: Sequence[LearntRun], source: str, outside: int, noise: float
 ) -> dict[str, Any]:
     """The report of `learn_from`, without what is known after storing."""
     tried = [one.tried for one in learnt]
