@@ -172,6 +172,21 @@ def test_bumps_close_a_place_that_passes_and_age_reopen(world, tmp_path):
     assert way_around(world, path, start, goal, monday + 7200) == [start, closed, goal]
 
 
+@pytest.mark.parametrize(("n", "least", "most"), [(1, 0.3, 0.6), (2, 0.9, 1.0)])
+def test_bumps_of_one_minute_add_up(world, runs, tmp_path, n, least, most):
+    """A life of passes first, so that refusals are rare; then `n` bumps within a minute."""
+    path, (start, closed), monday = tmp_path / "m.db", corridor(world), 1704067200.0
+    learn_from([replace(run, time=run.time + monday + 600 * k) for k, run in enumerate(runs)], settings(path))
+    once = short_run(world, start, closed, monday + 86400, bump=True)
+    bumps = replace(once, time=once.time[0] + np.arange(2.0 * n), points=np.tile(once.points, (n, 1)),
+                    heading=np.full(2 * n, np.nan), outcome=["", "bump"] * n)  # fmt: skip
+    learn_from([bumps], settings(path))
+    with open_memory(path) as memory:
+        grid = recognised_place(OFFICE, world, map_from_settings(OFFICE), memory).grid
+        blocked = Travel.recalled(world, grid, memory).blocked(monday + 86500)[start, 2]
+    assert least < blocked <= most
+
+
 def content(path) -> dict:
     """All records of a memory by name."""
     with open_memory(path) as memory:

@@ -35,6 +35,14 @@ def test_drawn_noise_is_found(sigma, spacing):
     assert 0.75 * sigma < localisation_noise([run(noisy)]) < 1.25 * sigma
 
 
+def test_stairs_and_a_drive_to_and_fro_have_no_noise():
+    """A pose in each cell of a staircase, and bumps into a wall again and again."""
+    stairs = np.cumsum(np.tile([[0.5, 0.0], [0.0, 0.5]], (50, 1)), axis=0)
+    fro = np.column_stack([np.tile([0.0, 0.2], 50), np.repeat(np.arange(50) * 0.5, 2)])
+    assert localisation_noise([run(stairs)]) < 1e-9
+    assert localisation_noise([run(fro)]) < 0.05
+
+
 def test_poses_at_rest_and_short_runs_do_not_count():
     assert localisation_noise([run(np.zeros((50, 2))), run(np.ones((2, 2)))]) == 0
     assert localisation_noise([]) == 0

@@ -24,6 +24,8 @@ from lifelore.memory import Memory
 
 FIRST_CLOCK = 1e9
 """Seconds since 1970: times from here on are of a clock, smaller ones count from the start of a robot."""
+REFUSALS = 2
+"""Refusals for which a bump counts, because a robot is refused for other reasons much more often than it bumps."""
 
 
 @dataclass(frozen=True)
@@ -105,10 +107,19 @@ class RunStore:
         table = transitions.model_table(world, model)
         # The whole run, also what memory knows already: the run may be the one that stays.
         known = transitions.to_record(world, table, np.full_like(table, UNKNOWN), self.place.grid)
-        travel = Travel(world, self.place.grid)
-        timed = ~(tried.seconds <= 0)
-        travel.observe(tried.states[timed], tried.actions[timed], _clock(tried.time[timed]), tried.seconds[timed])
-        return [known, *travel.news()]
+        return [known, *self._travel(tried).news()]
+
+    def _travel(self, tried: TriedMoves) -> Travel:
+        """The times of moves and the bumps, as observed."""
+        travel, clock, timed = Travel(self.place.world, self.place.grid), _clock(tried.time), tried.seconds > 0
+        travel.observe(tried.states[timed], tried.actions[timed], clock[timed], tried.seconds[timed])
+        bumps = np.flatnonzero(tried.new_obstacles)
+        for move in set(zip(tried.states[bumps].tolist(), tried.actions[bumps].tolist(), strict=True)):
+            times = clock[bumps[(tried.states[bumps] == move[0]) & (tried.actions[bumps] == move[1])]]
+            minutes = _refusals(times)
+            states, actions = np.tile(move, (len(minutes), 1)).T
+            travel.observe(states, actions, minutes, np.full(len(minutes), np.nan))
+        return travel
 
     def _prior(self, one: LearntRun, weights: Mapping[str, float]) -> list[Record]:
         """The record of the action prior of a run that reached its goal."""
@@ -124,6 +135,17 @@ class RunStore:
 def has_clock(seconds: NDArray[np.float64]) -> bool:
     """Whether times (n,) count from 1970."""
     return len(seconds) == 0 or bool(seconds[-1] >= FIRST_CLOCK)
+
+
+def _refusals(times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Times of the refusals that stand for bumps at ascending `times`: the last minutes before, each once."""
+    left = np.inf
+    found: list[float] = []
+    for time_of_bump in times[::-1]:
+        for _ in range(REFUSALS):
+            left = min(left - 60.0, float(time_of_bump))
+            found.append(left)
+    return np.maximum(found, 0.0)
 
 
 def _clock(seconds: NDArray[np.float64]) -> NDArray[np.float64]:
