@@ -172,7 +172,7 @@ def test_bumps_close_a_place_that_passes_and_age_reopen(world, tmp_path):
     assert way_around(world, path, start, goal, monday + 7200) == [start, closed, goal]
 
 
-@pytest.mark.parametrize(("n", "least", "most"), [(1, 0.3, 0.6), (2, 0.9, 1.0)])
+@pytest.mark.parametrize(("n", "least", "most"), [(1, 0.1, 0.4), (2, 0.6, 1.0)])
 def test_bumps_of_one_minute_add_up(world, runs, tmp_path, n, least, most):
     """A life of passes first, so that refusals are rare; then `n` bumps within a minute."""
     path, (start, closed), monday = tmp_path / "m.db", corridor(world), 1704067200.0

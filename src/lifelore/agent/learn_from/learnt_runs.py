@@ -24,8 +24,6 @@ from lifelore.memory import Memory
 
 FIRST_CLOCK = 1e9
 """Seconds since 1970: times from here on are of a clock, smaller ones count from the start of a robot."""
-REFUSALS = 2
-"""Refusals for which a bump counts, because a robot is refused for other reasons much more often than it bumps."""
 
 
 @dataclass(frozen=True)
@@ -138,13 +136,11 @@ def has_clock(seconds: NDArray[np.float64]) -> bool:
 
 
 def _refusals(times: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Times of the refusals that stand for bumps at ascending `times`: the last minutes before, each once."""
-    left = np.inf
+    """Times of the refusals that stand for bumps at ascending `times`: in minutes of their own, because refusals of
+    one minute count once."""
     found: list[float] = []
-    for time_of_bump in times[::-1]:
-        for _ in range(REFUSALS):
-            left = min(left - 60.0, float(time_of_bump))
-            found.append(left)
+    for latest in times[::-1].tolist():
+        found.append(min(latest, found[-1] - 60.0) if found else latest)
     return np.maximum(found, 0.0)
 
 
