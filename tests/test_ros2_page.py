@@ -103,6 +103,26 @@ def cloud_message(points: np.ndarray, padding: int = 4, big: bool = False) -> An
     )  # fmt: skip
 
 
+def test_the_commands_on_bags_run_as_printed(tmp_path):
+    """The bag of a night teaches, closes the place of three bumps, and is undone."""
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    (block,) = re.findall(r"^## Bags of the robot\n\n```sh\n(.*?)^```", PAGE, flags=re.M | re.S)
+    said = []
+    for line in block.splitlines():
+        words = shlex.split(line, comments=True)[1:]
+        done = subprocess.run(
+            [*PROGRAM, *words, "--memory", "m.db"], cwd=tmp_path, check=True, capture_output=True
+        )
+        said.append(done.stdout.decode())
+    assert "dry run: nothing is stored" in said[0]
+    for text in said[:2]:
+        assert "10 of 10 runs are new; 7 reached their goal" in text
+        assert "3 bumps where the map is free" in text
+    assert "10 runs of examples/data/night.mcap forgotten" in said[2]
+    keepout = read_occupancy_map(tmp_path / "masks" / "keepout.yaml")
+    assert keepout.state.shape == read_occupancy_map(ROOT / "examples" / "data" / "office.yaml").state.shape
+
+
 # ---- conversions ---------------------------------------------------------------------------------------------
 
 

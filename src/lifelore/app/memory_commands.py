@@ -104,23 +104,33 @@ def forget(
         str | None,
         typer.Option(metavar="NAME", help="Building whose map and transitions are deleted; the priors stay."),
     ] = None,
+    source: Annotated[
+        str | None, typer.Option(metavar="RUNS", help="Log whose runs are deleted, as named to learn-from.")
+    ] = None,
     where: Where = None,
     as_json: AsJson = False,
 ) -> None:
-    """Delete all contributions of a robot, or a building, for ever.
+    """Delete a robot, a building or the runs of a log for ever.
 
-    No later import restores them.
+    No later import restores them. learn-from learns the runs of a log again.
     """
+    from lifelore.agent.learn_from.learn_from import forget_source
     from lifelore.agent.live.buildings.building_memory import forget_building
     from lifelore.core.errors import InputError
     from lifelore.memory import open_memory
 
-    if (robot is None) == (building is None):
-        raise InputError("forget needs a robot or --building NAME, and not both; see: lifelore memory show")
+    if sum(name is not None for name in (robot, building, source)) != 1:
+        raise InputError(
+            "forget needs one of a robot, --building NAME and --source RUNS; see: lifelore memory show"
+        )
     with open_memory(where, create=False) as opened:
         if building is not None:
             done = forget_building(opened, building)
             _say(done, f"building {building} forgotten: {done['records']} records", as_json)
+            return
+        if source is not None:
+            count = forget_source(opened, source)
+            _say({"forgotten": count, "source": source}, f"{count} runs of {source} forgotten", as_json)
             return
         count = opened.forget(str(robot))
     _say({"forgotten": count, "robot": robot}, f"{count} contributions of {robot} forgotten", as_json)
