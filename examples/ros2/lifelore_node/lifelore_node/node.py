@@ -92,11 +92,18 @@ class LifeloreNode(Node):
             _publish(publisher, OccupancyGrid(), occupancy_grid(file) | {"header": header})
 
     def _follow_memory(self) -> None:
-        """Write and publish the masks again whenever memory has changed."""
-        seen, wait = None, threading.Event()
+        """Write and publish the masks again whenever memory has changed; a service that is away is logged once."""
+        seen, away, wait = "", False, threading.Event()
         while True:
-            revision = self._try(memory_revision, self._url, self._token)
-            if revision not in (None, seen):
+            try:
+                revision, away = memory_revision(self._url, self._token), False
+            except (ValueError, OSError) as error:
+                if not away:
+                    self.get_logger().error(
+                        f"the masks do not follow memory: {self._url} does not answer ({error})"
+                    )
+                revision, away = seen, True
+            if revision != seen:
                 words = ("memory", "nav2", self._map, "--out", self._exports, *self._memory)
                 if self._try(answer_of, self._program, *words):
                     self._publish_masks()

@@ -46,10 +46,11 @@ def test_with_a_clock_it_has_the_refusals_since_then(life):
     life.building.travel.observe([state] * 3, [EAST] * 3, clock, [np.nan, 2.0, np.nan])
     for task, minute in zip(life.report["tasks"], ("00", "03"), strict=True):
         task["clock"] = f"2024-01-01T10:{minute}:00"
+        task["agents"]["lore"]["seconds"] = 30.0
     found = logged_life(life, life.building, [])
     assert [(name, seconds) for name, seconds, _ in found.events] == [
-        ("reached goal 0", 1_704_103_200.0),
-        ("reached goal 1", 1_704_103_380.0),
+        ("reached goal 0", 1_704_103_230.0),
+        ("reached goal 1", 1_704_103_410.0),
         ("refused east", 1_704_103_380.0),
     ]
     assert life.world.states_at([found.events[-1][2]]) == [state]

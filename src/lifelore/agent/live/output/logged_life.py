@@ -65,17 +65,23 @@ def logged_life(life: Life, building: KnownBuilding, last: list[GreedyPaths]) ->
         for paths in last
         for points in _corners(life, building, paths)
     ]
-    first = next(iter(life.results), {})
-    name = next(iter(first), "")
-    ends = [
-        (f"{'reached' if task['agents'][name]['reached'] else 'missed'} {_named(task)}", _seconds(task), point)
-        for task, point in zip(tasks.values(), goal_points(life, building, list(tasks.values())), strict=True)
-    ]
     begin = min((_seconds(task) for task in tasks.values() if "clock" in task), default=np.inf)
+    events = _ends(life, building, list(tasks.values())) + _refusals(building, begin)
     values = place_costs(building.costs, building.known), NO_OPINION
     (costs,) = place_masks(building.floor, building.known, values)
     laid = on_map(costs, building.floor, building.given, NO_OPINION)
-    return LoggedLife(building.given, laid, ways, ends + _refusals(building, begin))
+    return LoggedLife(building.given, laid, ways, events)
+
+
+def _ends(life: Life, building: KnownBuilding, tasks: list[dict[str, Any]]) -> list[tuple[str, float, Point]]:
+    """When the first agent reached each goal, or gave it up."""
+    ends = []
+    for task, point in zip(tasks, goal_points(life, building, tasks), strict=True):
+        found = next(iter(task["agents"].values()))
+        word = "reached" if found["reached"] else "missed"
+        driven = found["seconds"] if "clock" in task else 0.0
+        ends.append((f"{word} {_named(task)}", _seconds(task) + driven, point))
+    return ends
 
 
 def _corners(life: Life, building: KnownBuilding, paths: GreedyPaths) -> list[NDArray[np.float64]]:
