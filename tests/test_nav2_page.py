@@ -73,6 +73,6 @@ def test_the_commands_run_as_printed(tmp_path):
         ends = [(float(row["x"]), float(row["y"])) for row in csv.DictReader(file)]
     assert ends[-1] == (4.975, 12.525)
     message = json.loads(said(to_dock, tmp_path))
-    assert {"header", "poses", "from", "to", "length", "places", "contradicted"} == set(message)
+    assert {"header", "poses", "from", "to", "length", "seconds", "places", "contradicted"} == set(message)
     for key in ("from", "to", "length", "places", "contradicted"):
         assert f"`{key}`" in NAV2

@@ -141,7 +141,7 @@ def footprint_path(
     )
 
 
-def _right_and_up(pixels: NDArray[np.float64]) -> NDArray[np.float64]:
+def _right_and_up(pixels: NDArray) -> NDArray[np.float64]:
     """Pixel coordinates (row, column) as (right, up)."""
     return np.column_stack([pixels[:, 1], -pixels[:, 0]])
 
