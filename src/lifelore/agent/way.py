@@ -17,6 +17,7 @@ from lifelore.agent.travel import Travel
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.domains.buildings.clear_path import clear_path
 from lifelore.domains.buildings.floor import Floor, floor_of
+from lifelore.domains.buildings.footprint import Footprint, footprint_path
 from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
 from lifelore.memory import open_memory
 
@@ -64,6 +65,7 @@ def way(
     spacing: float | None = None,
     building: str | None = None,
     clock: float | None = None,
+    footprint: Footprint | None = None,
 ) -> Way:
     """The cheapest path over remembered transitions that is clear by the robot's radius.
 
@@ -84,11 +86,14 @@ def way(
         Name of the building; None: recognise it.
     clock : float, optional
         Time of the drive in seconds since 1970 by the robot's clock; None: that of the newest drive in memory.
+    footprint : Footprint, optional
+        Outline that touches nothing on the path; None: a disc of the robot's radius.
 
     Raises
     ------
     NotFoundError
-        Memory knows no way, or only ways that the map contradicts, or not the name, or not the building.
+        Memory knows no way, or only ways that the map contradicts, or not the name, or not the building; or the
+        footprint does not pass.
     InputError
         A setting or the map breaks its rule, or a point is no free place.
     StoreError
@@ -109,7 +114,8 @@ def way(
     minutes = travel.passes.minute
     now = float(clock if clock is not None else 60 * minutes.max(initial=0))
     price = price_of_moves(np.where(moves.open, travel.cost(now), np.inf), place.world.frame.cell)
-    path = clear_path(floor, start.located_point, goal.located_point, price)
+    ends = start.located_point, goal.located_point
+    path = footprint_path(floor, *ends, footprint, price) if footprint else clear_path(floor, *ends, price)
     assert path is not None, "open moves join the pieces of their cells"
     states, seconds = _driven(path, floor, travel.seconds(now) / place.world.frame.cell)
     return Way(start, goal, poses_along(path, spacing), states, seconds, contradicted)

@@ -34,6 +34,10 @@ def way(
     robot_radius: Annotated[
         float | None, Option(help="Radius of the robot in metres, as in `live` [0.2].")
     ] = None,
+    footprint: Annotated[
+        str | None,
+        Option(metavar="[[X,Y],…]", help="Outline of the robot in metres, as in nav2; default: a disc."),
+    ] = None,
     building: Annotated[
         str | None, Option(metavar="NAME", help="Name of the building; default: recognise it by its map.")
     ] = None,
@@ -48,15 +52,17 @@ def way(
     or refused at this time. The path keeps the robot's radius from all that the map does not show as free.
     """
     from lifelore.agent.live.goals.destinations import destination_from_text
-    from lifelore.agent.way import way as find_way
     from lifelore.agent.way import clock_from_text, write_poses
+    from lifelore.agent.way import way as find_way
     from lifelore.app.console import print_json
+    from lifelore.domains.buildings.footprint import Footprint
     from lifelore.domains.worlds import WorldSettings
 
     settings = WorldSettings("building", map, cell=cell, robot_radius=robot_radius, seed=seed)
     ends = destination_from_text("from", start), destination_from_text("to", goal)
     clock = None if at is None else clock_from_text(at)
-    found = find_way(settings, *ends, memory, spacing, building, clock)
+    outline = None if footprint is None else Footprint.from_text(footprint)
+    found = find_way(settings, *ends, memory, spacing, building, clock, outline)
     if csv is not None:
         write_poses(csv, found.poses)
     if as_json:

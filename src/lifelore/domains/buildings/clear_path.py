@@ -11,6 +11,7 @@ Added here: lines have prices, so the cost of a line is known when it is measure
 
 import heapq
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -110,7 +111,7 @@ def _search(ground, ends):
     measured, closed = np.zeros(n_nodes, np.bool_), np.zeros(n_nodes, np.bool_)
     beside = np.empty(11, np.int64)
     cost[-2], measured[-2] = 0.0, True
-    queue = [(0.0, -2)]
+    queue: Any = [(0.0, -2)]
     while queue:
         bound, node = heapq.heappop(queue)
         row, column = _point(ends, columns, node)
