@@ -1,10 +1,9 @@
-"""Expected seconds of each move at a clock, from passes: effects that are shrunk level by level.
+"""Typical seconds of each move at a clock, from passes: effects that are shrunk level by level.
 
     log seconds = log(cell / speed) + pace of the building
                   + neighbourhood + cell                               always
                   + neighbourhood + cell, in periods of three days     drift
-                  + neighbourhood, by hour of the day                  rush hours
-                  + neighbourhood, in the last hours                   now
+                  + neighbourhood + cell, by hour of the day           rush hours
                   + noise
 
 The cell is the cell that the move enters. An effect is the sum of the weighted residuals of its group, divided by
@@ -31,9 +30,9 @@ PERIOD, N_PERIODS = 3, 16
 """Days of a period, counted back from the clock, and number of periods; older passes belong to the last one."""
 WIDTHS = {"always": 1, "hour": N_HOURS, "period": N_PERIODS}
 """Number of groups that a cell has, by axis of a level."""
-NEAR = 4
+NEAR = 3
 """Moves from a cell to the farthest cell of its neighbourhood; each move away has half the weight."""
-LARGEST = 1.0
+LARGEST = 0.7
 """Residuals of log seconds beyond this count as this."""
 SWEEPS = 2
 """Sweeps over all levels; more change little."""
@@ -44,7 +43,7 @@ class Level(NamedTuple):
 
     near : whether passes of the neighbourhood count, or those of the cell alone
     axis : "always", "hour" or "period": whether each hour, or each period of days, is a group of its own
-    half_life : days after which a pass has half its weight
+    half_life : days, above 0, after which a pass has half its weight
     strength : number of passes without effect that each group has before any pass
     """
 
@@ -60,15 +59,15 @@ LEVELS = (
     Level(True, "period", 60.0, 6.0),
     Level(False, "period", 60.0, 4.0),
     Level(True, "hour", 60.0, 6.0),
-    Level(True, "always", 4 / 24, 1.0),
+    Level(False, "hour", 60.0, 6.0),
 )
-"""Chosen on five simulated lives; twice or half a strength or half-life changes little."""
+"""Chosen on seven simulated lives; twice or half a strength or half-life changes little."""
 
 
-def expected_seconds(world: GridWorld, passes: Passes, clock: float) -> NDArray[np.float64]:
-    """Expected seconds (n_states, 4) of each move at `clock`, in seconds since 1970; finite and above 0.
+def typical_seconds(world: GridWorld, passes: Passes, clock: float) -> NDArray[np.float64]:
+    """The seconds (n_states, 4) below which half of the passes at `clock` stay; finite and above 0.
 
-    Moves into one cell share them. Passes later than `clock` count as new.
+    Moves into one cell share them. `clock` is in seconds since 1970; passes later than it count as new.
     """
     rows, nominal, minute = passes.where(passes.passes > 0), world.frame.cell / SPEED, int(clock // 60)
     if not len(rows.move):
@@ -99,8 +98,7 @@ def expected_seconds(world: GridWorld, passes: Passes, clock: float) -> NDArray[
             explained[place] = _shrunk(around[entered], sums, counts, level.strength)[cell, axis]
             log[place] = _shrunk(around, sums[:, at], counts[:, at], level.strength)
             left -= explained[place]
-    variance = np.average(np.clip(left, -LARGEST, LARGEST) ** 2, weights=rows.passes)
-    by_cell = nominal * np.exp(pace + log.sum(axis=0) + variance / 2)
+    by_cell = nominal * np.exp(pace + log.sum(axis=0))
     return np.where(world.neighbour >= 0, by_cell[world.neighbour], nominal)
 
 
