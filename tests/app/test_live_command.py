@@ -309,9 +309,11 @@ def test_known_goals_are_driven_to(ask, tmp_path):
         assert all(set(drive) == DRIVE for drive in task["agents"].values())
     assert set(said["summary"]) == {"lore_vs_map_only", "agents"}
     shown = ask(*options)
-    for words in ("2 jobs driven in", "there 6.475,1.525: driven ", "s on the map alone (×1.000"):
+    for words in ("2 jobs driven in", "there 6.475,1.525: driven ", "in simulation, nothing slows or blocks"):
         assert words in shown.out
     assert "80 %" not in shown.out
+    assert "map alone" not in shown.out
+    assert "s on the map alone (×" in ask(*options, *changed(busy="true")).out
     refused = ask(*options, *changed(l2log="logs")).refusal
     assert "l2log logs episodes of searches" in refused
     assert "busy applies to goals that are driven to" in ask("live", *changed(busy="true")).refusal

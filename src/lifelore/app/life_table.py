@@ -48,7 +48,11 @@ def print_life(report: dict, written: list[str]) -> None:
 
 
 def _print_driven(console: Console, report: dict) -> None:
-    """The last jobs, then means of both agents, and memory compared with the map alone."""
+    """The last jobs, then means of each agent, and memory compared with the map alone."""
+    if not report["settings"]["busy"]:
+        console.print(
+            "in simulation, nothing slows or blocks the robot; --set busy=true changes that", soft_wrap=True
+        )
     for task in report["tasks"][-LISTED:]:
         console.print(_job_line(task), highlight=False, soft_wrap=True)
     console.print(_thirds(report["summary"]["agents"], SHOWN_DRIVEN))

@@ -161,7 +161,8 @@ class LifeSettings:
         The agent that lives and whose knowledge is stored, one of `lifelore.agent.live.baselines.AGENTS`;
         ``scratch`` lives the same tasks for comparison. ``all``: `lore` and every baseline.
     compare : bool, optional
-        Whether ``scratch`` lives the same tasks for comparison; by default up to 100,000 places.
+        Whether ``scratch`` lives the same tasks for comparison; by default up to 100,000 places. Of driven jobs,
+        whether they are also planned on the map alone; by default in a busy building.
     tasks : int
         Tasks to live through now, ≥ 1; `goals` overrides it, see `n_tasks`.
     destinations : int

@@ -50,8 +50,10 @@ def blocked_probability(
     """
     minute = int(clock // 60)
     events = _events(world, passes)
-    base = _base_rates(world, events, minute)
-    surprise, seen = np.zeros(world.n_states), np.full(world.n_states, minute)
+    entered, place = np.unique(events.place, return_inverse=True)
+    events = events._replace(place=place)
+    base, unseen = _base_rates(events, len(entered), minute)
+    surprise, seen = np.zeros(len(entered)), np.zeros(len(entered), np.int64)
     for rows in _newest_last(events):
         place, now = events.place[rows], events.minute[rows]
         left = surprise[place] * 0.5 ** ((now - seen[place]) / DAY / half_life)
@@ -62,7 +64,8 @@ def blocked_probability(
         if_open = (1 - before) * np.where(refused, REFUSED_IF_OPEN, 1 - REFUSED_IF_OPEN)
         surprise[place], seen[place] = if_blocked / (if_blocked + if_open) - expected, now
     left = surprise * 0.5 ** (np.maximum(minute - seen, 0) / DAY / half_life)
-    blocked = np.clip(base[:, int(hour_of(np.array([minute]))[0])] + left, 0.0, 1.0)
+    blocked = np.full(world.n_states, unseen)
+    blocked[entered] = np.clip(base[:, int(hour_of(np.array(minute)))] + left, 0.0, 1.0)
     return np.where(world.neighbour >= 0, blocked[world.neighbour], 1.0)
 
 
@@ -70,17 +73,18 @@ def _events(world: GridWorld, passes: Passes) -> _Events:
     """Refusals and passes by place and time; those of one minute count once, refusals first."""
     # One number an event: place, minute, 1 for a pass. Their order is that of the events.
     number = (world.neighbour.ravel()[passes.move].astype(np.int64) << 27) | (passes.minute << 1)
-    events = np.unique(np.concatenate([number[passes.refusals > 0], number[passes.passes > 0] | 1]))
+    events = np.sort(np.concatenate([number[passes.refusals > 0], number[passes.passes > 0] | 1]))
+    events = events[np.diff(events, prepend=-1) > 0]
     return _Events(events >> 27, events >> 1 & (2**26 - 1), events & 1 == 0)
 
 
-def _base_rates(world: GridWorld, events: _Events, minute: int) -> NDArray[np.float64]:
-    """Share of refusals by place and hour, (n_states, 48)."""
+def _base_rates(events: _Events, n: int, minute: int) -> tuple[NDArray[np.float64], float]:
+    """Share of refusals by hour at each of `n` places, (n, 48), and at a place where nothing was observed."""
     weight = 0.5 ** (np.maximum(minute - events.minute, 0) / DAY / BASE_HALF_LIFE)
-    slot, shape = events.place * N_HOURS + hour_of(events.minute), (world.n_states, N_HOURS)
+    slot, shape = events.place * N_HOURS + hour_of(events.minute), (n, N_HOURS)
     refused, every = summed(slot, weight * events.refused, shape), summed(slot, weight, shape)
     building = (STRENGTH * BASE + refused.sum()) / (STRENGTH + every.sum())
-    return (STRENGTH * building + smoothed_hours(refused)) / (STRENGTH + smoothed_hours(every))
+    return (STRENGTH * building + smoothed_hours(refused)) / (STRENGTH + smoothed_hours(every)), float(building)
 
 
 def _newest_last(events: _Events) -> list[NDArray[np.int64]]:

@@ -16,6 +16,7 @@ from lifelore.agent.travel import passes as records
 from lifelore.agent.travel.blocked_moves import blocked_probability
 from lifelore.agent.travel.edge_times import typical_seconds
 from lifelore.agent.travel.passes import Passes, joined, observed
+from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.domains.grids.cell_numbers import BuildingGrid
 from lifelore.domains.grids.grid_world import GridWorld
@@ -44,6 +45,10 @@ class Travel:
     half_life: float = 7.0
     _parts: list[Passes] = field(default_factory=list, repr=False)
     _stored: int = field(default=0, repr=False)
+
+    def __post_init__(self) -> None:
+        if not self.half_life > 0:
+            raise InputError(f"half_life must be a number of days above 0, got {self.half_life}")
 
     @classmethod
     def recalled(cls, world: GridWorld, grid: BuildingGrid, memory: Memory) -> "Travel":

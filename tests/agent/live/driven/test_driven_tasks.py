@@ -47,7 +47,7 @@ def life_in(office: Path, tmp_path: Path, **changes) -> Life:
 
 def test_a_trip_is_driven_at_once_and_about_as_long_as_the_shortest_path(office, tmp_path):
     start, goal = (3.025, 7.525), (30.975, 17.025)
-    report = life_in(office, tmp_path, goal=goal, start=start, tasks=2).report
+    report = life_in(office, tmp_path, goal=goal, start=start, tasks=2, compare=True).report
     assert report["how"] == "driven"
     found = way(WorldSettings(map=office), Destination(start), Destination(goal), str(tmp_path / "life.db"))
     assert found.length > 28

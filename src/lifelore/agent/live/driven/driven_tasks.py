@@ -42,7 +42,8 @@ class DrivenTasks:
     how = DRIVEN
 
     def __init__(self, settings: LifeSettings, memory: Memory, jobs: JobProgress | None) -> None:
-        self.names = [MEMORY] if settings.compare is False else [MEMORY, MAP_ONLY]
+        compare = settings.in_busy_building if settings.compare is None else settings.compare
+        self.names = [MEMORY, MAP_ONLY] if compare else [MEMORY]
         self._settings, self._memory, self._jobs = settings, memory, jobs
 
     @property

@@ -24,11 +24,12 @@ const isDriven = (task) => task.how === "driven";
 /** Seconds of a drive to a known goal, steps of a search. */
 const cost = (task, name) => isDriven(task) ? task.agents[name].seconds : task.agents[name].steps_to_80;
 
-/** What a task cost an agent, in words. */
-function costWords(task, name) {
+/** What a task cost an agent, with units where they are not `known` to be steps. */
+function costWords(task, name, known) {
   const found = task.agents?.[name];
   if (!found) return "–";
-  return isDriven(task) ? `${short(found.metres)} m in ${short(found.seconds)} s` : `${short(found.steps_to_80)} steps`;
+  if (isDriven(task)) return `${short(found.metres)} m in ${short(found.seconds)} s`;
+  return known ? short(found.steps_to_80) : `${short(found.steps_to_80)} steps`;
 }
 
 async function knownMap(task) {
@@ -69,9 +70,10 @@ function drawPlaces(tasks) {
 
 function list(tasks, number) {
   const names = [...new Set(tasks.flatMap((one) => Object.keys(one.agents ?? {})))];
-  const head = make("tr", {}, ...["Task", "Goal", ...names].map((text) => make("th", { scope: "col" }, text)));
+  const searched = !tasks.some(isDriven);
+  const head = make("tr", {}, ...["Task", "Goal", ...names.map((name) => searched ? `Steps, ${name}` : name)].map((text) => make("th", { scope: "col" }, text)));
   const rows = tasks.map((one) => {
-    const steps = names.map((name) => make("td", { class: "number" }, costWords(one, name)));
+    const steps = names.map((name) => make("td", { class: "number" }, costWords(one, name, searched)));
     const goal = one.name ?? `row ${one.goal[0]}, column ${one.goal[1]}`;
     return make("tr", one.task === number ? { class: "chosen" } : {}, make("td", {}, String(one.task)), make("td", {}, goal), ...steps);
   });
