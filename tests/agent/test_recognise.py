@@ -21,7 +21,7 @@ from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.registration import composed
 from lifelore.domains.worlds import WorldSettings, world_from_settings
 from lifelore.memory import open_memory
-from reproduction.own.o_04_same_building.edits import cropped, noisy, turned
+from reproduction.own.o_04_same_building.edits import cropped, noisy, refurnished, turned
 from tests.domains.buildings.resaved_maps import padded, shifted
 
 OFFICE = office_map(1, 14.0, 12.0)

@@ -144,8 +144,8 @@ def recognise(
     memory : str or Path, optional
         SQLite file or URL; None: the user's own.
     goals : str or Path, optional
-        Job list (`lifelore live --goals`) in metres of the remembered frame, which is that of the building's first
-        map, or of `old`. None: all places of the building that memory knows by name.
+        Job list (``lifelore live --goals``) in metres of the remembered frame, which is that of the building's
+        first map, or of `old`. None: all places of the building that memory knows by name.
     old : str or Path, optional
         YAML of an earlier map of the building, to compare with in place of memory.
     building : str, optional
@@ -223,7 +223,7 @@ def _recognised(
         return found
     advice = "give a map that shows more of the building"
     if name is None:
-        advice += f", or name it (--building): then {LEAST_NAMED_MATCH:.0%} of the walls suffice"
+        advice += f", or name it (--building): then {100 * LEAST_NAMED_MATCH:.0f} % of the walls suffice"
     raise InputError(f"map {occupancy.source} is not recognised: {reason}; {advice}")
 
 

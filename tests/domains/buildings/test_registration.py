@@ -2,11 +2,14 @@
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.registration import (
+    SPECK,
     Walls,
+    _clustered,
     composed,
     inverse,
     moved,
@@ -87,3 +90,24 @@ def test_a_map_without_walls_fits_nothing():
 def test_registration_is_deterministic():
     new = turned(cropped(OFFICE, 0.8), 33.0)
     assert register(Walls(OFFICE), Walls(new)) == register(Walls(OFFICE), Walls(new))
+
+
+def test_specks_are_counted_as_labels_of_the_picture_say():
+    """Pixels that touch by sides or corners, also at the borders of the picture, where rows do not run on."""
+    draw = np.random.default_rng(3)
+    for _ in range(20):
+        state = np.where(draw.random((30, 24)) < 0.4, OCCUPIED, FREE).astype(np.uint8)
+        walls = Walls(OccupancyMap(state, 0.1))
+        missed = draw.random(len(walls.points)) < draw.choice([0.0, 0.3, 0.9])
+        picture = np.zeros(state.shape, bool)
+        picture[walls.edge] = missed
+        label = np.asarray(ndimage.label(picture, np.ones((3, 3)))[0])  # type: ignore[index]
+        size = np.bincount(label.ravel())[1:]
+        assert _clustered(walls, missed) == size[size > SPECK].sum()
+
+
+def test_a_pose_at_which_the_walls_do_not_meet_has_no_fit():
+    assert register_near(Walls(OFFICE), Walls(shifted(OFFICE, 0.7, 0.9))) is None
+    near = register_near(Walls(OFFICE), Walls(shifted(OFFICE, 0.06, -0.08)))
+    assert near is not None
+    assert near.pose[:2] == pytest.approx((-0.06, 0.08), abs=0.005)
