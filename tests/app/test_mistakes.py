@@ -165,6 +165,9 @@ MAPS = {
     f"{BUILDING} --set destinations=5000": "destinations must be at most",
 }
 PLACES = {
+    f"{LATTICE} --log life.mcap": "log applies to domain building, got lattice",
+    "live --log life.bag": "log must name a file that ends with .mcap or .rrd",
+    "memory nav2 {map} --memory {known} --out {folder}": "memory knows no place of the map",
     f"{LATTICE} --out ''": "out must name a folder",
     f"{LATTICE} --out {{text}}": "out must name a folder",
     f"{LATTICE} --out {{text}}/below": "out must name a folder",

@@ -18,7 +18,7 @@ from lifelore.domains.grids.grid_world import GridWorld
 REFUSED_IF_BLOCKED, REFUSED_IF_OPEN = 0.98, 0.1
 BASE = 0.01
 """Share of refusals where nothing was observed; counts as `STRENGTH` observations."""
-STRENGTH = 8.0
+STRENGTH = 4.0
 """Observations of the base rate that each hour of a place has before any observation of its own."""
 BASE_HALF_LIFE = 60.0
 """Days after which an observation counts half in a base rate."""
@@ -68,13 +68,10 @@ def blocked_probability(
 
 def _events(world: GridWorld, passes: Passes) -> _Events:
     """Refusals and passes by place and time; those of one minute count once, refusals first."""
-    place = world.neighbour.ravel()[passes.move]
-    parts = []
-    for refused, count in ((True, passes.refusals), (False, passes.passes)):
-        rows = count > 0
-        parts.append(np.column_stack([place[rows], passes.minute[rows], np.full(rows.sum(), not refused)]))
-    place, minute, passed = np.unique(np.concatenate(parts), axis=0).T.astype(np.int64)
-    return _Events(place, minute, passed == 0)
+    # One number an event: place, minute, 1 for a pass. Their order is that of the events.
+    number = (world.neighbour.ravel()[passes.move].astype(np.int64) << 27) | (passes.minute << 1)
+    events = np.unique(np.concatenate([number[passes.refusals > 0], number[passes.passes > 0] | 1]))
+    return _Events(events >> 27, events >> 1 & (2**26 - 1), events & 1 == 0)
 
 
 def _base_rates(world: GridWorld, events: _Events, minute: int) -> NDArray[np.float64]:

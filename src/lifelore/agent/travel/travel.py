@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.agent.travel import passes as records
 from lifelore.agent.travel.blocked_moves import blocked_probability
-from lifelore.agent.travel.edge_times import expected_seconds
+from lifelore.agent.travel.edge_times import typical_seconds
 from lifelore.agent.travel.passes import Passes, joined, observed
 from lifelore.core.protocols import Record
 from lifelore.domains.grids.cell_numbers import BuildingGrid
@@ -27,7 +27,7 @@ DETOUR = 60.0
 
 @dataclass
 class Travel:
-    """Observed moves of one building, and what they make expected.
+    """Observed moves of one building, and what is expected from them.
 
     Parameters
     ----------
@@ -84,13 +84,14 @@ class Travel:
         return joined(self._parts)
 
     def seconds(self, clock: float) -> NDArray[np.float64]:
-        """Expected seconds (n_states, 4) of each move at `clock`, also of those that are likely to be refused.
+        """Typical seconds (n_states, 4) of each move at `clock`, also of those that are likely to be refused.
 
-        Moves without observations get the expectation of their surroundings and of the building; the nominal
-        seconds (cell side divided by 0.5 m/s) where nothing was observed. Observations count whatever their clock:
-        those later than `clock` count as new.
+        Half of the passes take longer (the median); rare long waits do not count, so that sums over a way are some
+        percent short. Moves into one cell share them. Moves without observations get the seconds of their
+        surroundings and of the building; the nominal seconds (cell side divided by 0.5 m/s) where nothing was
+        observed. Observations count whatever their clock: those later than `clock` count as new.
         """
-        return expected_seconds(self.world, self.passes, clock)
+        return typical_seconds(self.world, self.passes, clock)
 
     def blocked(self, clock: float) -> NDArray[np.float64]:
         """Probability (n_states, 4) that each move is refused at `clock`; 1 where the map has no move.
@@ -101,7 +102,7 @@ class Travel:
         return blocked_probability(self.world, self.passes, clock, self.half_life)
 
     def cost(self, clock: float) -> NDArray[np.float64]:
-        """Seconds (n_states, 4) to plan with: expected seconds + probability of refusal · `DETOUR`.
+        """Seconds (n_states, 4) to plan with: typical seconds + probability of refusal · `DETOUR`.
 
         Infinite where the map has no move.
         """

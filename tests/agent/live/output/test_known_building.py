@@ -85,13 +85,14 @@ def test_a_model_of_its_own_decides_which_places_are_known(settings, memory, tmp
         model.percept[state] = place.world.percepts[state]
         known = KnownBuilding.recalled(place, given, opened, model)
     (tmp_path / "one").mkdir()
+    (tmp_path / "one" / "route_graph.geojson").write_text("of earlier ways")
     assert known.write(tmp_path / "one") == list(MASK_FILES)
     assert set(MASK_FILES) == {path.name for path in (tmp_path / "one").iterdir()}
 
 
 def test_a_robot_of_another_radius_and_a_file_as_folder_are_refused(settings, memory, tmp_path):
     other = WorldSettings("building", settings.map, robot_radius=0.3)
-    with pytest.raises(NotFoundError, match="memory knows no place of the map .*; live there first"):
+    with pytest.raises(NotFoundError, match=r"memory knows no place of the map .*; live there first"):
         write_known_building(tmp_path, other, memory)
     with pytest.raises(InputError, match="out must name a folder"):
         write_known_building(memory, settings, memory)

@@ -17,7 +17,7 @@ from lifelore.agent.live.output.nav2_masks import (
     keepout_mask,
     on_map,
     place_costs,
-    place_mask,
+    place_masks,
     place_speeds,
     write_directions,
     write_masks,
@@ -40,7 +40,7 @@ def costs_of(
     slow: dict[tuple[int, int], float] | None = None,
     refused: dict[tuple[int, int], float] | None = None,
 ) -> MoveCosts:
-    """Costs where a usual move takes 1 s; `slow` ones take longer, `refused` ones cost 10 s by their probability."""
+    """Costs where a usual move takes 1 s, and a refusal costs 10 s; `refused` are probabilities."""
     seconds, blocked = np.ones((world.n_states, 4)), np.zeros((world.n_states, 4))
     for move, value in (slow or {}).items():
         seconds[move] = value
@@ -119,7 +119,7 @@ def test_masks_of_a_half_known_room():
     assert keepout[10, 12] == 0
     assert keepout[10, 16] == 0  # the robot's body at 1.45 m reaches to 1.65 m
     assert keepout[10, 17] == KEEP_OUT
-    costs = place_mask(floor, np.full(world.n_states, 7, np.uint8), known, NO_OPINION)
+    (costs,) = place_masks(floor, known, (np.full(world.n_states, 7, np.uint8), NO_OPINION))
     assert costs[10, 12] == 7
     assert costs[10, 20] == costs[0, 5] == NO_OPINION
     assert ((costs == 7) <= (occupancy.state == FREE)).all()

@@ -84,6 +84,8 @@ class KnownBuilding:
         write_masks(folder, self.costs, self.known, self.floor, self.given)
         places = {**self.places, **(more_places or {})}
         written = write_route_graph(folder / ROUTE_FILE, self.costs, self.known, self.floor, places)
+        if not written:
+            (folder / ROUTE_FILE).unlink(missing_ok=True)
         return [*MASK_FILES, ROUTE_FILE] if written else list(MASK_FILES)
 
 

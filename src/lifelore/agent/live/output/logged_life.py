@@ -12,7 +12,7 @@ from lifelore.agent.live.life import Life
 from lifelore.agent.live.output.exports import path_points
 from lifelore.agent.live.output.greedy_paths import GreedyPaths
 from lifelore.agent.live.output.known_building import KnownBuilding
-from lifelore.agent.live.output.nav2_masks import NO_OPINION, on_map, place_costs, place_mask
+from lifelore.agent.live.output.nav2_masks import NO_OPINION, on_map, place_costs, place_masks
 from lifelore.core.errors import InputError, StoreError
 from lifelore.domains.buildings.occupancy_map import OccupancyMap
 from lifelore.domains.grids.grid_world import MOVE_NAMES
@@ -72,7 +72,8 @@ def logged_life(life: Life, building: KnownBuilding, last: list[GreedyPaths]) ->
         for task, point in zip(tasks.values(), goal_points(life, building, list(tasks.values())), strict=True)
     ]
     begin = min((_seconds(task) for task in tasks.values() if "clock" in task), default=np.inf)
-    costs = place_mask(building.floor, place_costs(building.costs, building.known), building.known, NO_OPINION)
+    values = place_costs(building.costs, building.known), NO_OPINION
+    (costs,) = place_masks(building.floor, building.known, values)
     laid = on_map(costs, building.floor, building.given, NO_OPINION)
     return LoggedLife(building.given, laid, ways, ends + _refusals(building, begin))
 

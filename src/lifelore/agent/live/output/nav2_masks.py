@@ -84,14 +84,18 @@ def body_space(floor: Floor, known: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return inflate(centres, floor.radius)
 
 
-def place_mask(floor: Floor, values: NDArray[np.uint8], known: NDArray[np.bool_], other: int) -> NDArray[np.uint8]:
-    """The value at each pixel of the floor's map: that of the nearest place within the robot's body.
+def place_masks(
+    floor: Floor, known: NDArray[np.bool_], *values: tuple[NDArray[np.uint8], int]
+) -> list[NDArray[np.uint8]]:
+    """Masks on the pixels of the floor's map, each of the values of all places and a value for other pixels.
 
-    `other` outside of known places and on pixels that the map does not show as free.
+    A pixel has the value of the nearest place. Other pixels are those outside of known places, and those that the
+    map does not show as free.
     """
     nearest = ndimage.distance_transform_edt(floor.state < 0, return_distances=False, return_indices=True)
-    mask = values[floor.state[tuple(np.asarray(nearest))]]
-    return np.where(body_space(floor, known) & (floor.occupancy.state == FREE), mask, other).astype(np.uint8)
+    place = floor.state[tuple(np.asarray(nearest))]
+    space = body_space(floor, known) & (floor.occupancy.state == FREE)
+    return [np.where(space, own[place], other).astype(np.uint8) for own, other in values]
 
 
 def keepout_mask(floor: Floor, known: NDArray[np.bool_]) -> NDArray[np.uint8]:
@@ -102,6 +106,8 @@ def keepout_mask(floor: Floor, known: NDArray[np.bool_]) -> NDArray[np.uint8]:
 def on_map(mask: NDArray[np.uint8], floor: Floor, occupancy: OccupancyMap, outside: int) -> NDArray[np.uint8]:
     """A mask of the floor's pixels on those of another map of the ground; `outside` where the floor has none."""
     rows, columns = occupancy.state.shape
+    if mask.shape == (rows, columns) and occupancy.origin == floor.occupancy.origin:
+        return mask.copy()
     own = _pixels_of(occupancy)
     found = np.full((rows, columns), outside, np.uint8)
     for top in range(0, rows, _ROWS):
@@ -134,9 +140,11 @@ def write_masks(
         The files cannot be written.
     """
     target = axis_aligned(given)
+    values = (place_costs(costs, known), NO_OPINION), (place_speeds(costs, known), FULL_SPEED)
+    cost, speed = place_masks(floor, known, *values)
     masks = {
-        "costs": (place_mask(floor, place_costs(costs, known), known, NO_OPINION), NO_OPINION),
-        "speed": (place_mask(floor, place_speeds(costs, known), known, FULL_SPEED), FULL_SPEED),
+        "costs": (cost, NO_OPINION),
+        "speed": (speed, FULL_SPEED),
         "keepout": (keepout_mask(floor, known & ~costs.closed()), KEEP_OUT),
     }
     for name, (mask, outside) in masks.items():

@@ -11,6 +11,7 @@ The file has what the plugin ``GeoJsonGraphFileLoader`` of the package nav2_rout
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -24,11 +25,14 @@ from lifelore.agent.live.output.move_costs import MoveCosts
 from lifelore.core.errors import InputError
 from lifelore.domains.buildings.clear_path import clear_path
 from lifelore.domains.buildings.floor import Floor
+from lifelore.domains.buildings.occupancy_map import OccupancyMap
 
 MOST_PLACES = 50
 """Largest number of places in a graph; more take more time: the routes grow with its square."""
 FRAME = "map"
 """Frame of the nodes: that of the map, by nav2's usual name."""
+_MARGIN = 3
+"""Pixels around the part of a map in which a path is searched: those that tell a wall's surface."""
 
 Chain = tuple[int, ...]
 """States from one node of the graph to the next."""
@@ -70,24 +74,21 @@ def route_graph(
     graph = _Graph(costs, floor)
     for name, point in list(places.items())[:MOST_PLACES]:
         graph.add_place(name, point)
-    tail, action = np.nonzero(np.isfinite(costs.cost) & (costs.world.neighbour >= 0) & known[:, None])
-    head = costs.world.neighbour[tail, action]
-    there = known[head]
-    moves, cost = np.column_stack([tail, head])[there].astype(np.int64), costs.cost[tail, action][there]
-    used = _moves_of_routes(moves, cost, sorted(graph.names), costs.world.n_states)
+    neighbour = costs.world.neighbour
+    graph.possible = np.isfinite(costs.cost) & (neighbour >= 0) & known[:, None] & known[neighbour]
+    tail, action = np.nonzero(graph.possible)
+    edges = costs.cost[tail, action], (tail, neighbour[tail, action])
+    used = _moves_of_routes(sparse.csr_array(edges, shape=(len(known),) * 2), sorted(graph.names))
     for chain in _chains(used, set(graph.names)):
-        graph.add_chain(chain, moves)
+        graph.add_chain(chain)
     return graph.features()
 
 
-def _moves_of_routes(
-    moves: NDArray[np.int64], cost: NDArray[np.float64], ends: list[int], n: int
-) -> dict[int, set[int]]:
+def _moves_of_routes(graph: sparse.csr_array, ends: list[int]) -> dict[int, set[int]]:
     """The moves (state to next states) of the shortest routes between every two of `ends`."""
     used: dict[int, set[int]] = {}
     if not ends:
         return used
-    graph = sparse.csr_array((cost, moves.T), shape=(n, n))
     _, before = csgraph.dijkstra(graph, indices=ends, return_predecessors=True)
     for source, previous in zip(ends, before, strict=True):
         passed = {source}
@@ -123,6 +124,7 @@ class _Graph:
 
     costs: MoveCosts
     floor: Floor
+    possible: NDArray[np.bool_] = field(init=False)  # (n_states, 4) moves that ways may lead over
     names: dict[int, list[str]] = field(default_factory=dict)
     _points: dict[int, NDArray[np.float64]] = field(default_factory=dict)
     _nodes: list[NDArray[np.float64]] = field(default_factory=list)
@@ -138,11 +140,11 @@ class _Graph:
         self.names.setdefault(state, []).append(name)
         self._points.setdefault(state, np.array(point, float))
 
-    def add_chain(self, chain: Chain, moves: NDArray[np.int64]) -> None:
+    def add_chain(self, chain: Chain) -> None:
         """Add the edges along a chain; both directions of a chain share their corners."""
         one_way = min(chain, chain[::-1])
         if one_way not in self._corners:
-            self._corners[one_way] = self._new_corners(one_way, moves)
+            self._corners[one_way] = self._new_corners(one_way)
         nodes = self._corners[one_way] if chain == one_way else self._corners[one_way][::-1]
         lengths = np.array([np.hypot(*(self._nodes[a] - self._nodes[b])) for a, b in pairwise(nodes)])
         about = self._about(chain)
@@ -159,16 +161,41 @@ class _Graph:
         penalty = float(self.costs.cost[tail, action].sum()) - seconds
         return {"seconds": seconds, "penalty": penalty, "blocked": 1 - passed}
 
-    def _new_corners(self, chain: Chain, moves: NDArray[np.int64]) -> list[int]:
+    def _new_corners(self, chain: Chain) -> list[int]:
         """The nodes of a clear path along a chain; its ends and its corners."""
         first, last = (self._node(state) for state in (chain[0], chain[-1]))
-        own = np.array(list(pairwise(chain)))
         (a, b), (c, d) = self._nodes[first].tolist(), self._nodes[last].tolist()
-        path = clear_path(self.floor, np.concatenate([own, own[:, ::-1]]), (a, b), (c, d), moves)
+        beside = self._moves_beside(chain)
+        path = clear_path(self._part(beside.ravel()), beside, (a, b), (c, d), beside)
         assert path is not None, "a route follows the moves of its floor"
         self._nodes.extend(path[1:-1])
         inner = range(len(self._nodes) - len(path) + 2, len(self._nodes))
         return [first, *inner, last]
+
+    def _moves_beside(self, chain: Chain) -> NDArray[np.int64]:
+        """Possible moves (n, 2) between the cells of a chain and those beside it that are not closed."""
+        neighbour = self.costs.world.neighbour
+        beside = neighbour[list(chain)][self.possible[list(chain)]]
+        cells = np.union1d(chain, beside[~self._closed[beside]])
+        tail, action = np.nonzero(self.possible[cells] & np.isin(neighbour[cells], cells))
+        return np.column_stack([cells[tail], neighbour[cells[tail], action]]).astype(np.int64)
+
+    def _part(self, states: NDArray[np.int64]) -> Floor:
+        """The part of the floor around some cells, with what the robot could touch there, to search in."""
+        floor, world = self.floor, self.costs.world
+        centres = floor.pixels(world.positions(states.astype(np.int32)))
+        reach = world.frame.cell / floor.occupancy.resolution + floor.radius + _MARGIN
+        top, left = np.maximum(np.floor(centres.min(axis=0) - reach), 0).astype(int)
+        low, right = np.ceil(centres.max(axis=0) + reach).astype(int)
+        part = slice(top, low), slice(left, right)
+        seen = floor.occupancy.state[part]
+        x, y = floor.metres((top + len(seen) - 0.5, left - 0.5))[0].tolist()
+        occupancy = OccupancyMap(seen, floor.occupancy.resolution, (x, y, floor.occupancy.origin[2]))
+        return Floor(occupancy, floor.state[part], floor.solid[part], floor.robot_radius, floor.n_states)
+
+    @cached_property
+    def _closed(self) -> NDArray[np.bool_]:
+        return self.costs.closed()
 
     def _node(self, state: int) -> int:
         if state not in self._node_of:
