@@ -209,7 +209,9 @@ def test_a_source_is_undone_and_can_be_learnt_again(world, runs, tmp_path):
     both = content(path)
     assert both != before
     with open_memory(path) as memory:
-        assert forget_source(memory, "tuesday.csv") == 5
+        with pytest.raises(NotFoundError, match="has taught nothing here"):
+            forget_source(memory, "tuesday.csv", robot="karl")
+        assert forget_source(memory, "tuesday.csv", robot="rosie") == 5
         with pytest.raises(
             NotFoundError, match=r"'tuesday.csv' has taught nothing here; known sources: monday.csv"
         ):
