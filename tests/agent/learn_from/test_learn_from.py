@@ -258,30 +258,3 @@ def test_without_outcomes_runs_may_be_declared_to_reach_their_goal(world, tmp_pa
     assert learn_from([run], settings(tmp_path / "a.db"))["to_goal"] == 0
     declared = replace(settings(tmp_path / "b.db"), reached_goal=True)
     assert learn_from([run], declared)["to_goal"] == 1
-
-
-def test_what_a_larger_robot_drove_serves_a_smaller_one_and_not_the_other_way_round(tmp_path):
-    large, small = replace(OFFICE, robot_radius=0.3), replace(OFFICE, robot_radius=0.15)
-
-    def learnt_then_recalled(first, second, path) -> tuple[Lore, Lore]:
-        drove = world_from_settings(first)
-        learn_from([driven_run(drove, number) for number in range(8)], replace(settings(path), world=first))
-        with open_memory(path) as memory:
-            lores = []
-            for kind in (first, second):
-                world = world_from_settings(kind)
-                place = recognised_place(kind, world, map_from_settings(kind), memory)
-                lores.append(
-                    Lore.recalled(place.world, prior_scope(world, "observation"), 0.1, memory, place.grid)
-                )
-        return lores[0], lores[1]
-
-    own, smaller = learnt_then_recalled(large, small, tmp_path / "a.db")
-    made = int((own.model.target >= 0).sum())
-    state, action = np.nonzero(smaller.model.target >= 0)
-    assert len(state) == made > 100
-    assert np.array_equal(smaller.model.target[state, action], smaller.world.neighbour[state, action])
-    seen = smaller.model.percept >= 0
-    assert np.array_equal(smaller.model.percept[seen], smaller.world.percepts[seen])
-    _, larger = learnt_then_recalled(small, large, tmp_path / "b.db")
-    assert (larger.model.target < 0).all()
