@@ -41,8 +41,10 @@ $(BIN)/.test: $(BIN)/.core
 	$(PIP) --no-deps obp==0.4.1  # the logs of docs/fashion_shop.md; only its programs need its dependencies
 	touch $@
 
-demo: setup ## The main job on embedded defaults; pictures in out/demo
-	$(BIN)/lifelore live --memory out/demo/lifelore.db --out out/demo
+demo: setup ## Hidden goals are searched, known ones driven to, in a generated office; picture out/demo/demo.png
+	$(BIN)/lifelore live --memory out/demo/lifelore.db --out out/demo/hidden
+	$(BIN)/lifelore live --goals examples/data/courier.csv --memory out/demo/lifelore.db --out out/demo/known
+	$(BIN)/python examples/demo/picture.py out/demo
 
 test: setup-test ## The tests and the examples in docstrings, on all cores
 	$(PYTEST) -m "not soak" tests reproduction/engine src/lifelore

@@ -54,6 +54,7 @@ ROOMS = {
     "lifelore.agent.personalise": "Personalisation",
     "lifelore.interaction.evaluation": "Off-policy evaluation",
     "lifelore.domains.tabletop_job": "Tabletop jobs",
+    "lifelore.verbs": "A robot in a building",
     "lifelore.agent": "Verbs",
     "lifelore.perception": "Perception",
     "lifelore.action": "Action priors",

@@ -3,9 +3,9 @@
 For robot engineers. It uses your own memory, as `lifelore live` does, so a second run continues this life.
 """
 
-from lifelore import LifeSettings, live
+from lifelore import live
 
-report = live(LifeSettings(tasks=10)).report
+report = live(tasks=10).report
 
 print("Steps until the known way is worth 80 % of the best way:")
 for number, task in enumerate(report["tasks"], start=1):

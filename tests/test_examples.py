@@ -86,6 +86,7 @@ def test_the_example_data_can_be_made_again(tmp_path):
     subprocess.run([sys.executable, str(data / "make.py"), str(tmp_path)], check=True)
     shipped = {path.name for path in data.iterdir() if path.is_file() and path.name != "make.py"}
     assert {path.name for path in tmp_path.iterdir()} == shipped
-    for name in ("office.yaml", "jobs.csv", "log.csv", "ways.jsonl", "steps.jsonl", "keys.txt"):
+    texts = ("office.yaml", "office_new.yaml", "jobs.csv", "courier.csv", "log.csv", "ways.jsonl", "steps.jsonl")
+    for name in (*texts, "keys.txt"):
         assert (tmp_path / name).read_text() == (data / name).read_text()
     assert sum((data / name).stat().st_size for name in shipped) < 1_000_000

@@ -1,4 +1,4 @@
-"""Makes the example files of this folder again: a map, jobs and runs in it, clouds, a log, walks and keys.
+"""Makes the example files of this folder again: two maps of an office, jobs, runs, clouds, a log, walks and keys.
 
 All are simulated. The clouds need the extras `sim` and `ros`. Run: python examples/data/make.py
 """
@@ -14,6 +14,7 @@ import numpy as np
 from PIL import Image
 
 from lifelore.agent.teach import MOVE_OF
+from lifelore.bridges.mcap_file import mcap_writer
 from lifelore.core.planning.planning import greedy_policy, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.buildings.floor import floor_of
@@ -41,6 +42,22 @@ def make_map(folder: Path) -> None:
     )
 
 
+def make_new_map(folder: Path) -> None:
+    """The same office, mapped again: turned by 3°, with another origin, and with a cupboard where the lab was."""
+    office = read_occupancy_map(folder / "office.yaml")
+    x, y = next(
+        map(float, row.split(",")[2:]) for row in (folder / "jobs.csv").read_text().splitlines() if "lab" in row
+    )
+    column, row = round((x + 5.0) / office.resolution), len(office.grey) - round((y + 3.0) / office.resolution)
+    grey = office.grey.copy()
+    grey[row - 6 : row + 6, column - 6 : column + 6] = 0
+    unknown = 205
+    turned = Image.fromarray(grey).rotate(3, expand=True, fillcolor=unknown)
+    turned.save(folder / "office_new.png", optimize=True)
+    text = (folder / "office.yaml").read_text().replace("office.png", "office_new.png")
+    (folder / "office_new.yaml").write_text(text.replace("[-5.0, -3.0, 0.0]", "[-2.0, -7.5, 0.0]"))
+
+
 def make_jobs(folder: Path) -> None:
     """Jobs of one morning between three places of the office."""
     world = make_world("building", map=folder / "office.yaml")
@@ -50,6 +67,23 @@ def make_jobs(folder: Path) -> None:
     (dock, lab, store) = (f"{x:.3f},{y:.3f}" for x, y in places)
     jobs = [f"09:00,lab,{lab}", f"09:30,store,{store}", f"10:10,dock,{dock}", "10:45,lab,,", "11:15,dock,,"]
     (folder / "jobs.csv").write_text("\n".join(["time,name,x,y", *jobs]) + "\n")
+
+
+def make_courier_jobs(folder: Path) -> None:
+    """200 jobs between six rooms of the office that ``lifelore live`` generates: ten working days."""
+    world, random = make_world(), stream(1, "courier jobs")
+    floor = floor_of(office_map(0), world)
+    points = floor.metres(floor.anchors)
+    places = points[:1]
+    while len(places) < 6:  # each place is as far as can be from those before it
+        away = np.hypot(*(points[:, None] - places).T).min(axis=0)
+        places = np.vstack([places, points[away.argmax()]])
+    ends = dict(zip(("post", "lab", "kitchen", "store", "printer", "desk"), places, strict=True))
+    rows, place = [f"{name},{x:.3f},{y:.3f}" for name, (x, y) in ends.items()], "desk"
+    while len(rows) < 200:
+        place = str(random.choice([name for name in ends if name != place]))
+        rows.append(f"{place},,")
+    (folder / "courier.csv").write_text("\n".join(["name,x,y", *rows]) + "\n")
 
 
 def steps_of(world: GridWorld, start: int, goal: int) -> Iterator[tuple[int, int]]:
@@ -75,6 +109,56 @@ def make_runs(folder: Path) -> None:
             f"{run},{0.2 * i:.1f},{x:.2f},{y:.2f},{'goal' if i == last else ''}" for i, (x, y) in enumerate(points)
         ]
     (folder / "runs.csv").write_text("\n".join(lines) + "\n")
+
+
+def make_night(folder: Path) -> None:
+    """A night of a robot between the places of the jobs, as a ROS 2 bag: transforms, goals and a bumper.
+
+    Something that the map lacks stands halfway from the lab to the dock. The robot bumps into it three times, and
+    then drives around it.
+    """
+    world = make_world("building", map=folder / "office.yaml")
+    rows = [row.split(",")[1:] for row in (folder / "jobs.csv").read_text().splitlines()[1:4]]
+    lab, store, dock = (int(world.states_at([(float(x), float(y))])[0]) for _, x, y in rows)
+    driven = [state for state, _ in steps_of(world, lab, dock)]
+    crate = driven[len(driven) // 2]
+    around = replace(world, neighbour=np.where(world.neighbour == crate, -1, world.neighbour))
+    drives = [(world, lab, store), (world, store, dock), (around, dock, lab), *[(world, lab, dock)] * 3]
+    drives += [(around, lab, dock), (around, dock, store), (world, store, lab), (around, lab, dock)]
+    draw, clock = stream(0, "example night"), 1_704_146_400  # Monday, 2024-01-01, 22:00
+    with mcap_writer(folder / "night.mcap", {}) as write:
+        write("/tf_static", *transform("map", "odom", clock, 2.0, -1.0, 0.0))
+        for number, (building, start, end) in enumerate(drives):
+            states = np.array([*(state for state, _ in steps_of(building, start, end)), end])
+            bumps = crate in states and (start, end) == (lab, dock)
+            if bumps:
+                states = states[: list(states).index(crate)]
+            points = world.positions(states) + draw.normal(0, 0.02, (len(states), 2))
+            write("/navigate_to_pose/_action/status", *status(number, 2, clock))
+            for (x, y), (dx, dy) in zip(points, np.gradient(points, axis=0), strict=True):
+                clock += 1
+                write("/tf", *transform("odom", "base_link", clock, x - 2.0, y + 1.0, np.arctan2(dy, dx)))
+            if bumps:
+                write("/bumper", "std_msgs/msg/Bool", {"data": True}, clock * 10**9)
+                write("/bumper", "std_msgs/msg/Bool", {"data": False}, clock * 10**9 + 1)
+            write("/navigate_to_pose/_action/status", *status(number, 6 if bumps else 4, clock))
+            clock += 300
+
+
+def transform(parent: str, child: str, time: int, x: float, y: float, yaw: float) -> tuple[str, dict, int]:
+    """Type, fields and nanoseconds of a message for /tf."""
+    header = {"frame_id": parent, "stamp": {"sec": time}}
+    turn = {"z": float(np.sin(yaw / 2)), "w": float(np.cos(yaw / 2))}
+    pose = {"translation": {"x": float(x), "y": float(y)}, "rotation": turn}
+    one = {"header": header, "child_frame_id": child, "transform": pose}
+    return "tf2_msgs/msg/TFMessage", {"transforms": [one]}, time * 10**9
+
+
+def status(goal: int, value: int, time: int) -> tuple[str, dict, int]:
+    """Type, fields and nanoseconds of a message about the goal of this number."""
+    name = {"goal_id": {"uuid": np.full(16, goal, np.uint8)}}
+    one = {"goal_info": name, "status": value}
+    return "action_msgs/msg/GoalStatusArray", {"status_list": [one]}, time * 10**9
 
 
 def make_clouds(folder: Path) -> None:
@@ -167,5 +251,8 @@ def make_log(folder: Path) -> None:
 
 if __name__ == "__main__":
     place = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
-    for make in (make_map, make_jobs, make_runs, make_log, make_walks, make_clouds):
+    makers = (
+        make_map, make_jobs, make_courier_jobs, make_new_map, make_runs, make_night, make_log, make_walks, make_clouds,
+    )  # fmt: skip
+    for make in makers:
         make(place)

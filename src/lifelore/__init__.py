@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from lifelore.agent.external_world.live_in import live_in as live_in
     from lifelore.agent.external_world.stored_prior import BatchContexts as BatchContexts
     from lifelore.agent.external_world.stored_prior import prior_from_memory as prior_from_memory
-    from lifelore.agent.live.life import live as live
     from lifelore.agent.live.life_settings import LifeSettings as LifeSettings
+    from lifelore.agent.live.life_settings import MemorySettings as MemorySettings
     from lifelore.agent.long_lived.check_family import check_family as check_family
     from lifelore.agent.long_lived.long_life import live_long as live_long
     from lifelore.agent.long_lived.task_family import AgentTask as AgentTask
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from lifelore.agent.long_lived.task_family import TaskFamily as TaskFamily
     from lifelore.agent.perceive.perceive import PerceiveSettings as PerceiveSettings
     from lifelore.agent.perceive.perceive import perceive as perceive
+    from lifelore.agent.recognise import recognise as recognise
     from lifelore.core.cloud_origin import CloudOrigin as CloudOrigin
     from lifelore.core.errors import LifeloreError as LifeloreError
     from lifelore.core.labelled_cloud import LabelledCloud as LabelledCloud
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     from lifelore.core.protocols import World as World
     from lifelore.core.relations import PairLabel as PairLabel
     from lifelore.domains.task_stream import TaskStream as TaskStream
+    from lifelore.domains.worlds import WorldSettings as WorldSettings
     from lifelore.domains.worlds import make_world as make_world
     from lifelore.figures.lives.prior_table import plot_prior as plot_prior
     from lifelore.interaction.adaptation.beat import Beat as Beat
@@ -58,6 +60,9 @@ if TYPE_CHECKING:
     from lifelore.perception.scene import Scene as Scene
     from lifelore.perception.scene_perception import perceived_scene as perceived_scene
     from lifelore.perception.segmentation.table_frame import to_scene as to_scene
+    from lifelore.verbs import learn_from as learn_from
+    from lifelore.verbs import live as live
+    from lifelore.verbs import way as way
 
 __version__ = "0.2.0"
 
@@ -78,6 +83,7 @@ _HOME = {
     "LifeloreError": "lifelore.core.errors",
     "LongLivedAgent": "lifelore.agent.any_tasks.long_lived_agent",
     "Memory": "lifelore.memory",
+    "MemorySettings": "lifelore.agent.live.life_settings",
     "PairLabel": "lifelore.core.relations",
     "PerceiveSettings": "lifelore.agent.perceive.perceive",
     "Plan": "lifelore.agent.long_lived.task_family",
@@ -95,10 +101,12 @@ _HOME = {
     "TaskStream": "lifelore.domains.task_stream",
     "UserBeliefs": "lifelore.interaction.reuse.user_beliefs",
     "World": "lifelore.core.protocols",
+    "WorldSettings": "lifelore.domains.worlds",
     "check_family": "lifelore.agent.long_lived.check_family",
     "compare_agents": "lifelore.agent.any_tasks.comparison",
     "contact_networks": "lifelore.perception.contacts.pair_networks",
-    "live": "lifelore.agent.live.life",
+    "learn_from": "lifelore.verbs",
+    "live": "lifelore.verbs",
     "live_in": "lifelore.agent.external_world.live_in",
     "live_long": "lifelore.agent.long_lived.long_life",
     "make_world": "lifelore.domains.worlds",
@@ -108,7 +116,9 @@ _HOME = {
     "plot_prior": "lifelore.figures.lives.prior_table",
     "prior_from_memory": "lifelore.agent.external_world.stored_prior",
     "read_cloud": "lifelore.perception.clouds.cloud_file",
+    "recognise": "lifelore.agent.recognise",
     "to_scene": "lifelore.perception.segmentation.table_frame",
+    "way": "lifelore.verbs",
 }
 
 __all__ = ["__version__", *_HOME]  # pyright: ignore[reportUnsupportedDunderAll]

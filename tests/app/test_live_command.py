@@ -13,9 +13,9 @@ from lifelore.memory import open_memory
 from tests.app.changed_settings import changed
 
 DOCUMENT = {
-    "domain", "map", "n_states", "building", "seed", "settings", "tasks", "summary", "memory", "seconds",
+    "domain", "how", "map", "n_states", "building", "seed", "settings", "tasks", "summary", "memory", "seconds",
 }  # fmt: skip
-TASK = {"index", "goal", "optimal_return", "agents"}
+TASK = {"index", "goal", "how", "optimal_return", "agents"}
 RESULT = {
     "first_return",
     "collisions",
@@ -53,6 +53,7 @@ def check_estimate(estimate: dict, n: int) -> None:
 def check_task(task: dict, names: list[str]) -> None:
     assert set(task) == TASK
     assert [type(part) for part in (task["index"], *task["goal"])] == [int, int, int]
+    assert task["how"] == "searched"
     assert task["optimal_return"] > 0
     assert list(task["agents"]) == names
     for result in task["agents"].values():
@@ -196,7 +197,8 @@ def test_a_map_is_lived_in_and_named_in_the_report(ask, tmp_path):
 def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
     said = ask("live", "--domain", "lattice", "--tasks", 6, "--memory", "life.db", "--out", "out")
     assert (said.status, said.err) == (0, "new folder out\n")
-    for words in ("6 tasks in lattice, 341 places", "this robot has finished 6 tasks in all", "steps to 80 %",
+    for words in ("6 goals searched in lattice, 341 places", "this robot has finished 6 tasks in all",
+                  "steps to 80 %",
                   "lore compared with scratch, last third", "wrote out/summary.json"):  # fmt: skip
         assert words in said.out
     written = [Path(line.removeprefix("wrote ")) for line in said.out.splitlines() if line.startswith("wrote ")]
@@ -268,8 +270,8 @@ SET = {
     "advice": {"loops": 0.3},
 }  # fmt: skip
 """A domain to values, other than the defaults, of settings that it takes."""
-ELSEWHERE = {"again", "l2log", "port"}
-"""Settings that other tests look at: one needs a job list, two say where output goes."""
+ELSEWHERE = {"again", "busy", "move_names", "l2log", "port"}
+"""Settings that other tests look at: three need known goals, two say where output goes."""
 
 
 def test_every_setting_is_set_and_stands_in_the_report(ask, tmp_path):
@@ -284,6 +286,47 @@ def test_every_setting_is_set_and_stands_in_the_report(ask, tmp_path):
         options = ("live", "--domain", domain, *place, "--tasks", 1, "--memory", f"{domain}.db", "--json")
         settings = ask(*options, *changed(**texts)).document["settings"]
         assert {key: settings[key] for key in told} == told
+
+
+DRIVE = {"reached", "metres", "seconds", "refusals", "replans"}
+
+
+def test_known_goals_are_driven_to(ask, tmp_path):
+    path = map_of(office_map(3).state[:300, :300], tmp_path)
+    Path("jobs.csv").write_text("name,x,y\nhere,1.475,1.525\nthere,6.475,1.525\n")
+    options = ("live", "--map", path, "--goals", "jobs.csv", "--memory", "life.db")
+    said = ask(*options, *changed(busy="true", move_names="true"), "--json").document
+    assert said["how"] == "driven"
+    assert {key: said["settings"][key] for key in ("goals", "busy", "move_names")} == {
+        "goals": 2, "busy": True, "move_names": True,
+    }  # fmt: skip
+    assert [task["name"] for task in said["tasks"]] == ["here", "there"]
+    for task in said["tasks"]:
+        assert set(task) == {
+            "index", "goal", "how", "position", "name", "clock", "start", "map_metres", "agents",
+        }  # fmt: skip
+        assert list(task["agents"]) == ["lore", "map only"]
+        assert all(set(drive) == DRIVE for drive in task["agents"].values())
+    assert set(said["summary"]) == {"lore_vs_map_only", "agents"}
+    shown = ask(*options)
+    for words in ("2 jobs driven in", "there 6.475,1.525: driven ", "in simulation, nothing slows or blocks"):
+        assert words in shown.out
+    assert "80 %" not in shown.out
+    assert "map alone" not in shown.out
+    assert "s on the map alone (×" in ask(*options, *changed(busy="true")).out
+    refused = ask(*options, *changed(l2log="logs")).refusal
+    assert "l2log logs episodes of searches" in refused
+    assert "busy applies to goals that are driven to" in ask("live", *changed(busy="true")).refusal
+
+
+def test_a_name_that_moves_is_refused_with_both_places(ask, tmp_path):
+    path = map_of(office_map(3).state[:300, :300], tmp_path)
+    options = ("live", "--map", path, "--goals", "jobs.csv", "--memory", "life.db", "--json")
+    Path("jobs.csv").write_text("name,x,y\nhere,1.475,1.525\n")
+    ask(*options)
+    Path("jobs.csv").write_text("name,x,y\nhere,6.475,1.525\n")
+    assert "memory knows 'here' at 1.475,1.525, 5.00 m from 6.475,1.525" in ask(*options).refusal
+    assert ask(*options, *changed(move_names="true")).status == 0
 
 
 def test_an_interrupted_list_begins_again_by_a_setting(ask, tmp_path):

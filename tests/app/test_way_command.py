@@ -31,7 +31,12 @@ def test_a_person_reads_the_way(ask, lived):
     assert (said.status, said.err) == (0, "")
     first, *poses = said.out.splitlines()
     assert first.startswith("5.15 m from dock to lab over ")
+    assert "about 10 s" in first  # at half a metre a second, which holds until drives are remembered
     assert poses == ["0.550 0.550 +0.507", "5.050 3.050 +0.507"]  # atan2(2.5, 4.5)
+    again = ask("way", *lived, "--from", "dock", "--to", "lab", "--at", "2024-05-13T08:30")
+    assert again.out == said.out
+    outline = ask("way", *lived, "--from", "dock", "--to", "lab", "--footprint", "[[0.3,0.2],[0.3,-0.2],[-0.3,0]]")
+    assert outline.out == said.out  # there is room enough
 
 
 def test_the_way_as_json_and_csv(ask, lived):
@@ -58,6 +63,13 @@ def test_the_way_as_json_and_csv(ask, lived):
         (("--from", "1,2,3", "--to", "lab"), "from must be X,Y"),
         (("--from", "dock", "--to", "lab", "--robot-radius", "0.3"), "knows no moves of this building"),
         (("--from", "dock", "--to", "lab", "--csv", "no/where.csv"), "csv: cannot write no/where.csv"),
+        (("--from", "dock", "--to", "lab", "--at", "08:30"), "at must be a date and time by the robot's clock"),
+        (("--from", "dock", "--to", "lab", "--at", "2024-05-13T08:30Z"), "at must be a date and time by"),
+        (("--from", "dock", "--to", "lab", "--footprint", "[[1,2]]"), "footprint must be three or more corners"),
+        (
+            ("--from", "dock", "--to", "lab", "--footprint", "[[3,0],[-3,1],[-3,-1]]"),
+            "touches an obstacle on every",
+        ),
         (("--to", "lab"), "--from"),
     ],
 )

@@ -10,7 +10,7 @@ from lifelore.agent.live.buildings.recognition import LEAST_MARGIN, LEAST_MATCH
 from lifelore.core.metrics import Estimate
 from lifelore.domains.buildings.occupancy_map import OccupancyMap
 from lifelore.domains.buildings.office import office_map
-from lifelore.domains.buildings.registration import Registration, register
+from lifelore.domains.buildings.registration import Registration, Walls, register
 from reproduction.engine.estimates import exact_share, exact_value
 from reproduction.own.o_04_same_building.edits import EDITS, turned
 
@@ -34,7 +34,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         turned(office_map(number, width, height, furniture=number), 3.0),
     )
     maps |= dict(zip(OTHERS, others, strict=True))
-    return {"compared": {name: _compared(register(office, other)) for name, other in maps.items()}}
+    return {"compared": {name: _compared(register(Walls(office), Walls(other))) for name, other in maps.items()}}
 
 
 def _compared(found: Registration | None) -> dict[str, Any]:

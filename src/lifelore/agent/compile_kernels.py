@@ -58,13 +58,18 @@ def _live(folder: Path) -> None:
     from lifelore.agent.live.life import live
     from lifelore.agent.live.life_settings import LifeSettings, MemorySettings, SensorSettings
     from lifelore.core.learning.q_learner import QLearning
+    from lifelore.domains.buildings.clear_path import clear_path
     from lifelore.domains.worlds import WorldSettings
 
     for learner, domain in (("model", "building"), ("q", "building"), ("q", "noise")):
         learning = QLearning(episodes=3, max_steps=50)
         memory = MemorySettings(str(folder / f"{learner} {domain}.db"))
         live(LifeSettings(WorldSettings(domain), learner, learning, memory=memory, agent="all", tasks=2))
-    live(LifeSettings(memory=MemorySettings(str(folder / "lidar.db")), tasks=1, sensor=SensorSettings("lidar")))
+    life = live(
+        LifeSettings(memory=MemorySettings(str(folder / "lidar.db")), tasks=1, sensor=SensorSettings("lidar"))
+    )
+    assert life.floor is not None, "the default domain is a building"
+    clear_path(life.floor, *life.floor.metres(life.floor.anchors[:2]))
 
 
 def _perceive(folder: Path) -> None:

@@ -1,8 +1,9 @@
-"""`way`: a path in metres between two places of a building, over the transitions that memory holds."""
+"""`way`: a path in metres between two places of a building, by the moves, times and refusals that memory holds."""
 
 import csv
 import math
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from itertools import pairwise
 from pathlib import Path
 
@@ -12,14 +13,13 @@ from numpy.typing import NDArray
 from lifelore.agent.live.buildings.recognition import recognised_place
 from lifelore.agent.live.buildings.remembered_moves import RememberedMoves
 from lifelore.agent.live.goals.destinations import Destination, NamedPlaces
+from lifelore.agent.travel import Travel
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.domains.buildings.clear_path import clear_path
 from lifelore.domains.buildings.floor import Floor, floor_of
+from lifelore.domains.buildings.footprint import Footprint, footprint_path
 from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
 from lifelore.memory import open_memory
-
-CORRIDOR = 2
-"""Moves: how far the path may leave the shortest way from cell to cell; more gives a straighter path, slower."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,7 +28,8 @@ class Way:
 
     start, goal : the destinations, with their points
     poses : (n, 3) x and y in metres of the map's frame, and the heading in radians
-    places : number of cells on the shortest remembered way
+    places : number of cells that the path passes, those of its ends included
+    seconds : expected time of the drive
     contradicted : (n, 2) points of remembered moves that would make the way shorter, but that the map contradicts
     """
 
@@ -36,6 +37,7 @@ class Way:
     goal: Destination
     poses: NDArray[np.float64]
     places: int
+    seconds: float
     contradicted: NDArray[np.float64]
 
     @property
@@ -49,6 +51,7 @@ class Way:
             "from": {"name": self.start.name, "point": list(self.start.point or ())},
             "to": {"name": self.goal.name, "point": list(self.goal.point or ())},
             "length": self.length,
+            "seconds": self.seconds,
             "places": self.places,
             "contradicted": self.contradicted.tolist(),
         }
@@ -61,8 +64,13 @@ def way(
     memory: str | Path | None = None,
     spacing: float | None = None,
     building: str | None = None,
+    clock: float | None = None,
+    footprint: Footprint | None = None,
 ) -> Way:
-    """The shortest way over remembered transitions, as a path that is clear by the robot's radius.
+    """The cheapest path over remembered transitions that is clear by the robot's radius.
+
+    The path turns at any angle. It costs its length, and what memory knows about its moves: where they took
+    longer or were refused, the path leads around if that is expected to take less time (`Travel.cost`).
 
     Parameters
     ----------
@@ -76,11 +84,16 @@ def way(
         Metres: largest distance between two poses; None: only the corners of the path.
     building : str, optional
         Name of the building; None: recognise it.
+    clock : float, optional
+        Time of the drive in seconds since 1970 by the robot's clock; None: that of the newest drive in memory.
+    footprint : Footprint, optional
+        Outline that touches nothing on the path; None: a disc of the robot's radius.
 
     Raises
     ------
     NotFoundError
-        Memory knows no way, or only ways that the map contradicts, or not the name, or not the building.
+        Memory knows no way, or only ways that the map contradicts, or not the name, or not the building; or the
+        footprint does not pass.
     InputError
         A setting or the map breaks its rule, or a point is no free place.
     StoreError
@@ -95,12 +108,55 @@ def way(
         place = recognised_place(world, world_from_settings(world, occupancy), occupancy, opened, building)
         moves, names = RememberedMoves.recalled(place, opened), NamedPlaces.of(place)
         start, goal = names.located("from", start, opened), names.located("to", goal, opened)
+        travel = Travel.recalled(place.world, place.grid, opened)
     floor = floor_of(place.occupancy or occupancy, place.world)
-    chain, contradicted = _KnownPart(moves, floor).chain(start, goal)
-    near = moves.near(chain, CORRIDOR)
-    path = clear_path(floor, near, start.located_point, goal.located_point, moves.true_moves)
-    assert path is not None, "true moves join the pieces of their cells"
-    return Way(start, goal, poses_along(path, spacing), len(chain), contradicted)
+    contradicted = _KnownPart(moves, floor).contradicted(start, goal)
+    minutes = travel.passes.minute
+    now = float(clock if clock is not None else 60 * minutes.max(initial=0))
+    price = price_of_moves(np.where(moves.open, travel.cost(now), np.inf), place.world.frame.cell)
+    ends = start.located_point, goal.located_point
+    path = footprint_path(floor, *ends, footprint, price) if footprint else clear_path(floor, *ends, price)
+    assert path is not None, "open moves join the pieces of their cells"
+    states, seconds = _driven(path, floor, travel.seconds(now) / place.world.frame.cell)
+    return Way(start, goal, poses_along(path, spacing), states, seconds, contradicted)
+
+
+def clock_from_text(text: str) -> float:
+    """Seconds since 1970 of a date and time without a time zone, by the robot's clock.
+
+    Raises
+    ------
+    InputError
+        The text is no date and time, or has a time zone.
+    """
+    try:
+        time = datetime.fromisoformat(text)
+    except ValueError:
+        time = None
+    if time is None or time.tzinfo is not None or time.year < 1970:
+        raise InputError(f"at must be a date and time by the robot's clock, as 2024-05-13T08:30, got {text!r}")
+    return time.replace(tzinfo=UTC).timestamp()
+
+
+def price_of_moves(cost: NDArray[np.float64], cell: float) -> NDArray[np.float64]:
+    """Metres (n_states, 4) that each move costs beyond its length, from the seconds that it costs.
+
+    A move of the least cost has price 0; one of twice this cost has a price of `cell` metres.
+    """
+    return cell * (cost / cost[np.isfinite(cost)].min(initial=np.inf) - 1)
+
+
+def _driven(path: NDArray[np.float64], floor: Floor, slowness: NDArray[np.float64]) -> tuple[int, float]:
+    """Number of places on a path, and its expected seconds; `slowness` (n_states, 4) in seconds a metre."""
+    pixels = floor.pixels(poses_along(path, floor.occupancy.resolution / 2)[:, :2])
+    step, middle = np.diff(pixels, axis=0), (pixels[1:] + pixels[:-1]) / 2
+    states = floor.state[tuple(np.rint(np.vstack([pixels[:1], middle, pixels[-1:]])).astype(int).T)]
+    down, right = step.T
+    at, length = states[1:-1], np.hypot(down, right)
+    # In time, a step at an angle counts as its share along each axis.
+    vertical, horizontal = slowness[at, np.where(down > 0, 1, 0)], slowness[at, np.where(right > 0, 2, 3)]
+    seconds = (down**2 * vertical + right**2 * horizontal) / np.where(length > 0, length, 1)
+    return len(np.unique(states)), float(seconds.sum() * floor.occupancy.resolution)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,13 +166,19 @@ class _KnownPart:
     moves: RememberedMoves
     floor: Floor
 
-    def chain(self, start: Destination, goal: Destination) -> tuple[list[int], NDArray[np.float64]]:
-        """Cells of the way, and the contradicted points of a shorter remembered way."""
+    def contradicted(self, start: Destination, goal: Destination) -> NDArray[np.float64]:
+        """Points (n, 2) of the moves that the map contradicts on a shorter remembered way.
+
+        Raises
+        ------
+        NotFoundError
+            Memory knows no way that the map allows.
+        """
         first, last = self._cell("from", start), self._cell("to", goal)
         chain, remembered = self.moves.chain(first, last), self.moves.chain(first, last, true_only=False)
         contradicted = self.moves.contradicted(remembered)
         if chain:
-            return chain, contradicted[: 0 if len(remembered) == len(chain) else None]
+            return contradicted[: 0 if len(remembered) == len(chain) else None]
         so_far = self._so_far(first, goal)
         if remembered:
             at = "; ".join(f"{x:.2f},{y:.2f}" for x, y in contradicted[:3])

@@ -39,6 +39,7 @@ def _register() -> None:
         long_life_command,
         memory_commands,
         perceive_command,
+        recognise_command,
         reproduce_command,
         reuse_command,
         reuse_evaluate_command,
@@ -51,6 +52,7 @@ def _register() -> None:
     app.command("live")(live_command.live)
     app.command("explain")(long_life_command.explain)
     app.command("way")(way_command.way)
+    app.command("recognise")(recognise_command.recognise)
     app.command("perceive")(perceive_command.perceive)
     app.command("learn-relations")(learn_relations_command.learn_relations)
     app.command("scenes")(scenes_command.scenes)

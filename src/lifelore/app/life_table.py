@@ -14,8 +14,10 @@ SHOWN = (
 
 SHOWN_BY_SIGHT = (SHOWN[0], ("steps_to_goal", "steps to see goal"), *SHOWN[2:])
 
+SHOWN_DRIVEN = (("seconds", "seconds"), ("metres", "metres"), ("refusals", "refusals"), ("replans", "new routes"))
+
 LISTED = 20
-"""Maximum number of tasks with chosen goals that are listed, the last ones."""
+"""Maximum number of driven jobs that are listed, the last ones."""
 
 
 def print_life(report: dict, written: list[str]) -> None:
@@ -24,37 +26,62 @@ def print_life(report: dict, written: list[str]) -> None:
     console = Console() if sys.stdout.isatty() else Console(width=110)
     tasks, memory = report["tasks"], report["memory"]
     place = report["map"] or report["domain"]
+    what = "jobs driven" if report["how"] == "driven" else "goals searched"
     console.print(
-        f"{len(tasks)} tasks in {place}, {report['n_states']:,} places, {report['seconds']:.1f} s; "
+        f"{len(tasks)} {what} in {place}, {report['n_states']:,} places, {report['seconds']:.1f} s; "
         f"this robot has finished {memory['tasks_after']} tasks in all",
         highlight=False,
         soft_wrap=True,
     )
     if report["building"]:
         console.print(_building_line(report["building"]), highlight=False, soft_wrap=True)
-    if tasks:
+    if tasks and report["how"] == "driven":
+        _print_driven(console, report)
+    elif tasks:
         shown = SHOWN if report["settings"]["sensor"] == "touch" else SHOWN_BY_SIGHT
         console.print(_thirds(report["summary"]["agents"], shown))
         for name, ratios in report["summary"].items():
             if name != "agents":
                 console.print(_ratio_line(name, ratios), highlight=False, soft_wrap=True)
-    for task in tasks[-LISTED:]:
-        if "position" in task:
-            console.print(_job_line(task), highlight=False, soft_wrap=True)
     for path in written:
         console.print(f"wrote {path}", highlight=False)
 
 
+def _print_driven(console: Console, report: dict) -> None:
+    """The last jobs, then means of each agent, and memory compared with the map alone."""
+    if not report["settings"]["busy"]:
+        console.print(
+            "in simulation, nothing slows or blocks the robot; --set busy=true changes that", soft_wrap=True
+        )
+    for task in report["tasks"][-LISTED:]:
+        console.print(_job_line(task), highlight=False, soft_wrap=True)
+    console.print(_thirds(report["summary"]["agents"], SHOWN_DRIVEN))
+    compared = report["summary"].get("lore_vs_map_only", {}).get("all")
+    if compared:
+        own, other = compared["seconds"].values()
+        refused, others = compared["refusals"].values()
+        console.print(
+            f"all jobs: {own:,.0f} s with memory, {other:,.0f} s on the map alone "
+            f"({_ratio(compared['seconds_ratio'])}); refusals {refused:,} and {others:,}",
+            highlight=False,
+            soft_wrap=True,
+        )
+
+
 def _job_line(task: dict) -> str:
-    """A task whose goal the user chose, with the result of the first agent."""
-    name, result = next(iter(task["agents"].items()))
+    """A job with the drive of the agent that remembers, and the seconds of the one that does not."""
+    first, *rest = task["agents"].values()
     x, y = task["position"]
-    where = " ".join(part for part in (task.get("time"), task.get("name"), f"{x:g},{y:g}") if part)
-    reached = "" if result["reached"] else " (cap, 80 % not reached)"
-    return (
-        f"task {task['index']}: {where}: {name} {result['steps_to_80']:,} steps to 80 %{reached}, "
-        f"{result['collisions']:,} collisions"
-    )
+    where = " ".join(part for part in (task["clock"], task.get("name"), f"{x:g},{y:g}") if part)
+    drive = f"driven {first['metres']:.1f} m in {first['seconds']:.0f} s"
+    if not first["reached"]:
+        drive = f"no way left after {first['metres']:.1f} m and {first['seconds']:.0f} s"
+    parts = [drive]
+    for count, noun in ((first["refusals"], "refusal"), (first["replans"], "new route")):
+        if count:
+            parts.append(f"{count} {noun}" + "s" * (count > 1))
+    parts += [f"map alone {other['seconds']:.0f} s" for other in rest]
+    return f"job {task['index']}: {where}: " + ", ".join(parts)
 
 
 def _building_line(building: dict) -> str:
@@ -70,7 +97,7 @@ def _building_line(building: dict) -> str:
 
 
 def _thirds(agents: dict, shown: tuple[tuple[str, str], ...]) -> Table:
-    table = Table("agent", "third", title="means and 95 % intervals over the first and last third of the tasks")
+    table = Table("agent", "third", title="means and 95 % intervals over the first and last third")
     for _, title in shown:
         table.add_column(title, justify="right")
     for name, thirds in agents.items():
@@ -92,6 +119,8 @@ def _short(x: float) -> str:
     for size, letter in ((1e6, "M"), (1e3, "k")):
         if abs(x) >= size:
             return f"{x / size:,.1f}{letter}"
+    if 0.05 <= abs(x) < 9.95 and not float(x).is_integer():
+        return f"{x:.1f}"
     return f"{round(x) or 0:,}"  # no "-0"
 
 

@@ -11,19 +11,13 @@ import typer
 if TYPE_CHECKING:
     from lifelore.agent.live.goals.job_list import Job
     from lifelore.agent.live.life_settings import Place
+    from lifelore.agent.live.output.logged_life import Recorder
     from lifelore.app.setting_keys import SettingKeys
 
 Option = typer.Option
 
-OPTIONS = ("domain", "map", "tasks", "goal", "goals", "agent", "robot", "memory", "out", "csv", "seed")
+OPTIONS = ("domain", "map", "tasks", "goal", "goals", "agent", "robot", "memory", "out", "log", "csv", "seed")
 """Options of `live` that are settings too."""
-KEYS = {
-    "condition": "prior",
-    "kind": "sensor",
-    "location": "memory",
-    "family": "domain",
-}
-"""Name of a parameter of the settings to its key, where they differ."""
 
 
 def live(
@@ -43,12 +37,12 @@ def live(
         str | None,
         Option(
             metavar="X,Y|NAME|ROW,COL",
-            help="Goal of every task: in a building metres or a known name; default: drawn for each task.",
+            help="Goal of every task; in a building, the robot drives there. Default: each task hides one.",
         ),
     ] = None,
     goals: Annotated[
         str | None,
-        Option(metavar="CSV", help="building: job list with time (optional), name, x, y; one task a job."),
+        Option(metavar="CSV", help="building: job list with time (optional), name, x, y; the robot drives there."),
     ] = None,
     agent: Annotated[
         str | None,
@@ -65,6 +59,12 @@ def live(
     ] = None,
     out: Annotated[
         str | None, Option(metavar="DIR", help="Folder for summary.json, pictures and exports.")
+    ] = None,
+    log: Annotated[
+        str | None,
+        Option(
+            metavar="FILE", help="building: NAME.mcap or .rrd for map, ways, costs, events; extra ros or view."
+        ),
     ] = None,
     csv: Annotated[
         str | None, Option(metavar="FILE", help="CSV in long format: run, task, agent, episode, measure, value.")
@@ -85,9 +85,9 @@ def live(
 ) -> int:
     """Live through tasks in one world and learn from each.
 
-    Use it to see what an agent gains from its earlier tasks, in your own map or in a generated office. Memory
-    stores what the agent learnt after each task: the next run continues the life, in this building or in another
-    one.
+    With known goals (--goal, --goals) the robot drives, and learns what its building does to it: slow hours,
+    blocked places. Without, each goal is hidden, and the agent searches. Memory stores what was learnt after each
+    task: the next run continues the life, in this building or in another one.
     """
     from lifelore.agent.long_lived.families.by_name import FAMILIES
 
@@ -106,18 +106,18 @@ def live(
 
 def setting_keys(domain: str) -> "SettingKeys":
     """The settings of a life in this domain, by key."""
-    from lifelore.agent.live.life_settings import LifeSettings
+    from lifelore.agent.live.life_settings import LIFE_KEYS, LifeSettings
     from lifelore.agent.long_lived.families.by_name import FAMILIES
     from lifelore.agent.long_lived.long_life import live_long
     from lifelore.app.setting_keys import Setting, SettingKeys
 
     port = Setting("port", int, "Port of --serve, 8321 by default; 0: any free port.")
-    log = Setting("l2log", str, "Folder for a log of every episode in L2Logger's format.")
+    l2log = Setting("l2log", str, "Folder for a log of every episode in L2Logger's format.")
     labels = Setting(
         "labels", bool, "Whether the points of the pictures carry the objects' labels, for tabletop.", False
     )
-    life = SettingKeys((LifeSettings,), KEYS, (log, port))
-    long_life = SettingKeys((live_long,), KEYS, (labels, port))
+    life = SettingKeys((LifeSettings,), LIFE_KEYS, (l2log, port))
+    long_life = SettingKeys((live_long,), {"location": "memory", "family": "domain"}, (labels, port))
     if domain in FAMILIES:
         own, other, where = long_life, life, f"does not apply to domain {domain}; leave it out"
     else:
@@ -135,19 +135,23 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json
     from lifelore.agent.live.life_settings import LifeSettings
     from lifelore.agent.live.output.l2_log import LifeLog
     from lifelore.agent.live.output.long_table import LongTable
-    from lifelore.agent.live.output.report import check_folder, write_portfolio
+    from lifelore.agent.live.output.report import check_folder, write_log, write_portfolio
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.life_table import print_life
     from lifelore.app.pages_beside import pages_beside
+    from lifelore.core.errors import InputError
 
     domain, memory = values["domain"], values.get("memory")
     out, csv, l2log = (values.get(name) for name in ("out", "csv", "l2log"))
     places = {name: _place(name, values[name], domain) for name in ("start", "goal") if name in values}
     jobs = {"goals": _jobs(values["goals"], values.get("tasks"))} if "goals" in values else {}
     settings = LifeSettings(**keys.arguments(LifeSettings, values | places | jobs))
+    if l2log is not None and settings.driven:
+        raise InputError(f"l2log logs episodes of searches, got {l2log} with known goals; leave it out")
     new_folders = _missing_folders(memory, out)
     if out is not None:
         check_folder(out)
+    record_file = _recorder(values)
     log = None if l2log is None else LifeLog(l2log, domain)
     with (
         pages_beside(serve, values.get("port"), memory),
@@ -170,11 +174,28 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json
 
         life = live_through(settings, progress=show, stop=stop, watch=record, notify=_notify)
         written = write_portfolio(life, out) if out is not None else []
+        if record_file is not None:
+            written.append(write_log(life, values["log"], record_file))
     if as_json:
         print_json(life.report)
     else:
         print_life(life.report, written)
     return INTERRUPTED if life.stopped else 0
+
+
+def _recorder(values: dict[str, Any]) -> "Recorder | None":
+    """What writes the log, if the user wants one."""
+    from lifelore.core.errors import InputError
+
+    if "log" not in values:
+        return None
+    if values["domain"] != "building":
+        raise InputError(f"log applies to domain building, got {values['domain']}; leave it out")
+    from lifelore.bridges.life_log import write_life_log
+    from lifelore.bridges.scene_log import check_log
+
+    check_log(values["log"])
+    return write_life_log
 
 
 def _missing_folders(memory: str | None, out: str | None) -> list[Path]:

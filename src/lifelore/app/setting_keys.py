@@ -10,11 +10,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, is_dataclass
 from difflib import get_close_matches
 from functools import cached_property
-from inspect import Parameter, getdoc, signature
-from typing import Any, get_args, get_type_hints
+from inspect import Parameter, getdoc
+from typing import Any, get_args
 
 from lifelore.app.console import print_json
 from lifelore.core.errors import InputError
+from lifelore.core.keyed_settings import arguments_by_key, typed_parameters
 
 TYPES = {bool: "true/false", int: "whole number", float: "number", str: "text"}
 MOST_NEAR = 3
@@ -91,13 +92,7 @@ class SettingKeys:
 
     def arguments(self, source: Callable, values: Mapping[str, Any]) -> dict[str, Any]:
         """The arguments of a source, with its groups, that values by key give; other keys are left out."""
-        given = {}
-        for part, hint in _typed_parameters(source):
-            if is_dataclass(hint):
-                given[part.name] = hint(**self.arguments(hint, values))  # type: ignore[operator]
-            elif (key := self._key(part)) in values:
-                given[part.name] = values[key]
-        return given
+        return arguments_by_key(source, values, self.names)
 
     def show(self, as_json: bool) -> None:
         """Print each setting with its type, default and meaning."""
@@ -125,7 +120,7 @@ class SettingKeys:
 
     def _settings_of(self, source: Callable) -> Iterator[Setting]:
         entries = _documented(source)
-        for part, hint in _typed_parameters(source):
+        for part, hint in typed_parameters(source):
             kind = next((one for one in TYPES if one in (hint, *get_args(hint))), None)
             if is_dataclass(hint):
                 yield from self._settings_of(hint)  # type: ignore[arg-type]
@@ -146,12 +141,6 @@ class SettingKeys:
             hint = f"; near: {', '.join(near)}" if near else ""
             raise InputError(f"no setting has the key '{key}'{hint}; --settings lists all")
         return key, self.settings[key].value(value)
-
-
-def _typed_parameters(source: Callable) -> Iterator[tuple[Parameter, Any]]:
-    hints = get_type_hints(source)
-    for part in signature(source).parameters.values():
-        yield part, hints.get(part.name)
 
 
 def _documented(source: Callable) -> dict[str, tuple[str, str]]:

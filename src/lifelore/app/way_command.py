@@ -26,9 +26,17 @@ def way(
     spacing: Annotated[
         float | None, Option(help="Largest distance between two poses in metres; default: only the corners.")
     ] = None,
+    at: Annotated[
+        str | None,
+        Option(metavar="TIME", help="Start by the robot's clock, 2024-05-13T08:30; default: the newest drive."),
+    ] = None,
     cell: Annotated[float | None, Option(help="Side of a grid cell in metres, as in `live` [0.5].")] = None,
     robot_radius: Annotated[
         float | None, Option(help="Radius of the robot in metres, as in `live` [0.2].")
+    ] = None,
+    footprint: Annotated[
+        str | None,
+        Option(metavar="[[X,Y],…]", help="Outline of the robot in metres, as in nav2; default: a disc."),
     ] = None,
     building: Annotated[
         str | None, Option(metavar="NAME", help="Name of the building; default: recognise it by its map.")
@@ -38,20 +46,23 @@ def way(
         bool, Option("--json", help="One JSON document on stdout, with the keys of nav_msgs/Path.")
     ] = False,
 ) -> None:
-    """Find a path from memory that is clear of obstacles.
+    """Find the path that is expected to take the least time, and is clear of obstacles.
 
-    Use it after `live`. The way leads over remembered moves only, and the path keeps the robot's radius from all
-    that the map does not show as free.
+    Use it after `live` or `learn-from`. The way leads over remembered moves only, and around those that were slow
+    or refused at this time. The path keeps the robot's radius from all that the map does not show as free.
     """
     from lifelore.agent.live.goals.destinations import destination_from_text
+    from lifelore.agent.way import clock_from_text, write_poses
     from lifelore.agent.way import way as find_way
-    from lifelore.agent.way import write_poses
     from lifelore.app.console import print_json
+    from lifelore.domains.buildings.footprint import Footprint
     from lifelore.domains.worlds import WorldSettings
 
     settings = WorldSettings("building", map, cell=cell, robot_radius=robot_radius, seed=seed)
     ends = destination_from_text("from", start), destination_from_text("to", goal)
-    found = find_way(settings, *ends, memory, spacing, building)
+    clock = None if at is None else clock_from_text(at)
+    outline = None if footprint is None else Footprint.from_text(footprint)
+    found = find_way(settings, *ends, memory, spacing, building, clock, outline)
     if csv is not None:
         write_poses(csv, found.poses)
     if as_json:
@@ -59,7 +70,7 @@ def way(
         return
     print(
         f"{found.length:.2f} m from {found.start} to {found.goal} over {found.places} remembered places, "
-        f"{len(found.poses)} poses"
+        f"about {found.seconds:.0f} s, {len(found.poses)} poses"
     )
     if len(found.contradicted):
         x, y = found.contradicted[0]

@@ -42,6 +42,7 @@ COLOURS = {
     "undirected": VERMILION,
     "rmax": PURPLE,
     "frontier": SKY,
+    "map only": GREY,
     # learners of the thesis
     "q-learning": GREY,
     "eps-QSAP": BLUE,
@@ -98,7 +99,7 @@ _PARAMETERS = {
 }
 
 
-WIDTHS = {"scratch": 3.6, "lore": 2.4, "listed": 3.0}
+WIDTHS = {"scratch": 3.6, "lore": 2.4, "map only": 3.0, "listed": 3.0}
 
 
 def colour_of(name: str) -> str:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.agent.learn_from.run_log import read_runs
+from lifelore.agent.learn_from.run_log import Run, cut_runs, read_runs
 from lifelore.core.errors import InputError, NotFoundError
 
 
@@ -49,6 +49,7 @@ def test_equal_runs_have_equal_digests_in_whatever_file(tmp_path):
         ("time,x,y\n\n0,1,two\n", "line 3: y must be a number"),
         ("time,x,y\n0,1,nan\n", "line 2: y must be a number"),
         ("time,x,y\n0,1e7,0\n", "line 2: x must be a number of magnitude 1e\\+06"),
+        ("time,x,y\n1704067200000,0,0\n", r"line 2: time must be a number of magnitude 4e\+09 at most"),
         ("time,x,y\n1,0,0\n0,0,0\n", "line 3: time must ascend within a run, got 0 after 1"),
         ("time,x,y,outcome\n0,0,0,crash\n", "outcome must be empty or one of bump, goal, failed, got 'crash'"),
         ('time,x,y\n"0,0,0\n', "is no CSV"),
@@ -57,6 +58,16 @@ def test_equal_runs_have_equal_digests_in_whatever_file(tmp_path):
 def test_a_line_that_breaks_its_rule_is_named(tmp_path, text, message):
     with pytest.raises(InputError, match=message):
         read_runs(log(tmp_path, text))
+
+
+def test_a_log_is_cut_where_runs_end():
+    points = np.arange(10.0).reshape(5, 2)
+    whole = Run("bag", np.arange(5.0), points, np.zeros(5), ["", "goal", "", "", "bump"])
+    parts = cut_runs(whole, np.array([False, True, False, False, True]))
+    assert [(part.name, part.time.tolist()) for part in parts] == [("bag 0", [0, 1]), ("bag 1", [2, 3, 4])]
+    assert parts[1].points.tolist() == points[2:].tolist()
+    assert [part.reached_goal for part in parts] == [True, False]
+    assert [one.name for one in cut_runs(whole, np.zeros(5, bool))] == ["bag"]
 
 
 def test_other_files_are_refused(tmp_path):

@@ -1,5 +1,6 @@
 """The page life as a person uses it: an empty memory, both kinds of lives, keys, and a life that goes on."""
 
+import re
 import signal
 import subprocess
 import sys
@@ -115,6 +116,20 @@ def test_a_life_on_a_map_has_arrows_and_curves(serve_pages: Callable[..., str], 
     expect(page.locator("#map-words")).to_contain_text("The filled circle is the goal of task 2")
     walk_lattice(where, 1)
     expect(page.locator("#summary")).to_contain_text("5 tasks", timeout=15_000)
+
+
+def test_a_life_of_drives_shows_metres_and_seconds(
+    serve_pages: Callable[..., str], open_page: Opened, where: Path
+):
+    settings = LifeSettings(
+        WorldSettings(), memory=MemorySettings(str(where), "ada"), goal=(20.875, 6.025), tasks=2
+    )
+    live(settings)
+    page = open_page(serve_pages(memory=where) + "/life", PHONE)
+    expect(page.locator("#curve circle")).to_have_count(2 * 2)  # with memory and on the map alone
+    expect(page.locator("#curve-words")).to_contain_text("the seconds of each drive to a known goal")
+    expect(page.locator("#list tbody tr").first).to_contain_text(re.compile(r"\d m in [\d.]+ s"))
+    assert Axe().run(page).violations_count == 0
 
 
 def test_a_life_that_remembers_no_map_says_so(serve_pages: Callable[..., str], open_page: Opened, where: Path):

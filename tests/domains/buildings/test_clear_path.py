@@ -1,4 +1,4 @@
-"""Paths in metres: worked by hand, and every segment compared with the map by dense samples."""
+"""Paths in metres: worked by hand, compared with a visibility graph, and with the map by dense samples."""
 
 import os
 from itertools import pairwise
@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import ndimage, sparse
+from scipy.sparse import csgraph
 from scipy.spatial import KDTree
 
 from lifelore.core.errors import InputError
 from lifelore.domains.buildings.building import building_from_map
 from lifelore.domains.buildings.clear_path import clear_path
 from lifelore.domains.buildings.floor import Floor, floor_of
-from lifelore.domains.buildings.line_of_sight import LineOfSight, pixels_on_line
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap, read_occupancy_map
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.grids.grid_world import GridWorld
@@ -32,9 +33,19 @@ def room(rows: int, columns: int, **settings) -> OccupancyMap:
     return OccupancyMap(state, 0.1, **settings)
 
 
-def all_moves(world: GridWorld) -> np.ndarray:
-    state, action = np.nonzero(world.neighbour >= 0)
-    return np.column_stack([state, world.neighbour[state, action]])
+def open_moves(world: GridWorld) -> np.ndarray:
+    """Price 0 for every move of the world."""
+    return np.where(world.neighbour >= 0, 0.0, np.inf)
+
+
+def length_of(path: np.ndarray) -> float:
+    return float(np.hypot(*np.diff(path, axis=0).T).sum())
+
+
+def moves_among(world: GridWorld, states: np.ndarray) -> np.ndarray:
+    """Price 0 for the moves among `states`, no other moves."""
+    inside = np.isin(np.arange(world.n_states), states)
+    return np.where((world.neighbour >= 0) & inside[:, None] & inside[world.neighbour], 0.0, np.inf)
 
 
 def random_chain(world: GridWorld, rng: np.random.Generator) -> np.ndarray:
@@ -53,104 +64,203 @@ def random_chain(world: GridWorld, rng: np.random.Generator) -> np.ndarray:
     return np.array(chain[::-1])
 
 
+def least_clearance(path: np.ndarray, floor: Floor) -> float:
+    """Pixels between the path and the nearest solid pixel centre, on samples a twentieth of a pixel apart."""
+    tree = KDTree(np.argwhere(floor.solid))
+    least = np.inf
+    for a, b in pairwise(floor.pixels(path)):
+        samples = np.linspace(a, b, int(np.hypot(*(b - a)) * 20) + 2)
+        assert (floor.state[tuple(np.rint(samples).astype(int).T)] >= 0).all()
+        least = min(least, tree.query(samples)[0].min())
+    return least
+
+
 def assert_clear(path: np.ndarray, floor: Floor) -> None:
     """No sample of the path is nearer to a solid pixel's centre than the radius, or off the floor's pixels."""
-    pixels = floor.pixels(path)
-    tree = KDTree(np.argwhere(floor.solid)) if floor.solid.any() else None
-    for a, b in pairwise(pixels):
-        samples = np.linspace(a, b, int(np.hypot(*(b - a)) * 37) + 3)
-        at = np.rint(samples).astype(int)
-        assert (floor.state[tuple(at.T)] >= 0).all()
-        if tree is not None:
-            assert tree.query(samples)[0].min() > floor.radius - 1e-9
+    assert not floor.solid.any() or least_clearance(path, floor) > floor.radius - 1e-9
 
 
 def check_chains(world: GridWorld, floor: Floor, n: int, seed: int) -> None:
+    """Paths over the cells of random chains alone, and over all cells: never longer."""
     rng = np.random.default_rng(seed)
     for _ in range(n):
         chain = random_chain(world, rng)
-        start, goal = floor.metres(floor.anchors[chain[[0, -1]]])
-        path = clear_path(floor, np.column_stack([chain[:-1], chain[1:]]), start, goal)
-        assert path is not None
-        assert np.allclose(path[[0, -1]], [start, goal])
-        assert_clear(path, floor)
+        ends = floor.metres(floor.anchors[chain[[0, -1]]])
+        along, free = (clear_path(floor, *ends, price) for price in (moves_among(world, chain), None))
+        for path in (along, free):
+            assert path is not None
+            assert np.array_equal(path[[0, -1]], ends) or len(path) == 1
+            assert_clear(path, floor)
+        visited = floor.state[tuple(np.rint(floor.pixels(along)).astype(int).T)]
+        assert np.isin(visited, chain).all()
+
+
+def shortest_lengths(floor: Floor, ends: np.ndarray) -> np.ndarray:
+    """Lengths in metres of the shortest paths that keep the radius and half a pixel; `ends` (n, 2, 2) pixels.
+
+    A visibility graph: nodes lie on circles about the solid pixels at which the solid part is convex. Lines keep
+    the clearance, and their samples lie on pixels of the floor or beside one. It keeps 0.05 pixels more, so that
+    no path depends on a passage of exactly this width. The lines between the 32 points of a circle stay outside of
+    it, and make its arc 0.5 % longer.
+    """
+    keep = floor.radius + 0.55
+    floor_or_beside = ndimage.binary_dilation(floor.state >= 0, np.ones((3, 3)))
+    solid = np.argwhere(floor.solid & (ndimage.distance_transform_cdt(floor.solid, "chessboard") == 1))
+    tree, angle = KDTree(solid), np.arange(32) * np.pi / 16
+    outward = np.column_stack([np.cos(angle), np.sin(angle)])
+    nodes = [ends.reshape(-1, 2)]
+    for pixel in solid:
+        beside = solid[tree.query_ball_point(pixel, 1.5)] - pixel
+        convex = ((beside @ outward.T) < 1e-9).all(axis=0)
+        nodes.append(pixel + outward[convex] * keep / np.cos(np.pi / 32) * (1 + 1e-9))
+    node = np.concatenate(nodes)
+    inside = ((node > -0.5) & (node < np.array(floor.state.shape) - 0.5)).all(axis=1)
+    node = node[inside & (tree.query(node)[0] >= keep)]
+    length = np.zeros((len(node), len(node)))
+    for k, point in enumerate(node):
+        along = node[k + 1 :] - point
+        square = np.maximum((along**2).sum(axis=1), 1e-12)
+        near = solid - point
+        t = np.clip(along @ near.T / square[:, None], 0, 1)
+        away = (near[None, :, 0] - t * along[:, :1]) ** 2 + (near[None, :, 1] - t * along[:, 1:]) ** 2
+        for j in np.flatnonzero((away >= (keep - 1e-7) ** 2).all(axis=1)):
+            samples = point + np.linspace(0, 1, int(4 * square[j] ** 0.5) + 2)[:, None] * along[j]
+            if floor_or_beside[tuple(np.rint(samples).astype(int).T)].all():
+                length[k, k + 1 + j] = square[j] ** 0.5
+    first = np.arange(len(ends)) * 2
+    found = csgraph.dijkstra(sparse.csr_array(length), directed=False, indices=first)
+    return found[np.arange(len(ends)), first + 1] * floor.occupancy.resolution
+
+
+def part_of(occupancy: OccupancyMap, top: int, left: int, side: int) -> OccupancyMap:
+    """A square of a map within a wall of one pixel."""
+    state = occupancy.state[top : top + side, left : left + side].copy()
+    state[[0, -1]] = state[:, [0, -1]] = OCCUPIED
+    return OccupancyMap(state, occupancy.resolution)
+
+
+def hall(side: int, seed: int) -> OccupancyMap:
+    """A hall with twelve boxes, in pixels of 0.05 m."""
+    rng, state = np.random.default_rng(seed), np.zeros((side, side), np.uint8)
+    state[[0, -1]] = state[:, [0, -1]] = OCCUPIED
+    for _ in range(12):
+        (top, left), (height, width) = rng.integers(5, side - 12, 2), rng.integers(1, 9, 2)
+        state[top : top + height, left : left + width] = OCCUPIED
+    return OccupancyMap(state, 0.05)
+
+
+def check_lengths(occupancy: OccupancyMap, n: int) -> None:
+    _, floor = building(occupancy, 0.5, 0.2)
+    roomy = np.flatnonzero(floor.distance[tuple(floor.anchors.T)] > floor.radius + 0.55)
+    ends = floor.anchors[np.random.default_rng(0).choice(roomy, (n, 2))].astype(float)
+    ends = ends[np.hypot(*(ends[:, 0] - ends[:, 1]).T) > 10]
+    paths = [clear_path(floor, *floor.metres(pair)) for pair in ends]
+    ratio = np.array([length_of(path) for path in paths]) / shortest_lengths(floor, ends)
+    assert len(ratio) > 0.7 * n
+    assert ratio.max() < 1.03
+    assert ratio.mean() < 1.01
+    assert min(least_clearance(path, floor) for path in paths) > floor.radius + 0.5 - 1e-6
+
+
+@pytest.mark.parametrize("occupancy", [hall(64, 0), part_of(office_map(0), 10, 10, 80)], ids=["hall", "office"])
+def test_paths_are_at_most_3_percent_longer_than_the_shortest_and_as_clear(occupancy):
+    check_lengths(occupancy, 25)
+
+
+@pytest.mark.skipif("LIFELORE_DATA" not in os.environ, reason="LIFELORE_DATA is not set")
+def test_paths_in_a_part_of_the_willow_building_are_at_most_3_percent_longer_and_as_clear():
+    willow = read_occupancy_map(Path(os.environ["LIFELORE_DATA"]) / "maps" / "willow-full.yaml")
+    check_lengths(part_of(willow, 200, 400, 60), 25)
 
 
 def test_an_empty_room_is_crossed_in_a_straight_line():
-    world, floor = building(room(62, 82), 0.5, 0.2)
-    path = clear_path(floor, all_moves(world), (0.55, 0.55), (7.55, 5.55))
-    assert path is not None
+    _, floor = building(room(62, 82), 0.5, 0.2)
+    path = clear_path(floor, (0.55, 0.55), (7.55, 5.55))
     assert np.allclose(path, [[0.55, 0.55], [7.55, 5.55]])
 
 
-def test_the_path_leads_around_a_wall_and_keeps_away_from_its_end():
+def test_the_path_around_the_end_of_a_wall_touches_the_circle_about_it():
     plan = room(62, 82)
     plan.state[20:, 40] = OCCUPIED  # a wall from the bottom up; its end is at row 20, x = 4.05 m, y = 4.15 m
-    world, floor = building(plan, 0.5, 0.2)
-    path = clear_path(floor, all_moves(world), (2.05, 1.05), (6.05, 1.05))
-    assert path is not None
+    _, floor = building(plan, 0.5, 0.2)
+    start, goal, corner, keep = (2.05, 1.05), (6.05, 1.05), np.array([4.05, 4.15]), 0.25
+    path = clear_path(floor, start, goal)
     assert_clear(path, floor)
-    corner = np.array([4.05, 4.15])
-    # The straight line from the start to the end of the wall has the length of the hypotenuse; a detour of at most
-    # the comfortable clearance (0.3 m) and a pixel on each side is allowed.
-    shortest = 2 * np.hypot(*(corner - (2.05, 1.05)))
-    length = np.hypot(*np.diff(path, axis=0).T).sum()
-    assert shortest < length < shortest + 2.0
-    assert np.hypot(*(path - corner).T).min() >= 0.3 - 1e-9
+    # Two tangents, and the arc between the points where they touch: the angle between the lines to the ends, less
+    # that between each line and the radius to the point of contact.
+    away = np.hypot(*(corner - start))
+    between = 2 * np.arctan2(2.0, corner[1] - start[1])
+    arc = keep * (2 * np.pi - between - 2 * np.arccos(keep / away))
+    shortest = 2 * np.sqrt(away**2 - keep**2) + arc
+    assert shortest <= length_of(path) < 1.005 * shortest
 
 
 def test_a_narrow_passage_is_used_where_there_is_no_other():
     plan = room(32, 62)
     plan.state[:, 30] = OCCUPIED
-    plan.state[13:18, 30] = FREE  # 0.5 m: a robot of 0.2 m fits at its centre line alone
-    world, floor = building(plan, 0.5, 0.2)
-    path = clear_path(floor, all_moves(world), (1.05, 2.55), (5.05, 0.55))
-    assert path is not None
+    plan.state[13:17, 30] = FREE  # between solid pixels 12 and 17: 0.25 m at the centre line, 0.2 m at its pixels
+    _, floor = building(plan, 0.5, 0.19)
+    path = clear_path(floor, (1.05, 2.55), (5.05, 0.55), clearance=0.27)
     assert_clear(path, floor)
-    row, column = floor.pixels(path).T
-    assert np.isclose(row[np.abs(column - 30).argmin()], 15)
+    near = np.abs(floor.pixels(path)[:, 1] - 30) < 5
+    assert (np.abs(floor.pixels(path)[near, 0] - 14.5) <= 0.6).all()
+    plan.state[2:9, 30] = FREE  # a wider passage near by
+    _, floor = building(plan, 0.5, 0.19)
+    path = clear_path(floor, (1.05, 2.55), (5.05, 0.55), clearance=0.27)
+    assert least_clearance(path, floor) > 2.7 - 1e-6
+
+
+def test_a_slow_passage_is_avoided_where_the_way_around_is_cheaper():
+    """Two doors in a wall; the price of the near one decides."""
+    plan = room(62, 82)
+    plan.state[:, 40] = OCCUPIED
+    plan.state[5:15, 40] = plan.state[40:50, 40] = FREE
+    world, floor = building(plan, 0.5, 0.2)
+    into_near_door = (world.cells[:, 0] > 6) & (world.cells[:, 1] == 7)
+    eastward = into_near_door[:, None] & (np.arange(4) == 2)
+    ends = (2.05, 1.55), (6.05, 1.55)
+    near, far = clear_path(floor, *ends), clear_path(floor, *ends, np.where(eastward, np.inf, 0))
+    assert near[:, 1].max() < 2.5
+    assert far[:, 1].max() > 4.5
+    detour = length_of(far) - length_of(near)
+    for share, expected in ((0.9, near), (1.1, far)):
+        found = clear_path(floor, *ends, share * detour * eastward)
+        assert length_of(found) == pytest.approx(length_of(expected), rel=0.01)
+    back = clear_path(floor, *ends[::-1], 1.1 * detour * eastward)
+    assert length_of(back) == pytest.approx(length_of(near), rel=0.005)
 
 
 def test_without_moves_there_is_no_path():
     world, floor = building(room(22, 32), 0.5, 0.2)
-    some = all_moves(world)
-    cut = some[(some < world.n_states // 2).all(axis=1) | (some >= world.n_states // 2).all(axis=1)]
+    half = np.arange(world.n_states) < world.n_states // 2
+    cut = np.where(half[:, None] == half[world.neighbour], open_moves(world), np.inf)
     ends = floor.metres(floor.anchors[[0, world.n_states - 1]])
-    assert clear_path(floor, cut, *ends) is None
-    assert clear_path(floor, some, *ends) is not None
+    assert clear_path(floor, *ends, cut) is None
+    assert clear_path(floor, *ends) is not None
 
 
 def test_moves_have_a_direction():
-    _, floor = building(room(12, 32), 1.0, 0.2)
-    moves = np.array([[0, 1], [1, 2]])
+    world, floor = building(room(12, 32), 1.0, 0.2)
+    east = np.where(np.arange(4) == 2, open_moves(world), np.inf)
     ends = floor.metres(floor.anchors[[0, 2]])
-    assert clear_path(floor, moves, *ends) is not None
-    assert clear_path(floor, moves[:, ::-1], *ends) is None
+    assert clear_path(floor, *ends, east) is not None
+    assert clear_path(floor, *ends[::-1], east) is None
 
 
-def test_a_shortcut_changes_places_by_its_own_moves_alone():
+def test_a_path_changes_places_by_open_moves_alone():
     world, floor = building(room(60, 60), 1.0, 0.0)
     row, column = world.cells.T
     rim = np.flatnonzero((row == 5) | (column == 0))
-    moves = all_moves(world)
-    on_rim = moves[np.isin(moves, rim).all(axis=1)]
     ends = floor.metres(floor.anchors[[world.state_of[0, 0], world.state_of[5, 5]]])
-    around, across = clear_path(floor, on_rim, *ends, shortcuts=on_rim), clear_path(floor, on_rim, *ends)
-    assert around is not None
-    assert across is not None
+    around, across = (clear_path(floor, *ends, price) for price in (moves_among(world, rim), None))
     assert len(across) == 2
-    assert len(around) > 2
-    visited = {floor.state_at("path", tuple(point)) for point in around}
-    assert visited <= set(rim.tolist())
-    assert np.array_equal(clear_path(floor, on_rim, *ends, shortcuts=moves), across)
+    assert {floor.state_at("path", tuple(point)) for point in around} <= set(rim.tolist())
 
 
 def test_a_path_to_the_place_itself_is_a_point():
     world, floor = building(room(22, 32), 0.5, 0.2)
-    path = clear_path(floor, np.empty((0, 2), int), (1.05, 1.05), (1.05, 1.05))
-    assert path is not None
-    assert path.tolist() == pytest.approx(np.array([[1.05, 1.05]]))
-    assert world.n_states > 1
+    path = clear_path(floor, (1.05, 1.05), (1.05, 1.05), np.full((world.n_states, 4), np.inf))
+    assert path.tolist() == [[1.05, 1.05]]
 
 
 @given(
@@ -179,30 +289,3 @@ def test_paths_in_offices_are_clear(seed):
 def test_paths_in_the_willow_building_are_clear():
     willow = read_occupancy_map(Path(os.environ["LIFELORE_DATA"]) / "maps" / "willow-full.yaml")
     check_chains(*building(willow, 0.5, 0.2), n=25, seed=0)
-
-
-@given(ends=st.lists(st.tuples(*[st.floats(0, 12)] * 2), min_size=2, max_size=2))
-def test_pixels_on_a_line_are_those_of_its_samples(ends):
-    a, b = np.array(ends)
-    samples = np.rint(np.linspace(a, b, 2000)).astype(int)
-    off_border = (np.abs(np.linspace(a, b, 2000) % 1 - 0.5) > 1e-6).all(axis=1)
-    found = {tuple(pixel) for pixel in pixels_on_line(a, b).tolist()}
-    assert {tuple(pixel) for pixel in samples[off_border].tolist()} <= found
-
-
-@given(seed=st.integers(0, 2**32 - 1))
-def test_clearance_is_the_smallest_distance_to_solid_pixels(seed):
-    rng = np.random.default_rng(seed)
-    state = rng.choice([FREE, OCCUPIED], size=(15, 18), p=[0.97, 0.03]).astype(np.uint8)
-    solid = state != FREE
-    floor = Floor(OccupancyMap(state, 0.1), np.where(solid, -1, 0).astype(np.int32), solid, 0.2, 1)
-    a, b = rng.uniform(0, 14, 2), rng.uniform(0, 14, 2)
-    samples = np.linspace(a, b, 4000)
-    found = LineOfSight(floor).clearance(a, b)
-    if solid[tuple(np.rint(samples).astype(int).T)].any():
-        assert found == -1
-    elif found >= 0:
-        nearest = KDTree(np.argwhere(solid)).query(samples)[0].min() if solid.any() else np.inf
-        assert found == pytest.approx(min(nearest, floor.radius + 1), abs=1e-4)
-    else:  # only a corner that no sample falls on can be the reason
-        assert np.abs(samples % 1 - 0.5).max(axis=1).min() < 0.01

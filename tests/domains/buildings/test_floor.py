@@ -97,3 +97,18 @@ def test_free_space_that_is_cut_off_is_no_place():
     floor = floor_of(occupancy, building_from_map(occupancy, 0.5, 0.0))
     with pytest.raises(InputError, match="belongs to no place that the robot can reach"):
         floor.state_at("goal", (3.55, 0.55))
+
+
+def test_a_refusal_names_the_nearest_free_place_near_and_far():
+    """As all pixels together say, also from far outside the picture."""
+    occupancy = office_map(1, 14.0, 12.0)
+    floor = floor_of(occupancy, building_from_map(occupancy))
+    free = floor.metres(np.argwhere(floor.state >= 0))
+    points = [*np.random.default_rng(0).uniform((-3, -3), (20, 18), (60, 2)), (-300.0, 40.0), (9.0, 1e4)]
+    refused = [(point, refusal) for point in points if (refusal := floor.refusal(tuple(point)))]
+    assert len(refused) > 20
+    for point, refusal in refused:
+        away = np.hypot(*(free - point).T).min()
+        assert math.dist(refusal.nearest, point) == pytest.approx(away, abs=1e-9)
+    assert refused[-1][1].reason == "lies outside the map"
+    assert not refused[-1][1].known

@@ -28,8 +28,8 @@ NOTHING, BUMP, GOAL, FAILED = "", "bump", "goal", "failed"
 OUTCOMES = (BUMP, GOAL, FAILED)
 GAP = 10.0
 """Seconds without a pose that end a run in a log without the column run."""
-_FARTHEST = 1e6
-"""Metres; a larger coordinate is an error of units."""
+_FARTHEST, _LATEST = 1e6, 4e9
+"""Metres, and seconds since 1970; a larger coordinate or time is an error of units."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,11 +103,15 @@ def read_runs(path: str | Path) -> list[Run]:
     return runs
 
 
-def run_of_poses(
-    name: str, time: NDArray[np.float64], points: NDArray[np.float64], heading: NDArray[np.float64]
-) -> Run:
-    """A run without outcomes, from arrays as in `Run`."""
-    return Run(name, time, points, heading, [NOTHING] * len(time))
+def cut_runs(whole: Run, ends: NDArray[np.bool_]) -> list[Run]:
+    """The runs of a log, each of which ends where `ends` (n,) is true; named as the log, with their number."""
+    lasts = [*np.flatnonzero(ends[:-1]).tolist(), len(whole.time) - 1]
+    parts = [slice(a, b + 1) for a, b in zip([0, *(last + 1 for last in lasts)], lasts, strict=False)]
+    return [
+        Run(f"{whole.name} {number}" if len(parts) > 1 else whole.name,
+            whole.time[part], whole.points[part], whole.heading[part], whole.outcome[part])
+        for number, part in enumerate(parts)
+    ]  # fmt: skip
 
 
 def _poses(file: Iterable[str], name: str) -> Iterator[_Pose]:
@@ -148,7 +152,7 @@ def _pose(row: list[str], columns: list[str], line: int, name: str) -> _Pose:
         raise InputError(f"{name} line {line}: outcome must be empty or one of {', '.join(OUTCOMES)}, "
                          f"got {outcome[:40]!r}")  # fmt: skip
     heading = number("heading", 1e4) if value.get("heading") else math.nan
-    time, x, y = number("time", 1e12), number("x", _FARTHEST), number("y", _FARTHEST)
+    time, x, y = number("time", _LATEST), number("x", _FARTHEST), number("y", _FARTHEST)
     return _Pose(line, value.get("run", ""), time, x, y, heading, outcome)
 
 

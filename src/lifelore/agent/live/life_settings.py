@@ -23,6 +23,8 @@ MOST_LENGTH = 1e3
 MOST_REWARD = 1e6
 """Largest magnitude of rewards and of α⁰: a larger number hides the others by rounding."""
 LONGEST_NAME = 200
+LIFE_KEYS = {"condition": "prior", "kind": "sensor", "location": "memory"}
+"""The key of each setting whose key, flat beside all others, is not its name."""
 
 Place = tuple[float, float] | str
 """In buildings x and y in metres of the map's frame, or a name that memory knows; else row and column."""
@@ -159,21 +161,29 @@ class LifeSettings:
         The agent that lives and whose knowledge is stored, one of `lifelore.agent.live.baselines.AGENTS`;
         ``scratch`` lives the same tasks for comparison. ``all``: `lore` and every baseline.
     compare : bool, optional
-        Whether ``scratch`` lives the same tasks for comparison; by default up to 100,000 places.
+        Whether ``scratch`` lives the same tasks for comparison; by default up to 100,000 places. Of driven jobs,
+        whether they are also planned on the map alone; by default in a busy building.
     tasks : int
         Tasks to live through now, ≥ 1; `goals` overrides it, see `n_tasks`.
     destinations : int
-        Number of recurring places that goals are drawn from and remembered at; 0: every place. Agents that
+        Number of recurring places that hidden goals are drawn from and remembered at; 0: every place. Agents that
         remember transitions then remember where goals were found, and try those first (``goals.goal_counts``).
+        Known goals are not drawn: with `goal` or `goals` it changes nothing.
     start : (x, y) or str, or (row, column), optional
-        Place in which every episode starts: X,Y in metres or a known name, or ROW,COL; by default any. X and Y are
-        for buildings, in the map's frame; ROW and COL are for other worlds.
+        Place in which every episode, and every drive to `goal`, starts: X,Y in metres or a known name, or ROW,COL;
+        by default any. X and Y are for buildings, in the map's frame; ROW and COL are for other worlds. The first
+        job of `goals` starts there, every other one where the robot stands.
     goal : (x, y) or str, or (row, column), optional
-        Goal of every task; None: drawn.
+        Goal of every task; in a building the robot knows where it is, and drives there. None: drawn, and hidden.
     goals : tuple of Job
-        Buildings alone: the goals of the tasks in order, one task a job, see ``goals.job_list.read_jobs``.
+        Buildings alone: known goals of the tasks in order, one task a job, see ``goals.job_list.read_jobs``.
     again : bool
         Whether to start an interrupted job list with its first job. Otherwise with its first unfinished one.
+    busy : bool, optional
+        Whether the simulated building has rush hours, slow corridors, and doors and passages that are closed at
+        times, while goals are driven to; by default in a generated office and not on your own map.
+    move_names : bool
+        Whether a name of `goals` may move from its remembered place to one that is more than a cell away.
     watch : bool
         Whether to read the map again between tasks when its files have changed.
     jobs : int
@@ -205,6 +215,8 @@ class LifeSettings:
     goal: Place | None = None
     goals: tuple[Job, ...] = ()
     watch: bool = False
+    busy: bool | None = None
+    move_names: bool = False
     sensor: SensorSettings = field(default_factory=SensorSettings)
     again: bool = False
 
@@ -214,9 +226,17 @@ class LifeSettings:
         _check_whole("destinations", self.destinations, 0, 10**9)
         _check_whole("jobs", self.jobs, 1, 256)
         _check_world(self.world)
-        chosen = [name for name in ("goal", "goals", "destinations") if getattr(self, name)]
-        if len(chosen) > 1:
-            raise InputError(f"{chosen[0]} and {chosen[1]} exclude each other; give one of them")
+        if self.goal is not None and self.goals:
+            raise InputError("goal and goals exclude each other; add the goal to the list, or leave it out")
+        if self.driven:
+            self._check_driven()
+        elif self.goal is not None and self.destinations:
+            raise InputError("goal and destinations exclude each other in worlds without a map; give one of them")
+        elif self.busy or self.move_names:
+            raise InputError(
+                f"{'busy' if self.busy else 'move_names'} applies to goals that are driven to, got none; "
+                "give goal or goals in a building, or leave it out"
+            )
         if self.again and not self.goals:
             raise InputError("again applies to a job list, got none; give goals, or leave again out")
         if self.goals and self.world.domain != "building":
@@ -233,6 +253,29 @@ class LifeSettings:
             raise InputError(f"sensor lidar needs learner model, which plans on places seen, got '{self.learner}'")
         if self.watch and self.world.map is None:
             raise InputError("watch needs the map of a building, got none; give the YAML file of a ROS map")
+
+    def _check_driven(self) -> None:
+        """Refuse what chooses how to search."""
+        for name, value, default in (
+            ("agent", self.agent, "lore"),
+            ("learner", self.learner, "model"),
+            ("sensor", self.sensor.kind, "touch"),
+        ):
+            if value != default:
+                raise InputError(
+                    f"{name} applies to hidden goals, which are searched, got '{value}' with known goals, which "
+                    f"are driven to; leave out {name}, or goal and goals"
+                )
+
+    @property
+    def driven(self) -> bool:
+        """Whether the goals are known, so that the robot drives to them and does not search."""
+        return self.world.domain == "building" and (self.goal is not None or bool(self.goals))
+
+    @property
+    def in_busy_building(self) -> bool:
+        """Whether the simulated building slows and refuses moves: by default in a generated office."""
+        return self.world.map is None if self.busy is None else self.busy
 
     @property
     def n_tasks(self) -> int:

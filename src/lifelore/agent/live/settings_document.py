@@ -44,6 +44,8 @@ def settings_document(settings: LifeSettings, world: GridWorld, location: str) -
         "goals": len(settings.goals) or None,
         "again": settings.again or None,
         "watch": settings.watch or None,
+        "busy": settings.in_busy_building if settings.driven else None,
+        "move_names": settings.move_names or None,
         "refresh": settings.memory.refresh or None,
         "compare": settings.compare,
         "building": settings.memory.building,

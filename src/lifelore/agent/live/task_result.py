@@ -49,6 +49,16 @@ class TaskResult:
         self.policy, self.best = np.empty(0, np.int32), np.empty((0, 0), np.bool_)
         self.curve, self.complete = new_curve(0), 0
 
+    def episodes(self) -> dict[str, NDArray]:
+        """Measure to its value in each finished episode."""
+        curve, n = self.curve, self.complete
+        return {
+            "return": curve.returns[:n],
+            "steps": curve.steps[:n],
+            "collisions": curve.collisions[:n],
+            "reached": curve.reached[:n],
+        }
+
     def to_dict(self) -> dict:
         """The numbers as JSON data."""
         return {

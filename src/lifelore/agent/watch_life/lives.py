@@ -109,5 +109,7 @@ def _row(document: dict[str, Any]) -> dict[str, Any]:
 
 
 def _grid_row(document: dict[str, Any]) -> dict[str, Any]:
-    kept = {name: document[name] for name in ("goal", "world", "agents", "places", "name") if name in document}
+    kept = {
+        name: document[name] for name in ("goal", "how", "world", "agents", "places", "name") if name in document
+    }
     return {"task": document["index"], **kept}

@@ -12,14 +12,7 @@ from scipy import sparse
 from scipy.sparse import csgraph
 
 from lifelore.core.errors import InputError
-from lifelore.domains.buildings.free_space import (
-    EDGE,
-    SquareGrid,
-    free_pixels,
-    largest_pieces,
-    solid_pixels,
-    square_grid,
-)
+from lifelore.domains.buildings.free_space import EDGE, SquareGrid, pieces_of
 from lifelore.domains.buildings.occupancy_map import OccupancyMap
 from lifelore.domains.buildings.slivers import without_slivers
 from lifelore.domains.grids.grid_world import Frame, GridWorld
@@ -73,14 +66,12 @@ def building_from_map(
         `MAX_STATES` cells are.
     """
     _check(occupancy, cell, robot_radius, min_free)
-    free = free_pixels(occupancy, solid_pixels(occupancy), robot_radius)
+    _, free, grid, largest = pieces_of(occupancy, float(cell), float(robot_radius))
     if not free.any():
         raise InputError(
             f"map: no free cell is left for robot_radius {robot_radius} m at {occupancy.resolution} m a pixel "
             "(unknown pixels are not free); use a smaller robot_radius or check the map's thresholds"
         )
-    grid = square_grid(free.shape, occupancy.resolution, cell)
-    largest = largest_pieces(free, grid)
     cells, neighbour = _largest_region(*_touching(largest, grid))
     share = _pixels_in(largest, grid)[tuple(cells.T)] / (cell / occupancy.resolution) ** 2
     cells, neighbour = _only(without_slivers(neighbour, share, min_free), cells, neighbour)

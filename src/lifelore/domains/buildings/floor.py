@@ -7,15 +7,29 @@ centres.
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 
 from lifelore.core.errors import InputError
-from lifelore.domains.buildings.free_space import free_pixels, largest_pieces, solid_pixels, square_grid
-from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap
+from lifelore.domains.buildings.free_space import pieces_of
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from lifelore.domains.grids.grid_world import GridWorld
+
+
+class Refusal(NamedTuple):
+    """Why a robot's centre cannot be at a point.
+
+    reason : words that follow the point
+    known : whether the map knows the ground there
+    nearest : x and y in metres of the nearest free place
+    """
+
+    reason: str
+    known: bool
+    nearest: tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,16 +107,25 @@ class Floor:
         InputError
             The robot's centre cannot be at the point; the message says why, and where the nearest free place is.
         """
-        (row, column) = self.pixels(point)[0]
+        if refusal := self.refusal(point):
+            x, y = refusal.nearest
+            raise InputError(
+                f"{name} must be a free place of this map, in metres of its frame; {point[0]:g},{point[1]:g} "
+                f"{refusal.reason}; the nearest free place is {x:.3f},{y:.3f}"
+            )
+        row, column = self.pixels(point)[0]
+        return int(self.state[round(row), round(column)])
+
+    def refusal(self, point: tuple[float, float]) -> "Refusal | None":
+        """Why the robot's centre cannot be at a point in metres of the map's frame; None where it can."""
+        row, column = self.pixels(point)[0]
         at = round(row), round(column)
         inside = 0 <= at[0] < self.state.shape[0] and 0 <= at[1] < self.state.shape[1]
         if inside and self.state[at] >= 0 and self._is_clear((row, column)):
-            return int(self.state[at])
-        x, y = self.metres(self._nearest((row, column)))[0]
-        raise InputError(
-            f"{name} must be a free place of this map, in metres of its frame; {point[0]:g},{point[1]:g} "
-            f"{self._why_not(at if inside else None)}; the nearest free place is {x:.3f},{y:.3f}"
-        )
+            return None
+        x, y = self.metres(self._nearest((row, column)))[0].tolist()
+        known = inside and bool(self.occupancy.state[at] != UNKNOWN)
+        return Refusal(self._why_not(at if inside else None), known, (x, y))
 
     def _is_clear(self, pixel: tuple[float, float]) -> bool:
         reach = int(self.radius) + 2
@@ -112,8 +135,16 @@ class Floor:
         return bool((np.hypot(*(near + np.array([top, left]) - np.array(pixel)).T) > self.radius).all())
 
     def _nearest(self, pixel: tuple[float, float]) -> NDArray[np.int64]:
-        free = np.argwhere(self.state >= 0)
-        return free[np.hypot(*(free - np.array(pixel)).T).argmin()]
+        """The free pixel nearest to a pixel, looked for in growing squares around it."""
+        reach = 32
+        while True:
+            low = np.maximum(np.rint(pixel).astype(int) - reach, 0)
+            high = np.maximum(np.rint(pixel).astype(int) + reach + 1, 0)
+            free = np.argwhere(self.state[low[0] : high[0], low[1] : high[1]] >= 0) + low
+            away = np.hypot(*(free - np.array(pixel)).T)
+            if away.size and (away.min() <= reach or away.size == np.count_nonzero(self.state >= 0)):
+                return free[away.argmin()]
+            reach *= 2
 
     def _why_not(self, at: tuple[int, int] | None) -> str:
         if at is None:
@@ -129,15 +160,12 @@ class Floor:
 def floor_of(occupancy: OccupancyMap, world: GridWorld) -> Floor:
     """The floor of a building that `building_from_map` made of this map."""
     about = world.about
-    solid = solid_pixels(occupancy)
-    free = free_pixels(occupancy, solid, about["robot_radius"])
-    grid = square_grid(free.shape, occupancy.resolution, about["cell"])
+    _, _, grid, largest = pieces = pieces_of(occupancy, about["cell"], about["robot_radius"])
     state = world.state_of[np.ix_(grid.row_of, grid.column_of)]
-    piece = largest_pieces(free, grid)
     return Floor(
         occupancy,
-        np.where(piece, state, np.int32(-1)).astype(np.int32),
-        solid,
+        np.where(largest, state, np.int32(-1)).astype(np.int32),
+        pieces.solid,
         about["robot_radius"],
         world.n_states,
     )

@@ -54,6 +54,28 @@ def square_grid(pixels: tuple[int, int], resolution: float, cell: float) -> Squa
     return SquareGrid(shape, shape[0] - 1 - from_bottom[::-1], column_of)
 
 
+class Pieces(NamedTuple):
+    """The free space of a map, cut into pieces.
+
+    solid, free : as of `solid_pixels` and `free_pixels`
+    grid : the squares
+    largest : as of `largest_pieces`
+    """
+
+    solid: NDArray[np.bool_]
+    free: NDArray[np.bool_]
+    grid: SquareGrid
+    largest: NDArray[np.bool_]
+
+
+def pieces_of(occupancy: OccupancyMap, cell: float, robot_radius: float) -> Pieces:
+    """The pieces of a map for squares of side `cell` and a robot of this radius, both in metres."""
+    solid = solid_pixels(occupancy)
+    free = free_pixels(occupancy, solid, robot_radius)
+    grid = square_grid(free.shape, occupancy.resolution, cell)
+    return Pieces(solid, free, grid, largest_pieces(free, grid))
+
+
 def largest_pieces(free: NDArray[np.bool_], grid: SquareGrid) -> NDArray[np.bool_]:
     """The free pixels that belong to the largest piece of their cell, (rows, columns) bool.
 
@@ -68,8 +90,7 @@ def largest_pieces(free: NDArray[np.bool_], grid: SquareGrid) -> NDArray[np.bool
     piece = labels[place]
     size = np.bincount(piece.ravel(), minlength=n_pieces + 1)
     cell_of_piece = np.zeros(n_pieces + 1, np.int64)
-    row, column = np.nonzero(piece)
-    cell_of_piece[piece[row, column]] = grid.row_of[row] * grid.shape[1] + grid.column_of[column]
+    cell_of_piece[piece] = grid.row_of[:, None] * grid.shape[1] + grid.column_of
     pieces = np.arange(1, n_pieces + 1)
     # Labels run in reading order, so the last key settles ties.
     order = pieces[np.lexsort((pieces, -size[1:], cell_of_piece[1:]))]

@@ -1,91 +1,134 @@
-"""Measures how near a straight line passes to the obstacles of a floor."""
+"""Measures straight lines over a floor: whether a robot can drive them, how clear they are, and what they cost.
+
+All lengths are in pixels, points are (row, column) with whole numbers at pixel centres.
+"""
+
+import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
-from scipy.spatial import KDTree
 
+from lifelore.core.compiled.jit import kernel
 from lifelore.domains.buildings.floor import Floor
 
-_BESIDE = 1e-6
-"""Pixels: a line through a corner, or along the border of two pixels, touches the pixels on both sides."""
+TIGHT = 20.0
+"""Extra cost of a line that is not as clear as wanted, as a multiple of its length: a larger value makes longer
+detours around narrow passages."""
+HALF_DIAGONAL = math.sqrt(0.5) + 1e-6
+"""No point of a pixel is farther from its centre."""
 
 
-class LineOfSight:
-    """Straight lines over the pieces of a floor; all lengths in pixels.
+class Ground(NamedTuple):
+    """What a line is compared with.
 
-    moves : (n, 2) pairs of states, or None: a line changes from piece to piece by these moves alone, or anywhere
-    comfort : clearance that is large enough, one pixel more than the robot's radius
+    state : (rows, columns) int32, state of each pixel, -1 where the robot's centre cannot be
+    solid : (rows, columns) bool
+    distance : (rows, columns) float64, to the nearest solid pixel centre
+    price : (n_states, 4) float64, pixels that a move costs in addition to its length; inf where there is no move
+    radius : every point of a line is farther from all solid pixel centres
+    wanted : clearance below which a line is tight
     """
 
-    def __init__(self, floor: Floor, moves: NDArray[np.integer] | None = None) -> None:
-        self._floor = floor
-        self._moves = None if moves is None else move_codes(floor, moves)
-        self.comfort = floor.radius + 1
-        # The solid pixel nearest to a point of the floor always has a neighbour that is not solid.
-        inner = np.asarray(ndimage.binary_erosion(floor.solid, np.ones((3, 3)), border_value=1), bool)
-        self._rim = np.argwhere(floor.solid & ~inner)
-        self._tree = KDTree(self._rim) if len(self._rim) else None
-
-    def clearance(self, a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
-        """Distance from a line to the nearest solid pixel centre, at most `comfort`; -1 if it leaves the floor."""
-        if not self._inside(a, b):
-            return -1.0
-        if self._tree is None:
-            return self.comfort
-        length = float(np.hypot(*(b - a)))
-        n = int(length / self.comfort) + 2
-        samples = np.linspace(a, b, n)
-        reach = np.hypot(self.comfort, length / (n - 1) / 2) + 1e-9
-        near = np.unique(np.concatenate(self._tree.query_ball_point(samples, reach)).astype(np.int64))
-        if not len(near):
-            return self.comfort
-        return min(self.comfort, float(_distances(self._rim[near], a, b).min()))
-
-    def _inside(self, a: NDArray[np.float64], b: NDArray[np.float64]) -> bool:
-        along = b - a
-        length = float(np.hypot(*along))
-        aside = np.array([-along[1], along[0]]) / length * _BESIDE if length else np.zeros(2)
-        for shift in (aside, -aside):
-            row, column = pixels_on_line(a + shift, b + shift).T
-            rows, columns = self._floor.state.shape
-            if row.min() < 0 or column.min() < 0 or row.max() >= rows or column.max() >= columns:
-                return False
-            state = self._floor.state[row, column]
-            if (state < 0).any() or not self._moves_allowed(state):
-                return False
-        return True
-
-    def _moves_allowed(self, state: NDArray[np.int32]) -> bool:
-        if self._moves is None:
-            return True
-        changes = np.flatnonzero(state[1:] != state[:-1])
-        codes = state[changes].astype(np.int64) * self._floor.n_states + state[changes + 1]
-        place = np.minimum(np.searchsorted(self._moves, codes), len(self._moves) - 1)
-        return not len(codes) or bool(len(self._moves) and (self._moves[place] == codes).all())
+    state: NDArray[np.int32]
+    solid: NDArray[np.bool_]
+    distance: NDArray[np.float64]
+    price: NDArray[np.float64]
+    radius: float
+    wanted: float
 
 
-def move_codes(floor: Floor, moves: NDArray[np.integer]) -> NDArray[np.int64]:
-    """Moves (n, 2) as ascending numbers from · n_states + to."""
-    return np.unique(np.asarray(moves, np.int64).reshape(-1, 2) @ np.array([floor.n_states, 1]))
+def ground_of(floor: Floor, price: NDArray[np.floating], clearance: float | None = None) -> Ground:
+    """The ground of a floor; `price` (n_states, 4) and `clearance` in metres.
+
+    The default clearance is the robot's radius and half a pixel, so that the edges of solid pixels are clear too.
+    """
+    resolution = floor.occupancy.resolution
+    wanted = floor.radius + 0.5 if clearance is None else max(clearance / resolution, floor.radius)
+    pixels = np.asarray(price, np.float64) / resolution
+    return Ground(floor.state, floor.solid, floor.distance, pixels, floor.radius, float(wanted))
 
 
-def pixels_on_line(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.int64]:
-    """The pixels that the line a–b passes through, (n, 2) rows and columns in order."""
-    crossings = [np.array([0.0, 1.0])]
-    for start, end in zip(a, b, strict=True):
-        low, high = sorted((start, end))
-        borders = np.arange(np.floor(low + 0.5) + 0.5, high)
-        if high > low:
-            crossings.append((borders - start) / (end - start))
-    t = np.unique(np.concatenate(crossings))
-    middle = (t[:-1] + t[1:]) / 2
-    return np.rint(a + middle[:, None] * (b - a)).astype(np.int64)
+@kernel
+def line_cost(ground, row, column, last_row, last_column):
+    """Cost of the line between two points of the floor, in pixels; inf where the robot cannot drive it.
+
+    The length; `TIGHT` times the length if the line is tight; and the price of every move on the way. A line
+    through the corner of pixels needs both pixels beside the corner, and the moves of either.
+    """
+    down, right = last_row - row, last_column - column
+    length = math.hypot(down, right)
+    at_row, at_column = math.floor(row + 0.5), math.floor(column + 0.5)
+    rows_left = abs(math.floor(last_row + 0.5) - at_row)
+    columns_left = abs(math.floor(last_column + 0.5) - at_column)
+    one_down, one_right = (1 if down > 0 else -1), (1 if right > 0 else -1)
+    south, east = (1 if down > 0 else 0), (2 if right > 0 else 3)
+    next_row = (at_row + 0.5 * one_down - row) / down if rows_left else np.inf
+    next_column = (at_column + 0.5 * one_right - column) / right if columns_left else np.inf
+    price, clearance = 0.0, ground.wanted
+    while True:
+        if ground.distance[at_row, at_column] < ground.wanted + HALF_DIAGONAL:
+            clearance = min(clearance, _clearance(ground, at_row, at_column, row, column, down, right))
+            if clearance <= ground.radius * (1 + 1e-9):
+                return np.inf
+        if not rows_left and not columns_left:
+            break
+        here = ground.state[at_row, at_column]
+        if abs(next_row - next_column) < 1e-9:
+            below, beside = ground.state[at_row + one_down, at_column], ground.state[at_row, at_column + one_right]
+            there = ground.state[at_row + one_down, at_column + one_right]
+            if below < 0 or beside < 0 or there < 0:
+                return np.inf
+            by_row = _move(ground, here, below, south) + _move(ground, below, there, east)
+            by_column = _move(ground, here, beside, east) + _move(ground, beside, there, south)
+            price += min(by_row, by_column)
+            at_row += one_down
+            at_column += one_right
+            rows_left -= 1
+            columns_left -= 1
+            next_row += 1 / abs(down)
+            next_column += 1 / abs(right)
+        elif next_row < next_column:
+            at_row += one_down
+            there = ground.state[at_row, at_column]
+            if there < 0:
+                return np.inf
+            price += _move(ground, here, there, south)
+            rows_left -= 1
+            next_row += 1 / abs(down)
+        else:
+            at_column += one_right
+            there = ground.state[at_row, at_column]
+            if there < 0:
+                return np.inf
+            price += _move(ground, here, there, east)
+            columns_left -= 1
+            next_column += 1 / abs(right)
+        if rows_left == 0:
+            next_row = np.inf
+        if columns_left == 0:
+            next_column = np.inf
+        if price == np.inf:
+            return np.inf
+    tight = TIGHT * length if clearance < ground.wanted - 1e-9 else 0.0
+    return length + tight + price
 
 
-def _distances(points: NDArray, a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Distance of each of `points`, (n, 2), from the line a–b."""
-    along = b - a
-    square = float(along @ along)
-    t = np.clip((points - a) @ along / square, 0, 1) if square else np.zeros(len(points))
-    return np.hypot(*(points - a - t[:, None] * along).T)
+@kernel
+def _move(ground, here, there, action):
+    return 0.0 if here == there else ground.price[here, action]
+
+
+@kernel
+def _clearance(ground, at_row, at_column, row, column, down, right):
+    """Distance of the line from the solid pixels that can be too near to a pixel, `wanted` if there are none."""
+    reach = int(ground.wanted + HALF_DIAGONAL) + 1
+    square = down * down + right * right
+    nearest = ground.wanted * ground.wanted
+    for i in range(max(at_row - reach, 0), min(at_row + reach + 1, ground.solid.shape[0])):
+        for j in range(max(at_column - reach, 0), min(at_column + reach + 1, ground.solid.shape[1])):
+            if ground.solid[i, j]:
+                t = ((i - row) * down + (j - column) * right) / square if square > 0 else 0.0
+                t = min(max(t, 0.0), 1.0)
+                nearest = min(nearest, (i - row - t * down) ** 2 + (j - column - t * right) ** 2)
+    return math.sqrt(nearest)

@@ -14,9 +14,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import fft, ndimage
+from scipy import fft, ndimage, sparse
 from scipy.optimize import least_squares
+from scipy.sparse import csgraph
 
+from lifelore.domains.buildings.inflation import inflate
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 
 Pose = tuple[float, float, float]
@@ -37,6 +39,8 @@ N_PEAKS, N_COARSE, N_FINE = 4, 32, 8
 FINE_REACH, FINE_BLUR = 0.4, 0.2
 """Metres: how far the fine search shifts a coarse pose, and the width of a wall's likelihood."""
 FINE_TURNS = np.radians(np.arange(-0.75, 0.76, 0.25))
+MOST_BEHIND, LEAST_ROUGH = 0.3, 0.5
+"""Rough matches: how far behind the best one a pose is still refined, and from which on a known pose is."""
 FAR, TURNED = 1.0, np.radians(5.0)
 """Metres at the middle of the map, or radians, from which on two poses are different."""
 LEAST_OVERLAP = 0.5
@@ -60,20 +64,21 @@ class Fit(NamedTuple):
 
 @dataclass(frozen=True)
 class Registration:
-    """The best fit of two maps, and the best one at a clearly different pose (None if there is none)."""
+    """The best fit of two maps, and the best one at a clearly different pose (None if none comes near)."""
 
     best: Fit
     second: Fit | None
 
 
-def register(old: OccupancyMap, new: OccupancyMap) -> Registration | None:
-    """The pose that lays `new` on `old`; None where a map has no walls or no pose has enough overlap."""
-    a, b = _Walls(old), _Walls(new)
+def register(a: "Walls", b: "Walls") -> Registration | None:
+    """The pose that lays the new map `b` on `a`; None where a map has no walls or no pose has enough overlap."""
     if len(a.points) < 2 or len(b.points) < 2:
         return None
     places, value = _searched(a, b, _coarse(a, b))
     places = places[np.argsort(-value, kind="stable")]
-    chosen = np.array([_refined(a, b, place) for place in places[_different(places, N_FINE)]])
+    places = places[_different(places, N_FINE)]
+    rough = np.array([_rough_match(a, b, _pose(b, place)) for place in places])
+    chosen = np.array([_refined(a, b, place) for place in places[rough >= rough.max() - MOST_BEHIND]])
     fits = [_fit(a, b, _pose(b, place)) for place in chosen]
     order = [
         k for k in np.argsort([-fit.match for fit in fits], kind="stable") if fits[k].overlap >= LEAST_OVERLAP
@@ -84,10 +89,9 @@ def register(old: OccupancyMap, new: OccupancyMap) -> Registration | None:
     return Registration(fits[order[0]], fits[second[0]] if second else None)
 
 
-def register_near(old: OccupancyMap, new: OccupancyMap, pose: Pose = IDENTITY) -> Fit | None:
-    """The fit near a pose that is known to some decimetres; None where a map has no walls."""
-    a, b = _Walls(old), _Walls(new)
-    if len(a.points) < 2 or len(b.points) < 2:
+def register_near(a: "Walls", b: "Walls", pose: Pose = IDENTITY) -> Fit | None:
+    """The fit of `b` on `a` near a pose; None where most walls do not lie on walls there, or a map has none."""
+    if len(a.points) < 2 or len(b.points) < 2 or _rough_match(a, b, pose) < LEAST_ROUGH:
         return None
     return _fit(a, b, _pose(b, _refined(a, b, _place(b, pose))))
 
@@ -95,15 +99,16 @@ def register_near(old: OccupancyMap, new: OccupancyMap, pose: Pose = IDENTITY) -
 # ---- walls -----------------------------------------------------------------------------------------
 
 
-class _Walls:
+class Walls:
     """The walls of a map as points in metres of its world frame, and what lies near them."""
 
     def __init__(self, occupancy: OccupancyMap) -> None:
         self.map = occupancy
         state, self.pixel = occupancy.state, occupancy.resolution
-        beside_free = ndimage.binary_dilation(state == FREE, np.ones((3, 3)))
-        self.edge = (state == OCCUPIED) & beside_free
+        self.edge = (state == OCCUPIED) & inflate(state == FREE, 2**0.5)
         rows, columns = np.nonzero(self.edge)
+        self.width = state.shape[1] + 1  # with an empty column, so that no row continues in the next one
+        self.numbers = rows * self.width + columns
         inner = np.column_stack([columns + 0.5, len(state) - rows - 0.5]) * self.pixel
         self.points = moved(occupancy.origin, inner)
         self.middle = self.points.mean(axis=0) if len(self.points) else np.zeros(2)
@@ -120,10 +125,14 @@ class _Walls:
         return np.minimum(away, _REACH).astype(np.float32)
 
     @cached_property
+    def near(self) -> NDArray[np.bool_]:
+        """Pixels within `WALL_TOLERANCE` of a wall."""
+        return inflate(self.edge, WALL_TOLERANCE / self.pixel)
+
+    @cached_property
     def known(self) -> NDArray[np.bool_]:
         """Pixels that are known, or lie by a known one."""
-        reach = int(np.ceil(2 * WALL_TOLERANCE / self.pixel))
-        return ndimage.distance_transform_edt(self.map.state == UNKNOWN) <= reach  # type: ignore[operator]
+        return inflate(self.map.state != UNKNOWN, np.ceil(2 * WALL_TOLERANCE / self.pixel))
 
     def inner(self, points: NDArray[Any]) -> NDArray[np.float64]:
         """World points as (row, column) of the picture, fractional: pixel centres are whole."""
@@ -158,11 +167,11 @@ def composed(outer: Pose, inner: Pose) -> Pose:
 # ---- search: a place is (x, y, yaw) of the new map's middle in the old frame -----------------------
 
 
-def _place(b: _Walls, pose: Pose) -> NDArray[np.float64]:
+def _place(b: Walls, pose: Pose) -> NDArray[np.float64]:
     return np.array([*moved(pose, b.middle[None])[0], pose[2]])
 
 
-def _pose(b: _Walls, place: NDArray[np.float64]) -> Pose:
+def _pose(b: Walls, place: NDArray[np.float64]) -> Pose:
     yaw = float((place[2] + np.pi) % (2 * np.pi) - np.pi)
     x, y = place[:2] - moved((0.0, 0.0, yaw), b.middle[None])[0]
     return float(x), float(y), yaw
@@ -185,7 +194,7 @@ def _different(places: NDArray[np.float64], most: int) -> list[int]:
     return chosen
 
 
-def _coarse(a: _Walls, b: _Walls) -> NDArray[np.float64]:
+def _coarse(a: Walls, b: Walls) -> NDArray[np.float64]:
     """The best places that differ, (n, 3), by correlation of coarse pictures at every angle."""
     around = b.points - b.middle
     radius = np.hypot(*around.T).max()
@@ -211,7 +220,7 @@ def _coarse(a: _Walls, b: _Walls) -> NDArray[np.float64]:
     return places[_different(places, N_COARSE)]
 
 
-def _coarse_field(a: _Walls, low: NDArray, shape: NDArray, pixel: float) -> NDArray[np.float32]:
+def _coarse_field(a: Walls, low: NDArray, shape: NDArray, pixel: float) -> NDArray[np.float32]:
     """Blurred walls less their mean over known ground, 0 elsewhere: a picture by (x, y)."""
     cell = np.floor((a.points - low) / pixel).astype(np.int64)
     walls = np.bincount(cell[:, 0] * shape[1] + cell[:, 1], minlength=shape[0] * shape[1]).reshape(shape)
@@ -233,7 +242,7 @@ def _peaks(score: NDArray, pixel: float) -> tuple[list[float], NDArray[np.int64]
     return values, np.array(places, np.int64)
 
 
-def _searched(a: _Walls, b: _Walls, places: NDArray[np.float64]):
+def _searched(a: Walls, b: Walls, places: NDArray[np.float64]):
     """The best place among fine steps around each coarse one, and its likelihood."""
     reach = int(np.ceil(FINE_REACH / a.pixel))
     likely = np.pad(np.exp(-0.5 * (a.distance / FINE_BLUR) ** 2), reach)
@@ -257,7 +266,7 @@ def _searched(a: _Walls, b: _Walls, places: NDArray[np.float64]):
     return best, value
 
 
-def _refined(a: _Walls, b: _Walls, place: NDArray[np.float64]) -> NDArray[np.float64]:
+def _refined(a: Walls, b: Walls, place: NDArray[np.float64]) -> NDArray[np.float64]:
     """The place below a pixel, by robust least squares on the distances to walls."""
     points = b.few - b.middle
     arm = max(float(np.hypot(*points.T).mean()), a.pixel)  # a turn times this moves the walls as far as a shift
@@ -272,24 +281,42 @@ def _refined(a: _Walls, b: _Walls, place: NDArray[np.float64]) -> NDArray[np.flo
     return place + change / (1, 1, arm)
 
 
-def _fit(a: _Walls, b: _Walls, pose: Pose) -> Fit:
+def _rough_match(a: Walls, b: Walls, pose: Pose) -> float:
+    """Share of walls on walls, of few points of each map and with specks; without any, 0."""
+    hits, seen = 0, 0
+    for here, other, back in ((a, b, pose), (b, a, inverse(pose))):
+        at, inside = here.pixels(moved(back, other.few))
+        counted = inside & here.known.ravel()[at]
+        seen += int(counted.sum())
+        hits += int((counted & here.near.ravel()[at]).sum())
+    return hits / seen if seen else 0.0
+
+
+def _fit(a: Walls, b: Walls, pose: Pose) -> Fit:
     hits, seen, misses = 0, 0, 0
     for here, other, back in ((a, b, pose), (b, a, inverse(pose))):
         at, inside = here.pixels(moved(back, other.points))
         counted = inside & here.known.ravel()[at]
-        hit = counted & (here.distance.ravel()[at] <= WALL_TOLERANCE)
+        hit = counted & here.near.ravel()[at]
         seen += int(counted.sum())
         hits += int(hit.sum())
-        misses += _clustered(other.edge, counted & ~hit)
+        misses += _clustered(other, counted & ~hit)
     # Pixels of different sizes draw the same wall with different numbers of points.
     smaller = min(len(a.points), len(b.points))
     return Fit(pose, hits / (hits + misses) if hits else 0.0, min(seen / (2 * smaller), 1.0))
 
 
-def _clustered(edge: NDArray[np.bool_], missed: NDArray[np.bool_]) -> int:
+def _clustered(walls: Walls, missed: NDArray[np.bool_]) -> int:
     """Number of missed walls, without specks: a mapper's noise is scattered, a changed wall is not."""
-    picture = np.zeros(edge.shape, dtype=bool)
-    picture[edge] = missed
-    piece = np.asarray(ndimage.label(picture, np.ones((3, 3)))[0])  # type: ignore[index]
-    size = np.bincount(piece.ravel())[1:]
+    pixel = walls.numbers[missed]
+    n = len(pixel)
+    if not n:
+        return 0
+    # Of the eight neighbours of a pixel, four come after it in reading order.
+    steps = np.array([1, walls.width - 1, walls.width, walls.width + 1])
+    at = np.minimum(np.searchsorted(pixel, pixel + steps[:, None]), n - 1)
+    touch = pixel[at] == pixel + steps[:, None]
+    pairs = np.nonzero(touch)[1], at[touch]
+    graph = sparse.coo_matrix((np.ones(len(pairs[0]), bool), pairs), shape=(n, n))
+    size = np.bincount(csgraph.connected_components(graph, directed=False)[1])
     return int(size[size > SPECK].sum())

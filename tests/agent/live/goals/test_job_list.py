@@ -86,6 +86,18 @@ def test_each_mistake_is_one_line_that_names_its_line(tmp_path, text, words):
     assert str(caught.value).startswith(f"goals: {tmp_path}")
 
 
+def test_all_wrong_lines_are_named_at_once_up_to_ten(tmp_path):
+    with pytest.raises(InputError) as caught:
+        jobs_of(tmp_path, "x,y\na,2\n1,2\n1\n")
+    assert str(caught.value).endswith(
+        "line 2: x must be a number of metres, got 'a'; line 4: must have 2 fields (x,y), got 1"
+    )
+    with pytest.raises(InputError, match=r"line 11: .*, got 'a'; 12 lines are wrong in all$"):
+        jobs_of(tmp_path, "x,y\n" + 12 * "a,2\n")
+    with pytest.raises(InputError, match=r"line 3: time must be .* as in line 2.*; line 4: time must be"):
+        jobs_of(tmp_path, "time,x,y\n1,2,3\n10:30,2,3\n10:40,2,3\n")
+
+
 def test_a_file_that_cannot_be_read(tmp_path):
     with pytest.raises(InputError, match="No such file"):
         read_jobs(tmp_path / "none.csv")

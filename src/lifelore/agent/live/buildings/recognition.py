@@ -19,7 +19,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.domains.buildings.map_alignment import aligned_map
 from lifelore.domains.buildings.occupancy_map import OccupancyMap
-from lifelore.domains.buildings.registration import IDENTITY, Fit, Pose, register, register_near
+from lifelore.domains.buildings.registration import IDENTITY, Fit, Pose, Walls, register, register_near
 from lifelore.domains.grids.grid_world import Frame, GridWorld
 from lifelore.domains.worlds import WorldSettings, world_from_settings
 from lifelore.memory import Memory
@@ -54,7 +54,14 @@ class Place:
 
 
 @dataclass(frozen=True)
-class _Recognised:
+class Recognised:
+    """The building that a map shows.
+
+    building : in memory, or made from another map
+    pose : from the map's frame to that of the building's first map
+    walls : share of walls that match, in [0, 1]
+    """
+
     building: Building
     pose: Pose
     walls: float
@@ -86,11 +93,11 @@ def recognised_place(
     InputError
         The map does not fit the building of this name, or is remembered under another name.
     """
-    buildings = remembered_buildings(memory)
-    found, reason = _recognised(occupancy, world, buildings, memory, name)
+    found, reason = recognised_building(occupancy, world, memory, name)
     if found is None:
-        building = Building.new(occupancy, name or _free_name(settings, occupancy, buildings))
-        new = _Recognised(building, IDENTITY, 1.0)
+        free_name = name or _free_name(settings, occupancy, remembered_buildings(memory))
+        building = Building.new(occupancy, free_name)
+        new = Recognised(building, IDENTITY, 1.0)
         return replace(_place(world, (0, 0), building, new, occupancy, memory, reason), occupancy=occupancy)
     laid, corner = aligned_map(occupancy, found.pose, found.building.frame, world.frame.cell)
     if found.pose != IDENTITY or laid.origin != occupancy.origin or laid.state.shape != occupancy.state.shape:
@@ -102,7 +109,7 @@ def _place(
     world: GridWorld,
     corner: tuple[int, int],
     building: Building,
-    found: _Recognised,
+    found: Recognised,
     occupancy: OccupancyMap,
     memory: Memory,
     reason: str | None,
@@ -135,10 +142,14 @@ def _free_name(settings: WorldSettings, occupancy: OccupancyMap, buildings: list
     return name if name not in taken else f"{name}-{map_digest(occupancy)[:6]}"
 
 
-def _recognised(
-    occupancy: OccupancyMap, world: GridWorld, buildings: list[Building], memory: Memory, name: str | None
-) -> tuple[_Recognised | None, str | None]:
-    """The building that a map shows, or None with the reason."""
+def recognised_building(
+    occupancy: OccupancyMap, world: GridWorld, memory: Memory, name: str | None = None
+) -> tuple[Recognised | None, str | None]:
+    """The remembered building that a map shows, or None with the reason.
+
+    Parameters and errors are those of `recognised_place`; `world` is made from `occupancy`.
+    """
+    buildings = remembered_buildings(memory)
     by_key = {building.key: building for building in buildings}
     seen = memory.recall(MAP_KIND, map_digest(occupancy), VERSION)
     if seen is not None and seen.about["building"] in by_key:
@@ -148,25 +159,27 @@ def _recognised(
                 f"building of this map is remembered as {building.name!r}, got {name!r}; leave it out, or forget "
                 f"that building with: lifelore memory forget --building '{building.name}'"
             )
-        return _Recognised(building, tuple(seen.about["pose"]), seen.about["walls"]), None
+        return Recognised(building, tuple(seen.about["pose"]), seen.about["walls"]), None
     named = [building for building in buildings if building.name == name]
     if name is not None and not named:
         return None, "no building of this name is remembered"
     if name is None and (by_frame := _in_frame(occupancy, world, by_key, memory)):
         return by_frame, None
-    return _registered(occupancy, named or buildings, memory, name)
+    return fitting_building(
+        occupancy, {building: _map_of(building, memory) for building in named or buildings}, name
+    )
 
 
 def _in_frame(
     occupancy: OccupancyMap, world: GridWorld, by_key: dict[str, Building], memory: Memory
-) -> _Recognised | None:
+) -> Recognised | None:
     """A map on the same grid whose percepts are mostly unchanged."""
     earlier = same_place(world, memory, BuildingGrid(frame_key(world)))
     building = by_key.get(earlier.record.about.get("building", "")) if earlier else None
     if building is None or building.frame.origin != occupancy.origin:
         return None
-    fit = register_near(_map_of(building, memory), occupancy)
-    return _Recognised(building, IDENTITY, fit.match if fit else 0.0)
+    fit = register_near(Walls(_map_of(building, memory)), Walls(occupancy))
+    return Recognised(building, IDENTITY, fit.match if fit else 0.0)
 
 
 def _map_of(building: Building, memory: Memory) -> OccupancyMap:
@@ -176,18 +189,26 @@ def _map_of(building: Building, memory: Memory) -> OccupancyMap:
     return remembered_map(building, record)
 
 
-def _registered(
-    occupancy: OccupancyMap, buildings: list[Building], memory: Memory, name: str | None
-) -> tuple[_Recognised | None, str | None]:
-    """The building on which the map fits, and no other building or pose nearly as well."""
-    if not buildings:
+def fitting_building(
+    occupancy: OccupancyMap, maps: dict[Building, OccupancyMap], name: str | None = None
+) -> tuple[Recognised | None, str | None]:
+    """The building whose map fits, and no other building or pose nearly as well; or None with the reason.
+
+    `name` says that the user names the building, which lowers the least match to `LEAST_NAMED_MATCH`.
+
+    Raises
+    ------
+    InputError
+        The map does not fit the building of this name.
+    """
+    if not maps:
         return None, "no building is remembered"
-    maps = {building: _map_of(building, memory) for building in buildings}
-    in_place = ((register_near(known, occupancy), building) for building, known in maps.items())
+    new, walls = Walls(occupancy), {building: Walls(known) for building, known in maps.items()}
+    in_place = ((register_near(known, new), building) for building, known in walls.items())
     fits = [(fit, of) for fit, of in in_place if fit and _near_identity(fit.pose) and fit.match >= LEAST_MATCH]
     rivals: dict[Building, Fit | None] = {}
     if not fits:
-        registered = ((register(known, occupancy), building) for building, known in maps.items())
+        registered = ((register(known, new), building) for building, known in walls.items())
         found = [(result, building) for result, building in registered if result]
         fits = [(result.best, building) for result, building in found]
         rivals = {building: result.second for result, building in found}
@@ -203,7 +224,7 @@ def _registered(
     if len(fits) > 1 and best.match - fits[1][0].match < LEAST_MARGIN:
         return _refused(name, f"{building.name} and {fits[1][1].name} fit equally; name the building")
     pose = IDENTITY if _near_identity(best.pose) else best.pose
-    return _Recognised(building, pose, best.match), None
+    return Recognised(building, pose, best.match), None
 
 
 def _near_identity(pose: Pose) -> bool:

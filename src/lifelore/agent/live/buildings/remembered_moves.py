@@ -1,6 +1,6 @@
 """The graph of the moves that memory holds about a building, compared with the building's map.
 
-Nodes are cells by number (`transitions.cells_of`), also cells that the map no longer has, so that a way through a
+Nodes are cells by number (`cells_of`), also cells that the map no longer has, so that a way through a
 door that was closed since can be reported. A robot can drive back the way it came: a remembered move counts in
 both directions, unless memory holds that the move back was refused or led elsewhere.
 """
@@ -18,6 +18,7 @@ from lifelore.agent.live import transitions
 from lifelore.agent.live.buildings.recognition import Place
 from lifelore.agent.live.lore import same_place
 from lifelore.core.errors import NotFoundError
+from lifelore.domains.grids.cell_numbers import COLUMN_BITS
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.memory import Memory
 
@@ -65,8 +66,9 @@ class RememberedMoves:
         moved = (column < width - 1) & (record.values >= 0) & (record.values != source)
         source, column, target = source[moved], column[moved], record.values[moved]
         back = _OPPOSITE[column]
-        value = dict(zip(record.slots.tolist(), record.values.tolist(), strict=True))
-        untold = np.array([value.get(slot, -1) < 0 for slot in (target * width + back).tolist()], bool)
+        slots = np.append(record.slots, -1)
+        behind = np.searchsorted(record.slots, target * width + back)
+        untold = (slots[behind] != target * width + back) | (np.append(record.values, -1)[behind] < 0)
         source, target = np.r_[source, target[untold]], np.r_[target, source[untold]]
         column = np.r_[column, back[untold]]
         source, target = (transitions.cells_from(record, cells, corner) for cells in (source, target))
@@ -105,25 +107,17 @@ class RememberedMoves:
         wrong = [move for move in pairwise(chain) if move not in true]
         return self.points(np.array(wrong, int).reshape(-1, 2).ravel()).reshape(-1, 2, 2).mean(axis=1)
 
-    def near(self, chain: list[int], reach: int) -> NDArray[np.int64]:
-        """The true moves among cells at most `reach` moves from a chain, (n, 2) states."""
-        inside = np.zeros(len(self.cells), bool)
-        inside[chain] = True
-        tail, head = self.tail[self.true], self.head[self.true]
-        for _ in range(reach):
-            grown = inside.copy()
-            grown[head[inside[tail]]] = True
-            inside = grown
-        among = inside[tail] & inside[head]
-        return np.column_stack([self.states[tail[among]], self.states[head[among]]])
-
     @property
-    def true_moves(self) -> NDArray[np.int64]:
-        """(n, 2) states of all true moves."""
-        return np.column_stack([self.states[self.tail[self.true]], self.states[self.head[self.true]]])
+    def open(self) -> NDArray[np.bool_]:
+        """(n_states, 4) bool, the moves of the map that memory holds."""
+        tail, head = self.states[self.tail[self.true]], self.states[self.head[self.true]]
+        joins = self.world.neighbour[tail] == head[:, None]
+        known = np.zeros(self.world.neighbour.shape, np.bool_)
+        np.logical_or.at(known, tail, joins)
+        return known
 
     def points(self, index: NDArray[np.int64]) -> NDArray[np.float64]:
         """Centres (n, 2) in metres of the map's frame, of cells by index."""
         frame, number = self.world.frame, self.cells[index]
-        from_bottom, column = number >> transitions.COLUMN_BITS, number & ((1 << transitions.COLUMN_BITS) - 1)
+        from_bottom, column = number >> COLUMN_BITS, number & ((1 << COLUMN_BITS) - 1)
         return frame.metres(column + 0.5, from_bottom + 0.5)

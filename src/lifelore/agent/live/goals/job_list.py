@@ -2,14 +2,20 @@
 
 import csv
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import datetime, time
 from pathlib import Path
+from typing import TypeVar
 
 from lifelore.agent.live.goals.destinations import Destination, Point
-from lifelore.core.errors import InputError
+from lifelore.core.errors import InputError, NotFoundError
 
 COLUMNS = ("time", "name", "x", "y")
+T = TypeVar("T")
+R = TypeVar("R")
+SHOWN = 10
+"""Number of wrong lines, at most, that a message names."""
 
 
 @dataclass(frozen=True)
@@ -37,24 +43,49 @@ def read_jobs(path: str | Path) -> tuple[Job, ...]:
     Raises
     ------
     InputError
-        The file is missing or no such CSV; the message names the line.
+        The file is missing or no such CSV; the message names up to ten wrong lines.
     """
     rows = _rows(path)
     if not rows:
         raise InputError(f"goals: {path} is empty; its first line must name columns of {', '.join(COLUMNS)}")
     header = [name.strip().lower() for name in rows[0][1]]
     _check_header(path, header)
-    jobs = [_job(path, line, header, row) for line, row in rows[1:]]
+    rows = rows[1:]
+    jobs = for_each(lambda row: _job(row[0], header, row[1]), rows, f"goals: {path} ")
     if not jobs:
         raise InputError(f"goals: {path} has no job below its header; write one line for each job")
-    _check_names(path, jobs)
+    first = {job.destination.name: job for job in reversed(jobs) if job.destination.point is not None}
+    for_each(lambda job: _check_name(job, first), jobs, f"goals: {path} ")
     if all(job.time is None for job in jobs):
         return tuple(jobs)
-    keys = [_time_key(path, job) for job in jobs]
-    for job, key in zip(jobs, keys, strict=True):
-        if key[0] != keys[0][0]:
-            raise _bad(path, job.line, f"time must be {keys[0][0]} as in line {jobs[0].line}, got '{job.time}'")
+    keys = for_each(_time_key, jobs, f"goals: {path} ")
+    for_each(
+        lambda pair: _check_kind(pair, keys[0][0], jobs[0].line),
+        list(zip(keys, jobs, strict=True)),
+        f"goals: {path} ",
+    )
     return tuple(job for _, job in sorted(zip(keys, jobs, strict=True), key=lambda pair: pair[0]))
+
+
+def for_each(check: Callable[[T], R], items: Sequence[T], before: str = "") -> list[R]:
+    """The results of `check`; its errors of all items become one.
+
+    Raises
+    ------
+    InputError, NotFoundError
+        Of the only wrong item; or an `InputError` with the first `SHOWN` messages. `before` begins the message.
+    """
+    results, wrong = [], []
+    for item in items:
+        try:
+            results.append(check(item))
+        except (InputError, NotFoundError) as error:
+            wrong.append(error)
+    if not wrong:
+        return results
+    more = f"; {len(wrong)} lines are wrong in all" if len(wrong) > SHOWN else ""
+    message = before + "; ".join(str(error) for error in wrong[:SHOWN]) + more
+    raise type(wrong[0])(message) if len(wrong) == 1 else InputError(message)
 
 
 def named_points(jobs: tuple[Job, ...]) -> dict[str, Point]:
@@ -88,46 +119,49 @@ def _check_header(path: str | Path, header: list[str]) -> None:
         raise InputError(f"goals: {path} line 1 must have both columns x and y, got '{','.join(header)}'")
 
 
-def _job(path: str | Path, line: int, header: list[str], row: list[str]) -> Job:
+def _job(line: int, header: list[str], row: list[str]) -> Job:
     if len(row) != len(header):
-        raise _bad(path, line, f"must have {len(header)} fields ({','.join(header)}), got {len(row)}")
+        raise _bad(line, f"must have {len(header)} fields ({','.join(header)}), got {len(row)}")
     field = {name: text.strip() for name, text in zip(header, row, strict=True)}
     x, y, name = field.get("x", ""), field.get("y", ""), field.get("name") or None
     if not x and not y and name is None:
-        raise _bad(path, line, "must have x and y, or a name" if "name" in header else "must have x and y")
-    point = (_number(path, line, "x", x), _number(path, line, "y", y)) if x or y else None
+        raise _bad(line, "must have x and y, or a name" if "name" in header else "must have x and y")
+    point = (_number(line, "x", x), _number(line, "y", y)) if x or y else None
     try:
         return Job(Destination(point, name), field.get("time") or None, line)
     except InputError as error:
-        raise _bad(path, line, str(error)) from None
+        raise _bad(line, str(error)) from None
 
 
-def _number(path: str | Path, line: int, column: str, text: str) -> float:
+def _number(line: int, column: str, text: str) -> float:
     try:
         number = float(text)
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise _bad(path, line, f"{column} must be a number of metres, got '{text[:40]}'")
+        raise _bad(line, f"{column} must be a number of metres, got '{text[:40]}'")
     return number
 
 
-def _check_names(path: str | Path, jobs: list[Job]) -> None:
-    first: dict[str, Job] = {}
-    for job in jobs:
-        end = job.destination
-        if end.name is None or end.point is None:
-            continue
-        before = first.setdefault(end.name, job)
-        if before.destination.point != end.point:
-            raise _bad(path, job.line, f"name '{end.name}' has another position in line {before.line}")
+def _check_name(job: Job, first: dict[str | None, Job]) -> None:
+    """A name has one position; `first` is the first job with a position for each name."""
+    end = job.destination
+    if end.name is not None and end.point is not None and first[end.name].destination.point != end.point:
+        raise _bad(job.line, f"name '{end.name}' has another position in line {first[end.name].line}")
 
 
-def _time_key(path: str | Path, job: Job) -> tuple:
+def _check_kind(keyed: tuple[tuple, Job], kind: str, line: int) -> None:
+    """All times are of one kind, that of the first job in `line`."""
+    (own, _), job = keyed
+    if own != kind:
+        raise _bad(job.line, f"time must be {kind} as in line {line}, got '{job.time}'")
+
+
+def _time_key(job: Job) -> tuple:
     """Kind of the time, and a value to sort by."""
     text = job.time
     if text is None:
-        raise _bad(path, job.line, "time is missing, but other lines have one; give every line a time, or none")
+        raise _bad(job.line, "time is missing, but other lines have one; give every line a time, or none")
     try:
         seconds = float(text)
         if math.isfinite(seconds):
@@ -140,8 +174,8 @@ def _time_key(path: str | Path, job: Job) -> tuple:
         except ValueError:
             continue
         return kind + (" with a time zone" if value.tzinfo else ""), value
-    raise _bad(path, job.line, f"time must be a number of seconds, HH:MM or an ISO 8601 date, got '{text[:40]}'")
+    raise _bad(job.line, f"time must be a number of seconds, HH:MM or an ISO 8601 date, got '{text[:40]}'")
 
 
-def _bad(path: str | Path, line: int, reason: str) -> InputError:
-    return InputError(f"goals: {path} line {line}: {reason}")
+def _bad(line: int, reason: str) -> InputError:
+    return InputError(f"line {line}: {reason}")

@@ -1,10 +1,11 @@
 """The start and the goals that the user chose for a life, as states of its world."""
 
+import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from lifelore.agent.live.goals.destinations import Destination, NamedPlaces
-from lifelore.agent.live.goals.job_list import named_points
+from lifelore.agent.live.goals.job_list import for_each, named_points
 from lifelore.agent.live.life_settings import LifeSettings, Place
 from lifelore.core.errors import InputError
 from lifelore.domains.buildings.floor import Floor
@@ -64,33 +65,42 @@ def own_places(
     Raises
     ------
     InputError
-        A place is not free, or start and goal are the same place; the message names the argument, and the line of
-        a job list.
+        A place is not free, start and goal are the same place, or memory knows a name elsewhere; the message names
+        the argument, and up to ten lines of a job list.
     NotFoundError
         Memory does not know a name.
     """
     if settings.world.domain != "building":
         start = None if settings.start is None else grid_state("start", settings.start, world)
         goals = () if settings.goal is None else (OwnGoal(grid_state("goal", settings.goal, world)),)
-        return _checked(OwnPlaces(start, goals), ["goal"])
+        return _checked(OwnPlaces(start, goals))
     asked = [("goal", _destination(settings.goal), None)] if settings.goal is not None else []
     asked += [(f"goals line {job.line}", job.destination, job.time) for job in settings.goals[first:]]
-    if not asked and settings.start is None:
-        return OwnPlaces()
     named = named_points(settings.goals)
+    farthest = math.inf if settings.move_names else world.frame.cell
 
-    def found(argument: str, end: Destination) -> Destination:
+    def located(argument: str, end: Destination) -> OwnGoal:
         if end.point is None and end.name in named:
-            return Destination(named[end.name], end.name)
-        return names.located(argument, end, memory)
+            end = Destination(named[end.name], end.name)
+        end = names.located(argument, end, memory)
+        _check_unmoved(argument, end, names, memory, farthest)
+        return OwnGoal(floor().state_at(argument, end.located_point), end)
 
-    def state(argument: str, end: Destination) -> int:
-        return floor().state_at(argument, end.located_point)
+    start = None if settings.start is None else located("start", _destination(settings.start)).state
+    goals = for_each(lambda one: replace(located(*one[:2]), time=one[2]), asked)
+    places = OwnPlaces(start, tuple(goals), first)
+    return places if settings.goals else _checked(places)
 
-    start = None if settings.start is None else state("start", found("start", _destination(settings.start)))
-    ends = [(argument, found(argument, end), time) for argument, end, time in asked]
-    goals = tuple(OwnGoal(state(argument, end), end, time) for argument, end, time in ends)
-    return _checked(OwnPlaces(start, goals, first), [argument for argument, _, _ in asked])
+
+def _check_unmoved(argument: str, end: Destination, names: NamedPlaces, memory: Memory, farthest: float) -> None:
+    """Refuse a point for a name that memory knows at a place farther away than `farthest` metres."""
+    known = None if end.name is None else names.remembered(end.name, memory)
+    if known is not None and (away := math.dist(known, end.located_point)) > farthest:
+        (x, y), (new_x, new_y) = known, end.located_point
+        raise InputError(
+            f"{argument}: memory knows '{end.name}' at {x:g},{y:g}, {away:.2f} m from {new_x:g},{new_y:g}; leave "
+            "the point out to go there, or move the name with --set move_names=true"
+        )
 
 
 def grid_state(argument: str, place: Place, world: GridWorld) -> int:
@@ -119,10 +129,7 @@ def _destination(place: Place) -> Destination:
     return Destination(name=place) if isinstance(place, str) else Destination((float(place[0]), float(place[1])))
 
 
-def _checked(places: OwnPlaces, arguments: list[str]) -> OwnPlaces:
-    for argument, goal in zip(arguments, places.goals, strict=False):
-        if goal.state == places.start:
-            raise InputError(
-                f"{argument} must lie in another cell than start, got the same cell; move one of them"
-            )
+def _checked(places: OwnPlaces) -> OwnPlaces:
+    if any(goal.state == places.start for goal in places.goals):
+        raise InputError("goal must lie in another cell than start, got the same cell; move one of them")
     return places

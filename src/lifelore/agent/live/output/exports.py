@@ -24,26 +24,34 @@ _MEANING = (
 def write_paths(path: Path, world: GridWorld, tasks: Sequence[GreedyPaths], floor: Floor | None = None) -> None:
     """Write greedy paths as CSV: task, path (from 0 in each task), step, x and y in metres in the map's frame.
 
-    With the `floor` of a building, a path is a line of straight segments that is clear of obstacles by the robot's
-    radius, and a step is a corner of it. Without a floor, a step is the centre of a cell.
+    With the `floor` of a building, a path has the ends of a greedy path and is the shortest between them that is
+    clear of obstacles by the robot's radius; a step is a corner of it. Without a floor, a step is the centre of a
+    cell.
     """
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["task", "path", "step", "x", "y"])
         for task in tasks:
-            for number, states in enumerate(task.paths):
-                points = world.positions(states) if floor is None else _clear(floor, states, task.goal_point)
+            for number, points in enumerate(path_points(world, task, floor)):
                 for step, (x, y) in enumerate(points):
                     writer.writerow([task.task, number, step, f"{x:.4f}", f"{y:.4f}"])
 
 
+def path_points(world: GridWorld, task: GreedyPaths, floor: Floor | None = None) -> list[NDArray[np.float64]]:
+    """The corners of a task's paths, each (n, 2) in metres of the map's frame; see `write_paths`."""
+    return [
+        world.positions(states) if floor is None else _clear(floor, states, task.goal_point)
+        for states in task.paths
+    ]
+
+
 def _clear(floor: Floor, states: NDArray[np.int32], goal: tuple[float, float] | None) -> NDArray[np.float64]:
-    """The clear path through the places of a greedy path; it ends at the goal's point if the user gave one."""
+    """The shortest clear path between the ends of a greedy path, or to the goal's point if the user gave one."""
     from lifelore.domains.buildings.clear_path import clear_path
 
     start, end = floor.metres(floor.anchors[states[[0, -1]]])
-    path = clear_path(floor, np.column_stack([states[:-1], states[1:]]), start, end if goal is None else goal)
-    assert path is not None, "a greedy path follows the moves of its floor"
+    path = clear_path(floor, start, end if goal is None else goal)
+    assert path is not None, "the places of a floor are joined"
     return path
 
 

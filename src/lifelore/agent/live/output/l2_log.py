@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lifelore.agent.live.baselines import AGENTS
+from lifelore.agent.live.lived_tasks import Result
 from lifelore.agent.live.task_result import TaskResult
 from lifelore.core.errors import InputError, StoreError
 
@@ -179,10 +180,12 @@ class LifeLog:
         # A folder that cannot be made fails here, before the long run.
         _make(self.folder)
 
-    def add(self, task: Mapping, results: Mapping[str, TaskResult]) -> None:
-        """Log one finished task; pass it to `live` as ``watch``."""
+    def add(self, task: Mapping, results: Mapping[str, Result]) -> None:
+        """Log one finished task; pass it to `live` as ``watch``. Driven tasks have no episodes."""
         row, column = task["goal"]
         for name, result in results.items():
+            if not isinstance(result, TaskResult):
+                continue
             self._of(name, task["index"]).add(
                 "train",
                 f"{self._label}_{row}x{column}",

@@ -13,7 +13,7 @@ from typing import Any, Self
 
 from numpy.typing import NDArray
 
-from lifelore.agent.live.task_result import TaskResult
+from lifelore.agent.live.lived_tasks import Result
 from lifelore.core.errors import StoreError
 
 COLUMNS = ("run", "task", "agent", "episode", "measure", "value")
@@ -72,9 +72,9 @@ class LongTable:
                 rows += [(*first, number, name, _number(value)) for number, value in enumerate(values)]
         self._write(rows)
 
-    def add_results(self, task: Mapping[str, Any], results: Mapping[str, TaskResult]) -> None:
+    def add_results(self, task: Mapping[str, Any], results: Mapping[str, Result]) -> None:
         """Write a finished task of `lifelore.agent.live.life.live`: its ``watch``."""
-        self.add(task, {agent: _episodes(result) for agent, result in results.items()})
+        self.add(task, {agent: result.episodes() for agent, result in results.items()})
 
     def _write(self, rows: Sequence[Sequence[Any]]) -> None:
         try:
@@ -85,16 +85,6 @@ class LongTable:
 
     def _refused(self, error: OSError) -> StoreError:
         return StoreError(f"measures cannot be written to {self.path}: {error.strerror}; choose another file")
-
-
-def _episodes(result: TaskResult) -> dict[str, NDArray]:
-    curve, n = result.curve, result.complete
-    return {
-        "return": curve.returns[:n],
-        "steps": curve.steps[:n],
-        "collisions": curve.collisions[:n],
-        "reached": curve.reached[:n],
-    }
 
 
 def _number(value: Any) -> float | int:

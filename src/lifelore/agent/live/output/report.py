@@ -8,10 +8,16 @@ from dataclasses import replace
 from pathlib import Path
 
 from lifelore.agent.live.baselines import AGENTS
+from lifelore.agent.live.goals.destinations import Point
+from lifelore.agent.live.driven.driven_job import DrivenJob
 from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
+from lifelore.agent.live.lived_tasks import Result
+from lifelore.agent.live.output.drive_figure import drives_figure
 from lifelore.agent.live.output.exports import write_paths, write_prior_map
 from lifelore.agent.live.output.greedy_paths import GreedyPaths, greedy_paths_of
-from lifelore.agent.live.output.nav2_masks import known_places, write_directions, write_masks
+from lifelore.agent.live.output.known_building import NAV2_FILES, KnownBuilding
+from lifelore.agent.live.output.logged_life import Recorder, goal_points, write_life_log
+from lifelore.agent.live.output.nav2_masks import write_directions
 from lifelore.agent.live.summary import third
 from lifelore.agent.live.task_result import THRESHOLD, TaskResult
 from lifelore.core.errors import InputError, StoreError
@@ -22,10 +28,9 @@ from lifelore.figures.lives.world_map import draw_world_map
 from lifelore.figures.style import save_figure
 
 PRIOR_FILES = ("prior.png", "prior.pgm", "prior.yaml", "directions.csv")
-MASK_FILES = ("costs.pgm", "costs.yaml", "keepout.pgm", "keepout.yaml")
-FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", *PRIOR_FILES, *MASK_FILES)
-"""Files of the folder; the files of the prior are there only if the agent has a prior, the masks only in buildings
-whose moves the agent has learnt."""
+FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", *PRIOR_FILES, *NAV2_FILES)
+"""Files of the folder; the curves only if goals were searched, the files of the prior only if the agent has a
+prior, those of nav2 only in buildings whose moves the agent has learnt."""
 
 
 def check_folder(path: str) -> None:
@@ -93,6 +98,12 @@ def write_portfolio(life: Life, out: str) -> list[str]:
     return [str(folder / name) for name in written]
 
 
+def write_log(life: Life, path: str, recorder: Recorder) -> str:
+    """Write the log of a life in a building; returns `path`. Errors as in `write_life_log`."""
+    write_life_log(path, life, _last_paths(life) if life.results else [], recorder)
+    return path
+
+
 def _folder(path: str) -> Path:
     if not path.strip() or "\0" in path:
         raise InputError(f"out must name a folder, got {path!r}")
@@ -105,16 +116,24 @@ def _write_all(life: Life, folder: Path) -> None:
     if not life.results:
         return
     paths = _last_paths(life)
-    save_figure(_life_figure(life), folder / "life.png")
-    save_figure(_task_figure(life), folder / "learning_curves.png")
+    if life.driven:
+        save_figure(drives_figure(life, _place(life)), folder / "life.png")
+    else:
+        save_figure(_life_figure(life), folder / "life.png")
+        save_figure(_task_figure(life), folder / "learning_curves.png")
     save_figure(_world_figure(life, paths), folder / "world.png")
     write_paths(folder / "paths.csv", life.world, paths, life.floor)
     if _has_prior(life):
         _write_prior(life, folder)
-    model = life.lore.model
-    if life.floor is not None and life.given is not None and known_places(model).any():
-        probs = life.lore.prior.probs(life.lore.scope.contexts) if _has_prior(life) else None
-        write_masks(folder, life.world, model, probs, life.floor, life.given)
+    if life.building is not None:
+        life.building.write(folder, _goals(life, life.building))
+
+
+def _goals(life: Life, building: KnownBuilding) -> dict[str, Point]:
+    """The goals on the present map, the last ones first; memory knows those with a name by itself."""
+    tasks = [task for task in life.report["tasks"][life.first_here :] if not task.get("name")]
+    points = goal_points(life, building, tasks)
+    return {f"goal {task['index']}": point for task, point in reversed(list(zip(tasks, points, strict=True)))}
 
 
 def _agents(life: Life) -> list[str]:
@@ -185,21 +204,27 @@ def _task_figure(life: Life):
     return draw_task_curves(panels, threshold=THRESHOLD, title=title)
 
 
-def _traces(life: Life, results: list[dict[str, TaskResult]]) -> dict:
-    return {name: [r[name].trace for r in results] for name in _agents(life)}
+def _traces(life: Life, results: list[dict[str, Result]]) -> dict:
+    return {
+        name: [found.trace for r in results if isinstance(found := r[name], TaskResult)] for name in _agents(life)
+    }
 
 
 def _last_paths(life: Life) -> list[GreedyPaths]:
-    """Greedy paths of the first agent in the last tasks on the present map."""
+    """Paths of the first agent in the last tasks on the present map: driven, or greedy by its policy."""
     world, name = life.world, _agents(life)[0]
     first = max(life.first_here, len(life.results) - TASKS_WITH_POLICY)
     last = zip(life.report["tasks"][first:], life.results[first:], strict=True)
     paths = []
     for task, result in last:
         goal = int(world.state_of[tuple(task["goal"])])
-        found = greedy_paths_of(world, result[name].policy, task["index"], goal, life.start)
-        point = task.get("position")
-        paths.append(replace(found, goal_point=point and tuple(point), name=task.get("name")))
+        of, point = result[name], task.get("position")
+        if isinstance(of, DrivenJob):
+            found = GreedyPaths(task["index"], goal, of.paths(), float(of.reached))
+        else:
+            found = greedy_paths_of(world, of.policy, task["index"], goal, life.start)
+        reached = point and found.arriving > 0
+        paths.append(replace(found, goal_point=tuple(point) if reached else None, name=task.get("name")))
     return paths
 
 
@@ -207,7 +232,7 @@ def _world_figure(life: Life, last: Sequence[GreedyPaths]):
     world = life.world
     shown = [
         {
-            "label": f"task {_named(task)}, reached from {_percent(task.arriving)} of starts",
+            "label": f"task {_named(task)}, {_arriving(life, task)}",
             "goal": world.cells[task.goal],
             "paths": [world.cells[path] for path in task.paths],
         }
@@ -219,6 +244,12 @@ def _world_figure(life: Life, last: Sequence[GreedyPaths]):
     return draw_world_map(
         world.shape, world.cells, world.neighbour, shown, goals=earlier, cell=_metres(life), title=title
     )
+
+
+def _arriving(life: Life, task: GreedyPaths) -> str:
+    if life.driven:
+        return "driven" if task.arriving else "no way left"
+    return f"reached from {_percent(task.arriving)} of starts"
 
 
 def _named(task: GreedyPaths) -> str:

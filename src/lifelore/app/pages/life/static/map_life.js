@@ -12,11 +12,24 @@ export async function mapLife(life, tasks, number) {
   const task = tasks.find((one) => one.task === number);
   const map = await knownMap(task);
   return () => {
-    drawSteps(tasks.filter((one) => one.agents));
+    drawSteps(tasks.filter((one) => one.agents && isDriven(one) === isDriven(task)));
     drawPlaces(tasks.filter((one) => one.places !== undefined));
     list(tasks.slice(-LISTED).reverse(), number);
     return drawKnown(map, tasks, task);
   };
+}
+
+const isDriven = (task) => task.how === "driven";
+
+/** Seconds of a drive to a known goal, steps of a search. */
+const cost = (task, name) => isDriven(task) ? task.agents[name].seconds : task.agents[name].steps_to_80;
+
+/** What a task cost an agent, with units where they are not `known` to be steps. */
+function costWords(task, name, known) {
+  const found = task.agents?.[name];
+  if (!found) return "–";
+  if (isDriven(task)) return `${short(found.metres)} m in ${short(found.seconds)} s`;
+  return known ? short(found.steps_to_80) : `${short(found.steps_to_80)} steps`;
 }
 
 async function knownMap(task) {
@@ -29,17 +42,20 @@ function drawSteps(tasks) {
   const series = names.map((name, i) => ({
     name: name === "scratch" ? "scratch, which remembers nothing" : name,
     colour: COLOURS[i % COLOURS.length],
-    dashed: name === "scratch",
-    points: tasks.filter((one) => one.agents[name]).map((one) => [one.task, one.agents[name].steps_to_80]),
+    dashed: name === "scratch" || name === "map only",
+    points: tasks.filter((one) => one.agents[name]).map((one) => [one.task, cost(one, name)]),
   }));
   if (!series.length) {
     $("curve").replaceChildren(make("p", {}, "These tasks were stored without their results, by an earlier version of Lifelore."));
     $("curve-words").textContent = "";
     return;
   }
-  const words = `Steps that each agent needed for each of ${tasks.length} tasks.`;
-  drawCurves($("curve"), series, { x: "task", y: "steps to 80 % of the best", words, log: true });
-  $("curve-words").textContent = "Lower is better: the steps until the agent's way has 80 % of the value of the best way, on a logarithmic scale.";
+  const driven = isDriven(tasks[0]);
+  const words = `${driven ? "Seconds" : "Steps"} that each agent needed for each of ${tasks.length} tasks.`;
+  drawCurves($("curve"), series, { x: "task", y: driven ? "seconds to the goal" : "steps to 80 % of the best", words, log: true });
+  $("curve-words").textContent = driven
+    ? "Lower is better: the seconds of each drive to a known goal, with memory and planned on the map alone, on a logarithmic scale."
+    : "Lower is better: the steps until the agent's way has 80 % of the value of the best way, on a logarithmic scale.";
 }
 
 function drawPlaces(tasks) {
@@ -54,9 +70,10 @@ function drawPlaces(tasks) {
 
 function list(tasks, number) {
   const names = [...new Set(tasks.flatMap((one) => Object.keys(one.agents ?? {})))];
-  const head = make("tr", {}, ...["Task", "Goal", ...names.map((name) => `Steps, ${name}`)].map((text) => make("th", { scope: "col" }, text)));
+  const searched = !tasks.some(isDriven);
+  const head = make("tr", {}, ...["Task", "Goal", ...names.map((name) => searched ? `Steps, ${name}` : name)].map((text) => make("th", { scope: "col" }, text)));
   const rows = tasks.map((one) => {
-    const steps = names.map((name) => one.agents?.[name]).map((found) => make("td", { class: "number" }, found ? short(found.steps_to_80) : "–"));
+    const steps = names.map((name) => make("td", { class: "number" }, costWords(one, name, searched)));
     const goal = one.name ?? `row ${one.goal[0]}, column ${one.goal[1]}`;
     return make("tr", one.task === number ? { class: "chosen" } : {}, make("td", {}, String(one.task)), make("td", {}, goal), ...steps);
   });

@@ -1,0 +1,218 @@
+"""Verbs for a robot in a building, with paths, names and flat keywords, as on the command line.
+
+>>> from lifelore import learn_from, live, recognise, way  # doctest: +SKIP
+>>> learn_from("runs.csv", map="depot.yaml", memory="depot.db")  # doctest: +SKIP
+>>> live(map="depot.yaml", goals="jobs.csv", memory="depot.db").report["summary"]  # doctest: +SKIP
+>>> way("dock", "gate", map="depot.yaml", memory="depot.db").poses  # doctest: +SKIP
+>>> recognise("depot_new.yaml", goals="jobs.csv", memory="depot.db").waypoints  # doctest: +SKIP
+"""
+
+from collections.abc import Callable, Sequence
+from difflib import get_close_matches
+from os import PathLike, fspath
+from threading import Event
+from typing import TYPE_CHECKING, Any
+
+from lifelore.core.errors import InputError
+from lifelore.core.protocols import Progress
+
+if TYPE_CHECKING:
+    from lifelore.agent.learn_from.run_log import Run
+    from lifelore.agent.live.goals.destinations import Destination, Point
+    from lifelore.agent.live.life import Life, Watcher
+    from lifelore.agent.live.life_settings import LifeSettings
+    from lifelore.agent.way import Way
+
+PathText = str | PathLike[str]
+
+
+def live(
+    settings: "LifeSettings | None" = None,
+    *,
+    progress: Progress | None = None,
+    stop: Event | None = None,
+    watch: "Watcher | None" = None,
+    notify: Callable[[str], None] | None = None,
+    **keys: Any,
+) -> "Life":
+    """Live through tasks in one world and store what is learnt in memory.
+
+    Parameters
+    ----------
+    settings : LifeSettings, optional
+        All settings, in place of `keys`.
+    progress : callable, optional
+        Called as ``progress(done, total, label)`` before the first task and after each task.
+    stop : threading.Event, optional
+        Set it to stop early: the task in progress is dropped, the finished tasks stay.
+    watch : callable, optional
+        Called as ``watch(task, results)`` after memory has stored a task: the report's entry, and the results by
+        agent.
+    notify : callable, optional
+        Called with a line of text that a person should read.
+    **keys
+        Settings by key: those of ``lifelore live --settings`` except ``watch``, and ``map``, ``tasks``, ``goal``,
+        ``goals`` (a job list's path), ``agent``, ``robot``, ``memory`` and ``seed``. A point is a pair of metres.
+
+    Returns
+    -------
+    Life
+        Its ``report`` is the JSON document of ``lifelore live``.
+
+    Raises
+    ------
+    InputError, NotFoundError
+        A key is unknown, or a setting or the map breaks its rule.
+    StoreError
+        Memory cannot store a task; earlier tasks stay stored.
+
+    Examples
+    --------
+    >>> life = live(map="depot.yaml", tasks=30, memory="depot.db")  # doctest: +SKIP
+    """
+    from lifelore.agent.live.life import live as live_through
+
+    if settings is not None and keys:
+        raise InputError(f"settings holds all settings, got also {', '.join(keys)}; give one of the two")
+    chosen = settings or _life_settings(keys)
+    return live_through(chosen, progress=progress, stop=stop, watch=watch, notify=notify)
+
+
+def way(
+    start: "str | Point",
+    goal: "str | Point",
+    *,
+    map: PathText | None = None,
+    memory: PathText | None = None,
+    cell: float | None = None,
+    robot_radius: float | None = None,
+    seed: int = 0,
+    **more: Any,
+) -> "Way":
+    """The way from one place of a building to another, from memory, as a path that is clear of obstacles.
+
+    Parameters
+    ----------
+    start, goal : str or (x, y)
+        Names that memory knows, or metres of the map's frame.
+    map : str or Path, optional
+        YAML of the ROS map; None: the generated office of `seed`.
+    memory : str or Path, optional
+        SQLite file or URL; None: the user's own. It is only read.
+    cell, robot_radius : float, optional
+        Metres, as in the life or the runs from which memory learnt.
+    seed : int
+        Of the generated office.
+    **more
+        The other arguments of ``agent.way.way``, such as ``spacing`` and ``building``.
+
+    Returns
+    -------
+    Way
+        With its ``poses`` (n, 3): x, y in metres and the heading in radians; and its ``length``.
+
+    Raises
+    ------
+    NotFoundError
+        Memory knows no way, or not the name, or not the building.
+    InputError
+        A setting or the map breaks its rule, or a point is no free place.
+    StoreError
+        Memory cannot be read.
+
+    Examples
+    --------
+    >>> way("dock", (12.5, 3.0), map="depot.yaml", memory="depot.db").length  # doctest: +SKIP
+    36.5
+    """
+    from lifelore.agent.way import way as find
+    from lifelore.domains.worlds import WorldSettings
+
+    world = WorldSettings("building", _text(map), cell=cell, robot_radius=robot_radius, seed=seed)
+    return find(world, _destination(start), _destination(goal), _text(memory), **more)
+
+
+def learn_from(
+    runs: "PathText | Sequence[Run]",
+    *,
+    map: PathText,
+    memory: PathText | None = None,
+    robot: str = "robot",
+    cell: float | None = None,
+    robot_radius: float | None = None,
+    progress: Progress | None = None,
+    **more: Any,
+) -> dict[str, Any]:
+    """Learn what a real robot drove and bumped into, each run once.
+
+    Parameters
+    ----------
+    runs : str or Path, or sequence of Run
+        CSV file with ``time``, ``x`` and ``y``, or its runs.
+    map : str or Path
+        YAML of the ROS map in whose frame the poses are.
+    memory : str or Path, optional
+        SQLite file or URL; None: the user's own.
+    robot : str
+        Name of the robot in memory.
+    cell, robot_radius : float, optional
+        Metres; 0.5 and 0.2.
+    progress : callable, optional
+        Called as ``progress(done, total, label)`` after each run.
+    **more
+        The other settings of ``LearnFromSettings``, such as ``reached_goal``.
+
+    Returns
+    -------
+    dict
+        The JSON document of ``lifelore learn-from``.
+
+    Raises
+    ------
+    InputError
+        The log does not fit the map, or a file or setting breaks its rule. Nothing is stored.
+    StoreError
+        Memory cannot store a run; earlier runs stay stored.
+
+    Examples
+    --------
+    >>> learn_from("runs.csv", map="depot.yaml", memory="depot.db")["new"]  # doctest: +SKIP
+    20
+    """
+    from lifelore.agent.learn_from.learn_from import LearnFromSettings
+    from lifelore.agent.learn_from.learn_from import learn_from as learn
+    from lifelore.agent.learn_from.run_log import read_runs
+    from lifelore.agent.live.life_settings import MemorySettings
+    from lifelore.domains.worlds import WorldSettings
+
+    world = WorldSettings("building", _text(map), cell=cell, robot_radius=robot_radius)
+    settings = LearnFromSettings(world, MemorySettings(_text(memory), robot), **more)
+    if isinstance(runs, str | PathLike):
+        return learn(read_runs(fspath(runs)), settings, fspath(runs), progress)
+    return learn(runs, settings, progress=progress)
+
+
+def _life_settings(keys: dict[str, Any]) -> "LifeSettings":
+    from lifelore.agent.live.goals.job_list import read_jobs
+    from lifelore.agent.live.life_settings import LIFE_KEYS, LifeSettings
+    from lifelore.core.keyed_settings import arguments_by_key, keys_of
+
+    known = list(keys_of(LifeSettings, LIFE_KEYS))
+    for key in keys:
+        if key not in known:
+            near = ", ".join(get_close_matches(key, known, 3)) or "lifelore live --settings lists them"
+            raise InputError(f"no setting has the key '{key}'; near: {near}")
+    given = keys | {name: _text(keys[name]) for name in ("map", "memory") if name in keys}
+    if isinstance(keys.get("goals"), str | PathLike):
+        given["goals"] = read_jobs(keys["goals"])
+    return LifeSettings(**arguments_by_key(LifeSettings, given, LIFE_KEYS))
+
+
+def _destination(place: "str | Point") -> "Destination":
+    from lifelore.agent.live.goals.destinations import Destination
+
+    return Destination(name=place) if isinstance(place, str) else Destination((float(place[0]), float(place[1])))
+
+
+def _text(path: PathText | None) -> str | None:
+    return None if path is None else fspath(path)
