@@ -213,37 +213,38 @@ def _pulled(ground, points, shifts):
             changed = False
             k = 1
             while k < n - 1:
-                now = _bend(ground, points[k - 1], points[k], points[k + 1])
-                if _cost(ground, points[k - 1], points[k + 1]) <= now + 1e-9:
+                now = _cost_by(ground, points, k, 1)
+                if _cost_by(ground, points, k, 2) <= now + 1e-9:
                     points[k : n - 1] = points[k + 1 : n].copy()
                     n -= 1
                     changed = True
                     k = max(k - 1, 1)
                     continue
-                for down in range(-1, 2):
-                    for right in range(-1, 2):
-                        moved = points[k] + shift * np.array([down, right], np.float64)
-                        if _is_floor(ground, moved):
-                            cost = _bend(ground, points[k - 1], moved, points[k + 1])
-                            if cost < now - 1e-6:
-                                points[k] = moved
-                                now, changed = cost, True
+                for direction in range(9):
+                    down, right = shift * (direction // 3 - 1), shift * (direction % 3 - 1)
+                    points[k, 0] += down
+                    points[k, 1] += right
+                    cost = _cost_by(ground, points, k, 1)
+                    if cost < now - 1e-6:
+                        now, changed = cost, True
+                    else:
+                        points[k, 0] -= down
+                        points[k, 1] -= right
                 k += 1
     return points[:n]
 
 
 @kernel
-def _is_floor(ground, point):
-    row, column = math.floor(point[0] + 0.5), math.floor(point[1] + 0.5)
-    inside = 0 <= row < ground.state.shape[0] and 0 <= column < ground.state.shape[1]
-    return inside and ground.state[row, column] >= 0
-
-
-@kernel
-def _cost(ground, a, b):
-    return line_cost(ground, a[0], a[1], b[0], b[1])
-
-
-@kernel
-def _bend(ground, a, b, c):
-    return _cost(ground, a, b) + _cost(ground, b, c)
+def _cost_by(ground, points, k, step):
+    """Cost from the point before point k to the point after it: through point k, or with `step` 2 past it."""
+    row, column = math.floor(points[k, 0] + 0.5), math.floor(points[k, 1] + 0.5)
+    if (
+        not (0 <= row < ground.state.shape[0] and 0 <= column < ground.state.shape[1])
+        or ground.state[row, column] < 0
+    ):
+        return np.inf
+    cost = 0.0
+    for i in range(k - 1, k + 1, step):
+        j = i + step
+        cost += line_cost(ground, points[i, 0], points[i, 1], points[j, 0], points[j, 1])
+    return cost
