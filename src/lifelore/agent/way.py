@@ -70,7 +70,7 @@ def way(
     """The cheapest path over remembered transitions that is clear by the robot's radius.
 
     The path turns at any angle. It costs its length, and what memory knows about its moves: where they took
-    longer or were refused, the path leads around if that is expected to take less time (`Travel.cost`).
+    longer or were refused, the path leads around if that is expected to take less time (``Travel.cost``).
 
     Parameters
     ----------
