@@ -70,7 +70,7 @@ def way(
     """The cheapest path over remembered transitions that is clear by the robot's radius.
 
     The path turns at any angle. It costs its length, and what memory knows about its moves: where they took
-    longer or were refused, the path leads around if that is expected to take less time (`Travel.cost`).
+    longer or were refused, the path leads around if that is expected to take less time (``Travel.cost``).
 
     Parameters
     ----------
@@ -141,9 +141,11 @@ def clock_from_text(text: str) -> float:
 def price_of_moves(cost: NDArray[np.float64], cell: float) -> NDArray[np.float64]:
     """Metres (n_states, 4) that each move costs beyond its length, from the seconds that it costs.
 
-    A move of the least cost has price 0; one of twice this cost has a price of `cell` metres.
+    The cheapest tenth of the moves has price 0. A move of twice the seconds that divide them from the others has a
+    price of `cell` metres.
     """
-    return cell * (cost / cost[np.isfinite(cost)].min(initial=np.inf) - 1)
+    cheap = np.quantile(cost[np.isfinite(cost)], 0.1) if np.isfinite(cost).any() else 1.0
+    return cell * np.maximum(cost / cheap - 1, 0)
 
 
 def _driven(path: NDArray[np.float64], floor: Floor, slowness: NDArray[np.float64]) -> tuple[int, float]:

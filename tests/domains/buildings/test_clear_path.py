@@ -157,12 +157,12 @@ def check_lengths(occupancy: OccupancyMap, n: int) -> None:
     paths = [clear_path(floor, *floor.metres(pair)) for pair in ends]
     ratio = np.array([length_of(path) for path in paths]) / shortest_lengths(floor, ends)
     assert len(ratio) > 0.7 * n
-    assert ratio.max() < 1.03
+    assert 0.995 < ratio.min() <= ratio.max() < 1.03
     assert ratio.mean() < 1.01
     assert min(least_clearance(path, floor) for path in paths) > floor.radius + 0.5 - 1e-6
 
 
-@pytest.mark.parametrize("occupancy", [hall(64, 0), part_of(office_map(0), 10, 10, 80)], ids=["hall", "office"])
+@pytest.mark.parametrize("occupancy", [hall(64, 3), part_of(office_map(1), 60, 60, 80)], ids=["hall", "office"])
 def test_paths_are_at_most_3_percent_longer_than_the_shortest_and_as_clear(occupancy):
     check_lengths(occupancy, 25)
 

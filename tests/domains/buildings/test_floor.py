@@ -25,7 +25,9 @@ def test_moves_are_where_the_pieces_touch(seed):
     """The world's moves, found again from the pixels alone."""
     occupancy = office_map(seed)
     world = building_from_map(occupancy)
-    state = floor_of(occupancy, world).state
+    floor = floor_of(occupancy, world)
+    assert np.array_equal(floor.neighbour, world.neighbour)
+    state = floor.state
     for near, far, there, back in (
         (state[:-1], state[1:], 1, 0),
         (state[:, :-1], state[:, 1:], 2, 3),

@@ -15,10 +15,12 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse import csgraph
 
 from lifelore.core.compiled.jit import kernel
 from lifelore.domains.buildings.floor import Floor
-from lifelore.domains.buildings.line_of_sight import TIGHT, ground_of, line_cost
+from lifelore.domains.buildings.line_of_sight import TIGHT, Ground, ground_of, line_cost
 
 _SHIFTS = 0.618 ** np.arange(-1, 6)
 """Pixels: how far corners are moved in the end, 1.6 to 0.09; smaller ones make the path shorter, slower. Powers of
@@ -54,12 +56,21 @@ def clear_path(
     """
     ends = floor.pixels([start, goal])
     ground = ground_of(floor, np.zeros((floor.n_states, 4)) if price is None else price, clearance)
-    corners = _search(ground, ends)
+    corners = _search(ground, ends, _prices_ahead(floor, ground, ends[1]))
     if not len(corners):
         return None
     path = floor.metres(_pulled(ground, corners, _SHIFTS))
     path[0], path[-1] = start, goal
     return path[np.r_[True, (np.diff(path, axis=0) != 0).any(axis=1)]]
+
+
+def _prices_ahead(floor: Floor, ground: Ground, goal: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The least sum of prices from each state to the goal, (n_states,) in pixels; inf without moves to it."""
+    last = floor.state[tuple(np.floor(goal + 0.5).astype(int))]
+    tail, action = np.nonzero((floor.neighbour >= 0) & np.isfinite(ground.price))
+    # A graph has no edges of weight 0.
+    edges = ground.price[tail, action] + 1e-12, (floor.neighbour[tail, action], tail)
+    return csgraph.dijkstra(sparse.csr_array(edges, shape=(floor.n_states,) * 2), indices=last) * (1 - 1e-9)
 
 
 @kernel
@@ -103,7 +114,15 @@ def _around(ground, ends, node, found):
 
 
 @kernel
-def _search(ground, ends):
+def _ahead(ground, ends, node, prices_ahead):
+    """A lower bound of the cost from a node to the goal: the distance, and the least sum of prices."""
+    row, column = _point(ends, ground.state.shape[1], node)
+    state = ground.state[math.floor(row + 0.5), math.floor(column + 0.5)]
+    return math.hypot(ends[1, 0] - row, ends[1, 1] - column) + prices_ahead[state]
+
+
+@kernel
+def _search(ground, ends, prices_ahead):
     """Lazy Theta*: points (n, 2) of the cheapest path, none if there is none."""
     columns = ground.state.shape[1]
     n_nodes = ground.state.size + 2  # the two ends are the last, by their negative numbers
@@ -114,8 +133,7 @@ def _search(ground, ends):
     queue: Any = [(0.0, -2)]
     while queue:
         bound, node = heapq.heappop(queue)
-        row, column = _point(ends, columns, node)
-        ahead = math.hypot(ends[1, 0] - row, ends[1, 1] - column)
+        ahead = _ahead(ground, ends, node, prices_ahead)
         if closed[node] or bound > cost[node] + ahead + 1e-9:
             continue
         n = _around(ground, ends, node, beside)
@@ -140,29 +158,33 @@ def _search(ground, ends):
             at_least = cost[origin] + math.hypot(row - from_row, column - from_column)
             if at_least < cost[there] - 1e-9:
                 cost[there], before[there], measured[there] = at_least, origin, False
-                ahead = math.hypot(ends[1, 0] - row, ends[1, 1] - column)
-                heapq.heappush(queue, (at_least + ahead, there))
+                heapq.heappush(queue, (at_least + _ahead(ground, ends, there, prices_ahead), there))
     return _corners(ends, columns, before, closed)
 
 
 @kernel
 def _measure(ground, ends, node, beside, cost, before, closed):
     """Set the node's cost by measured lines: from the origin assumed, closed neighbours, or their origins."""
-    origin = before[node]
-    lower, best, chosen = cost[node], cost[origin] + _line(ground, ends, origin, node), origin
-    if best > lower + 1e-9:
-        last = origin
-        for near in beside:
-            if closed[near]:
-                if before[near] not in (origin, last):
-                    last = before[near]
-                    through = cost[last] + _line(ground, ends, last, node)
-                    if through < best:
-                        best, chosen = through, last
-                if near != origin:
-                    through = cost[near] + _line(ground, ends, near, node)
-                    if through < best:
-                        best, chosen = through, near
+    chosen, last, best = before[node], before[node], np.inf
+    lower = cost[node]
+    for k in range(-1, 2 * len(beside)):
+        # The origin assumed comes first; then each neighbour, and the origin of each.
+        near = chosen if k < 0 else beside[k // 2]
+        if k >= 0 and not closed[near]:
+            continue
+        if k % 2 == 0 and k >= 0:
+            near = before[near]
+            if near == last:
+                continue
+            last = near
+        row, column = _point(ends, ground.state.shape[1], node)
+        from_row, from_column = _point(ends, ground.state.shape[1], near)
+        if cost[near] + math.hypot(row - from_row, column - from_column) < best - 1e-9:
+            through = cost[near] + _line(ground, ends, near, node)
+            if through < best:
+                best, chosen = through, near
+        if k < 0 and best <= lower + 1e-9:
+            break
     cost[node], before[node] = best, chosen
 
 
@@ -191,37 +213,38 @@ def _pulled(ground, points, shifts):
             changed = False
             k = 1
             while k < n - 1:
-                now = _bend(ground, points[k - 1], points[k], points[k + 1])
-                if _cost(ground, points[k - 1], points[k + 1]) <= now + 1e-9:
+                now = _cost_by(ground, points, k, 1)
+                if _cost_by(ground, points, k, 2) <= now + 1e-9:
                     points[k : n - 1] = points[k + 1 : n].copy()
                     n -= 1
                     changed = True
                     k = max(k - 1, 1)
                     continue
-                for down in range(-1, 2):
-                    for right in range(-1, 2):
-                        moved = points[k] + shift * np.array([down, right], np.float64)
-                        if _is_floor(ground, moved):
-                            cost = _bend(ground, points[k - 1], moved, points[k + 1])
-                            if cost < now - 1e-6:
-                                points[k] = moved
-                                now, changed = cost, True
+                for direction in range(9):
+                    down, right = shift * (direction // 3 - 1), shift * (direction % 3 - 1)
+                    points[k, 0] += down
+                    points[k, 1] += right
+                    cost = _cost_by(ground, points, k, 1)
+                    if cost < now - 1e-6:
+                        now, changed = cost, True
+                    else:
+                        points[k, 0] -= down
+                        points[k, 1] -= right
                 k += 1
     return points[:n]
 
 
 @kernel
-def _is_floor(ground, point):
-    row, column = math.floor(point[0] + 0.5), math.floor(point[1] + 0.5)
-    inside = 0 <= row < ground.state.shape[0] and 0 <= column < ground.state.shape[1]
-    return inside and ground.state[row, column] >= 0
-
-
-@kernel
-def _cost(ground, a, b):
-    return line_cost(ground, a[0], a[1], b[0], b[1])
-
-
-@kernel
-def _bend(ground, a, b, c):
-    return _cost(ground, a, b) + _cost(ground, b, c)
+def _cost_by(ground, points, k, step):
+    """Cost from the point before point k to the point after it: through point k, or with `step` 2 past it."""
+    row, column = math.floor(points[k, 0] + 0.5), math.floor(points[k, 1] + 0.5)
+    if (
+        not (0 <= row < ground.state.shape[0] and 0 <= column < ground.state.shape[1])
+        or ground.state[row, column] < 0
+    ):
+        return np.inf
+    cost = 0.0
+    for i in range(k - 1, k + 1, step):
+        j = i + step
+        cost += line_cost(ground, points[i, 0], points[i, 1], points[j, 0], points[j, 1])
+    return cost

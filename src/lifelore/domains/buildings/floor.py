@@ -61,6 +61,18 @@ class Floor:
             return np.full(self.solid.shape, np.inf)
         return np.asarray(ndimage.distance_transform_edt(~self.solid))
 
+    @cached_property
+    def neighbour(self) -> NDArray[np.int32]:
+        """(n_states, 4) the states whose pieces touch, north, south, east and west; -1 where there is none."""
+        beside = np.full((self.n_states, 4), -1, np.int32)
+        for near, far, there, back in (
+            (self.state[:-1], self.state[1:], 1, 0),
+            (self.state[:, :-1], self.state[:, 1:], 2, 3),
+        ):
+            touching = (near >= 0) & (far >= 0) & (near != far)
+            beside[near[touching], there], beside[far[touching], back] = far[touching], near[touching]
+        return beside
+
     def pixels(self, points: ArrayLike) -> NDArray[np.float64]:
         """Pixel coordinates (n, 2) of `points`, (n, 2) x and y in metres of the map's frame."""
         x0, y0, yaw = self.occupancy.origin
