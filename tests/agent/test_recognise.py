@@ -177,6 +177,25 @@ def test_what_is_not_certain_is_refused(found, new, words):
         found(new)
 
 
+def test_a_name_decides_where_much_of_the_furniture_moved(found):
+    new = turned(refurnished(OFFICE, 0.6), 3.0)
+    with pytest.raises(InputError, match=r"9\d % of the walls match; .* name it \(--building\): then 75 % of"):
+        found(new)
+    named = found(new, building="home")
+    assert 0.75 < named.walls < 0.96
+    assert np.degrees(named.pose[2]) == pytest.approx(-3, abs=0.05)
+    with pytest.raises(InputError, match="map does not fit building 'home'"):
+        found(office_map(2, 14.0, 12.0), building="home")
+
+
+def test_two_maps_with_too_little_in_common_are_refused(found, tmp_path):
+    """A third of each map's ground is known to the other."""
+    write_occupancy_map(tmp_path / "west.yaml", cropped(OFFICE, 0.6))
+    east = replace(OFFICE, state=np.ascontiguousarray(OFFICE.state[:, int(OFFICE.state.shape[1] * 0.4) :]))
+    with pytest.raises(InputError, match=r"is not recognised: .*; give a map that shows more of the building"):
+        found(turned(east, 5.0), old=tmp_path / "west.yaml")
+
+
 JOBS = (
     "name,Time,y,x\nlab,09:30,{lab[1]},{lab[0]}\n,08:15,{dock[1]:.2f},{dock[0]:.2f}\nstore,10:00,,\nlab,11:00,,\n"
 )
