@@ -30,6 +30,7 @@ if TYPE_CHECKING:
         MinimisedDomain,
         futile_goal_probability,
         minimised_domain,
+        minimised_transitions,
         reachable_states,
     )
 

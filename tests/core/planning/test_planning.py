@@ -10,8 +10,8 @@ from lifelore.core.planning.planning import (
     best_actions,
     greedy_policy,
     learnt_best_actions,
-    optimal_actions,
     mean_start_value,
+    optimal_actions,
     optimal_q,
     policy_values,
 )

@@ -23,7 +23,7 @@ MOST_WEIGHT = 1e6
 """Largest w(π); the counts of 2**23 such policies fit a 64-bit integer."""
 KIND, VERSION = "action_prior", 1
 ONE = 1 << 20
-"""A weight of 1 as a fixed-point integer. Whole weights are exact, others wrong by at most 5e-7; sums are exact."""
+"""A weight of 1 as a fixed-point integer; whole weights are exact, others wrong by at most 5e-7, sums exact."""
 
 BLOCK = 1 << 13
 """Rows sampled at a time; larger blocks do not fit the processor's cache and take longer."""

@@ -87,7 +87,7 @@ def optimal_actions(tables: Tables, discount: float) -> NDArray[np.bool_]:
 
 
 def learnt_best_actions(q: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """`best_actions` of a learned Q; rows whose best value is 0, as at the start, are all False: nothing is learned.
+    """`best_actions` of a learned Q; rows whose best value is 0, as at the start, are all False: nothing learned.
 
     Where every move costs, an untried action has the best value of its row. A value just learned may be very
     small, so there is no floor.
