@@ -60,7 +60,13 @@ ROOMS = {
     "lifelore.memory": "Memory",
     "lifelore.core": "Tasks, learners and protocols",
 }
-HOMES = {name: lifelore._HOME[name] for name in lifelore.__all__ if name != "__version__"}
+# Every public name and the module that it lives in; where users import it from: the package, or else its room.
+DOORS: dict[str, dict[str, str]] = {"lifelore": lifelore._HOME}
+for room in ROOMS:
+    homes: dict[str, str] = getattr(import_module(room), "_HOME", {})
+    DOORS[room] = {name: home if "lifelore" in home else f"{room}.{home}" for name, home in homes.items()}
+HOMES = {name: home for names in reversed(DOORS.values()) for name, home in names.items()}
+DOOR_OF = {name: next(door for door, names in DOORS.items() if name in names) for name in HOMES}
 ERRORS = "lifelore.core.errors"
 SOURCES = Path(lifelore.__file__).parent
 # Where modules and classes live, by their bare names: docstrings name both so.
@@ -78,9 +84,14 @@ def first_line(documented: object) -> str:
     return re.sub(r"(?<!`)`([^`]+)`(?!`)", r"``\1``", (inspect.getdoc(documented) or "").split("\n")[0])
 
 
+def public_value(name: str) -> object:
+    """What a public name stands for."""
+    return getattr(import_module(DOOR_OF[name]), name)
+
+
 def undocumented(name: str) -> list[str]:
     """A public name and its public methods and properties that have no docstring of their own."""
-    value = getattr(lifelore, name)
+    value = public_value(name)
     missing = [] if value.__doc__ else [name]
     for member, attribute in vars(value).items() if inspect.isclass(value) else ():
         function = getattr(attribute, "__func__", getattr(attribute, "func", attribute))
@@ -96,7 +107,7 @@ def write_reference(app: Sphinx) -> None:
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     index = ["API reference", "=============", ""]
-    index += ["Every name below can be imported from ``lifelore``. Each is loaded when first used.", ""]
+    index += ["Every name below can be imported as its page shows. Each is loaded when first used.", ""]
     left = dict(HOMES)
     for room, title in ROOMS.items():
         names = sorted((name for name in left if left[name].startswith(room)), key=str.lower)
@@ -104,12 +115,12 @@ def write_reference(app: Sphinx) -> None:
         index += [".. list-table::", "   :widths: 28 72", "   :class: wide", ""]
         for name in names:
             left.pop(name)
-            value = getattr(lifelore, name)
+            value = public_value(name)
             index += [f"   * - :doc:`{name} <{name}>`", f"     - {first_line(value)}"]
             kind = "class" if inspect.isclass(value) else "function"
-            directive = [f".. auto{kind}:: lifelore.{name}"]
+            directive = [f".. auto{kind}:: {DOOR_OF[name]}.{name}"]
             if issubclass(value, BaseException) if kind == "class" else False:
-                directive = [f".. autoexception:: lifelore.{name}", "   :show-inheritance:"]
+                directive = [f".. autoexception:: {DOOR_OF[name]}.{name}", "   :show-inheritance:"]
             elif kind == "class":
                 directive += ["   :members:"]
             (folder / f"{name}.rst").write_text("\n".join([name, "=" * len(name), "", *directive, ""]))
@@ -164,17 +175,18 @@ def has_page(target: str) -> bool:
     public, *member = target.split(".")
     if public not in HOMES or len(member) > 1:
         return False
-    attribute = inspect.getattr_static(getattr(lifelore, public), member[0], None) if member else None
+    attribute = inspect.getattr_static(public_value(public), member[0], None) if member else None
     return not member or callable(attribute) or isinstance(attribute, (property, classmethod, cached_property))
 
 
 def link_names(app: Sphinx, what: str, name: str, value: object, options: object, lines: list[str]) -> None:
     """Turn backticks into links to public names and literals of other names; leave unknown names to fail."""
-    public, *member = name.removeprefix("lifelore.").split(".")
+    door = next((door for door in reversed(DOORS) if name.startswith(f"{door}.")), "lifelore")
+    public, *member = name.removeprefix(f"{door}.").split(".")
     if public not in HOMES:
         public, owners, module = "", [value], ERRORS
     else:
-        owner = getattr(lifelore, public)
+        owner = public_value(public)
         owners, module = [value, owner] if member else [owner], HOMES[public]
     known = set().union(*map(parameters, owners))
 
@@ -185,7 +197,7 @@ def link_names(app: Sphinx, what: str, name: str, value: object, options: object
         whole = target == text.removeprefix("lifelore.")
         for page in (target, f"{public}.{target}"):
             if whole and has_page(page):
-                return f":py:obj:`~lifelore.{page}`"
+                return f":py:obj:`~{DOOR_OF[page.split('.')[0]]}.{page}`"
         if start and (target.split(".")[0] in known or found(start[0], owners, module)):
             return f"``{text}``"
         return match[0]
@@ -199,7 +211,7 @@ def link_names(app: Sphinx, what: str, name: str, value: object, options: object
         line = "".join(parts)
         field = re.match(r"(\w[\w, ]*) : (.*)$", line)
         if field:
-            line = f"{field[1]} : " + linked.sub(lambda m: f":py:obj:`~lifelore.{m[0]}`", field[2])
+            line = f"{field[1]} : " + linked.sub(lambda m: f":py:obj:`~{DOOR_OF[m[0]]}.{m[0]}`", field[2])
         # Napoleon takes the text before a colon in a property's docstring for its type.
         lines[place] = line.replace(":", "\0") if what in ("property", "attribute") else line
 

@@ -3,6 +3,9 @@
 import inspect
 import subprocess
 import sys
+from importlib import import_module
+
+import pytest
 
 import lifelore
 
@@ -14,22 +17,28 @@ def test_every_public_name_exists_and_is_documented():
     assert set(dir(lifelore)) == set(lifelore.__all__)
 
 
-def test_what_perception_exports_exists_is_documented_and_is_what_the_package_exports():
-    from lifelore import perception
+ROOMS = {
+    "action": {"ActionPrior", "prior_rows", "Advisor", "reachable_states", "independent_features"},
+    "core": {"Tables", "optimal_q", "best_actions", "QLearning"},
+    "interaction": {"PolicyLibrary", "BayesianPolicyReuse", "Beat", "ProbabilisticPolicyReuse"},
+    "perception": {"LabelledCloud", "perceived_scene", "contact_networks", "RelationClassifier", "read_cloud"},
+}
 
-    assert {"LabelledCloud", "perceived_scene", "contact_networks", "RelationClassifier", "read_cloud"} <= set(
-        perception.__all__
-    )
-    assert set(perception.__all__) == set(perception._HOME)
-    for name in perception.__all__:
-        assert inspect.getdoc(getattr(perception, name)), name
-        assert getattr(lifelore, name, getattr(perception, name)) is getattr(perception, name), name
-    assert set(perception.__all__) <= set(dir(perception))
+
+@pytest.mark.parametrize("name", ROOMS)
+def test_what_a_room_exports_exists_is_documented_and_is_what_the_package_exports(name):
+    room = import_module(f"lifelore.{name}")
+    assert set(room.__all__) >= ROOMS[name]
+    assert set(room.__all__) == set(room._HOME)
+    for public in room.__all__:
+        assert inspect.getdoc(getattr(room, public)), public
+        assert getattr(lifelore, public, getattr(room, public)) is getattr(room, public), public
+    assert set(room.__all__) <= set(dir(room))
 
 
 def test_importing_the_package_imports_nothing_heavy():
     heavy = ("numba", "numpy", "matplotlib", "sqlite3", "gymnasium", "scipy", "typer")
-    code = f"import sys, lifelore.perception; print([name for name in {heavy} if name in sys.modules])"
+    code = f"import sys, lifelore.perception, lifelore.action, lifelore.interaction; print([name for name in {heavy} if name in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "[]"
 
 

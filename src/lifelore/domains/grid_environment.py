@@ -25,7 +25,7 @@ class GridEnvironment(TaskEnvironment):
     ``Discrete(n_states)``: the number of the cell the agent is in.
 
     ## Rewards
-    `goal_reward` for entering the goal, `wall_reward` for a move that is refused, else 0.
+    ``goal_reward`` for entering the goal, ``wall_reward`` for a move that is refused, else 0.
 
     ## Starting State
     Any cell but the goal, each as likely; ``reset(options={"state": s})`` starts in state s.

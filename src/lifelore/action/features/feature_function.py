@@ -50,6 +50,7 @@ class TaskFeature:
 
     @property
     def features(self) -> FeatureSet:
+        """The one feature."""
         return FeatureSet((self.name,), (self.size,))
 
     def __call__(self, states: ArrayLike, task: Any, last_rewards: ArrayLike) -> Columns:
@@ -76,6 +77,7 @@ class LastReward:
 
     @property
     def features(self) -> FeatureSet:
+        """The one feature, with a value more than there are edges."""
         return FeatureSet((self.name,), (len(self.edges) + 1,))
 
     def __call__(self, states: ArrayLike, task: Any, last_rewards: ArrayLike) -> Columns:
@@ -111,6 +113,7 @@ class JoinedFeatures:
 
     @property
     def features(self) -> FeatureSet:
+        """The features of all parts, in their order."""
         sets = [part.features for part in self.parts]
         names = tuple(name for one in sets for name in one.names)
         return FeatureSet(names, tuple(size for one in sets for size in one.sizes))

@@ -80,11 +80,16 @@ def domain_futile_states(tasks: Sequence[Tables], policies: Sequence[ArrayLike])
 class MinimisedDomain:
     """The task-set minimised domain.
 
-    form : one of `FORMS`
-    states : (n_states,) bool, Ŝ
-    pairs : (n_states, n_actions) bool, the (s, a) with s in Ŝ and a in Â
-    kept_mass : (n_states, n_actions) float, the probability that the outcome of a pair in `pairs` lies in Ŝ,
-        which is 1/η; 0 for other pairs
+    Parameters
+    ----------
+    form : str
+        One of `FORMS`.
+    states : (n_states,) bool
+        Ŝ.
+    pairs : (n_states, n_actions) bool
+        The (s, a) with s in Ŝ and a in Â.
+    kept_mass : (n_states, n_actions) float
+        The probability that the outcome of a pair in `pairs` lies in Ŝ, which is 1/η; 0 for other pairs.
     """
 
     form: str

@@ -1,9 +1,9 @@
-"""Occupancy maps: a ROS `map_server` YAML and its image, read to free, occupied and unknown pixels.
+"""Occupancy maps: a ROS ``map_server`` YAML and its image, read to free, occupied and unknown pixels.
 
 With p = (255 - v) / 255 of the averaged colour v (p = v / 255 under `negate`):
 
 - ``trinary`` (default): occupied where p > occupied_thresh, free where p < free_thresh, else unknown; an
-  alpha channel is averaged in with the colours, as `map_server` does.
+  alpha channel is averaged in with the colours, as ``map_server`` does.
 - ``scale``: the same thresholds without alpha in the average; a pixel that is not opaque is unknown.
 - ``raw``: v itself (255 - v under `negate`) is the occupancy in percent, above 100 unknown; the percent is
   held against the same thresholds.
@@ -63,7 +63,7 @@ class OccupancyMap:
 
     @property
     def grey(self) -> NDArray[np.uint8]:
-        """(rows, columns) uint8 picture as ROS's `map_saver` draws it: free 254, occupied 0, unknown 205."""
+        """(rows, columns) uint8 picture as ROS's ``map_saver`` draws it: free 254, occupied 0, unknown 205."""
         return _GREY_OF_STATE[self.state]
 
 
@@ -81,7 +81,7 @@ class _MapSettings:
 
 
 def read_occupancy_map(path: str | Path) -> OccupancyMap:
-    """Read a `map_server` map.
+    """Read a ``map_server`` map.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def write_occupancy_map(
     *,
     mode: str = "trinary",
 ) -> Path:
-    """Write a `map_server` map: a binary PGM beside its YAML; returns the image's path.
+    """Write a ``map_server`` map: a binary PGM beside its YAML; returns the image's path.
 
     Parameters
     ----------

@@ -130,6 +130,7 @@ class GridWorld:
 
     @property
     def n_states(self) -> int:
+        """Number of free cells."""
         return len(self.cells)
 
     @cached_property

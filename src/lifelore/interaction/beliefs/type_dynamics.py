@@ -105,7 +105,7 @@ class TypeDynamics:
         by : {"time", "type", "outcome"}
             "time": types are static, or change at random at one of several hazards up to 0.1; the default of
             agents. "type": or by a pattern of types, as a matrix. "outcome": or by a pattern that depends on how
-            the last episode ended, which `end_episode(outcome=…)` names, and on the last type. Costs memory for
+            the last episode ended, which ``end_episode(outcome=…)`` names, and on the last type. Costs memory for
             n_types² numbers a user, times the number of ways in which episodes end.
 
         Raises

@@ -131,7 +131,7 @@ class CameraIntrinsics:
         values : mapping
             ``fx, fy, cx, cy, width, height`` and optionally ``distortion``; or a camera_info file (``image_width,
             image_height, camera_matrix, distortion_model, distortion_coefficients``); or a printed
-            `sensor_msgs/CameraInfo` (``width, height, k, d, distortion_model, header``, in any case).
+            ``sensor_msgs/CameraInfo`` (``width, height, k, d, distortion_model, header``, in any case).
 
         Raises
         ------
