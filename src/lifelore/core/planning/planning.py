@@ -1,9 +1,10 @@
 """Exact solutions on tables: values, all tied-optimal actions, and the value of a given policy."""
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.compiled.jit import inlined, kernel
+from lifelore.core.errors import InputError
 from lifelore.core.mdp import TERMINAL, Tables
 
 TIE_TOLERANCE = 1e-9
@@ -70,6 +71,17 @@ def best_actions(
     best = q.max(axis=1, keepdims=True)
     largest = np.abs(q).max(where=np.isfinite(q), initial=0.0)
     return q >= best - np.maximum(tolerance * np.abs(best), floor * largest)
+
+
+def checked_best(best: ArrayLike) -> NDArray[np.bool_]:
+    """Best or tied-best actions as they are; InputError where they are not boolean, as Q and π are not."""
+    given = np.asarray(best)
+    if given.dtype != bool and given.size:
+        raise InputError(
+            f"best must be boolean, True where an action is best or tied best, got {given.dtype}: apply "
+            "best_actions to values Q(s, a) or probabilities π(s, a) first, or count π by ActionPrior.update_policy"
+        )
+    return given.astype(bool, copy=False)
 
 
 def optimal_actions(tables: Tables, discount: float) -> NDArray[np.bool_]:
