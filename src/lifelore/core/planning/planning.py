@@ -78,8 +78,8 @@ def checked_best(best: ArrayLike) -> NDArray[np.bool_]:
     given = np.asarray(best)
     if given.dtype != bool and given.size:
         raise InputError(
-            f"best must be boolean, True where an action is best or tied best, got {given.dtype}: apply "
-            "best_actions to values Q(s, a) or probabilities π(s, a) first, or count π by ActionPrior.update_policy"
+            f"best must be boolean, True where an action is best or tied best, got {given.dtype}: "
+            "apply best_actions to values Q or probabilities π first, or count π by ActionPrior.update_policy"
         )
     return given.astype(bool, copy=False)
 
