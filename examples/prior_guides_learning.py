@@ -3,10 +3,9 @@
 For reinforcement-learning researchers. Thesis: §3.2.2, Algorithms 2 and 4.
 """
 
-from lifelore import ActionPrior, QLearning, make_world
-from lifelore.action.priors.exploration import prior_rows
-from lifelore.core.planning.planning import learnt_best_actions
-from lifelore.core.streams import stream
+from lifelore import make_world
+from lifelore.action import ActionPrior, prior_rows
+from lifelore.core import QLearning, learnt_best_actions
 
 learner = QLearning(episodes=500)
 
@@ -16,7 +15,7 @@ def learn(maze: int, prior: ActionPrior):
     world = make_world("noise", density=0.6, seed=maze)
     task = world.task(goal=world.n_states - 1).tables()
     rows = prior_rows(task, world.percepts, prior.probs)
-    learnt, curve = learner.learn(task, 0.95, world=stream(maze, "world"), own=stream(maze, "own"), rows=rows)
+    learnt, curve = learner.learn(task, 0.95, seed=maze, rows=rows)
     return world, learnt, curve
 
 
