@@ -14,7 +14,8 @@ cells = np.arange(144)
 row, column = np.divmod(cells, 12)
 moves = [(row - 1, column), (row + 1, column), (row, column - 1), (row, column + 1)]
 ahead = [np.clip(r, 0, 11) * 12 + np.clip(c, 0, 11) for r, c in moves]
-transitions = [0.8 * sparse.eye(144, format="csr")[to] + 0.2 * sparse.eye(144, format="csr") for to in ahead]
+stay = sparse.csr_matrix(sparse.eye(144))
+transitions = [0.8 * stay[to] + 0.2 * stay for to in ahead]
 
 # Eleven tasks: reach one of the cells of the first row, which ends the episode and pays 1.
 goals = [0, 1, 2, 3, 4, 6, 7, 8, 9, 10, 5]

@@ -5,7 +5,7 @@ For reinforcement-learning researchers. Thesis: §3.2.2, Algorithms 2 and 4.
 
 from lifelore import ActionPrior, QLearning, make_world
 from lifelore.action import prior_rows
-from lifelore.core import learnt_best_actions, stream
+from lifelore.core import learnt_best_actions
 
 learner = QLearning(episodes=500)
 
@@ -15,7 +15,7 @@ def learn(maze: int, prior: ActionPrior):
     world = make_world("noise", density=0.6, seed=maze)
     task = world.task(goal=world.n_states - 1).tables()
     rows = prior_rows(task, world.percepts, prior.probs)
-    learnt, curve = learner.learn(task, 0.95, world=stream(maze, "world"), own=stream(maze, "own"), rows=rows)
+    learnt, curve = learner.learn(task, 0.95, seed=maze, rows=rows)
     return world, learnt, curve
 
 

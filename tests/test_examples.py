@@ -52,6 +52,7 @@ HOLDS = {
     "one_user": lambda lines: len(lines) == 4 and "'bold': 0.99" in lines[-1],
     "own_agent_beside": lambda lines: numbers(lines[0])[0] > numbers(lines[0])[2],
     "own_family": known_types_do_better,
+    "own_matrices": lambda lines: numbers(lines[1])[0] < numbers(lines[0])[0] / 2,
     "own_gymnasium_world": lambda lines: [numbers(line)[0] > 0 for line in lines] == [True] * 2,
     "prior_guides_learning": the_prior_starts_better,
 }

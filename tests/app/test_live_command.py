@@ -32,7 +32,7 @@ TOLD = {
     "domain", "map", "tasks", "cell", "robot_radius", "destinations", "learner", "prior", "agent", "robot",
     "start", "memory", "episodes", "max_steps", "seed", "jobs", "density", "discount", "goal_reward",
     "wall_reward", "alpha0", "weight", "form", "ties", "learning_rate", "epsilon", "epsilon_decay",
-    "epsilon_floor", "sensor", "range",
+    "epsilon_floor", "annealed", "sensor", "range",
 }  # fmt: skip
 LATTICE = ("live", "--domain", "lattice", "--json")
 
@@ -128,7 +128,7 @@ def test_settings_in_the_report_are_those_that_were_told(ask, tmp_path):
     options += changed(**{name: value for name, value in told.items() if name not in OPTIONS})
     settings = ask("live", *options, "--memory", tmp_path / "life.db", "--json").document["settings"]
     unused = dict.fromkeys(("map", "start", "cell", "robot_radius", "range"))
-    assert settings == told | unused | {"memory": str(tmp_path / "life.db")}
+    assert settings == told | unused | {"memory": str(tmp_path / "life.db"), "annealed": False}
 
 
 def test_the_report_names_the_defaults_a_building_was_made_with(ask, tmp_path):
@@ -264,7 +264,7 @@ SET = {
     "lattice": {"destinations": 3, "size": 9, "learner": "q", "episodes": 7, "jobs": 1, "max_steps": 30,
         "discount": 0.9, "goal_reward": 7.0, "wall_reward": -3.0, "prior": "state", "alpha0": 0.3, "weight": 2.0,
         "form": "support", "ties": "prior", "learning_rate": 0.2, "epsilon": 0.5, "epsilon_decay": 0.9,
-        "epsilon_floor": 0.2,
+        "epsilon_floor": 0.2, "annealed": True,
     },
     "noise": {"density": 0.55},
     "advice": {"loops": 0.3},

@@ -11,6 +11,7 @@ import pytest
 from lifelore.agent.personalise.decisions import choose, update
 from lifelore.agent.personalise.fitting.fit import fit
 from lifelore.agent.personalise.study import open_study
+from lifelore.interaction.selection import ExpectedImprovement
 from lifelore.memory import open_memory
 
 NOBODY = "01900000-0000-7000-8000-000000000000"
@@ -83,6 +84,23 @@ def test_in_words(reuse, log):
     assert "given to the control group" in reuse("add", "round").out
     assert reuse("forget", "ann").out == "ann and 1 decisions and lines of the past forgotten\n"
     assert "no outcome yet" in reuse("report").out
+
+
+def test_the_thesis_as_printed(reuse, log, tmp_path):
+    found = reuse("fit", log, "--control", "0", "--variant", "thesis", "--json").document
+    assert (found["rule"], found["models"], found["change"]) == ("expected-improvement", "plug-in", 0.0)
+    with open_memory(tmp_path / "m.db") as memory:
+        study = open_study(memory)
+    assert study.selection == ExpectedImprovement("thesis")
+    # Eq. 4.1 with the library's own probabilities.
+    made = reuse("choose", "--user", "new", "--json").document
+    belief = reuse("update", "--decision", made["decision"], "--outcome", "1", "--json").document["belief"]
+    policy = study.library.index_of_policy(made["policy"])
+    weight = study.library.prior * np.exp(study.library.performance.log_density(policy, 1.0))
+    assert list(belief.values()) == pytest.approx(weight / weight.sum(), abs=1e-9)
+    assert reuse("fit", log, "--variant", "thesis", "--rule", "knowledge-gradient").status == 0
+    with open_memory(tmp_path / "m.db") as memory:
+        assert open_study(memory).selection.variant == "thesis"
 
 
 def test_the_probability_that_no_known_type_fits_is_there_when_asked_for(reuse, log):
@@ -243,6 +261,9 @@ def test_bad_logs_keep_what_was_there(text, reuse, lived, tmp_path):
         (["fit", "{log}", "--incumbent", "none"], "incumbent must be a policy in use, got 'none'"),
         (["fit", "{log}", "--control", "1"], "control must lie between 0 and 1"),
         (["fit", "{log}", "--rule", "none"], "rule must be one of"),
+        (["fit", "{log}", "--variant", "none"], "variant must be 'standard' or 'thesis'"),
+        (["fit", "{log}", "--variant", "thesis", "--rule", "information-directed"], "one that the thesis prints"),
+        (["fit", "{log}", "--variant", "thesis", "--change", "0.1"], "change must be 0 with --variant thesis"),
         (["fit", "{log}", "--types", "121"], "types must be at most 120, the users of the log, got 121"),
         (["fit"], "Missing argument"),
         (["choose"], "Missing option '--user'"),

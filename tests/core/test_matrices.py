@@ -1,4 +1,4 @@
-"""MDPs from matrices: every form gives the same task, solved as by a plain loop; every broken rule its sentence."""
+"""MDPs from matrices: all forms give one task, solved as by a plain loop; each broken rule has its sentence."""
 
 import numpy as np
 import pytest
@@ -119,7 +119,7 @@ def test_outcomes_are_drawn_by_their_own_probabilities():
     n = 40_000
     for start in range(4):
         one = tables._replace(starts=np.array([start], np.int32))
-        learner, curve = QLearning(n, max_steps=1, epsilon=1.0, epsilon_decay=1.0).learn(one, GAMMA, seed=start)
+        _, curve = QLearning(n, max_steps=1, epsilon=1.0, epsilon_decay=1.0).learn(one, GAMMA, seed=start)
         share = np.bincount(curve.rewards.astype(int), minlength=4) / n
         expected = transitions[start].mean(axis=0)  # actions are drawn uniformly
         assert np.abs(share - expected).max() < 4 * np.sqrt(0.25 / n)
@@ -169,7 +169,7 @@ NEGATIVE[4, 0, :2] = [-0.5, 1.5]
     [
         ((T[0], R), r"transitions must be an array \(n_states, n_actions, n_states\), a list of one sparse"),
         ((T[:, :, :5], R), "transitions must be an array .* got ndarray of shape"),
-        ((BAD, R), "sum to 1 over the next states .* got 0.5 for state 2, action 1; name a state in terminal="),
+        ((BAD, R), "sum to 1 over the next states, got 0.5 for state 2, action 1; name a state in terminal="),
         ((NEGATIVE, R), r"must be probabilities in \[0, 1\], got -0.5 for T\(4, 0, 0\)"),
         ((np.full_like(T, np.nan), R), "must be probabilities in .*nan"),
         ((T, R[0]), r"rewards must have shape \(7,\), \(7, 3\) or \(7, 3, 7\), got \(3, 7\)"),

@@ -21,4 +21,6 @@ def schedule_of(settings: Mapping, epsilon: Epsilon) -> Schedule:
     n, max_steps = settings["episodes"], settings["max_steps"]
     if isinstance(epsilon, str):
         return QLearning(n, max_steps, FIRST, FIRST, annealed=True).schedule(settings["discount"])
-    return QLearning(n, max_steps, settings["learning_rate"], *epsilon).schedule(settings["discount"])
+    first, factor, least = epsilon
+    plan = QLearning(n, max_steps, settings["learning_rate"], first, factor, least)
+    return plan.schedule(settings["discount"])

@@ -34,7 +34,8 @@ def advise(
     method: Annotated[
         str,
         Option(
-            help="better (one goal at a time), thesis (one prior over all goals, Eq. 3.16), or classes (one goal, by class)."
+            help="better (one goal at a time), thesis (one prior over all goals, Eq. 3.16), or classes "
+            "(one goal, by class)."
         ),
     ] = "better",
     shown: Annotated[

@@ -110,10 +110,13 @@ def fit(
     from lifelore.agent.personalise.fitting.fit import FitSettings
     from lifelore.agent.personalise.fitting.fit import fit as fitted
     from lifelore.app.console import print_json
+    from lifelore.core.errors import InputError
     from lifelore.interaction.selection import DEFAULT_RULE
     from lifelore.memory import open_memory
 
     if variant == "thesis":
+        if change not in ("learnt", "0"):
+            raise InputError(f"change must be 0 with --variant thesis, where types stay, got {change}")
         rule, change, models = rule or "expected-improvement", "0", "plug-in"
     settings = FitSettings(
         name,

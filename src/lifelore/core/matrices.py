@@ -86,8 +86,8 @@ def dense_transitions(tables: "Tables") -> Floats:
     """T(s, a, s') of a task, (n_states, n_actions, n_states); rows sum to 1."""
     probability = np.diff(tables.by_pair.outcome_cum, axis=2, prepend=0.0)
     dense = np.zeros((tables.n_states, tables.n_actions, tables.n_states))
-    state, action, _ = np.indices(tables.next_state.shape, sparse=True)
-    np.add.at(dense, (state, action, tables.next_state), probability)
+    state, action = np.ogrid[: tables.n_states, : tables.n_actions]
+    np.add.at(dense, (state[..., None], action[..., None], tables.next_state), probability)
     return dense
 
 
@@ -98,17 +98,17 @@ def _moves(given: Any, name: str) -> tuple[int, int, Moves]:
     if isinstance(given, list | tuple) and given and all(sparse.issparse(matrix) for matrix in given):
         return _of_sparse(given, name)
     try:
-        dense = np.asarray(given, np.float64)
+        dense: Any = np.asarray(given, np.float64)
     except (TypeError, ValueError):
         dense = np.empty(0)
     if dense.ndim != 3 or not dense.size or dense.shape[0] != dense.shape[2]:
         raise InputError(
             f"{name} must be an array (n_states, n_actions, n_states), a list of one sparse matrix "
-            f"(n_states, n_states) an action, or dictionaries {{state: {{action: {{next state: number}}}}}}; "
-            f"got {type(given).__name__} of shape {np.shape(given) if dense.size else 'unknown'}"
+            "(n_states, n_states) an action, or dictionaries {state: {action: {next state: number}}}; "
+            f"got {type(given).__name__} of shape {dense.shape}. Transpose an array whose first axis is the action"
         )
-    found = np.nonzero(dense)
-    return dense.shape[0], dense.shape[1], Moves(*found, dense[found])
+    state, action, following = np.nonzero(dense)
+    return dense.shape[0], dense.shape[1], Moves(state, action, following, dense[state, action, following])
 
 
 def _of_sparse(matrices: Any, name: str) -> tuple[int, int, Moves]:
@@ -125,6 +125,7 @@ def _of_sparse(matrices: Any, name: str) -> tuple[int, int, Moves]:
 
 
 def _of_dictionaries(rows: Mapping, name: str) -> tuple[int, int, Moves]:
+    entries: Any
     try:
         entries = [
             (s, a, s2, float(number))
@@ -132,31 +133,35 @@ def _of_dictionaries(rows: Mapping, name: str) -> tuple[int, int, Moves]:
             for a, row in actions.items()
             for s2, number in row.items()
         ]
-        table = np.array([entry[:3] for entry in entries]).reshape(-1, 3)
+        table: Any = np.array([entry[:3] for entry in entries]).reshape(-1, 3)
         states = np.array([*rows, *table[:, 2].tolist()])
         whole = table.dtype.kind == "i" and states.dtype.kind == "i" and states.min() >= 0 and table.min() >= 0
     except (AttributeError, TypeError, ValueError):
         whole, entries, table, states = False, [], np.empty((0, 3), int), np.empty(0, int)
     if not whole:
         raise InputError(
-            f"{name} as dictionaries must be {{state: {{action: {{next state: number}}}}}} with states and actions "
-            f"numbered from 0, got {rows!r:.80}"
+            f"{name} as dictionaries must be {{state: {{action: {{next state: number}}}}}} numbered from 0, "
+            f"got {rows!r:.80}"
         )
     number = np.array([entry[3] for entry in entries])
-    return int(states.max()) + 1, int(table[:, 1].max()) + 1, _sorted(*table.T, number)
+    return (
+        int(states.max()) + 1,
+        int(table[:, 1].max()) + 1,
+        _sorted(table[:, 0], table[:, 1], table[:, 2], number),
+    )
 
 
-def _sorted(state: Ints, action: Ints, following: Ints, number: Floats) -> Moves:
+def _sorted(state: Any, action: Any, following: Any, number: Any) -> Moves:
     order = np.lexsort((following, action, state))
     order = order[number[order] != 0]
-    return Moves(
-        *(part[order].astype(np.int64) for part in (state, action, following)), number[order].astype(float)
-    )
+    state, action, following = (part[order].astype(np.int64) for part in (state, action, following))
+    return Moves(state, action, following, number[order].astype(float))
 
 
 def _checked_moves(moves: Moves, n_states: int, n_actions: int, ended: NDArray[np.bool_]) -> Moves:
     """The moves of states that are not terminal, whose probabilities must sum to 1 for each action."""
-    moves = Moves(*(part[~ended[moves.state]] for part in moves))
+    read = ~ended[moves.state]
+    moves = Moves(moves.state[read], moves.action[read], moves.following[read], moves.number[read])
     wrong = np.flatnonzero(~((moves.number > 0) & (moves.number <= 1 + ROW_TOLERANCE)))
     if wrong.size:
         s, a, s2, number = (part[wrong[0]] for part in moves)
@@ -166,8 +171,8 @@ def _checked_moves(moves: Moves, n_states: int, n_actions: int, ended: NDArray[n
     if not np.allclose(total, 1, rtol=0, atol=ROW_TOLERANCE):
         s, a = np.unravel_index(np.abs(total - 1).argmax(), total.shape)
         raise InputError(
-            f"transitions must sum to 1 over the next states for each state and action, got {total[s, a]:g} for state "
-            f"{s}, action {a}; name a state in terminal= if no action is taken there"
+            f"transitions must sum to 1 over the next states, got {total[s, a]:g} for state {s}, action {a}; "
+            "name a state in terminal= if no action is taken there"
         )
     return moves
 
@@ -177,7 +182,8 @@ def _with_ends(moves: Moves, n_actions: int, ended: NDArray[np.bool_]) -> Moves:
     state = np.repeat(np.flatnonzero(ended), n_actions)
     action = np.tile(np.arange(n_actions), int(ended.sum()))
     stays = (state, action, state, np.ones(len(state)))
-    return _sorted(*(np.concatenate(pair) for pair in zip(moves, stays, strict=True)))
+    both: Any = [np.concatenate(pair) for pair in zip(moves, stays, strict=True)]
+    return _sorted(*both)
 
 
 def _runs(rows: Ints, n_rows: int) -> tuple[Ints, Ints]:
@@ -207,7 +213,7 @@ def _paid(rewards: Any, moves: Moves, n_states: int, n_actions: int) -> Floats:
 
 
 def _of_array(rewards: Any, moves: Moves, n_states: int, n_actions: int) -> Floats:
-    given = np.asarray(rewards)
+    given: Any = np.asarray(rewards)
     given = given.astype(float) if given.dtype.kind in "biuf" else np.empty(0)
     if given.shape == (n_states,):
         return given[moves.following]
@@ -216,8 +222,8 @@ def _of_array(rewards: Any, moves: Moves, n_states: int, n_actions: int) -> Floa
     if given.shape == (n_states, n_actions, n_states):
         return given[moves.state, moves.action, moves.following]
     raise InputError(
-        f"rewards must have shape ({n_states},), ({n_states}, {n_actions}) or ({n_states}, {n_actions}, {n_states}), "
-        f"got {np.shape(rewards)}"
+        f"rewards must have shape ({n_states},), ({n_states}, {n_actions}) or "
+        f"({n_states}, {n_actions}, {n_states}), got {np.shape(rewards)}"
     )
 
 

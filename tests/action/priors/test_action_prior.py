@@ -437,7 +437,7 @@ def test_own_labels_stand_in_tables_and_merge():
 def test_what_is_not_boolean_is_refused_and_a_policy_counts_its_largest():
     prior = ActionPrior(3)
     for wrong in ([[0.2, 0.5, 0.3]], [[0, 1, 0]], [[1.5, 2.0, -1.0]]):
-        with pytest.raises(InputError, match="best must be boolean.*give probabilities to update_policy"):
+        with pytest.raises(InputError, match=r"best must be boolean.*count π by ActionPrior.update_policy"):
             prior.update([4], wrong)
     # Eq. 3.5 counts w(π) for each largest probability, whatever it is; a row of zeros is no policy.
     prior.update_policy([4, 4, 5], [[0.2, 0.5, 0.3], [0.4, 0.2, 0.4], [0.0, 0.0, 0.0]], weight=2.0)
@@ -446,7 +446,7 @@ def test_what_is_not_boolean_is_refused_and_a_policy_counts_its_largest():
     for wrong in ([[0.2, 0.5, 0.2]], [[1.2, -0.2, 0.0]], [0.2, 0.5, 0.3]):
         with pytest.raises(InputError, match="policy must hold probabilities"):
             prior.update_policy([4], wrong)
-    with pytest.raises(InputError, match="contexts must be whole numbers.*float64"):
+    with pytest.raises(InputError, match=r"contexts must be whole numbers.*float64"):
         prior.update([0.5], [[True, False, False]])
     with pytest.raises(InputError, match="contexts must be whole numbers"):
         prior.probs(["door"])

@@ -24,7 +24,7 @@ def test_the_tolerance_is_relative_to_the_best():
 
 def test_learnt_values_by_hand():
     visits = np.array([[1, 0, 0], [3, 1, 0], [9, 9, 9], [1, 1, 1]])
-    # Row 0: the tied action was never tried. Row 1: nor was the one that looks best. Row 2 learnt nothing; row 3 costs.
+    # Row 0: the tied action was never tried. Row 1: nor was the one that looks best. Row 2 learnt nothing.
     best = [[True, False, False], [True, False, False], [False] * 3, [True, False, True]]
     assert actions_to_count(Q, "visited", visits=visits).tolist() == best
     never = actions_to_count(Q, "visited", visits=np.zeros_like(visits))

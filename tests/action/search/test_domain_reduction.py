@@ -353,5 +353,5 @@ def test_what_is_not_boolean_is_refused():
         lambda: task_futile_actions(policy),
         lambda: minimised_domain([task], [policy]),
     ):
-        with pytest.raises(InputError, match="best must be boolean.*got float64: apply best_actions"):
+        with pytest.raises(InputError, match=r"best must be boolean.*got float64: apply best_actions"):
             call()

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from lifelore.action.demonstrations.demonstrations import Demonstration
 from lifelore.core.errors import InputError
+from lifelore.core.planning.planning import checked_best
 
 
 def competence_by_steps(
@@ -35,7 +36,7 @@ def competence_by_steps(
     """
     found: dict[str, list[float]] = {}
     for one in demonstrations:
-        best = np.asarray(best_of(one.task), bool)
+        best = checked_best(best_of(one.task))
         if one.states.size and (one.states.max() >= len(best) or one.actions.max() >= best.shape[1]):
             raise InputError(
                 f"demonstration of '{one.agent}' in task '{one.task}' must stay within its {len(best)} states and "

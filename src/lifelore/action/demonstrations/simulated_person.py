@@ -11,11 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.action.demonstrations.demonstrations import Demonstration
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import TERMINAL, Tables
+from lifelore.core.planning.planning import checked_best
 
 
 def person_policy(best: ArrayLike, skill: float) -> NDArray[np.float64]:
     """Action probabilities of a person, (n_states, n_actions), rows sum to 1; uniform without best action."""
-    best = np.asarray(best, bool)
+    best = checked_best(best)
     if not 0 <= skill <= 1:
         raise InputError(f"skill must lie in [0, 1], got {skill}")
     known = best | ~best.any(axis=1, keepdims=True)

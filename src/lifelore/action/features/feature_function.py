@@ -50,7 +50,7 @@ class TaskFeature:
 
     @property
     def features(self) -> FeatureSet:
-        """The features, with the number of values of each."""
+        """The one feature."""
         return FeatureSet((self.name,), (self.size,))
 
     def __call__(self, states: ArrayLike, task: Any, last_rewards: ArrayLike) -> Columns:
@@ -77,7 +77,7 @@ class LastReward:
 
     @property
     def features(self) -> FeatureSet:
-        """The features, with the number of values of each."""
+        """The one feature, with a value more than there are edges."""
         return FeatureSet((self.name,), (len(self.edges) + 1,))
 
     def __call__(self, states: ArrayLike, task: Any, last_rewards: ArrayLike) -> Columns:
@@ -114,7 +114,7 @@ class JoinedFeatures:
 
     @property
     def features(self) -> FeatureSet:
-        """The features, with the number of values of each."""
+        """The features of all parts, in their order."""
         sets = [part.features for part in self.parts]
         names = tuple(name for one in sets for name in one.names)
         return FeatureSet(names, tuple(size for one in sets for size in one.sizes))

@@ -16,14 +16,14 @@ from lifelore.action.priors.context_index import FEW, ContextIndex
 from lifelore.action.priors.count_rows import SEQUENTIAL, draw_by_proportion, merged_rows, rising, sorted_order
 from lifelore.core.errors import InputError, MissingExtraError, NotFoundError
 from lifelore.core.metrics import entropy
-from lifelore.core.planning.planning import best_actions
+from lifelore.core.planning.planning import best_actions, checked_best
 from lifelore.core.protocols import Record
 
 MOST_WEIGHT = 1e6
 """Largest w(π); the counts of 2**23 such policies fit a 64-bit integer."""
 KIND, VERSION = "action_prior", 1
 ONE = 1 << 20
-"""A weight of 1 as a fixed-point integer. Whole weights are exact, others wrong by at most 5e-7; sums are exact."""
+"""A weight of 1 as a fixed-point integer; whole weights are exact, others wrong by at most 5e-7, sums exact."""
 
 BLOCK = 1 << 13
 """Rows sampled at a time; larger blocks do not fit the processor's cache and take longer."""
@@ -136,13 +136,7 @@ class ActionPrior:
         InputError
             `best` is not boolean (π(s, ·) is for `update_policy`), a shape is wrong, or a number out of range.
         """
-        contexts, best = _whole(contexts), np.asarray(best)
-        if best.dtype != bool and best.size:
-            raise InputError(
-                f"best must be boolean, True where an action is best or tied best, got {best.dtype}: "
-                "give probabilities to update_policy, and values Q to best_actions"
-            )
-        best = best.astype(bool, copy=False)
+        contexts, best = _whole(contexts), checked_best(best)
         weights = np.asarray(weight, np.float64)
         if best.shape != (len(contexts), self.n_actions):
             raise InputError(
@@ -365,7 +359,7 @@ class ActionPrior:
 
     def exclusion_rate(self, contexts: ArrayLike, best: ArrayLike, threshold: float = 0.0) -> float:
         """Share of contexts whose every best action `mask` excludes; `best` as in `update`."""
-        best = np.asarray(best, np.bool_)
+        best = checked_best(best)
         counted = np.asarray(best.any(axis=1))
         allowed = np.asarray((self.mask(contexts, threshold) & best).any(axis=1))
         return float(np.mean(~allowed[counted])) if counted.any() else 0.0

@@ -23,6 +23,7 @@ from scipy import sparse
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.mdp import TERMINAL, Tables
+from lifelore.core.planning.planning import checked_best
 
 FORMS = ("repaired", "printed", "closed")
 
@@ -57,7 +58,7 @@ def reachable_states(tables: Tables, best: ArrayLike) -> States:
 
 def task_futile_actions(best: ArrayLike) -> Pairs:
     """Pairs (s, a) that the task's policy does not select (Def. 3.2.1), (n_states, n_actions) bool."""
-    return ~_boolean(best)
+    return ~checked_best(best)
 
 
 def task_futile_states(tables: Tables, best: ArrayLike) -> States:
@@ -273,18 +274,8 @@ def _ended(tables: Tables) -> NDArray[np.bool_]:
     return (stays & ((tables.event & TERMINAL) != 0)).all(axis=(1, 2))
 
 
-def _boolean(best: ArrayLike) -> Pairs:
-    given = np.asarray(best)
-    if given.dtype != bool:
-        raise InputError(
-            f"best must be boolean, True where an action is best or tied best, got {given.dtype}: "
-            "apply best_actions to probabilities π(s, a) or values Q(s, a) first"
-        )
-    return given
-
-
 def _checked(tables: Tables, best: ArrayLike) -> Pairs:
-    best = _boolean(best)
+    best = checked_best(best)
     if best.shape != (tables.n_states, tables.n_actions):
         raise InputError(f"best must have shape ({tables.n_states}, {tables.n_actions}), got {best.shape}")
     return best

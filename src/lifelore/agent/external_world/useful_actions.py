@@ -53,6 +53,6 @@ def useful_actions(
 ) -> NDArray[np.bool_]:
     """U of each visited (state, context code) with values `q` (n, n_actions); see the module's first lines."""
     if not q.size or q.max() > 0:
-        return learnt_best_actions(q)
+        return learnt_best_actions(q) & (q.max(axis=1, keepdims=True) > 0)
     taken = returns.taken_in_best(visited)
     return best_actions(np.where(taken, q, -np.inf), floor=0.0) & taken

@@ -47,8 +47,8 @@ class QLearning:
     epsilon_floor : float
         Least exploration rate ε, in [0, 1].
     annealed : bool
-        Whether ε and α fall by equal steps to 0 over the episodes; ``epsilon_decay`` and ``epsilon_floor`` are then
-        not read. The schedule that the thesis prints (§4.6.3) also begins with ε = α = 0.5.
+        Whether ε and α fall by equal steps to 0 over the episodes; ``epsilon_decay`` and ``epsilon_floor`` are
+        then not read. The schedule that the thesis prints (§4.6.3) also begins with ε = α = 0.5.
 
     Raises
     ------

@@ -1,9 +1,10 @@
 """Exact solutions on tables: values, all tied-optimal actions, and the value of a given policy."""
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.compiled.jit import inlined, kernel
+from lifelore.core.errors import InputError
 from lifelore.core.mdp import TERMINAL, Tables
 
 TIE_TOLERANCE = 1e-9
@@ -72,6 +73,17 @@ def best_actions(
     return q >= best - np.maximum(tolerance * np.abs(best), floor * largest)
 
 
+def checked_best(best: ArrayLike) -> NDArray[np.bool_]:
+    """Best or tied-best actions as they are; InputError where they are not boolean, as Q and π are not."""
+    given = np.asarray(best)
+    if given.dtype != bool and given.size:
+        raise InputError(
+            f"best must be boolean, True where an action is best or tied best, got {given.dtype}: "
+            "apply best_actions to values Q or probabilities π first, or count π by ActionPrior.update_policy"
+        )
+    return given.astype(bool, copy=False)
+
+
 def optimal_actions(tables: Tables, discount: float) -> NDArray[np.bool_]:
     """The best or tied-best actions of the optimal policies, (n_states, n_actions) bool, for `ActionPrior.update`.
 
@@ -87,7 +99,7 @@ def optimal_actions(tables: Tables, discount: float) -> NDArray[np.bool_]:
 
 
 def learnt_best_actions(q: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """`best_actions` of a learned Q; rows whose best value is 0, as at the start, are all False: nothing is learned.
+    """`best_actions` of a learned Q; rows whose best value is 0, as at the start, are all False: nothing learned.
 
     Where every move costs, an untried action has the best value of its row. A value just learned may be very
     small, so there is no floor.

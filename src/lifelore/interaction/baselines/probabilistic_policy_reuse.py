@@ -133,7 +133,7 @@ class ProbabilisticPolicyReuse:
         Returns
         -------
         curve : Curve
-            Its `returns`, discounted by γ, are what W averages.
+            Its ``returns``, discounted by γ, are what W averages.
         chosen : (n_episodes,) int64
             The followed policy; n_policies for the new policy.
         """

@@ -49,8 +49,8 @@ class MomentOutcomes(NormalPrediction):
         Parameters
         ----------
         shrinkage : float
-            Number of samples that the pooled variance counts as; ≥ 0. At 0 each pair has its own variance, and needs
-            two samples that differ.
+            Number of samples that the pooled variance counts as; ≥ 0. At 0 each pair has its own variance, and
+            needs two samples that differ.
         gaps : bool
             Whether pairs without a sample are guessed from the others, see `OutcomeMoments.guess_gaps`.
 

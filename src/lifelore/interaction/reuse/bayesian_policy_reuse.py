@@ -127,7 +127,7 @@ class BayesianPolicyReuse:
         prior: ArrayLike | None = None,
         seed: int | np.random.Generator = 0,
     ) -> Self:
-        """Algorithm 8 as printed: models taken for the truth, a type that never changes, a rule in its printed form.
+        """Algorithm 8 as printed: models taken for the truth, a type that never changes, a printed rule.
 
         Parameters
         ----------

@@ -51,8 +51,8 @@ BEFORE: dict[str, dict[str, Any]] = {
 __all__ = [
     "DEFAULT_RULE", "RULES", "BeliefEntropy", "BeliefSampling", "EpsilonGreedy", "ExpectedImprovement", "Greedy",
     "InformationDirected", "KnowledgeGradient", "ProbabilityOfImprovement", "SelectionRule",
-    "ValueOfPerfectInformation", "choose", "default_rule", "printed_rule", "propensities", "restored_rule", "rule_named",
-    "rule_of", "tied_shares",
+    "ValueOfPerfectInformation", "choose", "default_rule", "printed_rule", "propensities", "restored_rule",
+    "rule_named", "rule_of", "tied_shares",
 ]  # fmt: skip
 
 

@@ -48,7 +48,7 @@ class TransitionSignal(StepModel):
         possible: ArrayLike | None = None,
         n_policies: int | None = None,
     ) -> Self:
-        """The model from counts of transitions, axes as `probs`.
+        """The model from counts of transitions, axes as ``probs``.
 
         Parameters
         ----------
