@@ -13,7 +13,8 @@ import numpy as np
 import pytest
 import yaml
 
-from lifelore.agent.live.output.report import FILES, MASK_FILES
+from lifelore.agent.live.output.known_building import NAV2_FILES, ROUTE_FILE
+from lifelore.agent.live.output.report import FILES
 from lifelore.domains.buildings.occupancy_map import read_occupancy_map
 
 DOCS = Path(__file__).parents[1] / "docs"
@@ -27,15 +28,27 @@ def parameters(node: str) -> dict:
 
 def test_every_mask_has_its_server_its_info_and_its_filter():
     costmap = PARAMETERS["global_costmap"]["global_costmap"]["ros__parameters"]
-    assert len(costmap["filters"]) == 2
+    plugins = {"keepout_filter": "KeepoutFilter", "cost_filter": "KeepoutFilter", "speed_filter": "SpeedFilter"}
+    assert costmap["filters"] == list(plugins)
     for name in costmap["filters"]:
-        assert costmap[name]["plugin"] == "nav2_costmap_2d::KeepoutFilter"
+        assert costmap[name]["plugin"] == f"nav2_costmap_2d::{plugins[name]}"
         topic = costmap[name]["filter_info_topic"]
         (info,) = [p for p in map(parameters, infos()) if p["filter_info_topic"] == topic]
-        assert (info["type"], info["base"], info["multiplier"]) == (0, 0.0, 1.0)
+        # nav2's types of filters: 0 keepout zones and weighted areas, 1 percent of the largest speed.
+        assert (info["type"], info["base"], info["multiplier"]) == (int(name == "speed_filter"), 0.0, 1.0)
         (server,) = [p for p in map(parameters, servers()) if p["topic_name"] == info["mask_topic"]]
-        assert Path(server["yaml_filename"]).name in MASK_FILES
+        assert Path(server["yaml_filename"]).name in NAV2_FILES
     assert set(parameters("lifecycle_manager_filters")["node_names"]) == {*infos(), *servers()}
+
+
+def test_the_route_server_scores_what_the_graph_holds():
+    route = parameters("route_server")
+    assert Path(route["graph_filepath"]).name == ROUTE_FILE
+    assert [route[name]["plugin"] for name in route["edge_cost_functions"]] == [
+        f"nav2_route::{name}" for name in route["edge_cost_functions"]
+    ]
+    for tag in (route["TimeScorer"]["time_tag"], route["PenaltyScorer"]["penalty_tag"], "blocked"):
+        assert f"`metadata.{tag}`" in NAV2
 
 
 def infos() -> list[str]:
@@ -47,9 +60,9 @@ def servers() -> list[str]:
 
 
 def test_the_table_names_files_that_are_written():
-    rows = re.findall(r"^\| (`.*?`) \|", NAV2, flags=re.M)
+    rows = re.findall(r"^\| (`.*?`) \|", NAV2.split("## What do the masks")[0], flags=re.M)
     named = {name for row in rows for name in re.findall(r"`([^`]+)`", row)}
-    assert named == {"paths.csv", "directions.csv", *MASK_FILES}
+    assert named == {"paths.csv", "directions.csv", *NAV2_FILES}
     assert named <= set(FILES)
 
 
@@ -65,9 +78,12 @@ def said(line: str, folder: Path) -> str:
 @pytest.mark.slow
 def test_the_commands_run_as_printed(tmp_path):
     shutil.copytree(DOCS.parent / "examples", tmp_path / "examples")
-    live, to_dock, to_point = [line for line in NAV2.splitlines() if line.startswith("lifelore ")]
+    live, nav2, to_dock, to_point = [line for line in NAV2.splitlines() if line.startswith("lifelore ")]
     assert "11:15 dock 4.975,12.525: lore" in said(live, tmp_path)
     assert set(np.unique(read_occupancy_map(tmp_path / "exports" / "keepout.yaml").state)) <= {0, 1}
+    written = (tmp_path / "exports" / "route_graph.geojson").read_bytes()
+    assert said(nav2, tmp_path).startswith("7 files")
+    assert (tmp_path / "exports" / "route_graph.geojson").read_bytes() == written
     said(to_point, tmp_path)
     with (tmp_path / "way.csv").open(newline="", encoding="utf-8") as file:
         ends = [(float(row["x"]), float(row["y"])) for row in csv.DictReader(file)]

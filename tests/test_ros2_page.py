@@ -5,14 +5,15 @@ those of the type store of rosbags, which has the definitions of ROS 2 Humble: a
 """
 
 import ast
-import csv
 import importlib
 import json
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 import threading
+import time
 import types
 from collections.abc import Iterator
 from pathlib import Path
@@ -26,11 +27,14 @@ pytest.importorskip("rosbags", reason="needs the extra ros")
 
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
+from lifelore.agent.live.buildings.recognition import recognised_place
+from lifelore.agent.travel import Travel
+from lifelore.agent.way import path_message
 from lifelore.bridges.mcap_file import message_of
 from lifelore.bridges.scene_mcap import DEFINITIONS
-from lifelore.domains.buildings.building import building_from_map
-from lifelore.domains.buildings.floor import floor_of
 from lifelore.domains.buildings.occupancy_map import read_occupancy_map, write_occupancy_map
+from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
+from lifelore.memory import open_memory
 from lifelore.perception.clouds.cloud_file import read_cloud
 
 ROOT = Path(__file__).parents[1]
@@ -39,6 +43,8 @@ PAGE = (ROOT / "docs" / "ros2.md").read_text(encoding="utf-8")
 STORE = get_typestore(Stores.ROS2_HUMBLE)
 for definition, text in DEFINITIONS.items():
     STORE.register(get_types_from_msg(text, definition))
+MAP = ROOT / "examples" / "data" / "office.yaml"
+MASKS = {"keepout_mask", "cost_mask", "speed_mask"}
 PROGRAM = [sys.executable, "-m", "lifelore.app.command_line"]
 
 
@@ -97,6 +103,26 @@ def cloud_message(points: np.ndarray, padding: int = 4, big: bool = False) -> An
     )  # fmt: skip
 
 
+def test_the_commands_on_bags_run_as_printed(tmp_path):
+    """The bag of a night teaches, closes the place of three bumps, and is undone."""
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    (block,) = re.findall(r"^## What is read from my bags\?\n\n```sh\n(.*?)^```", PAGE, flags=re.M | re.S)
+    said = []
+    for line in block.splitlines():
+        words = shlex.split(line, comments=True)[1:]
+        done = subprocess.run(
+            [*PROGRAM, *words, "--memory", "m.db"], cwd=tmp_path, check=True, capture_output=True
+        )
+        said.append(done.stdout.decode())
+    assert "dry run: nothing is stored" in said[0]
+    for text in said[:2]:
+        assert "10 of 10 runs are new; 7 reached their goal" in text
+        assert "3 bumps where the map is free" in text
+    assert "10 runs of examples/data/night.mcap forgotten" in said[2]
+    keepout = read_occupancy_map(tmp_path / "masks" / "keepout.yaml")
+    assert keepout.state.shape == read_occupancy_map(ROOT / "examples" / "data" / "office.yaml").state.shape
+
+
 # ---- conversions ---------------------------------------------------------------------------------------------
 
 
@@ -117,38 +143,51 @@ def test_a_mask_becomes_a_grid_with_the_lowest_row_first(conversions, tmp_path):
 
 @pytest.mark.slow
 def test_the_masks_of_a_life_lie_on_its_map(conversions, exports):
-    occupancy = read_occupancy_map(ROOT / "examples" / "data" / "office.yaml")
-    for name in ("keepout.yaml", "costs.yaml"):
+    occupancy = read_occupancy_map(MAP)
+    for name in ("keepout.yaml", "costs.yaml", "speed.yaml"):
         grid = sent("nav_msgs/msg/OccupancyGrid", conversions.occupancy_grid(exports / name))
         assert (grid.info.height, grid.info.width) == occupancy.state.shape
         assert (grid.info.origin.position.x, grid.info.origin.position.y) == occupancy.origin[:2]
         assert grid.data.min() >= -1
         assert grid.data.max() <= 100
-        assert len(np.unique(grid.data)) > 1
 
 
-@pytest.mark.slow
-def test_the_last_path_becomes_poses_on_the_floor_that_face_the_next(conversions, exports):
-    path = sent("nav_msgs/msg/Path", conversions.path_poses(exports / "paths.csv"))
-    written = csv.DictReader((exports / "paths.csv").read_text(encoding="utf-8").splitlines())
-    rows = [row for row in written if (row["task"], row["path"]) == ("1", "0")]
-    points = [(pose.pose.position.x, pose.pose.position.y) for pose in path.poses]
-    assert points == [(float(row["x"]), float(row["y"])) for row in rows]
-    assert path.header.frame_id == path.poses[0].header.frame_id == "map"
-    occupancy = read_occupancy_map(ROOT / "examples" / "data" / "office.yaml")
-    floor = floor_of(occupancy, building_from_map(occupancy))
-    row, column = np.rint(floor.pixels(points)).astype(int).T
-    assert (floor.state[row, column] >= 0).all()
-    for pose, here, there in zip(path.poses, points, points[1:], strict=False):
-        yaw = 2 * np.arctan2(pose.pose.orientation.z, pose.pose.orientation.w)
-        step = np.subtract(there, here)
-        assert (np.cos(yaw), np.sin(yaw)) == pytest.approx(tuple(step / np.hypot(*step)))
+def test_a_way_becomes_a_path_in_the_frame_of_the_node(conversions):
+    document = path_message(np.array([[1.0, 2.0, 0.5], [2.0, 3.0, -0.5]])) | {"length": 1.4, "places": 3}
+    stamp = {"sec": 7, "nanosec": 8}
+    path = sent("nav_msgs/msg/Path", conversions.way_fields(document, "floor", stamp))
+    for header in (path.header, path.poses[1].header):
+        assert (header.frame_id, header.stamp.sec, header.stamp.nanosec) == ("floor", 7, 8)
+    pose = path.poses[1].pose
+    assert (pose.position.x, pose.position.y) == (2.0, 3.0)
+    assert 2 * np.arctan2(pose.orientation.z, pose.orientation.w) == pytest.approx(-0.5)
 
 
-def test_an_export_without_paths_is_named(conversions, tmp_path):
-    (tmp_path / "paths.csv").write_text("task,path,step,x,y\n")
-    with pytest.raises(ValueError, match="must hold a path"):
-        conversions.path_poses(tmp_path / "paths.csv")
+def test_a_way_is_asked_for_by_two_places(conversions):
+    assert conversions.way_ends('{"from": "dock", "to": "-1.5,2"}') == ("dock", "-1.5,2")
+    for wrong in ("dock lab", '{"from": "dock"}', "[1, 2]", ""):
+        with pytest.raises(ValueError, match="a way is asked for by"):
+            conversions.way_ends(wrong)
+
+
+def program(folder: Path, text: str) -> str:
+    """A program that runs these lines of a shell."""
+    path = folder / "program"
+    path.write_text(f"#!/bin/sh\n{text}\n")
+    path.chmod(0o755)
+    return str(path)
+
+
+def test_what_a_command_prints_is_its_answer(conversions, tmp_path):
+    echo = program(tmp_path, """printf '{"words": "%s"}' "$*" """)
+    assert conversions.answer_of(echo, "way", tmp_path) == {"words": f"way {tmp_path} --json"}
+    refusing = program(tmp_path, "echo 'lifelore: no such place' >&2; exit 2")
+    with pytest.raises(ValueError, match=r"^lifelore: no such place$"):
+        conversions.answer_of(refusing, "way")
+    with pytest.raises(ValueError, match=r"program way --json took longer than 0.1 s"):
+        conversions.answer_of(program(tmp_path, "exec sleep 5"), "way", seconds=0.1)
+    with pytest.raises(OSError, match="nowhere"):
+        conversions.answer_of("/nowhere/lifelore", "way")
 
 
 @pytest.mark.parametrize("big", [False, True])
@@ -170,9 +209,15 @@ def test_a_cloud_without_z_is_refused(conversions):
 
 
 @pytest.fixture
-def service(tmp_path: Path) -> Iterator[str]:
+def memory(exports: Path, tmp_path: Path) -> Path:
+    """A copy of the memory of the life that exported."""
+    return Path(shutil.copy(exports.parent / "m.db", tmp_path))
+
+
+@pytest.fixture
+def service(memory: Path) -> Iterator[str]:
     pytest.importorskip("fastapi", reason="needs the extra web")
-    command = [*PROGRAM, "serve", "--json", "--port", "0", "--memory", str(tmp_path / "m.db")]
+    command = [*PROGRAM, "serve", "--json", "--port", "0", "--memory", str(memory)]
     served = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     with served:
         assert served.stdout is not None
@@ -181,30 +226,34 @@ def service(tmp_path: Path) -> Iterator[str]:
 
 
 class StandIn:
-    """What the node uses of rclpy: parameters, publishers, subscriptions, clock and log."""
+    """What the node uses of rclpy: parameters, publishers, subscriptions, services, clock and log."""
 
-    parameters: dict[str, str] = {}  # noqa: RUF012
+    parameters: dict[str, Any] = {}  # noqa: RUF012
 
     def __init__(self, name: str) -> None:
         self.name, self.log = name, []
         self.published: list[tuple[str, Any]] = []
         self.subscribed: dict[str, Any] = {}
+        self.services: dict[str, Any] = {}
         self.arrived = threading.Event()
 
-    def declare_parameter(self, name: str, default: str) -> Any:
+    def declare_parameter(self, name: str, default: Any) -> Any:
         return types.SimpleNamespace(value=self.parameters.get(name, default))
 
     def create_publisher(self, kind: Any, topic: str, quality: Any) -> Any:
         def publish(message: Any) -> None:
             assert message.__msgtype__ == kind().__msgtype__
             self.published.append((topic, message))
-            if topic == "lifelore/relations":
+            if topic in ("lifelore/relations", "lifelore/way"):
                 self.arrived.set()
 
         return types.SimpleNamespace(publish=publish)
 
     def create_subscription(self, kind: Any, topic: str, take: Any, quality: Any) -> None:
         self.subscribed[topic] = take
+
+    def create_service(self, kind: Any, name: str, answer: Any) -> None:
+        self.services[name] = answer
 
     def get_clock(self) -> Any:
         stamp = message("builtin_interfaces/msg/Time", {"sec": 7})
@@ -253,6 +302,7 @@ def node_module(monkeypatch: pytest.MonkeyPatch) -> Any:
     }.items():
         stand_ins[name] = module(name)
         stand_ins[f"{name}.msg"] = module(f"{name}.msg", **{one: kind(f"{name}/msg/{one}") for one in kinds})
+    stand_ins |= {"std_srvs": module("std_srvs"), "std_srvs.srv": module("std_srvs.srv", Trigger=object)}
     for name, made in stand_ins.items():
         monkeypatch.setitem(sys.modules, name, made)
     monkeypatch.delitem(sys.modules, "lifelore_node.node", raising=False)
@@ -265,7 +315,7 @@ def test_the_node_publishes_exports_and_answers_a_cloud_with_relations(node_modu
     node = node_module.LifeloreNode()
     assert not node.log
     topics = dict(node.published)
-    assert set(topics) == {"keepout_mask", "cost_mask", "lifelore/path"}
+    assert set(topics) == MASKS
     for published in topics.values():
         assert (published.header.frame_id, published.header.stamp.sec) == ("floor", 7)
     cloud = read_cloud(ROOT / "examples" / "data" / "table.pcd")
@@ -295,7 +345,7 @@ def test_the_node_publishes_exports_and_answers_a_cloud_with_relations(node_modu
 def test_a_cloud_that_the_service_refuses_is_logged_in_its_words(node_module, service, monkeypatch, tmp_path):
     monkeypatch.setattr(StandIn, "parameters", {"exports": str(tmp_path), "url": service})
     node = node_module.LifeloreNode()
-    assert [line.endswith("stays silent") for line in node.log] == [True] * 3
+    assert [line.endswith("stays silent") for line in node.log] == [True] * len(MASKS)
     node.arrived.clear()
     node.subscribed["points"](cloud_message(np.zeros((4, 3), np.float32)))
     assert node.arrived.wait(60)
@@ -303,23 +353,96 @@ def test_a_cloud_that_the_service_refuses_is_logged_in_its_words(node_module, se
     assert "Traceback" not in node.log[-1]
 
 
+def lifelore(folder: Path) -> str:
+    return program(folder, f'exec {shlex.join(PROGRAM)} "$@"')
+
+
+@pytest.mark.slow
+def test_the_masks_follow_memory(node_module, service, memory, monkeypatch, tmp_path):
+    chosen = {"exports": str(tmp_path / "out"), "url": service, "map": str(MAP), "program": lifelore(tmp_path)}
+    monkeypatch.setattr(StandIn, "parameters", chosen | {"memory": str(memory), "period": 0.2})
+    node = node_module.LifeloreNode()
+    before = masks_published(node, 1)
+    settings = WorldSettings("building", str(MAP))
+    given = map_from_settings(settings)
+    with open_memory(memory) as opened:
+        place = recognised_place(settings, world_from_settings(settings, given), given, opened)
+        travel, (state, action) = Travel(place.world, place.grid), np.argwhere(place.world.neighbour >= 0)[400]
+        travel.observe([state] * 9, [action] * 9, 1.7e9 + 60 * np.arange(9), [np.nan] * 9)
+        opened.contribute("other", travel.news(), process="p", seq=0, task={})
+    after = masks_published(node, 2)
+    assert (np.array(after["cost_mask"].data) > np.array(before["cost_mask"].data)).any()
+    assert (np.array(after["keepout_mask"].data) > np.array(before["keepout_mask"].data)).any()
+    assert all(line.endswith("stays silent") for line in node.log)
+
+
+def masks_published(node: StandIn, times: int) -> dict[str, Any]:
+    """The newest masks, after each was published so many times."""
+    for _ in range(600):
+        topics = [topic for topic, _ in list(node.published)]
+        if all(topics.count(mask) == times for mask in MASKS):
+            return dict(node.published)
+        time.sleep(0.1)
+    raise AssertionError(node.log)
+
+
+@pytest.mark.slow
+def test_a_way_is_answered_with_a_path(node_module, exports, memory, monkeypatch, tmp_path):
+    chosen = {
+        "exports": str(exports),
+        "memory": str(memory),
+        "program": lifelore(tmp_path),
+        "url": "http://127.0.0.1:9",
+    }
+    monkeypatch.setattr(StandIn, "parameters", chosen)
+    node = node_module.LifeloreNode()
+    node._map = str(MAP)  # without the thread that follows memory
+    graph = json.loads((exports / "route_graph.geojson").read_text(encoding="utf-8"))
+    start, goal = [one["geometry"]["coordinates"] for one in graph["features"][:2]]
+    ends = {"from": f"{start[0]},{start[1]}", "to": f"{goal[0]},{goal[1]}"}
+    node.subscribed["lifelore/way_request"](message("std_msgs/msg/String", {"data": json.dumps(ends)}))
+    assert node.arrived.wait(60)
+    (path,) = [answer for topic, answer in node.published if topic == "lifelore/way"]
+    points = [[pose.pose.position.x, pose.pose.position.y] for pose in path.poses]
+    assert points[0] == pytest.approx(start)
+    assert points[-1] == pytest.approx(goal)
+    assert np.hypot(*np.diff(points, axis=0).T).max() <= 0.051
+    node.arrived.clear()
+    node.subscribed["lifelore/way_request"](message("std_msgs/msg/String", {"data": "lab"}))
+    assert node.arrived.wait(60)
+    assert node.log[-1].startswith("a way is asked for by")
+
+
+def test_recognition_is_a_service(node_module, monkeypatch, tmp_path):
+    echo = program(tmp_path, """printf '{"words": "%s"}' "$*" """)
+    monkeypatch.setattr(StandIn, "parameters", {"exports": str(tmp_path), "program": echo, "memory": "m.db"})
+    node = node_module.LifeloreNode()
+    node._map = "new.yaml"
+    answer = node.services["lifelore/recognise"](None, types.SimpleNamespace())
+    assert answer.success
+    assert json.loads(answer.message) == {"words": "recognise new.yaml --memory m.db --json"}
+    program(tmp_path, "echo 'lifelore: no such building' >&2; exit 2")
+    answer = node.services["lifelore/recognise"](None, types.SimpleNamespace())
+    assert (answer.success, answer.message) == (False, "lifelore: no such building")
+
+
 # ---- the page ------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.slow
 def test_its_python_runs_in_the_checkout(exports):
-    (code,) = re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.S | re.M)
+    _, code = re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.S | re.M)
     done = subprocess.run(
         [sys.executable, "-W", "error", "-c", code], cwd=exports.parent, capture_output=True, text=True, check=True
     )
-    assert re.search(r"680 × 480 pixels, \d+ expensive\n\d+ poses", done.stdout)
+    assert re.search(r"680 × 480 pixels, \d+ of them kept out", done.stdout)
 
 
 def test_its_topics_and_parameters_are_those_of_the_node():
     source = (PACKAGE / "lifelore_node" / "node.py").read_text(encoding="utf-8")
     ast.parse(source)
     answers = ("lifelore/facts", "lifelore/detections", "lifelore/relations")
-    for topic in ("keepout_mask", "cost_mask", "lifelore/path", *answers):
+    for topic in (*MASKS, "lifelore/way", "lifelore/way_request", "lifelore/recognise", *answers):
         assert f'"{topic}"' in source
         assert f"/{topic}`" in PAGE
     for parameter in re.findall(r'declare_parameter\("(\w+)"', source):

@@ -14,6 +14,7 @@ import numpy as np
 from PIL import Image
 
 from lifelore.agent.teach import MOVE_OF
+from lifelore.bridges.mcap_file import mcap_writer
 from lifelore.core.planning.planning import greedy_policy, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.buildings.floor import floor_of
@@ -91,6 +92,56 @@ def make_runs(folder: Path) -> None:
             f"{run},{0.2 * i:.1f},{x:.2f},{y:.2f},{'goal' if i == last else ''}" for i, (x, y) in enumerate(points)
         ]
     (folder / "runs.csv").write_text("\n".join(lines) + "\n")
+
+
+def make_night(folder: Path) -> None:
+    """A night of a robot between the places of the jobs, as a ROS 2 bag: transforms, goals and a bumper.
+
+    Something that the map lacks stands halfway from the lab to the dock. The robot bumps into it three times, and
+    then drives around it.
+    """
+    world = make_world("building", map=folder / "office.yaml")
+    rows = [row.split(",")[1:] for row in (folder / "jobs.csv").read_text().splitlines()[1:4]]
+    lab, store, dock = (int(world.states_at([(float(x), float(y))])[0]) for _, x, y in rows)
+    driven = [state for state, _ in steps_of(world, lab, dock)]
+    crate = driven[len(driven) // 2]
+    around = replace(world, neighbour=np.where(world.neighbour == crate, -1, world.neighbour))
+    drives = [(world, lab, store), (world, store, dock), (around, dock, lab), *[(world, lab, dock)] * 3]
+    drives += [(around, lab, dock), (around, dock, store), (world, store, lab), (around, lab, dock)]
+    draw, clock = stream(0, "example night"), 1_704_146_400  # Monday, 2024-01-01, 22:00
+    with mcap_writer(folder / "night.mcap", {}) as write:
+        write("/tf_static", *transform("map", "odom", clock, 2.0, -1.0, 0.0))
+        for number, (building, start, end) in enumerate(drives):
+            states = np.array([*(state for state, _ in steps_of(building, start, end)), end])
+            bumps = crate in states and (start, end) == (lab, dock)
+            if bumps:
+                states = states[: list(states).index(crate)]
+            points = world.positions(states) + draw.normal(0, 0.02, (len(states), 2))
+            write("/navigate_to_pose/_action/status", *status(number, 2, clock))
+            for (x, y), (dx, dy) in zip(points, np.gradient(points, axis=0), strict=True):
+                clock += 1
+                write("/tf", *transform("odom", "base_link", clock, x - 2.0, y + 1.0, np.arctan2(dy, dx)))
+            if bumps:
+                write("/bumper", "std_msgs/msg/Bool", {"data": True}, clock * 10**9)
+                write("/bumper", "std_msgs/msg/Bool", {"data": False}, clock * 10**9 + 1)
+            write("/navigate_to_pose/_action/status", *status(number, 6 if bumps else 4, clock))
+            clock += 300
+
+
+def transform(parent: str, child: str, time: int, x: float, y: float, yaw: float) -> tuple[str, dict, int]:
+    """Type, fields and nanoseconds of a message for /tf."""
+    header = {"frame_id": parent, "stamp": {"sec": time}}
+    turn = {"z": float(np.sin(yaw / 2)), "w": float(np.cos(yaw / 2))}
+    pose = {"translation": {"x": float(x), "y": float(y)}, "rotation": turn}
+    one = {"header": header, "child_frame_id": child, "transform": pose}
+    return "tf2_msgs/msg/TFMessage", {"transforms": [one]}, time * 10**9
+
+
+def status(goal: int, value: int, time: int) -> tuple[str, dict, int]:
+    """Type, fields and nanoseconds of a message about the goal of this number."""
+    name = {"goal_id": {"uuid": np.full(16, goal, np.uint8)}}
+    one = {"goal_info": name, "status": value}
+    return "action_msgs/msg/GoalStatusArray", {"status_list": [one]}, time * 10**9
 
 
 def make_clouds(folder: Path) -> None:
@@ -183,5 +234,5 @@ def make_log(folder: Path) -> None:
 
 if __name__ == "__main__":
     place = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
-    for make in (make_map, make_jobs, make_new_map, make_runs, make_log, make_walks, make_clouds):
+    for make in (make_map, make_jobs, make_new_map, make_runs, make_night, make_log, make_walks, make_clouds):
         make(place)

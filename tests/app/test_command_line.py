@@ -107,7 +107,7 @@ def test_the_contract_names_these_commands():
         "serve",
         "version",
     }
-    verbs |= {f"memory {verb}" for verb in ("show", "export", "import", "merge", "forget")}
+    verbs |= {f"memory {verb}" for verb in ("show", "export", "nav2", "import", "merge", "forget")}
     reuse = ("fit", "warm", "choose", "update", "report", "evaluate", "retire", "add", "forget", "studies")
     verbs |= {f"reuse {verb}" for verb in reuse}
     assert {" ".join(path) for path in COMMANDS} == verbs

@@ -252,3 +252,18 @@ def test_reproduce_elsewhere_names_the_checkout(arguments, monkeypatch, tmp_path
     reproduce_command.add_reproduce(app)
     with pytest.raises(InputError, match="runs in a checkout of the repository"):
         app(arguments, standalone_mode=False)
+
+
+@pytest.mark.slow
+def test_a_building_is_written_for_nav2_from_memory(ask, tmp_path):
+    map = Path(__file__).parents[2] / "examples" / "data" / "office.yaml"
+    where = ("--memory", tmp_path / "m.db")
+    alone = ("--agent", "lore", "--set", "compare=false")
+    assert ask("live", "--map", map, "--tasks", 2, *alone, "--out", tmp_path / "life", *where).status == 0
+    found = ask("memory", "nav2", map, "--out", tmp_path / "nav2", *where, "--json").document
+    assert found["out"] == str(tmp_path / "nav2")
+    assert {path.name for path in (tmp_path / "nav2").iterdir()} == set(found["files"])
+    for name in found["files"]:
+        assert (tmp_path / "nav2" / name).read_bytes() == (tmp_path / "life" / name).read_bytes()
+    # Memory knows no place of this building by name, so there is no graph.
+    assert ask("memory", "nav2", map, "--out", tmp_path / "nav2", *where).out.startswith("6 files written to")

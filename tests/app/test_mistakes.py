@@ -34,7 +34,7 @@ ASKED_WRONGLY = {
     "live extra": "extra",
     "memory nonsense": "No such command 'nonsense'",
     "memory export": "Missing argument",
-    "memory forget --memory {known}": "forget needs a robot or --building NAME",
+    "memory forget --memory {known}": "forget needs one of a robot, --building NAME and --source RUNS",
     "version extra": "extra",
     "doctor --nonsense": "--nonsense",
 }
@@ -130,6 +130,7 @@ NAMES = {
     f"{LATTICE} --set start=a,b": "start must be ROW,COL",
     f"{LATTICE} --set start=nan,1": "start must be ROW,COL",
     "memory forget nobody --memory {known}": "robot 'nobody' has contributed nothing here; known robots: robot",
+    "memory forget --source none.csv --memory {known}": "has taught nothing here; known sources: none",
     "reproduce C9.9": "no claim or figure 'C9.9'",
     "reproduce C3.1 --quick --full": "exclude each other",
     "reproduce C3.1 --verify --full": "takes mode, settings and seed from the stored result",
@@ -164,6 +165,9 @@ MAPS = {
     f"{BUILDING} --set destinations=5000": "destinations must be at most",
 }
 PLACES = {
+    f"{LATTICE} --log life.mcap": "log applies to domain building, got lattice",
+    "live --log life.bag": "log must name a file that ends with .mcap or .rrd",
+    "memory nav2 {map} --memory {known} --out {folder}": "memory knows no place of the map",
     f"{LATTICE} --out ''": "out must name a folder",
     f"{LATTICE} --out {{text}}": "out must name a folder",
     f"{LATTICE} --out {{text}}/below": "out must name a folder",

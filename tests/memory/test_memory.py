@@ -172,6 +172,23 @@ def test_forget_brings_back_what_was_newer_elsewhere(memory):
     assert (cells(memory), cells(memory, "u")) == ({1: 1}, {1: 1})
 
 
+def test_forgotten_tasks_can_be_contributed_again_under_the_next_number(memory, tmp_path):
+    for seq, name in enumerate(("bag", "csv", "bag")):
+        memory.contribute("a", [record({1: 10**seq})], process=f"run {seq}", seq=0, task={"source": name})
+    with open_memory(tmp_path / "copy.db") as copy:
+        copy.merge_from(memory)
+        assert memory.forget_tasks(lambda task: task["source"] == "bag") == 2
+        assert memory.forget_tasks(lambda task: task["source"] == "bag") == 0
+        assert cells(memory) == {1: 10}
+        assert [memory.times_forgotten("a", f"run {seq}") for seq in range(3)] == [1, 0, 1]
+        assert memory.is_known("a", "run 0", 0)
+        assert not memory.is_known("a", "run 0", 1)
+        assert memory.contribute("a", [record({1: 1})], process="run 0", seq=1, task={"source": "bag"})
+        copy.merge_from(memory)  # which forgets and learns with it
+        assert cells(copy) == cells(memory) == {1: 11}
+    assert memory.check() == []
+
+
 def test_forget_names_the_robots_there_are(memory):
     give(memory, "rosie", 0)
     with pytest.raises(NotFoundError, match="rosie"):

@@ -12,10 +12,22 @@ def learn_from(
         str, typer.Argument(metavar="RUNS", help="CSV with time, x, y and outcome, or a rosbag with poses.")
     ],
     map: Annotated[str, Option(metavar="YAML", help="ROS map in whose frame the poses are.")],
-    topic: Annotated[str | None, Option(help="rosbag: topic of the poses; default: the only one.")] = None,
+    topic: Annotated[
+        str | None, Option(help="rosbag: topic of the poses; default: /tf from map to base, else the only one.")
+    ] = None,
+    bumps: Annotated[
+        str | None, Option(metavar="TOPIC", help="rosbag: topic of a bumper; default: /bump, /bumper.")
+    ] = None,
     reached_goal: Annotated[
         bool, Option("--reached-goal", help="Each run that has no outcome goal or failed ended at its goal.")
     ] = False,
+    shift: Annotated[
+        str | None, Option(metavar="X,Y,YAW", help="Lay the log on the map: turn by YAW, then add X, Y.")
+    ] = None,
+    dry_run: Annotated[bool, Option("--dry-run", help="Report what would be learnt; store nothing.")] = False,
+    out: Annotated[
+        str | None, Option(metavar="DIR", help="Folder for nav2's masks and route graph of all that is known.")
+    ] = None,
     cell: Annotated[float | None, Option(help="Side of a grid cell in metres [0.5].")] = None,
     robot_radius: Annotated[float | None, Option(help="Radius of the robot in metres [0.2].")] = None,
     weight: Annotated[float, Option(help="Weight w(π) of a run by a robot that makes no detours.")] = 1.0,
@@ -28,38 +40,64 @@ def learn_from(
 ) -> None:
     """Learn moves and a prior from runs of a real robot.
 
-    Use it to teach memory what your robot tried and bumped into, before or beside lives in simulation. A run is
+    Use it to teach memory what your robot drove, how long it took and what it bumped into. A run is
     learnt once, in whatever file it comes again. The columns run, heading and outcome are optional; an outcome is
-    bump, goal or failed.
+    bump, goal or failed. Of a rosbag, /tf, /tf_static, poses, bumps and the goals of nav2's
+    /navigate_to_pose are read. To undo it: lifelore memory forget --source RUNS.
     """
     from lifelore.agent.learn_from.learn_from import LearnFromSettings
     from lifelore.agent.learn_from.learn_from import learn_from as learn
     from lifelore.agent.live.life_settings import MemorySettings, PriorSettings
     from lifelore.app.console import print_json, progress_bar
+    from lifelore.core.errors import InputError
     from lifelore.domains.worlds import WorldSettings
 
+    if dry_run and out is not None:
+        raise InputError(f"out does not apply to a dry run, got {out!r}; leave one of the two out")
     settings = LearnFromSettings(
         WorldSettings("building", map, cell=cell, robot_radius=robot_radius),
         MemorySettings(memory, robot, building),
         PriorSettings(weight=weight),
         reached_goal,
+        _shift(shift),
+        dry_run,
     )
     with progress_bar("learning") as progress:
-        report = learn(_runs(runs, topic), settings, runs, progress)
+        report = learn(_runs(runs, topic, bumps), settings, runs, progress)
+    if out is not None:
+        from lifelore.agent.live.output.known_building import write_known_building
+
+        report["files"] = write_known_building(out, settings.world, memory, building)
     print_json(report) if as_json else _print(report)
 
 
-def _runs(path: str, topic: str | None):
-    from lifelore.agent.learn_from.run_log import read_runs, run_of_poses
+def _shift(text: str | None) -> tuple[float, float, float] | None:
+    from lifelore.core.errors import InputError
+
+    if text is None:
+        return None
+    try:
+        x, y, yaw = (float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(
+            f"shift must be X,Y,YAW in metres and radians, got {text!r}; for example --shift=-5,2,0"
+        ) from None
+    return x, y, yaw
+
+
+def _runs(path: str, topic: str | None, bumps: str | None):
+    from lifelore.agent.learn_from.run_log import Run, cut_runs, read_runs
     from lifelore.bridges.rosbag import is_bag
     from lifelore.core.errors import InputError
 
     if is_bag(path):
-        from lifelore.bridges.rosbag_poses import read_bag_poses
+        from lifelore.bridges.rosbag_poses import read_bag_log
 
-        return [run_of_poses(path, *read_bag_poses(path, topic))]
-    if topic is not None:
-        raise InputError(f"topic applies to rosbags, got '{topic}' for {path}; leave it out")
+        log = read_bag_log(path, topic, bumps)
+        return cut_runs(Run(path, log.time, log.points, log.heading, log.outcome), log.ends)
+    for name, value in (("topic", topic), ("bumps", bumps)):
+        if value is not None:
+            raise InputError(f"{name} applies to rosbags, got '{value}' for {path}; leave it out")
     return read_runs(path)
 
 
@@ -71,6 +109,8 @@ def _print(report: dict) -> None:
     console.print(
         f"building {building['name']}" if building["recognised"] else f"a new building: {building['name']}"
     )
+    if report["dry_run"]:
+        console.print("dry run: nothing is stored")
     console.print(
         f"{report['new']} of {report['runs']} runs are new; {report['to_goal']} reached their goal; "
         f"{report['moves']:,} moves and {report['bumps']:,} bumps from {report['poses']:,} poses"
@@ -80,5 +120,9 @@ def _print(report: dict) -> None:
     if report["new_obstacles"]:
         places = "; ".join(f"{x:.2f},{y:.2f} {move}" for x, y, move in report["new_obstacles"][:5])
         console.print(f"{len(report['new_obstacles'])} bumps where the map is free, such as {places}")
+    if not report["clock"]:
+        console.print("times of the log are no seconds since 1970: its runs count as driven at this hour")
     for warning in report["warnings"]:
         console.print(f"warning: {warning}")
+    if report["new"] and not report["dry_run"]:
+        console.print(f"to undo it: lifelore memory forget --source '{report['source']}'")

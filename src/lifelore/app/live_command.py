@@ -11,11 +11,12 @@ import typer
 if TYPE_CHECKING:
     from lifelore.agent.live.goals.job_list import Job
     from lifelore.agent.live.life_settings import Place
+    from lifelore.agent.live.output.logged_life import Recorder
     from lifelore.app.setting_keys import SettingKeys
 
 Option = typer.Option
 
-OPTIONS = ("domain", "map", "tasks", "goal", "goals", "agent", "robot", "memory", "out", "csv", "seed")
+OPTIONS = ("domain", "map", "tasks", "goal", "goals", "agent", "robot", "memory", "out", "log", "csv", "seed")
 """Options of `live` that are settings too."""
 
 
@@ -58,6 +59,12 @@ def live(
     ] = None,
     out: Annotated[
         str | None, Option(metavar="DIR", help="Folder for summary.json, pictures and exports.")
+    ] = None,
+    log: Annotated[
+        str | None,
+        Option(
+            metavar="FILE", help="building: NAME.mcap or .rrd for map, ways, costs, events; extra ros or view."
+        ),
     ] = None,
     csv: Annotated[
         str | None, Option(metavar="FILE", help="CSV in long format: run, task, agent, episode, measure, value.")
@@ -105,11 +112,11 @@ def setting_keys(domain: str) -> "SettingKeys":
     from lifelore.app.setting_keys import Setting, SettingKeys
 
     port = Setting("port", int, "Port of --serve, 8321 by default; 0: any free port.")
-    log = Setting("l2log", str, "Folder for a log of every episode in L2Logger's format.")
+    l2log = Setting("l2log", str, "Folder for a log of every episode in L2Logger's format.")
     labels = Setting(
         "labels", bool, "Whether the points of the pictures carry the objects' labels, for tabletop.", False
     )
-    life = SettingKeys((LifeSettings,), LIFE_KEYS, (log, port))
+    life = SettingKeys((LifeSettings,), LIFE_KEYS, (l2log, port))
     long_life = SettingKeys((live_long,), {"location": "memory", "family": "domain"}, (labels, port))
     if domain in FAMILIES:
         own, other, where = long_life, life, f"does not apply to domain {domain}; leave it out"
@@ -128,7 +135,7 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json
     from lifelore.agent.live.life_settings import LifeSettings
     from lifelore.agent.live.output.l2_log import LifeLog
     from lifelore.agent.live.output.long_table import LongTable
-    from lifelore.agent.live.output.report import check_folder, write_portfolio
+    from lifelore.agent.live.output.report import check_folder, write_log, write_portfolio
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.life_table import print_life
     from lifelore.app.pages_beside import pages_beside
@@ -141,6 +148,7 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json
     new_folders = _missing_folders(memory, out)
     if out is not None:
         check_folder(out)
+    record_file = _recorder(values)
     log = None if l2log is None else LifeLog(l2log, domain)
     with (
         pages_beside(serve, values.get("port"), memory),
@@ -163,11 +171,28 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json
 
         life = live_through(settings, progress=show, stop=stop, watch=record, notify=_notify)
         written = write_portfolio(life, out) if out is not None else []
+        if record_file is not None:
+            written.append(write_log(life, values["log"], record_file))
     if as_json:
         print_json(life.report)
     else:
         print_life(life.report, written)
     return INTERRUPTED if life.stopped else 0
+
+
+def _recorder(values: dict[str, Any]) -> "Recorder | None":
+    """What writes the log, if the user wants one."""
+    from lifelore.core.errors import InputError
+
+    if "log" not in values:
+        return None
+    if values["domain"] != "building":
+        raise InputError(f"log applies to domain building, got {values['domain']}; leave it out")
+    from lifelore.bridges.life_log import write_life_log
+    from lifelore.bridges.scene_log import check_log
+
+    check_log(values["log"])
+    return write_life_log
 
 
 def _missing_folders(memory: str | None, out: str | None) -> list[Path]:

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 Option = typer.Option
 
-FOREIGN = ("map", "goal", "goals", "out", "csv")
+FOREIGN = ("map", "goal", "goals", "out", "log", "csv")
 """Options of `lifelore live` that do not apply to these domains."""
 
 

@@ -46,6 +46,32 @@ def export(
     _say({"exported": count, "file": path}, f"{count} contributions written to {path}", as_json)
 
 
+@memory.command()
+def nav2(
+    map: Annotated[str, typer.Argument(metavar="YAML", help="ROS map of the building.")],
+    out: Annotated[str, typer.Option(metavar="DIR", help="Folder for the files.")],
+    where: Where = None,
+    cell: Annotated[float | None, typer.Option(help="Side of a grid cell in metres, as in `live` [0.5].")] = None,
+    robot_radius: Annotated[
+        float | None, typer.Option(help="Radius of the robot in metres, as in `live` [0.2].")
+    ] = None,
+    building: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Name of the building; default: recognise it by its map.")
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Write nav2's masks and route graph of a building.
+
+    Use it after memory has changed, for instance by `learn-from`: the robot's costmaps then show it.
+    """
+    from lifelore.agent.live.output.known_building import write_known_building
+    from lifelore.domains.worlds import WorldSettings
+
+    settings = WorldSettings("building", map, cell=cell, robot_radius=robot_radius)
+    written = write_known_building(out, settings, where, building)
+    _say({"out": out, "files": written}, f"{len(written)} files written to {out}", as_json)
+
+
 @memory.command("import")
 def import_(
     paths: Annotated[list[str], typer.Argument(metavar="FILE…")], where: Where = None, as_json: AsJson = False
@@ -78,23 +104,33 @@ def forget(
         str | None,
         typer.Option(metavar="NAME", help="Building whose map and transitions are deleted; the priors stay."),
     ] = None,
+    source: Annotated[
+        str | None, typer.Option(metavar="RUNS", help="Log whose runs are deleted, as named to learn-from.")
+    ] = None,
     where: Where = None,
     as_json: AsJson = False,
 ) -> None:
-    """Delete all contributions of a robot, or a building, for ever.
+    """Delete a robot, a building or the runs of a log for ever.
 
-    No later import restores them.
+    No later import restores them. learn-from learns the runs of a log again.
     """
+    from lifelore.agent.learn_from.learn_from import forget_source
     from lifelore.agent.live.buildings.building_memory import forget_building
     from lifelore.core.errors import InputError
     from lifelore.memory import open_memory
 
-    if (robot is None) == (building is None):
-        raise InputError("forget needs a robot or --building NAME, and not both; see: lifelore memory show")
+    if sum(name is not None for name in (robot, building, source)) != 1:
+        raise InputError(
+            "forget needs one of a robot, --building NAME and --source RUNS; see: lifelore memory show"
+        )
     with open_memory(where, create=False) as opened:
         if building is not None:
             done = forget_building(opened, building)
             _say(done, f"building {building} forgotten: {done['records']} records", as_json)
+            return
+        if source is not None:
+            count = forget_source(opened, source)
+            _say({"forgotten": count, "source": source}, f"{count} runs of {source} forgotten", as_json)
             return
         count = opened.forget(str(robot))
     _say({"forgotten": count, "robot": robot}, f"{count} contributions of {robot} forgotten", as_json)

@@ -28,7 +28,9 @@ def check_ros_extra() -> None:
 
 @contextmanager
 def mcap_writer(path: Path, definitions: Mapping[str, str]) -> Iterator[Write]:
-    """A function that writes messages of ROS 2 Humble to an MCAP file, one topic a call; used in a ``with`` block.
+    """A function that writes messages of ROS 2 Humble to an MCAP file; used in a ``with`` block.
+
+    A topic has one type, and its messages are written in order of time.
 
     Parameters
     ----------
@@ -51,10 +53,13 @@ def mcap_writer(path: Path, definitions: Mapping[str, str]) -> Iterator[Write]:
         store.register(get_types_from_msg(text, name))
     with TemporaryDirectory(dir=path.parent) as folder:
         with Writer(Path(folder) / "log", version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+            topics: dict[str, Any] = {}
 
             def write(topic: str, kind: str, fields: Mapping[str, Any], nanoseconds: int) -> None:
-                connection = writer.add_connection(topic, kind, typestore=store)
-                writer.write(connection, nanoseconds, store.serialize_cdr(message_of(store, kind, fields), kind))
+                if topic not in topics:
+                    topics[topic] = writer.add_connection(topic, kind, typestore=store)
+                data = store.serialize_cdr(message_of(store, kind, fields), kind)
+                writer.write(topics[topic], nanoseconds, data)
 
             yield write
         (written,) = Path(folder).glob("log/*.mcap")

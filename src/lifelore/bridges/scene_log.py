@@ -12,13 +12,14 @@ from lifelore.core.errors import InputError
 if TYPE_CHECKING:
     from lifelore.perception.scene import Scene
 
-KINDS = {".mcap": (check_ros_extra, write_scene_mcap), ".rrd": (rerun, write_scene_rrd)}
-"""For each ending what checks the extra, and what writes."""
+CHECKS = {".mcap": check_ros_extra, ".rrd": rerun}
+"""For each ending what checks the extra."""
+_WRITERS = {".mcap": write_scene_mcap, ".rrd": write_scene_rrd}
 
 
 def check_log(path: str) -> None:
     """Raise InputError for an unknown ending, and MissingExtraError where what the kind needs is not installed."""
-    _kind(path)[0]()
+    CHECKS[ending_of(path)]()
 
 
 def write_scene_log(path: str, scene: "Scene", document: Mapping[str, Any]) -> None:
@@ -33,11 +34,12 @@ def write_scene_log(path: str, scene: "Scene", document: Mapping[str, Any]) -> N
     OSError
         The file cannot be written.
     """
-    _kind(path)[1](path, scene, document)
+    _WRITERS[ending_of(path)](path, scene, document)
 
 
-def _kind(path: str) -> tuple[Any, Any]:
+def ending_of(path: str) -> str:
+    """The ending of a log's name, one of `CHECKS`; else InputError."""
     ending = Path(path).suffix.lower()
-    if ending not in KINDS:
-        raise InputError(f"log must name a file that ends with {' or '.join(KINDS)}, got '{path}'")
-    return KINDS[ending]
+    if ending not in CHECKS:
+        raise InputError(f"log must name a file that ends with {' or '.join(CHECKS)}, got '{path}'")
+    return ending

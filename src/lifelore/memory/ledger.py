@@ -131,6 +131,12 @@ def entries(conn: Connection, robot: str | None = None) -> list[ContributionRow]
     return sorted(_entries(rows), key=lambda entry: entry.order)
 
 
+def tasks(conn: Connection) -> Iterator[tuple[int, Identity, str]]:
+    """(row number, identity, description of the task) of each contribution."""
+    for row in conn.execute("SELECT number, robot, process, seq, task FROM lifelore_contributions").fetchall():
+        yield row[0], (row[1], row[2], row[3]), row[4]
+
+
 def _entries(rows: Iterable[tuple]) -> list[ContributionRow]:
     return [ContributionRow(row[0], (row[1], row[2], row[3]), row[4], row[5]) for row in rows]
 

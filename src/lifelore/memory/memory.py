@@ -1,7 +1,7 @@
 """`Memory`: records of many robots, stored in a file or on a PostgreSQL server."""
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
@@ -374,6 +374,31 @@ class Memory:
             count = _forget(conn, robots)
         self._store.empty_log()
         return count
+
+    def forget_tasks(self, chosen: Callable[[Mapping[str, Any]], bool]) -> int:
+        """Remove for ever the contributions whose description of the task is `chosen`; return their number.
+
+        No replay, merge or import restores them, and bytes go as in `forget`.
+        """
+        with self._store.writing() as conn:
+            found = [one for one in ledger.tasks(conn) if chosen(json.loads(one[2]))]
+            if not found:
+                return 0
+            ledger.add_tombstones(conn, [identity for _, identity, _ in found])
+            cache.rebuild(conn, merging.delete(conn, [number for number, _, _ in found]))
+        self._store.empty_log()
+        return len(found)
+
+    def is_known(self, robot: str, process: str, seq: int) -> bool:
+        """Whether the memory stores a contribution, or has forgotten it."""
+        with self._store.reading() as conn:
+            return ledger.is_known(conn, (robot, process, seq))
+
+    def times_forgotten(self, robot: str, process: str) -> int:
+        """Number of forgotten contributions of a process of a robot."""
+        count = "SELECT COUNT(*) FROM lifelore_tombstones WHERE robot = ? AND process = ?"
+        with self._store.reading() as conn:
+            return int(conn.value(count, (robot, process)))
 
     def forget_records(self, names: Sequence[tuple[str, str, int]]) -> int:
         """Remove the records of some (kind, key, version) for ever; return the number of contributions concerned.

@@ -5,14 +5,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import sparse
+from scipy.sparse import csgraph
 
-from lifelore.agent.learn_from.learn_from import LearnFromSettings, learn_from
+from lifelore.agent.learn_from.learn_from import LearnFromSettings, forget_source, learn_from
 from lifelore.agent.learn_from.run_log import Run, read_runs
+from lifelore.agent.live.buildings.recognition import recognised_place
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.agent.live.lore import Lore, prior_scope
-from lifelore.core.errors import InputError
-from lifelore.domains.worlds import WorldSettings, world_from_settings
+from lifelore.agent.travel import Travel
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
 from lifelore.memory import open_memory
 
 from .robot_runs import csv_text, driven_run
@@ -80,7 +84,7 @@ def test_the_next_life_begins_better(world, tmp_path):
     assert taught["collisions"] < 0.2 * fresh["collisions"]
 
 
-def test_a_bump_closes_a_move_until_it_is_made_again(world, tmp_path):
+def test_a_bump_where_the_map_is_free_is_reported(world, tmp_path):
     state = int(np.flatnonzero((world.neighbour >= 0).all(axis=1))[0])
     east = int(world.neighbour[state, 2])
     here, there = world.positions(np.array([state, east]))
@@ -91,21 +95,149 @@ def test_a_bump_closes_a_move_until_it_is_made_again(world, tmp_path):
     assert (report["bumps"], report["moves"]) == (1, 0)
     assert report["new_obstacles"] == [[*(round(float(x), 3) for x in here), "east"]]
     assert "no run ended with the outcome goal" in report["warnings"][-1]
-    assert known(world, tmp_path / "m.db").model.target[state, 2] == state
-    driven = Run("d", np.array([0.0, 1.0]), np.array([here, there]), np.full(2, np.nan), ["", ""])
-    learn_from([driven], settings(tmp_path / "m.db"))
-    assert known(world, tmp_path / "m.db").model.target[state, 2] == east
 
 
 def test_a_log_in_another_frame_is_refused_or_warned_of(world, runs, tmp_path):
     path = tmp_path / "m.db"
     far = [replace(run, points=run.points + 100.0) for run in runs]
-    with pytest.raises(InputError, match=r"poses lie on no place of this map; record x and y in metres"):
+    with pytest.raises(InputError, match=r"where the robot cannot be on this map .* no single offset mends it"):
         learn_from(far, settings(path))
+    moved = [replace(run, points=run.points + np.array([5.0, 2.0])) for run in runs]
+    with pytest.raises(InputError, match=r"--shift=-[45]\.?\d*,-[12]\.?\d*,0 leaves 0\.\d%") as caught:
+        learn_from(moved, settings(path), "log.csv")
+    assert str(caught.value).startswith("log.csv: ")
     with open_memory(path) as memory:
         assert memory.tasks("rosie") == 0
-    turned = [replace(run, points=run.points + np.array([0.6, 0.6])) for run in runs]
-    assert learn_from(turned, settings(path))["warnings"]
+    mended = replace(settings(path), shift=(-5.0, -2.0, 0.0))
+    assert learn_from(moved, mended)["new"] == 12
+
+
+def test_real_noise_is_learnt_and_noise_of_half_a_cell_is_not(world, tmp_path):
+    def noisy(sigma):
+        return [driven_run(world, number, noise=sigma) for number in range(12)]
+
+    clean = learn_from(noisy(0.0), settings(tmp_path / "a.db"))
+    real = learn_from(noisy(0.05), settings(tmp_path / "b.db"))
+    assert real["warnings"] == []
+    assert 0.03 < real["noise"] < 0.07
+    assert abs(real["moves"] - clean["moves"]) < 0.1 * clean["moves"]
+    with pytest.raises(InputError, match=r"the poses tremble by 0\.\d+ m"):
+        learn_from(noisy(0.25), settings(tmp_path / "c.db"))
+
+
+def corridor(world) -> tuple[int, int]:
+    """Two neighbouring states from which the way round is short."""
+    open_floor = np.flatnonzero((world.neighbour >= 0).all(axis=1))
+    return next(
+        (s, int(world.neighbour[s, 2])) for s in open_floor.tolist() if world.neighbour[s, 2] in open_floor
+    )
+
+
+def short_run(world, start: int, goal: int, at: float, bump: bool) -> Run:
+    """From the middle of a cell to the next, or a bump at 40 % of the way; `at` in seconds since 1970."""
+    here, there = world.positions(np.array([start, goal]))
+    points = here + np.outer([0.0, 0.4] if bump else [0.0, 1.0], there - here)
+    return Run("r", at + np.arange(2.0), points, np.full(2, np.nan), ["", "bump" if bump else ""])
+
+
+def way_around(world, path, start: int, goal: int, clock: float) -> list[int]:
+    """States of the way of least `Travel` cost."""
+    with open_memory(path) as memory:
+        occupancy = map_from_settings(OFFICE)
+        place = recognised_place(OFFICE, world, occupancy, memory)
+        cost = Travel.recalled(world, place.grid, memory).cost(clock)
+    tail, action = np.nonzero(world.neighbour >= 0)
+    graph = sparse.csr_array(
+        (cost[tail, action], (tail, world.neighbour[tail, action])), shape=(world.n_states,) * 2
+    )
+    _, before = csgraph.dijkstra(graph, indices=start, return_predecessors=True)
+    way = [goal]
+    while way[-1] != start:
+        way.append(int(before[way[-1]]))
+    return way[::-1]
+
+
+def test_bumps_close_a_place_that_passes_and_age_reopen(world, tmp_path):
+    path, (start, closed) = tmp_path / "m.db", corridor(world)
+    goal, monday, day = int(world.neighbour[closed, 2]), 1704067200.0, 86400.0
+    learn_from([short_run(world, start, int(world.neighbour[start, 3]), monday, bump=False)], settings(path))
+    assert way_around(world, path, start, goal, monday) == [start, closed, goal]
+    bumps = [short_run(world, start, closed, monday + 600 * k, bump=True) for k in range(1, 4)]
+    learn_from(bumps, settings(path))
+    assert closed not in way_around(world, path, start, goal, monday + 3600)
+    assert known(world, path).model.target[start, 2] != start  # no transition: the bump ages
+    assert way_around(world, path, start, goal, monday + 120 * day) == [start, closed, goal]
+    passes = [short_run(world, start, closed, monday + 600 * k, bump=False) for k in range(7, 12)]
+    learn_from(passes, settings(path))
+    assert way_around(world, path, start, goal, monday + 7200) == [start, closed, goal]
+
+
+@pytest.mark.parametrize(("n", "least", "most"), [(1, 0.1, 0.4), (2, 0.6, 1.0)])
+def test_bumps_of_one_minute_add_up(world, runs, tmp_path, n, least, most):
+    """A life of passes first, so that refusals are rare; then `n` bumps within a minute."""
+    path, (start, closed), monday = tmp_path / "m.db", corridor(world), 1704067200.0
+    learn_from([replace(run, time=run.time + monday + 600 * k) for k, run in enumerate(runs)], settings(path))
+    once = short_run(world, start, closed, monday + 86400, bump=True)
+    bumps = replace(once, time=once.time[0] + np.arange(2.0 * n), points=np.tile(once.points, (n, 1)),
+                    heading=np.full(2 * n, np.nan), outcome=["", "bump"] * n)  # fmt: skip
+    learn_from([bumps], settings(path))
+    with open_memory(path) as memory:
+        grid = recognised_place(OFFICE, world, map_from_settings(OFFICE), memory).grid
+        blocked = Travel.recalled(world, grid, memory).blocked(monday + 86500)[start, 2]
+    assert least < blocked <= most
+
+
+def content(path) -> dict:
+    """All records of a memory by name."""
+    with open_memory(path) as memory:
+        names = [(one["kind"], one["key"], one["version"]) for one in memory.show()["lore"]]
+        found = {name: memory.recall(*name) for name in names}
+        return {name: (one.slots.tolist(), one.values.tolist()) for name, one in found.items() if len(one.slots)}
+
+
+def test_a_source_is_undone_and_can_be_learnt_again(world, runs, tmp_path):
+    path = tmp_path / "m.db"
+    learn_from(runs[:3], settings(path), "monday.csv")
+    before = content(path)
+    learn_from(runs[3:8], settings(path), "tuesday.csv")
+    both = content(path)
+    assert both != before
+    with open_memory(path) as memory:
+        assert forget_source(memory, "tuesday.csv") == 5
+        with pytest.raises(
+            NotFoundError, match=r"'tuesday.csv' has taught nothing here; known sources: monday.csv"
+        ):
+            forget_source(memory, "tuesday.csv")
+    assert content(path) == before
+    assert learn_from(runs[3:8], settings(path), "tuesday.csv")["new"] == 5
+    again = content(path)
+    assert set(again) == set(both)
+    assert all(again[name] == both[name] for name in both if name[0] != "passes")  # these have no clock: run now
+
+
+def test_what_two_sources_hold_stays_when_one_is_undone(world, runs, tmp_path):
+    path = tmp_path / "m.db"
+    shorter = replace(runs[0], time=runs[0].time[:-1], points=runs[0].points[:-1], heading=runs[0].heading[:-1],
+                      outcome=runs[0].outcome[:-1])  # fmt: skip
+    learn_from([runs[0]], settings(path), "a.csv")
+    target = known(world, path).model.target
+    learn_from([shorter], settings(path), "b.csv")
+    with open_memory(path) as memory:
+        forget_source(memory, "a.csv")
+    left = known(world, path).model.target
+    assert (left != target).sum() <= 1  # the last move alone was only in a.csv
+    assert (left >= 0).sum() > 5
+
+
+def test_a_dry_run_stores_nothing(world, runs, tmp_path):
+    path = tmp_path / "m.db"
+    dry = replace(settings(path), dry_run=True)
+    said = learn_from(runs, dry)
+    assert (said["new"], said["dry_run"], path.exists()) == (12, True, False)
+    learn_from(runs[:5], settings(path))
+    before = content(path)
+    assert learn_from(runs, dry)["new"] == 7
+    assert content(path) == before
 
 
 def test_a_map_is_needed():
@@ -118,3 +250,30 @@ def test_without_outcomes_runs_may_be_declared_to_reach_their_goal(world, tmp_pa
     assert learn_from([run], settings(tmp_path / "a.db"))["to_goal"] == 0
     declared = replace(settings(tmp_path / "b.db"), reached_goal=True)
     assert learn_from([run], declared)["to_goal"] == 1
+
+
+def test_what_a_larger_robot_drove_serves_a_smaller_one_and_not_the_other_way_round(tmp_path):
+    large, small = replace(OFFICE, robot_radius=0.3), replace(OFFICE, robot_radius=0.15)
+
+    def learnt_then_recalled(first, second, path) -> tuple[Lore, Lore]:
+        drove = world_from_settings(first)
+        learn_from([driven_run(drove, number) for number in range(8)], replace(settings(path), world=first))
+        with open_memory(path) as memory:
+            lores = []
+            for kind in (first, second):
+                world = world_from_settings(kind)
+                place = recognised_place(kind, world, map_from_settings(kind), memory)
+                lores.append(
+                    Lore.recalled(place.world, prior_scope(world, "observation"), 0.1, memory, place.grid)
+                )
+        return lores[0], lores[1]
+
+    own, smaller = learnt_then_recalled(large, small, tmp_path / "a.db")
+    made = int((own.model.target >= 0).sum())
+    state, action = np.nonzero(smaller.model.target >= 0)
+    assert len(state) == made > 100
+    assert np.array_equal(smaller.model.target[state, action], smaller.world.neighbour[state, action])
+    seen = smaller.model.percept >= 0
+    assert np.array_equal(smaller.model.percept[seen], smaller.world.percepts[seen])
+    _, larger = learnt_then_recalled(small, large, tmp_path / "b.db")
+    assert (larger.model.target < 0).all()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.agent.learn_from.run_log import read_runs
+from lifelore.agent.learn_from.run_log import Run, cut_runs, read_runs
 from lifelore.core.errors import InputError, NotFoundError
 
 
@@ -57,6 +57,16 @@ def test_equal_runs_have_equal_digests_in_whatever_file(tmp_path):
 def test_a_line_that_breaks_its_rule_is_named(tmp_path, text, message):
     with pytest.raises(InputError, match=message):
         read_runs(log(tmp_path, text))
+
+
+def test_a_log_is_cut_where_runs_end():
+    points = np.arange(10.0).reshape(5, 2)
+    whole = Run("bag", np.arange(5.0), points, np.zeros(5), ["", "goal", "", "", "bump"])
+    parts = cut_runs(whole, np.array([False, True, False, False, True]))
+    assert [(part.name, part.time.tolist()) for part in parts] == [("bag 0", [0, 1]), ("bag 1", [2, 3, 4])]
+    assert parts[1].points.tolist() == points[2:].tolist()
+    assert [part.reached_goal for part in parts] == [True, False]
+    assert [one.name for one in cut_runs(whole, np.zeros(5, bool))] == ["bag"]
 
 
 def test_other_files_are_refused(tmp_path):

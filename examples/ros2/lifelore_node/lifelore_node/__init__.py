@@ -1,1 +1,1 @@
-"""A ROS 2 node beside `lifelore serve`: exports out, point clouds in, relations out."""
+"""A ROS 2 node beside Lifelore: masks, ways and recognition out, point clouds in, relations out."""

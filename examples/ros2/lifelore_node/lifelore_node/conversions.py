@@ -3,11 +3,11 @@
 A message is a dict of its fields, as `rosidl_runtime_py.set_message.set_message_fields` takes it.
 """
 
-import csv
 import io
 import json
 import math
-from itertools import pairwise
+import shlex
+import subprocess
 from pathlib import Path
 from typing import Any
 from urllib.error import HTTPError
@@ -24,7 +24,7 @@ HIGHEST = 100
 
 
 def occupancy_grid(path: str | Path) -> dict[str, Any]:
-    """Fields of `nav_msgs/OccupancyGrid` from a map of mode raw, such as `costs.yaml` and `keepout.yaml`.
+    """Fields of `nav_msgs/OccupancyGrid` from a map of mode raw, such as `costs.yaml`.
 
     A message has the lowest row first; a picture has the highest row first.
     """
@@ -47,19 +47,40 @@ def occupancy_grid(path: str | Path) -> dict[str, Any]:
     }
 
 
-def path_poses(path: str | Path, frame: str = "map") -> dict[str, Any]:
-    """Fields of `nav_msgs/Path` from the first path of the last task in `paths.csv`; each pose faces the next."""
-    rows = list(csv.DictReader(Path(path).read_text(encoding="utf-8").splitlines()))
-    if not rows:
-        raise ValueError(f"{path} must hold a path, got none; live through more tasks")
-    last = max(int(row["task"]) for row in rows)
-    points = [(float(row["x"]), float(row["y"])) for row in rows if (int(row["task"]), row["path"]) == (last, "0")]
-    steps = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(points)]
-    headings = [math.atan2(dy, dx) for dx, dy in steps]
-    headings.append(headings[-1] if headings else 0.0)
-    header = {"frame_id": frame}
-    poses = [{"header": header, "pose": pose(x, y, yaw)} for (x, y), yaw in zip(points, headings, strict=True)]
-    return {"header": header, "poses": poses}
+def way_fields(document: dict[str, Any], frame: str, stamp: dict[str, int]) -> dict[str, Any]:
+    """Fields of `nav_msgs/Path` from what `lifelore way --json` prints."""
+    header = {"stamp": stamp, "frame_id": frame}
+    return {"header": header, "poses": [{"header": header, "pose": one["pose"]} for one in document["poses"]]}
+
+
+def way_ends(text: str) -> tuple[str, str]:
+    """Start and destination of a request for a way: JSON with the keys from and to, names or "X,Y" in metres."""
+    try:
+        request = json.loads(text)
+        return str(request["from"]), str(request["to"])
+    except (ValueError, KeyError, TypeError):
+        raise ValueError(f'a way is asked for by {{"from": "dock", "to": "1.5,2"}}, got {text[:60]!r}') from None
+
+
+def answer_of(program: str, *words: str | Path, seconds: float = 120.0) -> dict[str, Any]:
+    """The JSON document that a command of Lifelore prints.
+
+    Raises ValueError with the command's own line where it refuses, and OSError where there is no such program.
+    """
+    command = [program, *map(str, words), "--json"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=seconds, check=False)
+    except subprocess.TimeoutExpired:
+        raise ValueError(f"{shlex.join(command)} took longer than {seconds:g} s") from None
+    if done.returncode != 0:
+        raise ValueError(done.stderr.strip() or f"{shlex.join(command)} left with {done.returncode}")
+    return json.loads(done.stdout)
+
+
+def memory_revision(url: str, token: str = "", seconds: float = 10.0) -> str:
+    """A text that differs after each change of the service's memory; OSError if the service does not answer."""
+    with urlopen(_request(f"{url}/v1/lives/revision", token), timeout=seconds) as answer:
+        return json.load(answer)["revision"]
 
 
 def pose(x: float, y: float, yaw: float) -> dict[str, Any]:
@@ -94,15 +115,17 @@ def perceived(url: str, points: np.ndarray, token: str = "", seconds: float = 60
     """
     file = io.BytesIO()
     np.savez(file, points=points, camera=np.zeros(3))
-    headers = {"Content-Type": "application/octet-stream"}
-    if token:
-        headers["Authorization"] = f"Bearer {token}"
-    request = Request(f"{url}/v1/perceive/cloud?format=npz", file.getvalue(), headers)
+    request = _request(f"{url}/v1/perceive/cloud?format=npz", token, file.getvalue())
     try:
         with urlopen(request, timeout=seconds) as answer:
             return json.load(answer)
     except HTTPError as error:
         raise ValueError(json.load(error)["error"]["message"]) from None
+
+
+def _request(url: str, token: str, body: bytes | None = None) -> Request:
+    headers = {} if body is None else {"Content-Type": "application/octet-stream"}
+    return Request(url, body, headers | ({"Authorization": f"Bearer {token}"} if token else {}))
 
 
 def header_fields(header: Any) -> dict[str, Any]:

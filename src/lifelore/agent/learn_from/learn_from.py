@@ -1,38 +1,40 @@
-"""Learns transitions and the action prior from runs of a real robot, and stores them in memory (`learn-from`).
+"""Learns from runs of a real robot: moves, their times, bumps and the action prior (`learn-from`).
 
-A run is stored once, in whatever file it comes again. Moves that a robot made and bumps become transitions of the
-building. The moves of a run that reached its goal also count in the observation prior, weighted by the robot's
-competence as for demonstrations (thesis §3.4.8).
+A run is stored once, in whatever file it comes again. Moves that a robot made, and bumps into walls of the map,
+become transitions of the building. Moves with their times, and bumps where the map is free, become observations of
+`Travel`, where bumps age and passes reopen a place. The moves of a run that reached its goal also count in the
+observation prior, weighted by the robot's competence as for demonstrations (thesis §3.4.8).
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.demonstrations.competence import competence_by_steps
-from lifelore.action.demonstrations.demonstrations import Demonstration, count_demonstrations
-from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.policy_counts import actions_to_count
+from lifelore.agent.learn_from.learnt_runs import LearntRun, RunStore, has_clock
+from lifelore.agent.learn_from.localisation_noise import localisation_noise
+from lifelore.agent.learn_from.log_fit import Reachable, Shift, shifted_runs
+from lifelore.agent.learn_from.log_report import checked_log, log_report
 from lifelore.agent.learn_from.run_log import Run
-from lifelore.agent.learn_from.tried_moves import TriedMoves, tried_moves
-from lifelore.agent.live.buildings.recognition import Place, recognised_place
+from lifelore.agent.learn_from.tried_moves import tried_moves
+from lifelore.agent.live.buildings.recognition import recognised_place
 from lifelore.agent.live.life_settings import MemorySettings, PriorSettings
-from lifelore.agent.live.lore import Lore, prior_scope
-from lifelore.core.errors import InputError
+from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.planning.planning import optimal_q
 from lifelore.core.protocols import Progress
-from lifelore.domains.grids.grid_world import MOVE_NAMES, GridWorld
+from lifelore.domains.buildings.floor import floor_of
+from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
 from lifelore.memory import Memory, open_memory
-
-MOST_OUTSIDE, MANY_OUTSIDE = 0.5, 0.1
-"""Share of poses on no place of the building from which a log is refused, and from which it gives a warning."""
-MANY_CONTRADICTIONS = 0.05
-"""Share of the moves that the map separates, from which a log gives a warning."""
+from lifelore.memory.location import locate
 
 
 @dataclass(frozen=True)
@@ -49,31 +51,24 @@ class LearnFromSettings:
         α⁰ and the weight of a run by a robot of competence 1.
     reached_goal : bool
         Take each run without an outcome goal or failed for a run that ended at its goal.
+    shift : (x, y, yaw), optional
+        Metres and radians that lay the log on the map: a point p becomes R(yaw) · p + (x, y).
+    dry_run : bool
+        Report, and store nothing.
     """
 
     world: WorldSettings
     memory: MemorySettings = field(default_factory=MemorySettings)
     prior: PriorSettings = field(default_factory=PriorSettings)
     reached_goal: bool = False
+    shift: Shift | None = None
+    dry_run: bool = False
 
     def __post_init__(self) -> None:
         if self.world.domain != "building" or self.world.map is None:
             raise InputError("map must be given: runs are in metres of the frame of a building's map")
-
-
-@dataclass(frozen=True)
-class _LearntRun:
-    """A run as moves in the building; the goal is the state in which it ended, None if that is no goal."""
-
-    run: Run
-    tried: TriedMoves
-    goal: int | None
-
-    def demonstration(self, robot: str, with_bumps: bool) -> Demonstration:
-        steps = np.array([self.tried.states, self.tried.actions, self.tried.targets], np.int64).reshape(3, -1)
-        states, actions, targets = steps
-        made = np.full(len(states), True) if with_bumps else targets != states
-        return Demonstration(str(self.goal), robot, states[made], actions[made])
+        if self.shift is not None and not (len(self.shift) == 3 and np.isfinite(self.shift).all()):
+            raise InputError(f"shift must be three numbers x, y (metres) and yaw (radians), got {self.shift}")
 
 
 def learn_from(
@@ -81,128 +76,88 @@ def learn_from(
 ) -> dict[str, Any]:
     """Learn from runs and store what was learnt, each run in one transaction.
 
+    `forget_source` undoes it: it forgets the runs that were learnt from this `source`.
+
     Returns
     -------
     dict
         JSON data: ``source``, ``building``, ``runs``, ``new`` (runs that memory did not have), ``to_goal``,
         ``poses``, ``moves``, ``bumps``, ``new_obstacles`` (bumps where the map is free: x, y in metres of the
-        cell, move), ``outside`` (poses on no place of the building), ``gaps``, ``contradictions`` (moves through
-        walls of the map, not learnt), ``undirected`` (bumps without a direction, not learnt), ``competence`` (w in
-        [0, 1]; None without a run to a goal), ``warnings``.
+        cell, move), ``outside`` (poses where the robot cannot be), ``noise`` (metres, standard deviation of the
+        poses' jitter), ``gaps``, ``contradictions`` (moves through walls of the map, not learnt), ``undirected``
+        (bumps without a direction, not learnt), ``competence`` (w in [0, 1]; None without a run to a goal),
+        ``clock`` (times are seconds since 1970; if not, runs count as driven now), ``dry_run``, ``warnings``.
 
     Raises
     ------
     InputError
-        Most poses lie outside the building, or a setting or the map breaks its rule. Nothing is stored.
+        More than 2 % of the poses lie outside, the noise is too large, or a setting or the map breaks its rule.
+        Nothing is stored.
     StoreError
         Memory cannot store a run; earlier runs stay stored.
     """
+    runs = runs if settings.shift is None else shifted_runs(runs, settings.shift)
     occupancy = map_from_settings(settings.world)
-    world = world_from_settings(settings.world, occupancy)
-    with open_memory(settings.memory.location) as memory:
+    world, noise = world_from_settings(settings.world, occupancy), localisation_noise(runs)
+    outside = checked_log(runs, Reachable.of(floor_of(occupancy, world)), noise, world.frame.cell, source)
+    with _opened(settings) as memory:
         place = recognised_place(settings.world, world, occupancy, memory, settings.memory.building)
-        learnt = [_learnt(place.world, run, settings.reached_goal) for run in runs]
-        report = _report(place, learnt, source)
+        learnt = [_learnt(place.world, run, noise, settings.reached_goal) for run in runs]
         weights = _competence(place.world, learnt, settings.memory.robot)
+        report = log_report(place, learnt, source, outside, noise)
+        report["clock"] = all(has_clock(run.time) for run in runs)
         report["competence"] = weights.get(settings.memory.robot)
-        report["new"] = _store(place, learnt, weights, settings, memory, progress)
+        report["dry_run"] = settings.dry_run
+        store = RunStore(place, memory, settings.memory.robot, settings.prior, source)
+        report["new"] = store.count_new(learnt) if settings.dry_run else store.store(learnt, weights, progress)
     return report
 
 
-def _learnt(world: GridWorld, run: Run, reached_goal: bool) -> _LearntRun:
+def forget_source(memory: Memory, source: str) -> int:
+    """Forget the runs that were learnt from a source for ever; return their number.
+
+    They are learnt again if `learn_from` meets them again. The map of the building stays.
+
+    Raises
+    ------
+    NotFoundError
+        No run was learnt from this source.
+    """
+    count = memory.forget_tasks(lambda task: task.get("source") == source)
+    if not count:
+        tasks = (task for robot in memory.robots() for task in memory.task_descriptions(robot))
+        known = sorted({task["source"] for task in tasks if "source" in task})
+        raise NotFoundError(
+            f"source {source!r} has taught nothing here; known sources: {', '.join(known) or 'none'}"
+        )
+    return count
+
+
+@contextmanager
+def _opened(settings: LearnFromSettings) -> Iterator[Memory]:
+    """The memory; in a dry run it is only read, or an empty one that is deleted where there is none."""
+    place = locate(settings.memory.location)
+    if not settings.dry_run:
+        with open_memory(settings.memory.location) as memory:
+            yield memory
+    elif isinstance(place, Path) and not place.exists():
+        with TemporaryDirectory() as folder, open_memory(Path(folder) / "dry.db") as memory:
+            yield memory
+    else:
+        with open_memory(settings.memory.location, read_only=True) as memory:
+            yield memory
+
+
+def _learnt(world: GridWorld, run: Run, noise: float, reached_goal: bool) -> LearntRun:
     goal = int(world.states_at(run.points[-1:])[0])
     at_goal = run.reached_goal or (reached_goal and not run.outcome[-1])
-    return _LearntRun(run, tried_moves(world, run), goal if at_goal and goal >= 0 else None)
+    return LearntRun(run, tried_moves(world, run, noise), goal if at_goal and goal >= 0 else None)
 
 
-def _competence(world: GridWorld, learnt: Sequence[_LearntRun], robot: str) -> dict[str, float]:
+def _competence(world: GridWorld, learnt: Sequence[LearntRun], robot: str) -> dict[str, float]:
     @cache
     def best(goal: str) -> NDArray[np.bool_]:
         q = optimal_q(world.task(int(goal)).tables(), world.discount)
         return actions_to_count(q, "all", ended=np.arange(world.n_states) == int(goal))
 
     return competence_by_steps([one.demonstration(robot, True) for one in learnt if one.goal is not None], best)
-
-
-def _store(
-    place: Place,
-    learnt: Sequence[_LearntRun],
-    weights: dict[str, float],
-    settings: LearnFromSettings,
-    memory: Memory,
-    progress: Progress | None,
-) -> int:
-    """Store each run; return the number of those that memory did not have."""
-    scope, robot = prior_scope(place.world, "observation"), settings.memory.robot
-    lore = Lore.recalled(place.world, scope, settings.prior.alpha0, memory, place.grid)
-    new, unstored = 0, list(place.news)
-    for done, one in enumerate(learnt, start=1):
-        for state, action, target in zip(one.tried.states, one.tried.actions, one.tried.targets, strict=True):
-            lore.model.target[state, action] = target
-            for seen in (state, target):
-                lore.model.percept[seen] = place.world.percepts[seen]
-        records = [*unstored, lore.model_news()]
-        if one.goal is not None:
-            news = ActionPrior(len(MOVE_NAMES), settings.prior.alpha0, scope.key)
-            scaled = {robot: weights[robot] * settings.prior.weight}
-            shown = [one.demonstration(robot, False)]
-            count_demonstrations(news, shown, lambda demonstration: scope.contexts[demonstration.states], scaled)
-            records.append(news.to_record({"prior": scope.kind, "actions": list(MOVE_NAMES)}))
-        records = [record for record in records if len(record.slots)]
-        if memory.contribute(robot, records, process=f"run {one.run.digest}", seq=0, task=_task(place, one)):
-            new, unstored = new + 1, []
-        if progress:
-            progress(done, len(learnt), f"run {one.run.name}")
-    return new
-
-
-def _task(place: Place, one: _LearntRun) -> dict[str, Any]:
-    goal = None if one.goal is None else place.world.cells[one.goal].tolist()
-    return {"run": one.run.name, "goal": goal, "world": place.world.fingerprint}
-
-
-def _report(place: Place, learnt: Sequence[_LearntRun], source: str) -> dict[str, Any]:
-    tried = [one.tried for one in learnt]
-    poses, outside = sum(len(one.run.time) for one in learnt), sum(one.outside for one in tried)
-    if outside > MOST_OUTSIDE * poses:
-        raise InputError(
-            f"{source}: {outside:,} of {poses:,} poses lie on no place of this map; record x and y in metres of "
-            "the map's frame, or give the map on which the robot drove"
-        )
-    bumps = sum(state == target for one in tried for state, target in zip(one.states, one.targets, strict=True))
-    moves = sum(len(one.states) for one in tried) - bumps
-    contradictions = sum(one.contradictions for one in tried)
-    report = {
-        "source": source,
-        "building": place.report,
-        "runs": len(learnt),
-        "to_goal": sum(one.goal is not None for one in learnt),
-        "poses": poses,
-        "moves": moves,
-        "bumps": bumps,
-        "new_obstacles": [
-            [*(round(float(x), 3) for x in place.world.positions(np.array([state]))[0]), MOVE_NAMES[action]]
-            for one in tried
-            for state, action in one.new_obstacles
-        ],
-        "outside": outside,
-        "gaps": sum(one.gaps for one in tried),
-        "contradictions": contradictions,
-        "undirected": sum(one.undirected for one in tried),
-    }
-    report["warnings"] = list(_warnings(report))
-    return report
-
-
-def _warnings(report: dict[str, Any]):
-    if report["outside"] > MANY_OUTSIDE * report["poses"]:
-        yield f"{report['outside']:,} of {report['poses']:,} poses lie on no place of this map"
-    if report["contradictions"] > MANY_CONTRADICTIONS * max(report["moves"], 1):
-        yield (
-            f"{report['contradictions']:,} moves go through walls of the map and were not learnt; the log and the "
-            "map may have different frames"
-        )
-    if not report["moves"]:
-        yield "no move was learnt: the poses are too far apart, or the robot stayed in its cells"
-    if not report["to_goal"]:
-        yield "no run ended with the outcome goal, so the action prior learnt nothing"

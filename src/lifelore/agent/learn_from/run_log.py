@@ -103,11 +103,15 @@ def read_runs(path: str | Path) -> list[Run]:
     return runs
 
 
-def run_of_poses(
-    name: str, time: NDArray[np.float64], points: NDArray[np.float64], heading: NDArray[np.float64]
-) -> Run:
-    """A run without outcomes, from arrays as in `Run`."""
-    return Run(name, time, points, heading, [NOTHING] * len(time))
+def cut_runs(whole: Run, ends: NDArray[np.bool_]) -> list[Run]:
+    """The runs of a log, each of which ends where `ends` (n,) is true; named as the log, with their number."""
+    lasts = [*np.flatnonzero(ends[:-1]).tolist(), len(whole.time) - 1]
+    parts = [slice(a, b + 1) for a, b in zip([0, *(last + 1 for last in lasts)], lasts, strict=False)]
+    return [
+        Run(f"{whole.name} {number}" if len(parts) > 1 else whole.name,
+            whole.time[part], whole.points[part], whole.heading[part], whole.outcome[part])
+        for number, part in enumerate(parts)
+    ]  # fmt: skip
 
 
 def _poses(file: Iterable[str], name: str) -> Iterator[_Pose]:

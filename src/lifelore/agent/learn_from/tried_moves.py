@@ -1,11 +1,11 @@
 """Turns the poses of a run into moves of a building: made, refused, or contradicting the map.
 
 Between two poses the robot is taken to have driven straight. A move between two cells that the map separates is
-not learnt: a pose that is 10 cm off hops through a thin wall. A bump is learnt also where the map is free, because
-the robot met an obstacle that the map lacks.
+not learnt: a pose that is 10 cm off hops through a thin wall. Poses that tremble across the border of two cells
+are no moves. A bump counts also where the map is free, because the robot met an obstacle that the map lacks.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,83 +19,149 @@ PER_CELL = 20
 """Points on a straight piece, for each cell of its length."""
 AT_REST = 0.02
 """Metres that a robot has to move for its direction to be known."""
+TREMBLE, MOST_TREMBLE = 0.02, 0.25
+"""Least depth in metres to which a robot enters a cell that it leaves by the same border, and the largest share of
+a cell that noise can make it."""
 
 
-@dataclass
+@dataclass(frozen=True, eq=False)
 class TriedMoves:
-    """Moves of a run in a building.
+    """Moves of a run in a building, in order of time.
 
-    states, actions, targets : lists of int
-        The cell, the move, and the cell that it led to: the same cell after a bump. In order of time.
-    outside : int
-        Poses on no place of the building.
-    gaps : int
-        Pairs of poses that are too far apart.
-    contradictions : int
-        Moves between neighbouring cells that the map separates.
-    new_obstacles : list of (state, action)
+    states, actions, targets : (n,) int
+        The cell, the move, and the cell that it led to: the same cell after a bump.
+    time : (n,) float
+        Seconds of the run's clock at which the robot crossed the border, or bumped.
+    seconds : (n,) float
+        Seconds in the cell until the border was crossed, or the cell's side at the speed of the crossing where the
+        robot was not seen entering; NaN for bumps.
+    new_obstacles : (n,) bool
         Bumps where the map is free.
-    undirected : int
-        Bumps whose direction is not known.
+    gaps, contradictions, undirected : int
+        Pairs of poses that are too far apart; moves between neighbouring cells that the map separates; bumps whose
+        direction is not known.
     """
 
-    states: list[int] = field(default_factory=list)
-    actions: list[int] = field(default_factory=list)
-    targets: list[int] = field(default_factory=list)
-    outside: int = 0
-    gaps: int = 0
-    contradictions: int = 0
-    new_obstacles: list[tuple[int, int]] = field(default_factory=list)
-    undirected: int = 0
+    states: NDArray[np.int64]
+    actions: NDArray[np.int64]
+    targets: NDArray[np.int64]
+    time: NDArray[np.float64]
+    seconds: NDArray[np.float64]
+    new_obstacles: NDArray[np.bool_]
+    gaps: int
+    contradictions: int
+    undirected: int
 
-    def _add(self, state: int, action: int, target: int) -> None:
-        self.states.append(state)
-        self.actions.append(action)
-        self.targets.append(target)
+    @property
+    def made(self) -> NDArray[np.bool_]:
+        """(n,) whether the move led to another cell."""
+        return self.states != self.targets
 
 
-def tried_moves(world: GridWorld, run: Run) -> TriedMoves:
-    """The moves that a robot tried in a run."""
-    tried = TriedMoves()
+@dataclass(frozen=True)
+class _Crossing:
+    """A border that the robot crossed, in the straight piece between pose `pose` and the next."""
+
+    pose: int
+    time: float
+    point: NDArray[np.float64]
+    state: int
+    action: int
+    target: int
+    slowness: float
+
+
+def tried_moves(world: GridWorld, run: Run, noise: float = 0.0) -> TriedMoves:
+    """The moves that a robot tried in a run; `noise` in metres is that of its poses, see `localisation_noise`."""
     here = world.states_at(run.points)
-    tried.outside = int((here < 0).sum())
-    for i in range(len(here)):
-        if i and _connected(world, run, here, i):
-            _drive(world, run.points[i - 1], run.points[i], tried)
-        elif i:
-            tried.gaps += 1
-        if run.outcome[i] == BUMP and here[i] >= 0:
-            _bump(world, int(here[i]), _direction(run, i), tried)
-    return tried
+    apart = np.hypot(*np.diff(run.points, axis=0).T) > FARTHEST * world.frame.cell
+    gap = apart | (here[1:] < 0) | (here[:-1] < 0)
+    crossings, contradictions = _crossings(world, run, np.flatnonzero(~gap))
+    depth = min(max(TREMBLE, 2 * noise), MOST_TREMBLE * world.frame.cell)
+    crossings = _without_tremble(crossings, run, world.move_vectors, depth)
+    bumps, undirected = _bumps(world, run, here)
+    rows = [(one.state, one.action, one.target) for one in crossings] + [(s, a, s) for _, s, a in bumps]
+    steps = np.array(rows, np.int64).reshape(-1, 3)
+    time = np.array([one.time for one in crossings] + [run.time[i] for i, _, _ in bumps])
+    taken = _seconds(crossings, np.concatenate([[0], np.cumsum(gap)]), world.frame.cell)
+    seconds = np.array(taken + [np.nan] * len(bumps))
+    order = np.argsort(time, kind="stable")
+    states, actions, targets = steps[order].T
+    new = (states == targets) & (world.neighbour[states, actions] >= 0)
+    return TriedMoves(
+        states, actions, targets, time[order], seconds[order], new, int(gap.sum()), contradictions, undirected
+    )
 
 
-def _connected(world: GridWorld, run: Run, here: NDArray[np.int32], i: int) -> bool:
-    near = np.hypot(*(run.points[i] - run.points[i - 1])) <= FARTHEST * world.frame.cell
-    return bool(near and here[i] >= 0 and here[i - 1] >= 0)
-
-
-def _drive(world: GridWorld, a: NDArray, b: NDArray, tried: TriedMoves) -> None:
-    n = max(2, int(np.ceil(np.hypot(*(b - a)) / world.frame.cell * PER_CELL)) + 1)
-    along = world.states_at(np.linspace(a, b, n))
-    changes = np.flatnonzero(np.diff(along))
-    for state, target in zip(along[changes].tolist(), along[changes + 1].tolist(), strict=True):
-        if state < 0 or target < 0:
-            continue
+def _crossings(world: GridWorld, run: Run, pairs: NDArray[np.int64]) -> tuple[list[_Crossing], int]:
+    """Borders crossed between the poses of `pairs` and the next ones; and the number of walls among them."""
+    piece = run.points[pairs + 1] - run.points[pairs]
+    length, duration = np.hypot(*piece.T), run.time[pairs + 1] - run.time[pairs]
+    parts = np.maximum(1, np.ceil(length / world.frame.cell * PER_CELL)).astype(int)
+    of = np.repeat(np.arange(len(pairs)), parts + 1)
+    share = (np.arange(len(of)) - np.repeat(np.cumsum(parts + 1) - parts - 1, parts + 1)) / parts[of]
+    along = world.states_at(run.points[pairs][of] + share[:, None] * piece[of])
+    changes = np.flatnonzero(
+        (along[1:] != along[:-1]) & (of[1:] == of[:-1]) & (along[1:] >= 0) & (along[:-1] >= 0)
+    )
+    crossings, contradictions = [], 0
+    for at in changes.tolist():
+        state, target, pair = int(along[at]), int(along[at + 1]), of[at]
         action = np.flatnonzero(world.neighbour[state] == target)
         if len(action):
-            tried._add(state, int(action[0]), target)
+            middle = (share[at] + share[at + 1]) / 2
+            crossings.append(_Crossing(
+                int(pairs[pair]), run.time[pairs[pair]] + middle * duration[pair],
+                run.points[pairs[pair]] + middle * piece[pair], state, int(action[0]), target,
+                duration[pair] / length[pair],
+            ))  # fmt: skip
         elif np.abs(world.cells[state] - world.cells[target]).sum() == 1:
-            tried.contradictions += 1
+            contradictions += 1
+    return crossings, contradictions
 
 
-def _bump(world: GridWorld, state: int, direction: NDArray | None, tried: TriedMoves) -> None:
-    if direction is None:
-        tried.undirected += 1
-        return
-    action = int(np.argmax(world.move_vectors @ direction))
-    if world.neighbour[state, action] >= 0:
-        tried.new_obstacles.append((state, action))
-    tried._add(state, action, state)
+def _without_tremble(
+    crossings: list[_Crossing], run: Run, vectors: NDArray[np.float64], depth: float
+) -> list[_Crossing]:
+    """The crossings without those into a cell that the robot left at once, after `depth` metres at most."""
+    kept: list[_Crossing] = []
+    for one in crossings:
+        last = kept[-1] if kept else None
+        if last is None or (last.state, last.target) != (one.target, one.state):
+            kept.append(one)
+            continue
+        inside = run.points[last.pose + 1 : one.pose + 1] - last.point
+        if (inside @ vectors[last.action]).max(initial=0.0) <= depth and BUMP not in run.outcome[
+            last.pose + 1 : one.pose + 1
+        ]:
+            kept.pop()
+        else:
+            kept.append(one)
+    return kept
+
+
+def _seconds(crossings: list[_Crossing], gaps: NDArray[np.int64], cell: float) -> list[float]:
+    """Seconds of each crossing's move, see `TriedMoves`; `gaps` counts the gaps before each pose."""
+    taken, last = [], None
+    for one in crossings:
+        entered = last is not None and last.target == one.state and gaps[last.pose] == gaps[one.pose]
+        taken.append(one.time - last.time if entered and last else one.slowness * cell)
+        last = one
+    return taken
+
+
+def _bumps(world: GridWorld, run: Run, here: NDArray[np.int32]) -> tuple[list[tuple[int, int, int]], int]:
+    """(pose, state, action) of each bump whose direction is known, and the number of the others."""
+    bumps, undirected = [], 0
+    for i, outcome in enumerate(run.outcome):
+        if outcome != BUMP or here[i] < 0:
+            continue
+        direction = _direction(run, i)
+        if direction is None:
+            undirected += 1
+        else:
+            bumps.append((i, int(here[i]), int(np.argmax(world.move_vectors @ direction))))
+    return bumps, undirected
 
 
 def _direction(run: Run, i: int) -> NDArray[np.float64] | None:

@@ -4,7 +4,6 @@ import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 from threading import Event
 
 from lifelore.agent.life.loop import LivedTask, run_life
@@ -18,6 +17,7 @@ from lifelore.agent.live.goals.own_places import OwnGoal, own_places
 from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.agent.live.life_size import size_of_life
 from lifelore.agent.live.lore import Lore, prior_scope
+from lifelore.agent.live.output.known_building import KnownBuilding
 from lifelore.agent.live.settings_document import path_text, settings_document
 from lifelore.agent.live.shared_task import SharedTask
 from lifelore.agent.live.sight import sight_lists
@@ -50,14 +50,12 @@ class Life:
         Knowledge of the first agent at the end.
     stopped : bool
         Whether the user asked to stop; the report covers the tasks finished before.
-    occupancy : OccupancyMap, optional
-        The map of a building, laid on the grid of the building's first map.
     start : int, optional
         State in which every episode started, if it was given.
-    given : OccupancyMap, optional
-        The map of a building as it was read.
     first_here : int
         Number of tasks that were lived before the map was last replaced (`LifeSettings.watch`).
+    building : KnownBuilding, optional
+        What is known of the building at the end.
     """
 
     report: dict
@@ -65,15 +63,14 @@ class Life:
     results: list[dict[str, TaskResult]] = field(repr=False)
     lore: Lore = field(repr=False)
     stopped: bool = False
-    occupancy: OccupancyMap | None = field(default=None, repr=False)
     start: int | None = None
-    given: OccupancyMap | None = field(default=None, repr=False)
     first_here: int = 0
+    building: KnownBuilding | None = field(default=None, repr=False)
 
-    @cached_property
+    @property
     def floor(self) -> Floor | None:
         """The building at the resolution of its map; None in worlds without a map."""
-        return None if self.occupancy is None else floor_of(self.occupancy, self.world)
+        return None if self.building is None else self.building.floor
 
 
 Watcher = Callable[[dict, dict[str, TaskResult]], None]
@@ -140,16 +137,18 @@ def live(
                 notify=notify,
             )
         report = _report(settings, life, time.perf_counter() - began)
+        building = None
+        if life.given is not None:
+            building = KnownBuilding.recalled(life.place, life.given, memory, life.lores[names[0]].model)
     return Life(
         report,
         life.world,
         life.results,
         life.lores[names[0]],
         stop.is_set(),
-        occupancy=life.place.occupancy,
         start=life.places.start,
-        given=life.given,
         first_here=life.first_here,
+        building=building,
     )
 
 

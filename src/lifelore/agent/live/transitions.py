@@ -6,47 +6,19 @@ differently or have a larger picture.
 """
 
 import hashlib
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.learning.known_world import UNKNOWN, WorldModel, unknown_world
 from lifelore.core.protocols import Record
+from lifelore.domains.grids.cell_numbers import BuildingGrid, cells_of, shifted, states_in
 from lifelore.domains.grids.grid_world import MOVE_NAMES, Frame, GridWorld
 
 KIND, VERSION = "transitions", 1
-COLUMN_BITS = 20
-"""Bits of a cell number that hold the column."""
 SAME_PLACE = 0.8
 """Least share of the stored cells whose percepts are unchanged if two grids on one frame are the same place. Two
 different buildings agree in about a third of their cells, most of them open floor."""
-
-
-class BuildingGrid(NamedTuple):
-    """The grid that all maps of a building share.
-
-    frame : hash of the grid's frame and settings, see `frame_key`
-    corner : cell (row, column) of a world's lower left corner, counted from that of the building's first map
-    building : key of the building in memory; None if memory stores no map of it
-    """
-
-    frame: str
-    corner: tuple[int, int] = (0, 0)
-    building: str | None = None
-
-
-def cells_of(world: GridWorld) -> NDArray[np.int64]:
-    """The number of each state's cell, (n_states,): 2²⁰ · row from the bottom + column."""
-    return ((world.shape[0] - 1 - world.cells[:, 0].astype(np.int64)) << COLUMN_BITS) | world.cells[:, 1]
-
-
-def states_in(world: GridWorld, cells: NDArray[np.int64]) -> NDArray[np.int64]:
-    """The state in each of `cells`, -1 where this world has none."""
-    own = cells_of(world)
-    order = np.argsort(own)
-    place = np.minimum(np.searchsorted(own[order], cells), len(own) - 1)
-    return np.where(own[order][place] == cells, order[place], -1)
 
 
 def frame_key(world: GridWorld, frame: Frame | None = None) -> str:
@@ -78,6 +50,7 @@ def to_record(
     slots = cells_of(world)[state] * width + column
     order = np.argsort(slots)
     about = {"world": world.name, "states": world.n_states, "frame": grid.frame, "shape": list(world.shape)}
+    about |= {"settings": world.about}
     if grid.building is not None:
         about |= {"corner": list(grid.corner), "building": grid.building}
     return Record(KIND, world.fingerprint, VERSION, "newest", slots[order], table[state, column][order], about)
@@ -93,10 +66,10 @@ def from_record(world: GridWorld, record: Record | None, corner: tuple[int, int]
         return model
     width = model.target.shape[1] + 1
     shift = _shift(record, corner)
-    state, column = states_in(world, _shifted(record.slots // width, shift)), record.slots % width
+    state, column = states_in(world, shifted(record.slots // width, shift)), record.slots % width
     known = (state >= 0) & (record.values >= 0)
     moves, percepts = known & (column < width - 1), known & (column == width - 1)
-    model.target[state[moves], column[moves]] = states_in(world, _shifted(record.values[moves], shift))
+    model.target[state[moves], column[moves]] = states_in(world, shifted(record.values[moves], shift))
     model.percept[state[percepts]] = record.values[percepts]
     return model
 
@@ -108,32 +81,28 @@ def forget_changed(world: GridWorld, model: WorldModel) -> None:
     model.percept[changed] = UNKNOWN
 
 
+def keep_made(world: GridWorld, model: WorldModel) -> None:
+    """Forget the refusals and surroundings that a larger robot remembers; keep the moves that it made."""
+    model.target[(model.target != world.neighbour) | (world.neighbour < 0)] = UNKNOWN
+    seen = model.percept >= 0
+    model.percept[seen] = world.percepts[seen]
+
+
 def agreement(world: GridWorld, record: Record, corner: tuple[int, int] = (0, 0)) -> float:
     """Share of the record's cells whose percepts are unchanged in this world, in [0, 1]."""
     width = world.neighbour.shape[1] + 1
     percepts = (record.slots % width == width - 1) & (record.values >= 0)
-    state = states_in(world, _shifted(record.slots[percepts] // width, _shift(record, corner)))
+    state = states_in(world, shifted(record.slots[percepts] // width, _shift(record, corner)))
     same = (state >= 0) & (world.percepts[state] == record.values[percepts])
     return float(same.mean()) if same.size else 0.0
 
 
 def cells_from(record: Record, cells: NDArray[np.int64], corner: tuple[int, int]) -> NDArray[np.int64]:
     """Numbers of a record's cells counted from a world's `corner`; -1 for cells below or left of it."""
-    return _shifted(cells, _shift(record, corner))
-
-
-def cells_in_building(world: GridWorld, corner: tuple[int, int]) -> NDArray[np.int64]:
-    """The number of each state's cell in the grid of the building's first map; -1 below or left of it."""
-    return _shifted(cells_of(world), corner)
+    return shifted(cells, _shift(record, corner))
 
 
 def _shift(record: Record, corner: tuple[int, int]) -> tuple[int, int]:
     """Rows and columns from a record's lower left corner to that of a world."""
     row, column = record.about.get("corner", (0, 0))
     return row - corner[0], column - corner[1]
-
-
-def _shifted(cells: NDArray[np.int64], shift: tuple[int, int]) -> NDArray[np.int64]:
-    """Numbers of the same cells counted from another corner; -1 for cells below or left of it."""
-    row, column = (cells >> COLUMN_BITS) + shift[0], (cells & (2**COLUMN_BITS - 1)) + shift[1]
-    return np.where((row >= 0) & (column >= 0), (row << COLUMN_BITS) | column, -1)

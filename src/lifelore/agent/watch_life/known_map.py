@@ -11,6 +11,7 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.live import transitions
 from lifelore.agent.live.lore import observation_key
 from lifelore.core.protocols import Record
+from lifelore.domains.grids.cell_numbers import COLUMN_BITS
 from lifelore.domains.grids.grid_world import MOVE_NAMES
 from lifelore.memory import Memory
 
@@ -45,7 +46,7 @@ def known_map(memory: Memory, world: str, near: tuple[int, int] | None = None) -
         return None
     rows, columns = (int(side) for side in record.about["shape"])
     numbers, percepts = _known_cells(record)
-    row, column = rows - 1 - (numbers >> transitions.COLUMN_BITS), numbers & (2**transitions.COLUMN_BITS - 1)
+    row, column = rows - 1 - (numbers >> COLUMN_BITS), numbers & (2**COLUMN_BITS - 1)
     shown = _nearest(row, column, near)
     kind, prior, contexts = _prior(memory, world, numbers[shown], percepts[shown])
     arrows, arrow_of = _arrows(prior, contexts)

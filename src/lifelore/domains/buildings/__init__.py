@@ -2,5 +2,6 @@
 
 Read in this order: `building`, `occupancy_map`, `map_image`, `free_space`, `inflation`, `slivers`; then `floor`,
 `clear_path` and `line_of_sight` for paths in metres; `office` generates a floor with `office_plan` and
-`office_furniture`; `building_days` blocks and crowds corridors by a hidden type of day.
+`office_furniture`; `building_days` blocks and crowds corridors by a hidden type of day,
+`busy_building` by the clock; `busy_places` says where.
 """

@@ -10,11 +10,11 @@ from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
 from scipy.sparse import csgraph
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
+from lifelore.domains.buildings.busy_places import around, blocked_passages, move_graph, on_shortest_ways, without
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.task_stream import DrawnTask, TaskStream
 
@@ -60,58 +60,13 @@ def day_in(world: GridWorld, day_type: str, seed: int = 0) -> Day:
         raise NotFoundError(f"type of day must be one of {', '.join(DAYS)}, got {day_type!r}")
     n_blocked, n_crowds = DAYS[day_type]
     rng = stream(seed, "building days", world.fingerprint, day_type)
-    neighbour, opened = world.neighbour, np.ones(world.n_states, np.bool_)
-    busy = _on_shortest_ways(world, rng)
-    for middle in rng.choice(world.n_states, size=min(200, world.n_states), replace=False, p=busy):
-        if n_blocked == 0:
-            break
-        trial = opened & ~_around(world, int(middle), BLOCK_RADIUS)
-        left = _largest_part(_without(world.neighbour, trial), trial)
-        # A passage may be blocked where the rest of the building stays one.
-        if left.sum() >= trial.sum() - 2 and left.mean() >= 0.9:
-            neighbour, opened, n_blocked = _without(world.neighbour, left), left, n_blocked - 1
+    busy = on_shortest_ways(world, rng)
+    passages = blocked_passages(world, rng, busy, n_blocked, BLOCK_RADIUS)
+    opened = np.logical_not(np.logical_or.reduce(passages, axis=0))
     crowded = np.zeros(world.n_states, np.bool_)
     for middle in rng.choice(world.n_states, size=n_crowds, replace=False, p=busy):
-        crowded |= _around(world, int(middle), CROWD_RADIUS)
-    return Day(neighbour, crowded & opened, opened)
-
-
-def _on_shortest_ways(world: GridWorld, rng: np.random.Generator, ways: int = 40) -> NDArray[np.float64]:
-    """How often shortest ways between random places pass each cell, as probabilities above 0."""
-    counts = np.full(world.n_states, 0.01)
-    starts = rng.integers(world.n_states, size=ways)
-    before = csgraph.shortest_path(
-        _graph(world.neighbour), indices=starts, unweighted=True, return_predecessors=True
-    )[1]
-    for row, place in zip(before, rng.integers(world.n_states, size=ways), strict=True):
-        while place >= 0:
-            counts[place] += 1
-            place = row[place]
-    return counts / counts.sum()
-
-
-def _graph(neighbour: NDArray[np.int32], cost: NDArray[np.float64] | None = None) -> sparse.csr_matrix:
-    """Moves as a graph; `cost` of entering each cell, else 1."""
-    n = len(neighbour)
-    start, move = np.nonzero(neighbour >= 0)
-    end = neighbour[start, move]
-    weights = np.ones(len(end)) if cost is None else cost[end]
-    return sparse.csr_matrix((weights, (start, end)), shape=(n, n))
-
-
-def _around(world: GridWorld, middle: int, radius: int) -> NDArray[np.bool_]:
-    return np.abs(world.cells - world.cells[middle]).max(axis=1) <= radius
-
-
-def _without(neighbour: NDArray[np.int32], opened: NDArray[np.bool_]) -> NDArray[np.int32]:
-    """Moves between open cells alone."""
-    passes = (neighbour >= 0) & opened[:, None] & opened[neighbour]
-    return np.where(passes, neighbour, -1).astype(np.int32)
-
-
-def _largest_part(neighbour: NDArray[np.int32], opened: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    part = csgraph.connected_components(_graph(neighbour), directed=False)[1]
-    return opened & (part == np.bincount(part[opened]).argmax())
+        crowded |= around(world, int(middle), CROWD_RADIUS)
+    return Day(without(world.neighbour, opened), crowded & opened, opened)
 
 
 @dataclass(frozen=True)
@@ -152,7 +107,7 @@ class BuildingWay:
     def best_return(self) -> float:
         """Largest return of an agent that knows the day; not discounted."""
         cost = np.where(self._day.crowded, -CROWD, -MOVE)
-        graph = _graph(self._day.neighbour, cost)
+        graph = move_graph(self._day.neighbour, cost)
         return -float(csgraph.dijkstra(graph, indices=self.start)[self.destination])
 
     def reset(self) -> WayObservation:

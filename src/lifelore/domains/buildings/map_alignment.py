@@ -80,6 +80,24 @@ def aligned_map(
     return OccupancyMap(state, pixel, origin, new.source), (corner[1], corner[0])
 
 
+def axis_aligned(occupancy: OccupancyMap) -> OccupancyMap:
+    """The map itself if its yaw is 0, else its pixels resampled on a grid along x and y, in the same frame.
+
+    The copy covers the whole picture; each pixel has the state of the pixel in which its centre lies, unknown
+    outside the picture.
+    """
+    if occupancy.origin[2] == 0:
+        return occupancy
+    pixel, frame = occupancy.resolution, MapFrame.of(occupancy)
+    corners = moved(frame.origin, np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]) * frame.size)
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    columns, rows = np.ceil((high - low) / pixel - 1e-9).astype(int)
+    x, y = low[0] + (np.arange(columns) + 0.5) * pixel, low[1] + (np.arange(rows) + 0.5)[::-1] * pixel
+    centres = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    state = _sampled(occupancy, moved(inverse(frame.origin), centres)).reshape(rows, columns)
+    return OccupancyMap(state.astype(np.uint8), pixel, (float(low[0]), float(low[1]), 0.0), occupancy.source)
+
+
 def _extent(new: OccupancyMap, to_frame: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Smallest and largest x and y of the known pixels in the frame of the earlier picture."""
     known = new.state != UNKNOWN

@@ -6,22 +6,25 @@ import math
 import numpy as np
 import pytest
 
+from lifelore.agent.live.output.move_costs import MoveCosts
 from lifelore.agent.live.output.nav2_masks import (
+    FULL_SPEED,
     KEEP_OUT,
     MOST_COST,
     NO_OPINION,
+    SLOWEST,
     body_space,
-    cost_mask,
     keepout_mask,
     on_map,
     place_costs,
+    place_masks,
+    place_speeds,
     write_directions,
     write_masks,
 )
-from lifelore.core.learning.known_world import WorldModel, unknown_world
 from lifelore.domains.buildings.building import building_from_map
 from lifelore.domains.buildings.floor import Floor, floor_of
-from lifelore.domains.buildings.occupancy_map import FREE, OccupancyMap, read_occupancy_map
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap, read_occupancy_map
 from lifelore.domains.grids.grid_world import Frame, GridWorld
 
 NORTH, SOUTH, EAST, WEST = range(4)
@@ -32,39 +35,60 @@ def corridor() -> GridWorld:
     return GridWorld.from_free("corridor", np.ones((1, 4), bool), frame=Frame(0.5, (10.0, 20.0, math.pi / 2)))
 
 
-def seen(world: GridWorld) -> WorldModel:
-    """A model in which all moves east and west are known, also the two refused ones at the ends."""
-    model = unknown_world(world.n_states, 4)
-    model.target[:, [EAST, WEST]] = world.neighbour[:, [EAST, WEST]]
-    model.target[0, WEST], model.target[3, EAST] = 0, 3
-    model.percept[:] = world.percepts
-    return model
+def costs_of(
+    world: GridWorld,
+    slow: dict[tuple[int, int], float] | None = None,
+    refused: dict[tuple[int, int], float] | None = None,
+) -> MoveCosts:
+    """Costs where a usual move takes 1 s, and a refusal costs 10 s; `refused` are probabilities."""
+    seconds, blocked = np.ones((world.n_states, 4)), np.zeros((world.n_states, 4))
+    for move, value in (slow or {}).items():
+        seconds[move] = value
+    for move, value in (refused or {}).items():
+        blocked[move] = value
+    cost = np.where(world.neighbour >= 0, seconds + 10 * blocked, np.inf)
+    return MoveCosts(world, seconds, blocked, cost)
 
 
-def test_bumps_cost_by_their_share_of_the_tried_moves(corridor):
-    # In both end places, one of two tried moves was refused: 100 · 0.5 · 1/2.
-    assert place_costs(corridor, seen(corridor), None).tolist() == [25, 0, 0, 25]
+@pytest.fixture
+def long_corridor() -> GridWorld:
+    return GridWorld.from_free("corridor", np.ones((1, 7), bool))
 
 
-def test_places_into_which_the_prior_seldom_leads_cost_more(corridor):
-    probs = np.zeros((4, 4))
-    probs[:, EAST], probs[:, WEST] = 0.75, 0.25
-    # Into place 0 leads 0.25 (from 1); into 1: 0.75 + 0.25; into 2 likewise; into 3: 0.75.
-    model = seen(corridor)
-    model.target[0, WEST] = model.target[3, EAST] = -1
-    assert place_costs(corridor, model, probs).tolist() == [38, 0, 0, 12]  # 100 · 0.5 · 0.75, and · 0.25 (rounded)
+ALL = np.ones(7, bool)
 
 
-def test_a_refused_move_that_the_map_allows_costs_most_on_both_sides(corridor):
-    model = seen(corridor)
-    model.target[1, EAST] = 1
-    assert place_costs(corridor, model, None).tolist() == [25, MOST_COST, MOST_COST, 25]
+def test_a_slow_move_costs_on_both_its_places(long_corridor):
+    costs = costs_of(long_corridor, {(2, EAST): 5.0})
+    # Places 2 and 3 have 4 moves with 8 s in sum; 100 · (1 - 1/2). A usual place has moves of 1 s.
+    assert place_costs(costs, ALL).tolist() == [0, 0, 50, 50, 0, 0, 0]
+    assert place_speeds(costs, ALL).tolist() == [FULL_SPEED] * 2 + [50] * 2 + [FULL_SPEED] * 3
 
 
-def test_places_never_visited_have_no_cost(corridor):
-    model = seen(corridor)
-    model.percept[2] = -1
-    assert place_costs(corridor, model, None).tolist() == [25, 0, NO_OPINION, 25]
+def test_a_building_that_is_slow_everywhere_is_usual(long_corridor):
+    everywhere = {(state, action): 7.0 for state in range(7) for action in range(4)}
+    assert set(place_costs(costs_of(long_corridor, everywhere), ALL)) == {0}
+    assert set(place_speeds(costs_of(long_corridor, everywhere), ALL)) == {FULL_SPEED}
+
+
+def test_refusals_cost_and_do_not_limit_the_speed(long_corridor):
+    costs = costs_of(long_corridor, refused={(2, EAST): 0.4, (0, WEST): 1.0})
+    # The move west of place 0 leads into a wall, which nav2 inflates itself.
+    assert place_costs(costs, ALL).tolist() == [0, 0, 50, 50, 0, 0, 0]
+    assert set(place_speeds(costs, ALL)) == {FULL_SPEED}
+
+
+def test_costs_and_speeds_have_their_limits(long_corridor):
+    costs = costs_of(long_corridor, {(2, EAST): 1e4, (5, EAST): 1.2})
+    assert place_costs(costs, ALL).tolist() == [0, 0, MOST_COST, MOST_COST, 0, 0, 0]
+    assert place_speeds(costs, ALL).tolist()[2:] == [SLOWEST] * 2 + [FULL_SPEED] * 3
+
+
+def test_places_never_visited_have_no_opinion(long_corridor):
+    costs, known = costs_of(long_corridor, {(2, EAST): 5.0}), np.arange(7) != 3
+    assert place_costs(costs, known).tolist() == [0, 0, 50, NO_OPINION, 0, 0, 0]
+    assert place_speeds(costs, known)[3] == FULL_SPEED
+    assert set(place_costs(costs, np.zeros(7, bool))) == {NO_OPINION}
 
 
 def room(origin=(0.0, 0.0, 0.0)) -> tuple[OccupancyMap, GridWorld, Floor]:
@@ -95,7 +119,7 @@ def test_masks_of_a_half_known_room():
     assert keepout[10, 12] == 0
     assert keepout[10, 16] == 0  # the robot's body at 1.45 m reaches to 1.65 m
     assert keepout[10, 17] == KEEP_OUT
-    costs = cost_mask(floor, np.where(known, 7, NO_OPINION).astype(np.uint8))
+    (costs,) = place_masks(floor, known, (np.full(world.n_states, 7, np.uint8), NO_OPINION))
     assert costs[10, 12] == 7
     assert costs[10, 20] == costs[0, 5] == NO_OPINION
     assert ((costs == 7) <= (occupancy.state == FREE)).all()
@@ -115,18 +139,62 @@ def test_a_mask_is_laid_on_the_users_own_map():
 
 def test_masks_are_written_in_the_scale_of_nav2(tmp_path):
     occupancy, world, floor = room((-1.0, 2.0, 0.0))
-    model = unknown_world(world.n_states, 4)
-    model.percept[:] = world.percepts
-    write_masks(tmp_path, world, model, None, floor, occupancy)
+    write_masks(tmp_path, costs_of(world), np.ones(world.n_states, bool), floor, occupancy)
     keepout = read_occupancy_map(tmp_path / "keepout.yaml")
     assert (keepout.state.shape, keepout.resolution, keepout.origin) == ((22, 32), 0.1, (-1.0, 2.0, 0.0))
     assert np.array_equal(keepout.state == FREE, body_space(floor, np.ones(world.n_states, bool)))
-    text = (tmp_path / "costs.yaml").read_text(encoding="utf-8")
-    assert text.startswith("# Cost of driving here")
-    assert "mode: raw" in text
-    header, pixels = (tmp_path / "costs.pgm").read_bytes().split(b"\n255\n", 1)
-    assert header == b"P5\n32 22"
-    assert set(pixels) == {0, NO_OPINION}
+    for name, first, values in (("costs", "Time and risk", {0, NO_OPINION}), ("speed", "Percent", {FULL_SPEED})):
+        text = (tmp_path / f"{name}.yaml").read_text(encoding="utf-8")
+        assert text.startswith(f"# {first}")
+        assert "mode: raw" in text
+        header, pixels = (tmp_path / f"{name}.pgm").read_bytes().split(b"\n255\n", 1)
+        assert header == b"P5\n32 22"
+        assert set(pixels) == values
+
+
+def test_the_masks_of_a_turned_map_have_no_yaw_and_keep_out_of_its_walls(tmp_path):
+    """nav2 ignores the yaw of a mask's origin: pixel (i, j) covers origin + (j, i) · resolution."""
+    occupancy, world, floor = room((-1.0, 2.0, 0.3))
+    write_masks(tmp_path, costs_of(world), np.ones(world.n_states, bool), floor, occupancy)
+    keepout = read_occupancy_map(tmp_path / "keepout.yaml")
+    assert keepout.origin[2] == 0
+
+    def seen(points: np.ndarray) -> np.ndarray:
+        column, row = np.floor((points - keepout.origin[:2]) / keepout.resolution).astype(int).T
+        return keepout.state[len(keepout.state) - 1 - row, column]
+
+    assert (seen(floor.metres(np.argwhere(occupancy.state == OCCUPIED))) == OCCUPIED).all()
+    # Two pixels off the walls on, the robot drives: at each of its places nothing is kept out.
+    assert (seen(floor.metres(np.argwhere(floor.state >= 0))) == FREE).all()
+    assert seen(np.array([keepout.origin[:2]]) + 0.05) == OCCUPIED  # outside of the picture
+
+
+def test_a_place_that_is_now_blocked_is_kept_out(tmp_path):
+    occupancy, world, floor = room()
+    known, (east,) = np.ones(world.n_states, bool), world.states_at([(2.75, 1.25)])
+    into = {
+        (int(world.neighbour[east, back]), back ^ 1): 0.9 for back in range(4) if world.neighbour[east, back] >= 0
+    }
+    write_masks(tmp_path, costs_of(world, refused=into), known, floor, occupancy)
+    keepout = read_occupancy_map(tmp_path / "keepout.yaml").state
+    assert keepout[9, 29] == OCCUPIED
+    assert keepout[9, 12] == FREE
+
+
+def test_equal_obstacles_cost_alike(tmp_path):
+    """Table legs at distances that are no multiple of a cell: none costs anything, whatever cell it lies in."""
+    state = np.ones((62, 122), np.uint8)
+    state[1:-1, 1:-1] = FREE
+    legs = [(row, column) for row in (15, 40) for column in range(13, 115, 17)]
+    for leg in legs:
+        state[leg] = OCCUPIED
+    occupancy = OccupancyMap(state, 0.05)
+    world = building_from_map(occupancy, 0.5, 0.2)
+    floor, known = floor_of(occupancy, world), np.ones(world.n_states, bool)
+    write_masks(tmp_path, costs_of(world), known, floor, occupancy)
+    costs = np.frombuffer((tmp_path / "costs.pgm").read_bytes()[-state.size :], np.uint8).reshape(state.shape)
+    assert set(np.unique(costs)) == {0, NO_OPINION}
+    assert len({costs[row - 3 : row + 4, column - 3 : column + 4].tobytes() for row, column in legs}) == 1
 
 
 def test_directions_turn_with_the_map(corridor, tmp_path):

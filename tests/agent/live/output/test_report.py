@@ -10,7 +10,8 @@ import pytest
 
 from lifelore.agent.live.baselines import AGENTS
 from lifelore.agent.live.life import Life, live
-from lifelore.agent.live.output.report import FILES, MASK_FILES, PRIOR_FILES, check_folder, write_portfolio
+from lifelore.agent.live.output.known_building import NAV2_FILES
+from lifelore.agent.live.output.report import FILES, PRIOR_FILES, check_folder, write_portfolio
 from lifelore.core.errors import InputError, StoreError
 from lifelore.domains.buildings.occupancy_map import read_occupancy_map
 from lifelore.figures.style import colour_of
@@ -18,7 +19,7 @@ from lifelore.figures.style import colour_of
 from ..flat_settings import flat_settings
 
 PNG = b"\x89PNG\r\n\x1a\n"
-GRID_FILES = [name for name in FILES if name not in MASK_FILES]
+GRID_FILES = [name for name in FILES if name not in NAV2_FILES]
 """Files of a life in a world without a map."""
 _QUICK = {"tasks": 3, "jobs": 1}
 

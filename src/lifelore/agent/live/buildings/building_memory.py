@@ -4,6 +4,7 @@ from lifelore.agent.live import transitions
 from lifelore.agent.live.buildings import building_record
 from lifelore.agent.live.buildings.building_record import remembered_buildings
 from lifelore.agent.live.goals import destinations, goal_counts
+from lifelore.agent.travel import passes
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import Memory
 
@@ -19,7 +20,7 @@ def buildings_in(memory: Memory) -> list[dict]:
 
 
 def forget_building(memory: Memory, name: str) -> dict:
-    """Forget a building's map, transitions, named destinations and found goals for ever; other records stay.
+    """Forget a building's map, transitions, named destinations, found goals and passes; other records stay.
 
     Returns
     -------
@@ -41,7 +42,7 @@ def forget_building(memory: Memory, name: str) -> dict:
     if len(keys) > 1:
         raise InputError(f"building {name!r} is the name of {len(keys)} buildings; give a key: {', '.join(keys)}")
     names = [(building_record.KIND, keys[0], building_record.VERSION)]
-    for kind in (building_record.MAP_KIND, transitions.KIND, destinations.KIND, goal_counts.KIND):
+    for kind in (building_record.MAP_KIND, transitions.KIND, destinations.KIND, goal_counts.KIND, passes.KIND):
         names += [
             (kind, key, version) for key, version, about in memory.keys(kind) if about.get("building") == keys[0]
         ]

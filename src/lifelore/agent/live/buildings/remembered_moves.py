@@ -1,6 +1,6 @@
 """The graph of the moves that memory holds about a building, compared with the building's map.
 
-Nodes are cells by number (`transitions.cells_of`), also cells that the map no longer has, so that a way through a
+Nodes are cells by number (`cells_of`), also cells that the map no longer has, so that a way through a
 door that was closed since can be reported. A robot can drive back the way it came: a remembered move counts in
 both directions, unless memory holds that the move back was refused or led elsewhere.
 """
@@ -18,6 +18,7 @@ from lifelore.agent.live import transitions
 from lifelore.agent.live.buildings.recognition import Place
 from lifelore.agent.live.lore import same_place
 from lifelore.core.errors import NotFoundError
+from lifelore.domains.grids.cell_numbers import COLUMN_BITS
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.memory import Memory
 
@@ -125,5 +126,5 @@ class RememberedMoves:
     def points(self, index: NDArray[np.int64]) -> NDArray[np.float64]:
         """Centres (n, 2) in metres of the map's frame, of cells by index."""
         frame, number = self.world.frame, self.cells[index]
-        from_bottom, column = number >> transitions.COLUMN_BITS, number & ((1 << transitions.COLUMN_BITS) - 1)
+        from_bottom, column = number >> COLUMN_BITS, number & ((1 << COLUMN_BITS) - 1)
         return frame.metres(column + 0.5, from_bottom + 0.5)

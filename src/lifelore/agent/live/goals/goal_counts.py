@@ -12,10 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.live import transitions
-from lifelore.agent.live.transitions import BuildingGrid
 from lifelore.core.planning.destination_order import MOST_EXACT, by_exact_search, by_rate
 from lifelore.core.protocols import Record
+from lifelore.domains.grids.cell_numbers import BuildingGrid, cells_in_building
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.memory import Memory
 
@@ -52,7 +51,7 @@ class GoalCounts:
 
     def _cells(self) -> NDArray[np.int64]:
         """The number of each state's cell in the grid of the building's first map, -1 outside of it."""
-        return transitions.cells_in_building(self.world, self.grid.corner)
+        return cells_in_building(self.world, self.grid.corner)
 
     def copy(self) -> "GoalCounts":
         """An independent copy for another agent."""

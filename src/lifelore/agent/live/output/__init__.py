@@ -1,4 +1,6 @@
-"""What a life leaves: `report` with its pictures, `exports` and `nav2_masks` for robots, logs for statistics.
+"""What a life leaves: `report` with its pictures, files for robots, and logs.
 
-`greedy_paths` computes the paths that they show; the logs are `l2_log` and `long_table`.
+For nav2: `known_building`, which writes `nav2_masks` and `route_graph` from `move_costs`. For other programs:
+`exports`, with the paths of `greedy_paths`. Logs: `logged_life` for viewers, `l2_log` and `long_table` for
+statistics.
 """

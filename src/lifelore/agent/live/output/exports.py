@@ -31,10 +31,17 @@ def write_paths(path: Path, world: GridWorld, tasks: Sequence[GreedyPaths], floo
         writer = csv.writer(file)
         writer.writerow(["task", "path", "step", "x", "y"])
         for task in tasks:
-            for number, states in enumerate(task.paths):
-                points = world.positions(states) if floor is None else _clear(floor, states, task.goal_point)
+            for number, points in enumerate(path_points(world, task, floor)):
                 for step, (x, y) in enumerate(points):
                     writer.writerow([task.task, number, step, f"{x:.4f}", f"{y:.4f}"])
+
+
+def path_points(world: GridWorld, task: GreedyPaths, floor: Floor | None = None) -> list[NDArray[np.float64]]:
+    """The corners of a task's paths, each (n, 2) in metres of the map's frame; see `write_paths`."""
+    return [
+        world.positions(states) if floor is None else _clear(floor, states, task.goal_point)
+        for states in task.paths
+    ]
 
 
 def _clear(floor: Floor, states: NDArray[np.int32], goal: tuple[float, float] | None) -> NDArray[np.float64]:

@@ -1,7 +1,8 @@
 """Exports experience for nav2: masks for its costmap filters, and the prior as vectors.
 
-Both masks have the grid of the user's map and the mode ``raw``: a pixel's value is the occupancy that nav2 reads,
-0 to 100, and 255 is unknown, which its filters skip. The meaning of the values is described in docs/nav2.md.
+The masks have the mode ``raw``: a pixel's value is the occupancy that nav2 reads, 0 to 100, and 255 is unknown,
+which its filters skip. They have the pixels of the user's map, or of its axis-aligned copy if the map is turned
+(`axis_aligned`). The meaning of the values is described in docs/nav2.md.
 """
 
 import csv
@@ -11,28 +12,34 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from lifelore.agent.live.output.move_costs import MoveCosts
 from lifelore.core.learning.known_world import WorldModel
 from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.buildings.inflation import inflate
-from lifelore.domains.buildings.occupancy_map import FREE, OccupancyMap, write_occupancy_map
+from lifelore.domains.buildings.map_alignment import axis_aligned
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap, write_occupancy_map
 from lifelore.domains.grids.grid_world import GridWorld
 
 NO_OPINION, KEEP_OUT = 255, 100
 """Values of a mask: skipped by nav2's filters, and never entered."""
+FULL_SPEED = 0
+"""Value of a speed mask that nav2's filter takes for no limit."""
 MOST_COST = 90
 """Largest cost of a place; nav2 takes values from 99 on nearly as an obstacle."""
-BUMP_SHARE = 0.5
-"""Part of the cost that comes from bumps; the rest comes from the prior."""
+SLOWEST = 10
+"""Least percent of full speed in a speed mask; a robot that obeys a smaller one seems to stand still."""
+LEAST = 10
+"""Smallest cost, and smallest loss of speed in percent, that a mask shows; less is noise of what was observed."""
 _ROWS = 512
 """Rows of a mask that are computed at a time; more need more memory."""
-_COSTS = (
-    "# Cost of driving here, 0 to 90: bumps in this place, and how seldom the action prior leads into it.\n"
-    "# 255: no experience. A mask for nav2's KeepoutFilter, see docs/nav2.md.\n"
-)
-_KEEPOUT = (
-    "# 100: no place that the robot knows, 0: space of known places.\n"
-    "# A mask for nav2's KeepoutFilter, see docs/nav2.md.\n"
-)
+_MEANINGS = {
+    "costs": "Time and risk of driving here, 0 to 90: 100 · (1 - cost of a usual place / cost of this place).\n"
+    "# 255: no experience. A mask for nav2's KeepoutFilter",
+    "speed": "Percent of the usual speed with which robots drive here; 0: no limit.\n"
+    "# A mask for nav2's SpeedFilter",
+    "keepout": "100: no place that the robot knows, or one that is blocked; 0: known space.\n"
+    "# A mask for nav2's KeepoutFilter",
+}
 
 
 def known_places(model: WorldModel) -> NDArray[np.bool_]:
@@ -40,36 +47,32 @@ def known_places(model: WorldModel) -> NDArray[np.bool_]:
     return model.percept >= 0
 
 
-def place_costs(world: GridWorld, model: WorldModel, probs: NDArray[np.float64] | None) -> NDArray[np.uint8]:
-    """The cost of each known place, (n_states,) in [0, `MOST_COST`]; `NO_OPINION` for other places.
+def place_costs(costs: MoveCosts, known: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """What driving in each place costs beyond the usual, (n_states,) in [0, `MOST_COST`]; else `NO_OPINION`.
 
-    cost = 100 · (`BUMP_SHARE` · bumps + (1 - `BUMP_SHARE`) · disfavour), at most `MOST_COST`
-
-    Bumps is the share of the place's tried moves that were refused. Disfavour is 1 - f, at least 0, where f is the
-    sum of the probabilities of the moves from neighbouring places into this one: as many robots enter in one move
-    if one stands in each neighbour. Two places have the largest cost at once if a move between them was refused
-    that the map allows.
-
-    Parameters
-    ----------
-    world : GridWorld
-    model : WorldModel
-        What the robot remembers.
-    probs : (n_states, n_actions) float, optional
-        The prior's probabilities; without a prior, disfavour is 0.
+    cost = 100 · (1 - usual cost / cost here), 0 below `LEAST`. The cost of a place is the mean of the moves into
+    and out of it, their refusals included; usual is the median of the known places. Walls cost nothing: nav2
+    inflates them itself.
     """
-    states = np.arange(world.n_states)[:, None]
-    tried, refused = model.target >= 0, model.target == states
-    bumps = refused.sum(axis=1) / np.maximum(tried.sum(axis=1), 1)
-    disfavour = np.zeros(world.n_states)
-    tail, action = np.nonzero(world.neighbour >= 0)
-    if probs is not None:
-        into = np.bincount(world.neighbour[tail, action], probs[tail, action], world.n_states)
-        disfavour = np.clip(1 - into, 0, 1)
-    cost = np.rint(100 * (BUMP_SHARE * bumps + (1 - BUMP_SHARE) * disfavour))
-    state, action = np.nonzero(refused & (world.neighbour >= 0))
-    cost[state] = cost[world.neighbour[state, action]] = MOST_COST
-    return np.where(known_places(model), np.minimum(cost, MOST_COST), NO_OPINION).astype(np.uint8)
+    value = 100 * _beyond_usual(costs.at_places(costs.cost), known)
+    value = np.where(value >= LEAST, np.minimum(np.rint(value), MOST_COST), 0)
+    return np.where(known, value, NO_OPINION).astype(np.uint8)
+
+
+def place_speeds(costs: MoveCosts, known: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """Percent of the usual speed at each known place that is slow, (n_states,); `FULL_SPEED` elsewhere.
+
+    Usual is the median of the known places.
+    """
+    loss = 100 * _beyond_usual(costs.at_places(costs.seconds), known)
+    percent = np.maximum(np.rint(100 - loss), SLOWEST)
+    return np.where(known & (loss >= LEAST), percent, FULL_SPEED).astype(np.uint8)
+
+
+def _beyond_usual(values: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """1 - usual value / value; 0 where a place has no moves."""
+    usual = np.nanmedian(values[known]) if np.isfinite(values[known]).any() else np.nan
+    return np.nan_to_num(1 - usual / values)
 
 
 def body_space(floor: Floor, known: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -81,15 +84,18 @@ def body_space(floor: Floor, known: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return inflate(centres, floor.radius)
 
 
-def cost_mask(floor: Floor, costs: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """The cost at each pixel of the floor's map: that of the nearest place within the robot's body.
+def place_masks(
+    floor: Floor, known: NDArray[np.bool_], *values: tuple[NDArray[np.uint8], int]
+) -> list[NDArray[np.uint8]]:
+    """Masks on the pixels of the floor's map, each of the values of all places and a value for other pixels.
 
-    `NO_OPINION` outside of known places and on pixels that the map does not show as free.
+    A pixel has the value of the nearest place. Other pixels are those outside of known places, and those that the
+    map does not show as free.
     """
     nearest = ndimage.distance_transform_edt(floor.state < 0, return_distances=False, return_indices=True)
-    mask = costs[floor.state[tuple(np.asarray(nearest))]]
-    known = body_space(floor, costs != NO_OPINION) & (floor.occupancy.state == FREE)
-    return np.where(known, mask, NO_OPINION).astype(np.uint8)
+    place = floor.state[tuple(np.asarray(nearest))]
+    space = body_space(floor, known) & (floor.occupancy.state == FREE)
+    return [np.where(space, own[place], other).astype(np.uint8) for own, other in values]
 
 
 def keepout_mask(floor: Floor, known: NDArray[np.bool_]) -> NDArray[np.uint8]:
@@ -98,9 +104,11 @@ def keepout_mask(floor: Floor, known: NDArray[np.bool_]) -> NDArray[np.uint8]:
 
 
 def on_map(mask: NDArray[np.uint8], floor: Floor, occupancy: OccupancyMap, outside: int) -> NDArray[np.uint8]:
-    """A mask of the floor's pixels on the pixels of the user's own map; `outside` where the floor has none."""
+    """A mask of the floor's pixels on those of another map of the ground; `outside` where the floor has none."""
     rows, columns = occupancy.state.shape
-    own = Floor(occupancy, np.empty((rows, columns), np.int32), np.empty((0, 0), np.bool_), 0.0, 0)
+    if mask.shape == (rows, columns) and occupancy.origin == floor.occupancy.origin:
+        return mask.copy()
+    own = _pixels_of(occupancy)
     found = np.full((rows, columns), outside, np.uint8)
     for top in range(0, rows, _ROWS):
         row, column = np.mgrid[top : min(top + _ROWS, rows), 0:columns]
@@ -112,27 +120,42 @@ def on_map(mask: NDArray[np.uint8], floor: Floor, occupancy: OccupancyMap, outsi
     return found
 
 
+def _pixels_of(occupancy: OccupancyMap) -> Floor:
+    """A floor without places: the conversion between metres and pixels of a map."""
+    return Floor(occupancy, np.empty(occupancy.state.shape, np.int32), np.empty((0, 0), np.bool_), 0.0, 0)
+
+
 def write_masks(
-    folder: Path, world: GridWorld, model: WorldModel, probs: NDArray[np.float64] | None, floor: Floor,
-    occupancy: OccupancyMap,
-) -> None:  # fmt: skip
-    """Write ``costs.yaml`` and ``keepout.yaml`` with their images, on the grid of the user's map `occupancy`.
+    folder: Path, costs: MoveCosts, known: NDArray[np.bool_], floor: Floor, given: OccupancyMap
+) -> None:
+    """Write ``costs``, ``speed`` and ``keepout``, each as YAML and image, for the user's map `given`.
+
+    nav2's costmaps ignore the yaw of an origin, so a turned map gets masks on its axis-aligned copy, in the same
+    frame. Every point that the given map shows as occupied lies in a pixel with `KEEP_OUT`, and so does a place
+    that is now more likely blocked than open.
 
     Raises
     ------
     StoreError
         The files cannot be written.
     """
-    costs = place_costs(world, model, probs)
+    target = axis_aligned(given)
+    values = (place_costs(costs, known), NO_OPINION), (place_speeds(costs, known), FULL_SPEED)
+    cost, speed = place_masks(floor, known, *values)
     masks = {
-        "costs": (cost_mask(floor, costs), NO_OPINION, _COSTS),
-        "keepout": (keepout_mask(floor, known_places(model)), KEEP_OUT, _KEEPOUT),
+        "costs": (cost, NO_OPINION),
+        "speed": (speed, FULL_SPEED),
+        "keepout": (keepout_mask(floor, known & ~costs.closed()), KEEP_OUT),
     }
-    for name, (mask, outside, meaning) in masks.items():
+    for name, (mask, outside) in masks.items():
         path = folder / f"{name}.yaml"
-        grey = on_map(mask, floor, occupancy, outside)
-        write_occupancy_map(path, grey, occupancy.resolution, occupancy.origin, mode="raw")
-        path.write_text(meaning + path.read_text(encoding="utf-8"), encoding="utf-8")
+        grey = on_map(mask, floor, target, outside)
+        if name == "keepout":
+            walls = _pixels_of(given).metres(np.argwhere(given.state == OCCUPIED))
+            grey[tuple(np.rint(_pixels_of(target).pixels(walls)).astype(np.int64).T)] = KEEP_OUT
+        write_occupancy_map(path, grey, target.resolution, target.origin, mode="raw")
+        text = f"# {_MEANINGS[name]}, see docs/nav2.md.\n"
+        path.write_text(text + path.read_text(encoding="utf-8"), encoding="utf-8")
 
 
 def write_directions(

@@ -8,10 +8,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from lifelore.agent.live.baselines import AGENTS
+from lifelore.agent.live.goals.destinations import Point
 from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
 from lifelore.agent.live.output.exports import write_paths, write_prior_map
 from lifelore.agent.live.output.greedy_paths import GreedyPaths, greedy_paths_of
-from lifelore.agent.live.output.nav2_masks import known_places, write_directions, write_masks
+from lifelore.agent.live.output.known_building import NAV2_FILES, KnownBuilding
+from lifelore.agent.live.output.logged_life import Recorder, goal_points, write_life_log
+from lifelore.agent.live.output.nav2_masks import write_directions
 from lifelore.agent.live.summary import third
 from lifelore.agent.live.task_result import THRESHOLD, TaskResult
 from lifelore.core.errors import InputError, StoreError
@@ -22,10 +25,9 @@ from lifelore.figures.lives.world_map import draw_world_map
 from lifelore.figures.style import save_figure
 
 PRIOR_FILES = ("prior.png", "prior.pgm", "prior.yaml", "directions.csv")
-MASK_FILES = ("costs.pgm", "costs.yaml", "keepout.pgm", "keepout.yaml")
-FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", *PRIOR_FILES, *MASK_FILES)
-"""Files of the folder; the files of the prior are there only if the agent has a prior, the masks only in buildings
-whose moves the agent has learnt."""
+FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", *PRIOR_FILES, *NAV2_FILES)
+"""Files of the folder; the files of the prior are there only if the agent has a prior, those of nav2 only in
+buildings whose moves the agent has learnt."""
 
 
 def check_folder(path: str) -> None:
@@ -93,6 +95,12 @@ def write_portfolio(life: Life, out: str) -> list[str]:
     return [str(folder / name) for name in written]
 
 
+def write_log(life: Life, path: str, recorder: Recorder) -> str:
+    """Write the log of a life in a building; returns `path`. Errors as in `write_life_log`."""
+    write_life_log(path, life, _last_paths(life) if life.results else [], recorder)
+    return path
+
+
 def _folder(path: str) -> Path:
     if not path.strip() or "\0" in path:
         raise InputError(f"out must name a folder, got {path!r}")
@@ -111,10 +119,15 @@ def _write_all(life: Life, folder: Path) -> None:
     write_paths(folder / "paths.csv", life.world, paths, life.floor)
     if _has_prior(life):
         _write_prior(life, folder)
-    model = life.lore.model
-    if life.floor is not None and life.given is not None and known_places(model).any():
-        probs = life.lore.prior.probs(life.lore.scope.contexts) if _has_prior(life) else None
-        write_masks(folder, life.world, model, probs, life.floor, life.given)
+    if life.building is not None:
+        life.building.write(folder, _goals(life, life.building))
+
+
+def _goals(life: Life, building: KnownBuilding) -> dict[str, Point]:
+    """The goals on the present map, the last ones first; memory knows those with a name by itself."""
+    tasks = [task for task in life.report["tasks"][life.first_here :] if not task.get("name")]
+    points = goal_points(life, building, tasks)
+    return {f"goal {task['index']}": point for task, point in reversed(list(zip(tasks, points, strict=True)))}
 
 
 def _agents(life: Life) -> list[str]:

@@ -1,0 +1,27 @@
+"""Errors of a move's seconds by predictor, a dot a life, and refusals by predicted probability."""
+
+from collections.abc import Mapping
+
+from lifelore.figures.style import BLUE, GREY, LIGHT, Figure, house_style, new_figure
+
+LABELS = {"travel": "travel", "last": "last time", "mean": "mean", "truth": "truth\nwithout noise"}
+
+
+@house_style()
+def draw(result: Mapping) -> Figure:
+    """Left: mean absolute errors. Right: share of refused moves of each bin, against the mean probability."""
+    *errors, last = result["rows"]
+    figure = new_figure(7.2, 3.2)
+    of_moves, of_refusals = figure.subplots(1, 2)
+    for place, row in enumerate(errors):
+        colour = BLUE if row["method"] == "travel" else GREY
+        of_moves.plot([place] * len(row["moves"]), row["moves"], "o", color=colour, alpha=0.5, ms=6, mew=0)
+    of_moves.set(xticks=range(len(errors)), xticklabels=[LABELS[row["method"]] for row in errors])
+    of_moves.set(ylabel="error of a move's seconds (s)", ylim=(0, None))
+    of_moves.grid(axis="y", color=LIGHT)
+    bins = [(predicted / n, refused / n) for n, predicted, refused in last["bins"] if n]
+    of_refusals.plot([0, 1], [0, 1], color=GREY, linestyle=(0, (1, 2)))
+    of_refusals.plot(*zip(*bins, strict=True), "o-", color=BLUE)
+    of_refusals.set(xlabel="predicted probability of a refusal", ylabel="share of refused moves")
+    of_refusals.grid(color=LIGHT)
+    return figure

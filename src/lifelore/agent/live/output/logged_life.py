@@ -1,0 +1,106 @@
+"""A life in a building as data for a log: its map, costs, ways and events, with their times."""
+
+from collections.abc import Callable
+from datetime import UTC, datetime
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.live.goals.destinations import Point
+from lifelore.agent.live.life import Life
+from lifelore.agent.live.output.exports import path_points
+from lifelore.agent.live.output.greedy_paths import GreedyPaths
+from lifelore.agent.live.output.known_building import KnownBuilding
+from lifelore.agent.live.output.nav2_masks import NO_OPINION, on_map, place_costs, place_masks
+from lifelore.core.errors import InputError, StoreError
+from lifelore.domains.buildings.occupancy_map import OccupancyMap
+from lifelore.domains.grids.grid_world import MOVE_NAMES
+
+
+class LoggedLife(NamedTuple):
+    """What a log holds; points are in metres of the map's frame, seconds those since 1970 by the robot's clock.
+
+    occupancy : the user's map
+    costs : (rows, columns) uint8, on its pixels, as in the mask ``costs``
+    ways : (name, seconds, corners (n, 2)) of the last tasks
+    events : (name, seconds, point): goals reached or missed, and moves refused
+
+    A life without a clock has the number of its task in place of seconds, and no refusals.
+    """
+
+    occupancy: OccupancyMap
+    costs: NDArray[np.uint8]
+    ways: list[tuple[str, float, NDArray[np.float64]]]
+    events: list[tuple[str, float, Point]]
+
+
+Recorder = Callable[[str, OccupancyMap, NDArray[np.uint8], list, list], None]
+"""Writes the fields of a `LoggedLife` to a file."""
+
+
+def write_life_log(path: str, life: Life, last: list[GreedyPaths], recorder: Recorder) -> None:
+    """Write the log of a life in a building whose last paths are `last`.
+
+    Raises
+    ------
+    InputError
+        The life has no building.
+    StoreError
+        The file cannot be written.
+    """
+    if life.building is None:
+        raise InputError(f"log needs a life in a building, got domain {life.report['domain']}; leave it out")
+    try:
+        recorder(path, *logged_life(life, life.building, last))
+    except OSError as error:
+        raise StoreError(f"log: cannot write {path}: {error.strerror}; choose another file") from None
+
+
+def logged_life(life: Life, building: KnownBuilding, last: list[GreedyPaths]) -> LoggedLife:
+    """The data of a life; `last` are the paths of its last tasks."""
+    tasks = {task["index"]: task for task in life.report["tasks"][life.first_here :]}
+    ways = [
+        (_named(tasks[paths.task]), _seconds(tasks[paths.task]), points)
+        for paths in last
+        for points in path_points(life.world, paths, building.floor)[:1]
+    ]
+    first = next(iter(life.results), {})
+    name = next(iter(first), "")
+    ends = [
+        (f"{'reached' if task['agents'][name]['reached'] else 'missed'} {_named(task)}", _seconds(task), point)
+        for task, point in zip(tasks.values(), goal_points(life, building, list(tasks.values())), strict=True)
+    ]
+    begin = min((_seconds(task) for task in tasks.values() if "clock" in task), default=np.inf)
+    values = place_costs(building.costs, building.known), NO_OPINION
+    (costs,) = place_masks(building.floor, building.known, values)
+    laid = on_map(costs, building.floor, building.given, NO_OPINION)
+    return LoggedLife(building.given, laid, ways, ends + _refusals(building, begin))
+
+
+def goal_points(life: Life, building: KnownBuilding, tasks: list[dict[str, Any]]) -> list[Point]:
+    """The goals of tasks: the user's points, or those of their cells that are farthest from obstacles."""
+    states = np.array([life.world.state_of[tuple(task["goal"])] for task in tasks], np.int64)
+    anchors = building.floor.metres(building.floor.anchors[states])
+    return [tuple(task.get("position") or point) for task, point in zip(tasks, anchors.tolist(), strict=True)]
+
+
+def _refusals(building: KnownBuilding, begin: float) -> list[tuple[str, float, Point]]:
+    passes = building.travel.passes
+    chosen = passes.where((passes.refusals > 0) & (passes.minute * 60 >= begin - 60))
+    state, action = chosen.move // len(MOVE_NAMES), chosen.move % len(MOVE_NAMES)
+    points = building.floor.metres(building.floor.anchors[state]).tolist()
+    return [
+        (f"refused {MOVE_NAMES[move]}", 60.0 * minute, (x, y))
+        for move, minute, (x, y) in zip(action, chosen.minute.tolist(), points, strict=True)
+    ]
+
+
+def _named(task: dict[str, Any]) -> str:
+    return task.get("name") or f"goal {task['index']}"
+
+
+def _seconds(task: dict[str, Any]) -> float:
+    if "clock" not in task:
+        return float(task["index"])
+    return datetime.fromisoformat(task["clock"]).replace(tzinfo=UTC).timestamp()

@@ -1,0 +1,110 @@
+"""What memory knows about driving in one building: seconds of each move by hour, and moves that were refused.
+
+    travel = Travel.recalled(world, grid, memory)
+    travel.observe(states, actions, clock, seconds)   # after each drive
+    cost = travel.cost(clock)                         # seconds to plan with
+
+Memory adds what is observed, so that any robots in any order give the same knowledge.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.agent.travel import passes as records
+from lifelore.agent.travel.blocked_moves import blocked_probability
+from lifelore.agent.travel.edge_times import typical_seconds
+from lifelore.agent.travel.passes import Passes, joined, observed
+from lifelore.core.protocols import Record
+from lifelore.domains.grids.cell_numbers import BuildingGrid
+from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.memory import Memory
+
+DETOUR = 60.0
+"""Seconds that a refused move costs: turning round, and another way."""
+
+
+@dataclass
+class Travel:
+    """Observed moves of one building, and what is expected from them.
+
+    Parameters
+    ----------
+    world : GridWorld
+        States and actions are its own.
+    grid : BuildingGrid
+        Where the world lies in the grid of the building's first map.
+    half_life : float
+        Days after which half of a belief about a blocked place is left, above 0.
+    """
+
+    world: GridWorld
+    grid: BuildingGrid
+    half_life: float = 7.0
+    _parts: list[Passes] = field(default_factory=list, repr=False)
+    _stored: int = field(default=0, repr=False)
+
+    @classmethod
+    def recalled(cls, world: GridWorld, grid: BuildingGrid, memory: Memory) -> "Travel":
+        """The knowledge that memory holds of this building; moves that the map no longer has are left out."""
+        record = memory.recall(records.KIND, records.key_of(world, grid), records.VERSION)
+        return cls(world, grid, _parts=[records.from_record(world, grid, record)], _stored=1)
+
+    def observe(self, states: ArrayLike, actions: ArrayLike, clock: ArrayLike, seconds: ArrayLike) -> None:
+        """Take in moves; those that the map does not have are left out.
+
+        Parameters
+        ----------
+        states, actions : (n,) int
+        clock : (n,) float
+            Seconds since 1970 by the robot's clock, when the move began. Hours of the day are hours of this clock.
+        seconds : (n,) float
+            Of each move, above 0; NaN where it was refused.
+
+        Raises
+        ------
+        InputError
+            The arrays differ in length, or a value lies outside its range.
+        """
+        self._parts.append(observed(self.world, states, actions, clock, seconds))
+
+    def news(self) -> list[Record]:
+        """A record of the observations since the last call, for memory; an empty list where there are none.
+
+        Cells left of or below the building's first map are used, and not stored.
+        """
+        new, self._stored = joined(self._parts[self._stored :]), len(self._parts)
+        record = records.to_record(self.world, self.grid, new)
+        return [record] if len(record.slots) else []
+
+    @property
+    def passes(self) -> Passes:
+        """All observations of moves that the map has."""
+        return joined(self._parts)
+
+    def seconds(self, clock: float) -> NDArray[np.float64]:
+        """Typical seconds (n_states, 4) of each move at `clock`, also of those that are likely to be refused.
+
+        Half of the passes take longer (the median); rare long waits do not count, so that sums over a way are some
+        percent short. Moves into one cell share them. Moves without observations get the seconds of their
+        surroundings and of the building; the nominal seconds (cell side divided by 0.5 m/s) where nothing was
+        observed. Observations count whatever their clock: those later than `clock` count as new.
+        """
+        return typical_seconds(self.world, self.passes, clock)
+
+    def blocked(self, clock: float) -> NDArray[np.float64]:
+        """Probability (n_states, 4) that each move is refused at `clock`; 1 where the map has no move.
+
+        All moves into one cell share it. A refusal raises it, a pass lowers it, and age brings it back to the
+        share of refusals at this hour.
+        """
+        return blocked_probability(self.world, self.passes, clock, self.half_life)
+
+    def cost(self, clock: float) -> NDArray[np.float64]:
+        """Seconds (n_states, 4) to plan with: typical seconds + probability of refusal · `DETOUR`.
+
+        Infinite where the map has no move.
+        """
+        cost = self.seconds(clock) + DETOUR * self.blocked(clock)
+        return np.where(self.world.neighbour >= 0, cost, np.inf)

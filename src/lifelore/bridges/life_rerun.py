@@ -1,0 +1,70 @@
+"""Logs a life in a building as an ``.rrd`` file for the viewer of Rerun; needs the extra ``view``.
+
+All is in metres of the map's frame: ``map`` holds the occupied pixels, ``costs`` the expensive ones, and over the
+timeline ``clock`` come ``way`` and ``events``.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.bridges.scene_rerun import rerun
+from lifelore.domains.buildings.occupancy_map import OCCUPIED
+from lifelore.domains.grids.grid_world import Frame
+
+if TYPE_CHECKING:
+    from lifelore.domains.buildings.occupancy_map import OccupancyMap
+
+MOST = 100
+"""Largest cost; larger values of a mask are unknown."""
+
+
+def write_life_rrd(
+    path: str | Path,
+    occupancy: "OccupancyMap",
+    costs: NDArray[np.uint8],
+    ways: Sequence[tuple[str, float, NDArray[np.float64]]],
+    events: Sequence[tuple[str, float, tuple[float, float]]],
+) -> None:
+    """Write a life, see `write_life_log`.
+
+    Raises
+    ------
+    MissingExtraError
+        rerun is not installed.
+    OSError
+        The file cannot be written.
+    """
+    rr = rerun()
+    Path(path).touch()  # the library only warns of a file that it cannot write
+    dear = (costs > 0) & (costs <= MOST)
+    heat = np.column_stack([np.full(dear.sum(), 255), 255 - 2 * costs[dear], np.zeros(dear.sum())]).astype(
+        np.uint8
+    )
+    half = occupancy.resolution / 2
+    with rr.RecordingStream("lifelore") as log:
+        log.save(path)
+        log.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+        walls = _flat(_centres(occupancy, occupancy.state == OCCUPIED))
+        log.log("map", rr.Points3D(walls, radii=half), static=True)
+        log.log("costs", rr.Points3D(_flat(_centres(occupancy, dear)), colors=heat, radii=half), static=True)
+        for name, seconds, points in ways:
+            log.set_time("clock", timestamp=seconds)
+            log.log("way", rr.LineStrips3D([_flat(points)], labels=[name]))
+        for name, seconds, point in events:
+            log.set_time("clock", timestamp=seconds)
+            log.log("events", rr.Points3D(_flat(np.array([point])), labels=[name], radii=4 * half))
+
+
+def _centres(occupancy: "OccupancyMap", chosen: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Points (n, 2) in metres of the chosen pixels' centres."""
+    rows, columns = np.nonzero(chosen)
+    return Frame(occupancy.resolution, occupancy.origin).metres(columns + 0.5, len(chosen) - rows - 0.5)
+
+
+def _flat(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points (n, 3) on the floor."""
+    return np.column_stack([points, np.zeros(len(points))])
