@@ -144,8 +144,8 @@ def recognise(
     memory : str or Path, optional
         SQLite file or URL; None: the user's own.
     goals : str or Path, optional
-        Job list (``lifelore live --goals``) in metres of the remembered frame, which is that of the building's first
-        map, or of `old`. None: all places of the building that memory knows by name.
+        Job list (``lifelore live --goals``) in metres of the remembered frame, which is that of the building's
+        first map, or of `old`. None: all places of the building that memory knows by name.
     old : str or Path, optional
         YAML of an earlier map of the building, to compare with in place of memory.
     building : str, optional
