@@ -21,7 +21,7 @@ from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.registration import composed
 from lifelore.domains.worlds import WorldSettings, world_from_settings
 from lifelore.memory import open_memory
-from reproduction.own.o_04_same_building.edits import cropped, noisy, turned
+from reproduction.own.o_04_same_building.edits import cropped, noisy, refurnished, turned
 from tests.domains.buildings.resaved_maps import padded, shifted
 
 OFFICE = office_map(1, 14.0, 12.0)
@@ -175,6 +175,25 @@ def test_a_waypoint_on_ground_that_was_not_mapped_is_outside(found):
 def test_what_is_not_certain_is_refused(found, new, words):
     with pytest.raises(InputError, match=words):
         found(new)
+
+
+def test_a_name_decides_where_much_of_the_furniture_moved(found):
+    new = turned(refurnished(OFFICE, 0.6), 3.0)
+    with pytest.raises(InputError, match=r"9\d % of the walls match; .* name it \(--building\): then 75 % of"):
+        found(new)
+    named = found(new, building="home")
+    assert 0.75 < named.walls < 0.96
+    assert np.degrees(named.pose[2]) == pytest.approx(-3, abs=0.05)
+    with pytest.raises(InputError, match="map does not fit building 'home'"):
+        found(office_map(2, 14.0, 12.0), building="home")
+
+
+def test_two_maps_with_too_little_in_common_are_refused(found, tmp_path):
+    """A third of each map's ground is known to the other."""
+    write_occupancy_map(tmp_path / "west.yaml", cropped(OFFICE, 0.6))
+    east = replace(OFFICE, state=np.ascontiguousarray(OFFICE.state[:, int(OFFICE.state.shape[1] * 0.4) :]))
+    with pytest.raises(InputError, match=r"is not recognised: .*; give a map that shows more of the building"):
+        found(turned(east, 5.0), old=tmp_path / "west.yaml")
 
 
 JOBS = (

@@ -223,7 +223,7 @@ def _recognised(
         return found
     advice = "give a map that shows more of the building"
     if name is None:
-        advice += f", or name it (--building): then {LEAST_NAMED_MATCH:.0%} of the walls suffice"
+        advice += f", or name it (--building): then {100 * LEAST_NAMED_MATCH:.0f} % of the walls suffice"
     raise InputError(f"map {occupancy.source} is not recognised: {reason}; {advice}")
 
 
