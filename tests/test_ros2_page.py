@@ -106,7 +106,7 @@ def cloud_message(points: np.ndarray, padding: int = 4, big: bool = False) -> An
 def test_the_commands_on_bags_run_as_printed(tmp_path):
     """The bag of a night teaches, closes the place of three bumps, and is undone."""
     (tmp_path / "examples").symlink_to(ROOT / "examples")
-    (block,) = re.findall(r"^## What is read from my bags\?\n\n```sh\n(.*?)^```", PAGE, flags=re.M | re.S)
+    (block,) = re.findall(r"^## Bags of the robot\n\n```sh\n(.*?)^```", PAGE, flags=re.M | re.S)
     said = []
     for line in block.splitlines():
         words = shlex.split(line, comments=True)[1:]

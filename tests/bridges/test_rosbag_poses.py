@@ -5,6 +5,7 @@ import pytest
 
 pytest.importorskip("rosbags")
 
+from lifelore.bridges.mcap_file import message_of
 from lifelore.bridges.rosbag_poses import read_bag_log
 from lifelore.core.errors import InputError, NotFoundError
 
@@ -62,6 +63,25 @@ def test_poses_in_the_map_need_no_transforms(bag):
     log = read_bag_log(bag.write())
     assert np.allclose(log.points, true_pose(TIMES[::5]))
     assert np.allclose(log.heading, 0.3)
+
+
+def test_a_bag_of_ros_1_is_read_too(tmp_path):
+    from rosbags.rosbag1 import Writer
+    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+    store, kind = get_typestore(Stores.ROS1_NOETIC), "tf2_msgs/msg/TFMessage"
+    store.register(get_types_from_msg("geometry_msgs/TransformStamped[] transforms", kind))
+    with Writer(tmp_path / "one.bag") as writer:
+        connection = writer.add_connection("/tf", kind, typestore=store)
+        for k in range(3):
+            header = {"frame_id": "/map", "stamp": {"sec": 100 + k, "nanosec": 500_000_000}}
+            pose = {"translation": {"x": 2.0 * k, "y": 3.0}, "rotation": {"w": 1.0}}
+            one = {"header": header, "child_frame_id": "/base_link", "transform": pose}
+            message = message_of(store, kind, {"transforms": [one]})
+            writer.write(connection, (100 + k) * 10**9, store.serialize_ros1(message, kind))
+    log = read_bag_log(tmp_path / "one.bag")
+    assert log.time.tolist() == [100.5, 101.5, 102.5]
+    assert log.points.tolist() == [[0, 3], [2, 3], [4, 3]]
 
 
 def test_poses_faster_than_ten_a_second_are_thinned(bag):

@@ -177,8 +177,8 @@ def test_forgotten_tasks_can_be_contributed_again_under_the_next_number(memory, 
         memory.contribute("a", [record({1: 10**seq})], process=f"run {seq}", seq=0, task={"source": name})
     with open_memory(tmp_path / "copy.db") as copy:
         copy.merge_from(memory)
-        assert memory.forget_tasks(lambda task: task["source"] == "bag") == 2
-        assert memory.forget_tasks(lambda task: task["source"] == "bag") == 0
+        assert memory.forget_tasks(lambda robot, task: (robot, task["source"]) == ("a", "bag")) == 2
+        assert memory.forget_tasks(lambda robot, task: (robot, task["source"]) == ("a", "bag")) == 0
         assert cells(memory) == {1: 10}
         assert [memory.times_forgotten("a", f"run {seq}") for seq in range(3)] == [1, 0, 1]
         assert memory.is_known("a", "run 0", 0)

@@ -119,9 +119,10 @@ def forget(
     from lifelore.core.errors import InputError
     from lifelore.memory import open_memory
 
-    if sum(name is not None for name in (robot, building, source)) != 1:
+    if (robot is None and source is None) == (building is None):
         raise InputError(
-            "forget needs one of a robot, --building NAME and --source RUNS; see: lifelore memory show"
+            "forget needs a robot, --source RUNS (of one robot or of all) or --building NAME; "
+            "see: lifelore memory show"
         )
     with open_memory(where, create=False) as opened:
         if building is not None:
@@ -129,7 +130,7 @@ def forget(
             _say(done, f"building {building} forgotten: {done['records']} records", as_json)
             return
         if source is not None:
-            count = forget_source(opened, source)
+            count = forget_source(opened, source, robot)
             _say({"forgotten": count, "source": source}, f"{count} runs of {source} forgotten", as_json)
             return
         count = opened.forget(str(robot))

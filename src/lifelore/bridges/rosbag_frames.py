@@ -79,5 +79,5 @@ class FrameTree:
 
 
 def seconds(stamp: Any) -> float:
-    """Seconds of a ROS time, of ROS 1 or ROS 2."""
-    return stamp.sec + getattr(stamp, "nanosec", 0) * 1e-9
+    """Seconds of a ROS time."""
+    return stamp.sec + stamp.nanosec * 1e-9

@@ -375,13 +375,13 @@ class Memory:
         self._store.empty_log()
         return count
 
-    def forget_tasks(self, chosen: Callable[[Mapping[str, Any]], bool]) -> int:
-        """Remove for ever the contributions whose description of the task is `chosen`; return their number.
+    def forget_tasks(self, chosen: Callable[[str, Mapping[str, Any]], bool]) -> int:
+        """Remove for ever the contributions whose robot and task description are `chosen`; return their number.
 
         No replay, merge or import restores them, and bytes go as in `forget`.
         """
         with self._store.writing() as conn:
-            found = [one for one in ledger.tasks(conn) if chosen(json.loads(one[2]))]
+            found = [one for one in ledger.tasks(conn) if chosen(one[1][0], json.loads(one[2]))]
             if not found:
                 return 0
             ledger.add_tombstones(conn, [identity for _, identity, _ in found])

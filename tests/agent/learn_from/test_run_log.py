@@ -49,6 +49,7 @@ def test_equal_runs_have_equal_digests_in_whatever_file(tmp_path):
         ("time,x,y\n\n0,1,two\n", "line 3: y must be a number"),
         ("time,x,y\n0,1,nan\n", "line 2: y must be a number"),
         ("time,x,y\n0,1e7,0\n", "line 2: x must be a number of magnitude 1e\\+06"),
+        ("time,x,y\n1704067200000,0,0\n", r"line 2: time must be a number of magnitude 4e\+09 at most"),
         ("time,x,y\n1,0,0\n0,0,0\n", "line 3: time must ascend within a run, got 0 after 1"),
         ("time,x,y,outcome\n0,0,0,crash\n", "outcome must be empty or one of bump, goal, failed, got 'crash'"),
         ('time,x,y\n"0,0,0\n', "is no CSV"),

@@ -113,8 +113,8 @@ def learn_from(
     return report
 
 
-def forget_source(memory: Memory, source: str) -> int:
-    """Forget the runs that were learnt from a source for ever; return their number.
+def forget_source(memory: Memory, source: str, robot: str | None = None) -> int:
+    """Forget the runs that were learnt from a source, of one robot or of all, for ever; return their number.
 
     They are learnt again if `learn_from` meets them again. The map of the building stays.
 
@@ -123,9 +123,9 @@ def forget_source(memory: Memory, source: str) -> int:
     NotFoundError
         No run was learnt from this source.
     """
-    count = memory.forget_tasks(lambda task: task.get("source") == source)
+    count = memory.forget_tasks(lambda by, task: task.get("source") == source and robot in (None, by))
     if not count:
-        tasks = (task for robot in memory.robots() for task in memory.task_descriptions(robot))
+        tasks = (task for name in memory.robots() for task in memory.task_descriptions(name))
         known = sorted({task["source"] for task in tasks if "source" in task})
         raise NotFoundError(
             f"source {source!r} has taught nothing here; known sources: {', '.join(known) or 'none'}"

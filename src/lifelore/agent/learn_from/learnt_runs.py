@@ -136,12 +136,11 @@ def has_clock(seconds: NDArray[np.float64]) -> bool:
 
 
 def _refusals(times: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Times of the refusals that stand for bumps at ascending `times`: in minutes of their own, because refusals of
-    one minute count once."""
+    """Ascending times of bumps, each moved back to a minute of its own: refusals of one minute count once."""
     found: list[float] = []
     for latest in times[::-1].tolist():
         found.append(min(latest, found[-1] - 60.0) if found else latest)
-    return np.maximum(found, 0.0)
+    return np.maximum(found[::-1], 0.0)
 
 
 def _clock(seconds: NDArray[np.float64]) -> NDArray[np.float64]:

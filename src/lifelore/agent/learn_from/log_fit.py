@@ -22,8 +22,10 @@ TOLERANCE = 0.15
 """Metres: three standard deviations of a localisation with 5 cm."""
 MOST_OUTSIDE, MENDED = 0.02, 0.005
 """Share of poses outside from which a log is refused, and below which an offset mends it."""
-FARTHEST_SHIFT, TURNS = 10.0, np.deg2rad([0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 90, -90, 180])
-"""Metres and radians that are searched for an offset."""
+FARTHEST_SHIFT = 10.0
+"""Metres that are searched for an offset."""
+TURNS = [np.deg2rad(turns).tolist() for turns in ((0,), range(-5, 6), (90, -90, 180))]
+"""Turns in radians that are searched, the later ones where the earlier ones mend nothing."""
 SURE = 0.5
 """Metres: the largest distance between two offsets that mend a log equally, half of it the error of the answer."""
 SURE_TURN = np.deg2rad(6)
@@ -70,13 +72,20 @@ def mending_shift(points: NDArray[np.float64], reachable: Reachable) -> tuple[Sh
     reachable : Reachable
     """
     points = points[np.linspace(0, len(points) - 1, min(_POSES, len(points))).astype(int)]
-    candidates = [shift for turn in TURNS.tolist() for shift in _candidates(points, turn, reachable)]
-    if not 0 < len(candidates) <= _MOST_CANDIDATES:
-        return None
-    share = np.array([reachable.outside(shifted(points, shift)).mean() for shift in candidates])
-    good = np.array(candidates)[share <= MENDED]
-    if not len(good):
-        return None
+    for turns in TURNS:
+        candidates = [shift for turn in turns for shift in _candidates(points, turn, reachable)]
+        if len(candidates) > _MOST_CANDIDATES:
+            return None
+        share = np.array([reachable.outside(shifted(points, shift)).mean() for shift in candidates])
+        if (share <= MENDED).any():
+            return _middle(points, np.array(candidates)[share <= MENDED], reachable)
+    return None
+
+
+def _middle(
+    points: NDArray[np.float64], good: NDArray[np.float64], reachable: Reachable
+) -> tuple[Shift, float] | None:
+    """The middle of the offsets (n, 3) that mend a log, and its share of poses outside; None if they differ."""
     # Where the middle of the log comes to lie, because a turn about the origin moves it.
     middles = np.array([shifted(points.mean(axis=0)[None], tuple(one))[0] for one in good])
     if np.ptp(middles, axis=0).max() > SURE or np.ptp(good[:, 2]) > SURE_TURN:

@@ -28,8 +28,8 @@ NOTHING, BUMP, GOAL, FAILED = "", "bump", "goal", "failed"
 OUTCOMES = (BUMP, GOAL, FAILED)
 GAP = 10.0
 """Seconds without a pose that end a run in a log without the column run."""
-_FARTHEST = 1e6
-"""Metres; a larger coordinate is an error of units."""
+_FARTHEST, _LATEST = 1e6, 4e9
+"""Metres, and seconds since 1970; a larger coordinate or time is an error of units."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,7 +152,7 @@ def _pose(row: list[str], columns: list[str], line: int, name: str) -> _Pose:
         raise InputError(f"{name} line {line}: outcome must be empty or one of {', '.join(OUTCOMES)}, "
                          f"got {outcome[:40]!r}")  # fmt: skip
     heading = number("heading", 1e4) if value.get("heading") else math.nan
-    time, x, y = number("time", 1e12), number("x", _FARTHEST), number("y", _FARTHEST)
+    time, x, y = number("time", _LATEST), number("x", _FARTHEST), number("y", _FARTHEST)
     return _Pose(line, value.get("run", ""), time, x, y, heading, outcome)
 
 

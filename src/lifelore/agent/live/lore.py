@@ -82,9 +82,7 @@ class Lore:
         if own is None:
             changed = same_place(world, memory, grid)
             model = transitions.from_record(world, changed.record if changed else None, grid.corner)
-            if changed and changed.larger_robot:
-                transitions.keep_made(world, model)
-            elif changed and grid.building is not None and changed.record.about.get("building") == grid.building:
+            if changed and grid.building is not None and changed.record.about.get("building") == grid.building:
                 transitions.forget_changed(world, model)
         return cls(world, scope, prior, model, grid, GoalCounts.recalled(world, grid, memory), stored)
 
@@ -117,26 +115,20 @@ class Lore:
 
 
 class EarlierVersion(NamedTuple):
-    """Stored transitions of an earlier version of a place, and the share of its cells that are unchanged.
-
-    larger_robot : whether they are those of a larger robot; the moves that it made are valid, its refusals are not
-    """
+    """Stored transitions of an earlier version of a place, and the share of its cells that are unchanged."""
 
     record: Record
     agreement: float
-    larger_robot: bool = False
 
 
 def same_place(world: GridWorld, memory: Memory, grid: BuildingGrid) -> EarlierVersion | None:
     """The stored version of this place with the most unchanged cells; None if there is none.
 
-    Versions that are not known to be of this building must agree in `SAME_PLACE` of their cells. A version of a
-    larger robot is taken where there is none of a robot of this radius.
+    Versions that are not known to be of this building must agree in `SAME_PLACE` of their cells.
     """
     best = None
     for key, version, about in memory.keys(transitions.KIND):
-        larger = about.get("frame") != grid.frame
-        if version != transitions.VERSION or (larger and not _larger_robot(about, world, grid)):
+        if version != transitions.VERSION or about.get("frame") != grid.frame:
             continue
         building = about.get("building")
         if building is not None and grid.building is not None and building != grid.building:
@@ -144,14 +136,6 @@ def same_place(world: GridWorld, memory: Memory, grid: BuildingGrid) -> EarlierV
         least = 0.0 if building is not None and building == grid.building else transitions.SAME_PLACE
         record = memory.recall(transitions.KIND, key, version)
         share = transitions.agreement(world, record, grid.corner) if record else 0.0
-        rank = not larger, share
-        if record and share >= least and (best is None or rank >= (not best.larger_robot, best.agreement)):
-            best = EarlierVersion(record, share, larger)
+        if record and share >= max(least, best.agreement if best else 0.0):
+            best = EarlierVersion(record, share)
     return best
-
-
-def _larger_robot(about: dict, world: GridWorld, grid: BuildingGrid) -> bool:
-    """Whether transitions on the same cells of this building are those of a larger robot."""
-    its, own = about.get("settings", {}), world.about
-    same = grid.building is not None and about.get("building") == grid.building
-    return same and its.get("cell") == own["cell"] and its.get("robot_radius", 0.0) > own["robot_radius"]

@@ -50,7 +50,6 @@ def to_record(
     slots = cells_of(world)[state] * width + column
     order = np.argsort(slots)
     about = {"world": world.name, "states": world.n_states, "frame": grid.frame, "shape": list(world.shape)}
-    about |= {"settings": world.about}
     if grid.building is not None:
         about |= {"corner": list(grid.corner), "building": grid.building}
     return Record(KIND, world.fingerprint, VERSION, "newest", slots[order], table[state, column][order], about)
@@ -79,13 +78,6 @@ def forget_changed(world: GridWorld, model: WorldModel) -> None:
     changed = model.percept != world.percepts
     model.target[changed] = UNKNOWN
     model.percept[changed] = UNKNOWN
-
-
-def keep_made(world: GridWorld, model: WorldModel) -> None:
-    """Forget the refusals and surroundings that a larger robot remembers; keep the moves that it made."""
-    model.target[(model.target != world.neighbour) | (world.neighbour < 0)] = UNKNOWN
-    seen = model.percept >= 0
-    model.percept[seen] = world.percepts[seen]
 
 
 def agreement(world: GridWorld, record: Record, corner: tuple[int, int] = (0, 0)) -> float:
