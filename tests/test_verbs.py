@@ -81,3 +81,14 @@ def test_runs_from_a_file_or_from_python(room, tmp_path):
 
     assert lifelore.learn_from(read_runs(tmp_path / "runs.csv"), **where, reached_goal=True)["new"] == 0
     assert lifelore.recognise(room / "again.yaml", memory=where["memory"]).building == "room"
+
+
+def test_a_bag_is_learnt_in_one_line(tmp_path):
+    pytest.importorskip("rosbags")
+    data = Path(__file__).parents[1] / "examples" / "data"
+    where = {"map": data / "office.yaml", "memory": tmp_path / "night.db"}
+    tried = lifelore.learn_from(data / "night.mcap", **where, dry_run=True)
+    learnt = lifelore.learn_from(data / "night.mcap", **where)
+    assert (tried["runs"], tried["bumps"], learnt["new"]) == (10, 3, 10)
+    with pytest.raises(InputError, match="topic applies to rosbags"):
+        lifelore.learn_from(data / "runs.csv", **where, topic="/tf")

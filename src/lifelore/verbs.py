@@ -140,6 +140,8 @@ def learn_from(
     robot: str = "robot",
     cell: float | None = None,
     robot_radius: float | None = None,
+    topic: str | None = None,
+    bumps: str | None = None,
     progress: Progress | None = None,
     **more: Any,
 ) -> dict[str, Any]:
@@ -148,7 +150,7 @@ def learn_from(
     Parameters
     ----------
     runs : str or Path, or sequence of Run
-        CSV file with ``time``, ``x`` and ``y``, or its runs.
+        CSV file with ``time``, ``x`` and ``y``, a rosbag (extra ``ros``), or runs.
     map : str or Path
         YAML of the ROS map in whose frame the poses are.
     memory : str or Path, optional
@@ -157,10 +159,13 @@ def learn_from(
         Name of the robot in memory.
     cell, robot_radius : float, optional
         Metres; 0.5 and 0.2.
+    topic, bumps : str, optional
+        Topics of a rosbag with the poses, and with a bumper.
     progress : callable, optional
         Called as ``progress(done, total, label)`` after each run.
     **more
-        The other settings of ``LearnFromSettings``, such as ``reached_goal``.
+        The other settings of ``LearnFromSettings``, such as ``reached_goal``, ``shift`` and
+        ``dry_run``.
 
     Returns
     -------
@@ -181,15 +186,36 @@ def learn_from(
     """
     from lifelore.agent.learn_from.learn_from import LearnFromSettings
     from lifelore.agent.learn_from.learn_from import learn_from as learn
-    from lifelore.agent.learn_from.run_log import read_runs
     from lifelore.agent.live.life_settings import MemorySettings
     from lifelore.domains.worlds import WorldSettings
 
     world = WorldSettings("building", _text(map), cell=cell, robot_radius=robot_radius)
     settings = LearnFromSettings(world, MemorySettings(_text(memory), robot), **more)
     if isinstance(runs, str | PathLike):
-        return learn(read_runs(fspath(runs)), settings, fspath(runs), progress)
+        return learn(runs_of(fspath(runs), topic, bumps), settings, fspath(runs), progress)
     return learn(runs, settings, progress=progress)
+
+
+def runs_of(path: str, topic: str | None = None, bumps: str | None = None) -> "list[Run]":
+    """The runs of a CSV file or a rosbag; topics are for rosbags, see `bridges.rosbag_poses`.
+
+    Raises
+    ------
+    InputError, NotFoundError
+        The file breaks a rule of its format, or a topic does not exist or apply.
+    """
+    from lifelore.agent.learn_from.run_log import Run, cut_runs, read_runs
+    from lifelore.bridges.rosbag import is_bag
+
+    if is_bag(path):
+        from lifelore.bridges.rosbag_poses import read_bag_log
+
+        log = read_bag_log(path, topic, bumps)
+        return cut_runs(Run(path, log.time, log.points, log.heading, log.outcome), log.ends)
+    for name, value in (("topic", topic), ("bumps", bumps)):
+        if value is not None:
+            raise InputError(f"{name} applies to rosbags, got '{value}' for {path}; leave it out")
+    return read_runs(path)
 
 
 def _life_settings(keys: dict[str, Any]) -> "LifeSettings":

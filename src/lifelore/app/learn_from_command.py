@@ -51,6 +51,7 @@ def learn_from(
     from lifelore.app.console import print_json, progress_bar
     from lifelore.core.errors import InputError
     from lifelore.domains.worlds import WorldSettings
+    from lifelore.verbs import runs_of
 
     if dry_run and out is not None:
         raise InputError(f"out does not apply to a dry run, got {out!r}; leave one of the two out")
@@ -63,7 +64,7 @@ def learn_from(
         dry_run,
     )
     with progress_bar("learning") as progress:
-        report = learn(_runs(runs, topic, bumps), settings, runs, progress)
+        report = learn(runs_of(runs, topic, bumps), settings, runs, progress)
     if out is not None:
         from lifelore.agent.live.output.known_building import write_known_building
 
@@ -83,22 +84,6 @@ def _shift(text: str | None) -> tuple[float, float, float] | None:
             f"shift must be X,Y,YAW in metres and radians, got {text!r}; for example --shift=-5,2,0"
         ) from None
     return x, y, yaw
-
-
-def _runs(path: str, topic: str | None, bumps: str | None):
-    from lifelore.agent.learn_from.run_log import Run, cut_runs, read_runs
-    from lifelore.bridges.rosbag import is_bag
-    from lifelore.core.errors import InputError
-
-    if is_bag(path):
-        from lifelore.bridges.rosbag_poses import read_bag_log
-
-        log = read_bag_log(path, topic, bumps)
-        return cut_runs(Run(path, log.time, log.points, log.heading, log.outcome), log.ends)
-    for name, value in (("topic", topic), ("bumps", bumps)):
-        if value is not None:
-            raise InputError(f"{name} applies to rosbags, got '{value}' for {path}; leave it out")
-    return read_runs(path)
 
 
 def _print(report: dict) -> None:
