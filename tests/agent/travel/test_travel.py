@@ -96,9 +96,11 @@ def test_observations_of_another_decade_and_of_the_future_give_numbers():
     ("moves", "words"),
     [
         (([1, 2], [2], [NOON], [1.0]), "one length"),
-        (([12], [2], [NOON], [1.0]), "states must lie in"),
-        (([1], [2], [-5.0], [1.0]), "clock must be"),
-        (([1], [2], [NOON], [0.0]), "above 0"),
+        (([12], [2], [NOON], [1.0]), r"states must lie in \[0, 12\), got 12"),
+        (([1], [4], [NOON], [1.0]), "actions must lie in"),
+        (([1], [2], [-5.0], [1.0]), "clock must be seconds since 1970 below .*, got -5.0"),
+        (([1], [2], [np.nan], [1.0]), "clock must be"),
+        (([1], [2], [NOON], [0.0]), "seconds must be above 0, or NaN for a refused move, got 0.0"),
     ],
 )
 def test_bad_moves_are_refused_with_the_rule(moves, words):

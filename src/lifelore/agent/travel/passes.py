@@ -69,13 +69,20 @@ def observed(
     if not len(state) == len(action) == len(time) == len(taken):
         lengths = f"{len(state)}, {len(action)}, {len(time)} and {len(taken)}"
         raise InputError(f"states, actions, clock and seconds must have one length, got {lengths}")
-    if not ((state >= 0) & (state < world.n_states) & (action >= 0) & (action < N_ACTIONS)).all():
-        raise InputError(f"states must lie in [0, {world.n_states}) and actions in [0, {N_ACTIONS})")
-    if not ((time >= 0) & (time < 60 * _LAST_MINUTE)).all():
-        raise InputError(f"clock must be seconds since 1970 in [0, {60 * _LAST_MINUTE}), got {time.min()}")
     refused = np.isnan(taken)
-    if not (refused | ((taken > 0) & np.isfinite(taken))).all():
-        raise InputError("seconds of a move must be above 0, or NaN where it was refused; leave other moves out")
+    for name, values, right, rule in (
+        ("states", state, (state >= 0) & (state < world.n_states), f"lie in [0, {world.n_states})"),
+        ("actions", action, (action >= 0) & (action < N_ACTIONS), f"lie in [0, {N_ACTIONS})"),
+        (
+            "clock",
+            time,
+            (time >= 0) & (time < 60 * _LAST_MINUTE),
+            f"be seconds since 1970 below {60 * _LAST_MINUTE}",
+        ),
+        ("seconds", taken, refused | ((taken > 0) & np.isfinite(taken)), "be above 0, or NaN for a refused move"),
+    ):
+        if not right.all():
+            raise InputError(f"{name} must {rule}, got {values[~right][0]}; leave such moves out")
     log = np.log(np.where(refused, 1.0, taken))
     rows = Passes(
         state * N_ACTIONS + action, (time // 60).astype(np.int64), (~refused).astype(int), log, refused.astype(int)

@@ -14,6 +14,7 @@ from lifelore.agent.live.goals.job_list import Job
 from lifelore.agent.live.life import Life, live
 from lifelore.agent.live.output.report import FILES, PRIOR_FILES, write_portfolio
 from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.protocols import Record
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.memory import open_memory
 
@@ -119,6 +120,8 @@ def test_names_are_forgotten_with_their_building(room):
     with open_memory(Path(room).parent / "life.db") as memory:
         names = NamedPlaces(memory.keys("building")[0][0])
         assert names.names(memory) == ["dock", "lab"]
+        passes = Record("passes", "any", 1, "add", np.array([5]), np.array([1]), {"building": names.key})
+        memory.contribute("robot", [passes], process="drive", seq=0, task={})
         forget_building(memory, "room")
         assert names.names(memory) == []
         assert memory.keys("destination") == memory.keys("robot_clock") == memory.keys("passes") == []
