@@ -91,25 +91,13 @@ class Floor:
         )
 
     @cached_property
-    def _by_state(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Flat pixel numbers sorted by state, and where the pixels of each state begin."""
-        pixel = np.flatnonzero(self.state >= 0)
-        state = self.state.ravel()[pixel]
-        order = np.argsort(state, kind="stable")
-        return pixel[order], np.searchsorted(state[order], np.arange(self.n_states + 1))
-
-    def pixels_of(self, states: ArrayLike) -> NDArray[np.int64]:
-        """Flat numbers of the pixels of these states, ascending."""
-        pixel, begin = self._by_state
-        return np.sort(np.concatenate([pixel[begin[s] : begin[s + 1]] for s in np.unique(states)]))
-
-    @cached_property
     def anchors(self) -> NDArray[np.int64]:
         """(n_states, 2) the pixel of each state that is farthest from solid pixels; the first in reading order."""
-        pixel, begin = self._by_state
+        pixel = np.flatnonzero(self.state >= 0)
         state = self.state.ravel()[pixel]
         order = np.lexsort((pixel, -self.distance.ravel()[pixel], state))
-        return np.column_stack(np.unravel_index(pixel[order][begin[:-1]], self.state.shape))
+        first = np.searchsorted(state[order], np.arange(self.n_states))
+        return np.column_stack(np.unravel_index(pixel[order][first], self.state.shape))
 
     def state_at(self, name: str, point: tuple[float, float]) -> int:
         """The state in whose piece of free space a point lies; `name` is the argument that an error names.
