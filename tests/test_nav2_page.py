@@ -66,7 +66,7 @@ def said(line: str, folder: Path) -> str:
 def test_the_commands_run_as_printed(tmp_path):
     shutil.copytree(DOCS.parent / "examples", tmp_path / "examples")
     live, to_dock, to_point = [line for line in NAV2.splitlines() if line.startswith("lifelore ")]
-    assert "11:15 dock 4.975,12.525: lore" in said(live, tmp_path)
+    assert "11:15:00 dock 4.975,12.525: driven" in said(live, tmp_path)
     assert set(np.unique(read_occupancy_map(tmp_path / "exports" / "keepout.yaml").state)) <= {0, 1}
     said(to_point, tmp_path)
     with (tmp_path / "way.csv").open(newline="", encoding="utf-8") as file:
