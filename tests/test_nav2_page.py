@@ -79,7 +79,7 @@ def said(line: str, folder: Path) -> str:
 def test_the_commands_run_as_printed(tmp_path):
     shutil.copytree(DOCS.parent / "examples", tmp_path / "examples")
     live, nav2, to_dock, to_point = [line for line in NAV2.splitlines() if line.startswith("lifelore ")]
-    assert "dock 4.975,12.525: " in said(live, tmp_path)
+    assert "11:15:00 dock 4.975,12.525: driven" in said(live, tmp_path)
     assert set(np.unique(read_occupancy_map(tmp_path / "exports" / "keepout.yaml").state)) <= {0, 1}
     written = (tmp_path / "exports" / "route_graph.geojson").read_bytes()
     assert said(nav2, tmp_path).startswith("7 files")
