@@ -22,6 +22,7 @@ from lifelore.agent.long_lived.families.tray_states import (  # noqa: E402
     DONE,
     GENTLY,
     GIVE_UP,
+    KNOCK,
     MISSED,
     N_SITUATED,
     PICK_TARGET,
@@ -101,6 +102,15 @@ def test_acts_have_causes_and_effects(family):
         assert task.act(GENTLY).ended
     task.begin()
     assert task.act(GIVE_UP).ended
+
+
+def test_a_bin_of_rewards_is_no_second_reward(family):
+    """An act that cost 4.39 points is learnt as a bin; its words give the bin's ends, and what it counts."""
+    knocked = N_SITUATED + KNOCK
+    assert family.cause_name(knocked) == "another object was knocked: points for each"
+    assert family.effect_name(knocked, reward_bin(-4.39)) == "-4.5 to -4.0"
+    assert family.effect_name(knocked, reward_bin(-1000.0)) == "at most -9.5"
+    assert family.effect_name(knocked, reward_bin(1000.0)) == "at least +11.0"
 
 
 def test_without_relations_the_agent_sees_places_alone(family):

@@ -1,8 +1,8 @@
 """The states that an episode can go through on a tray, as arrays for plans: what was lived, and what is foreseen.
 
 The same scene answers the same act alike: where an episode of this task has taken an act after the same acts, its
-answer is known. Acts that missed have left the scene as it was: what came after them is expected without them, too,
-so that the next episode leaves them out. Beyond what was lived, states are foreseen by `tray_states`.
+answer is known. Acts that missed have left the scene as it was: what came after them is expected without them,
+too, so that the next episode leaves them out. Beyond what was lived, states are foreseen by `tray_states`.
 """
 
 from dataclasses import dataclass, field
