@@ -178,8 +178,15 @@ class TabletopTask:
         }
 
     def relation_examples(self) -> list[Record]:
-        """See `ShowsRelations`."""
-        return [scene_record(LIVED, LabelledScene(tray.pairs, labels)) for tray, labels in self.lessons().values()]
+        """See `ShowsRelations`; a scene that came after several ways is one example, with the labels of all."""
+        scenes: dict[str, tuple[TrayPairs, dict[frozenset[int], PairLabel]]] = {}
+        for tray, labels in self.lessons().values():
+            _, joined = scenes.setdefault(LabelledScene(tray.pairs, ()).digest, (tray, {}))
+            joined |= {frozenset((label.a, label.b)): label for label in labels}
+        return [
+            scene_record(LIVED, LabelledScene(tray.pairs, tuple(joined.values())))
+            for tray, joined in scenes.values()
+        ]
 
     # ---- plans --------------------------------------------------------------------------------------
 
