@@ -222,7 +222,7 @@ def _world_figure(life: Life, last: Sequence[GreedyPaths], lines: Mapping[int, S
         for task in last
     ]
     tasks = life.report["tasks"][life.first_here : len(life.report["tasks"]) - len(last)]
-    earlier = [task.get("position") or _point(world, world.state_of[tuple(task["goal"])]) for task in tasks]
+    earlier = [task.get("position") or _point(world, int(world.state_of[tuple(task["goal"])])) for task in tasks]
     title = f"{_place(life)}: paths of {_agents(life)[0]} in its last {_count(len(last), 'task')}"
     return draw_world_map(_plan(life), ways, goals=earlier, title=title)
 
