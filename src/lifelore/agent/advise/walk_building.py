@@ -11,7 +11,7 @@ from scipy import sparse
 
 from lifelore.agent.advise.advise import AdviseSettings, world_settings
 from lifelore.agent.live.buildings.recognition import recognised_place
-from lifelore.agent.live.goals.destinations import Destination, NamedPlaces
+from lifelore.agent.live.goals.destinations import NamedPlaces
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.learning.known_world import GOAL, goal_distances
 from lifelore.core.streams import stream
@@ -148,9 +148,8 @@ def walk_building(name: str, maps: Mapping[str, str], memory: Memory | None = No
 def _named_places(settings: WorldSettings, world: GridWorld, floor: Floor, memory: Memory) -> dict[int, str]:
     """Names that memory knows in a building, by state; a point where this map has no free place is left out."""
     place = recognised_place(settings, world, floor.occupancy, memory)
-    known, found = NamedPlaces.of(place), dict[int, str]()
-    for name in known.names(memory)[:MOST_NAMES]:
-        point = known.located("place", Destination(name=name), memory).located_point
+    found = dict[int, str]()
+    for name, point in list(NamedPlaces.of(place).points(memory).items())[:MOST_NAMES]:
         try:
             found.setdefault(floor.state_at(name, point), name)
         except InputError:

@@ -114,11 +114,9 @@ class NamedPlaces:
         name = destination.name
         if destination.point is not None or name is None:
             return destination
-        record = memory.recall(KIND, f"{self.key}/{name}", VERSION)
-        if record is not None:
-            point = moved(inverse(self.pose), record.values[None] / _MICROMETRES)[0]
-            x, y = point.round(6).tolist()
-            return Destination((x, y), name)
+        point = self.remembered(name, memory)
+        if point is not None:
+            return Destination(point, name)
         names = self.names(memory)
         listed = ", ".join(names[:_SHOWN]) + (" …" if len(names) > _SHOWN else "")
         known = f"memory knows {listed}" if names else "memory knows no names here"
@@ -127,7 +125,20 @@ class NamedPlaces:
             "or name places in a job list of `lifelore live --goals`"
         )
 
+    def remembered(self, name: str, memory: Memory) -> Point | None:
+        """The point in the map's frame that memory knows by a name; None if it does not know the name."""
+        record = memory.recall(KIND, f"{self.key}/{name}", VERSION)
+        if record is None:
+            return None
+        x, y = moved(inverse(self.pose), record.values[None] / _MICROMETRES)[0].round(6).tolist()
+        return x, y
+
     def names(self, memory: Memory) -> list[str]:
         """The names that memory knows, sorted."""
         start = self.key + "/"
         return sorted(key.removeprefix(start) for key, _, _ in memory.keys(KIND) if key.startswith(start))
+
+    def points(self, memory: Memory) -> dict[str, Point]:
+        """The points in the map's frame that memory knows, by name."""
+        found = ((name, self.remembered(name, memory)) for name in self.names(memory))
+        return {name: point for name, point in found if point is not None}
