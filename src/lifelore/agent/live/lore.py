@@ -133,7 +133,7 @@ def same_place(world: GridWorld, memory: Memory, grid: BuildingGrid) -> EarlierV
     for key, version, about in memory.keys(transitions.KIND):
         building, same_frame = about.get("building"), about.get("frame") == grid.frame
         known = grid.building is not None and building == grid.building
-        other_radius = known and about.get("cell") == world.frame.cell
+        other_radius = known and about.get("settings", {}).get("cell") == world.frame.cell
         foreign = not known and None not in (building, grid.building)
         if version != transitions.VERSION or foreign or not (same_frame or other_radius):
             continue

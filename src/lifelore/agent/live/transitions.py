@@ -78,8 +78,9 @@ def to_record(
     slots = cells_of(world)[state] * width + column
     order = np.argsort(slots)
     about = {"world": world.name, "states": world.n_states, "frame": grid.frame, "shape": list(world.shape)}
+    about |= {"settings": world.about}
     if grid.building is not None:
-        about |= {"corner": list(grid.corner), "building": grid.building, "cell": world.frame.cell}
+        about |= {"corner": list(grid.corner), "building": grid.building}
     return Record(KIND, world.fingerprint, VERSION, "newest", slots[order], table[state, column][order], about)
 
 

@@ -67,13 +67,14 @@ def known_map(memory: Memory, world: str, near: tuple[int, int] | None = None) -
 def _names(memory: Memory, record: Record) -> list[dict[str, Any]]:
     """The destinations that memory knows by name in the building of a map, by name."""
     about, (rows, columns) = record.about, record.about["shape"]
+    cell = about.get("settings", {}).get("cell")
     building = next((one for one in remembered_buildings(memory) if one.key == about.get("building")), None)
-    if building is None or "cell" not in about:
+    if building is None or cell is None:
         return []
     bottom, left = about["corner"]
     found = []
     for name, point in NamedPlaces(building.key).points(memory).items():
-        x, y = moved(inverse(building.frame.origin), np.array([point]))[0] / about["cell"]
+        x, y = moved(inverse(building.frame.origin), np.array([point]))[0] / cell
         row, column = rows - 1 - (int(np.floor(y)) - bottom), int(np.floor(x)) - left
         if 0 <= row < rows and 0 <= column < columns:
             found.append({"name": name, "at": [row, column]})

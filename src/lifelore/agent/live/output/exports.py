@@ -21,7 +21,7 @@ _MEANING = (
 )
 
 
-def lines_of(world: GridWorld, task: GreedyPaths, floor: Floor | None = None) -> list[NDArray[np.float64]]:
+def path_points(world: GridWorld, task: GreedyPaths, floor: Floor | None = None) -> list[NDArray[np.float64]]:
     """The paths of a task as lines, each (n, 2) x and y in metres of the map's frame.
 
     With the `floor` of a building, a line is of straight segments that are clear of obstacles by the robot's
@@ -39,7 +39,7 @@ def write_paths(path: Path, lines: Mapping[int, Sequence[NDArray[np.float64]]]) 
     ----------
     path : Path
     lines : mapping of int to sequence of (n, 2) float64
-        By number of the task, as `lines_of` makes them.
+        By number of the task, as `path_points` makes them.
     """
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)

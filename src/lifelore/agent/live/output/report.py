@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lifelore.agent.live.baselines import AGENTS
 from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
-from lifelore.agent.live.output.exports import lines_of, write_paths, write_prior_map
+from lifelore.agent.live.output.exports import path_points, write_paths, write_prior_map
 from lifelore.agent.live.output.greedy_paths import GreedyPaths, greedy_paths_of
 from lifelore.agent.live.output.nav2_masks import known_places, write_directions, write_masks
 from lifelore.agent.live.summary import third
@@ -111,7 +111,7 @@ def _write_all(life: Life, folder: Path) -> None:
     if not life.results:
         return
     paths, floor = _last_paths(life), life.floor
-    lines = {task.task: lines_of(life.world, task, floor) for task in paths}
+    lines = {task.task: path_points(life.world, task, floor) for task in paths}
     save_figure(_life_figure(life), folder / "life.png")
     save_figure(_task_figure(life), folder / "learning_curves.png")
     save_figure(_world_figure(life, paths, lines), folder / "world.png")
