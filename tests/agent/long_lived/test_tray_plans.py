@@ -26,6 +26,7 @@ from lifelore.agent.long_lived.families.tray_states import (
     PUSH_TARGET,
     QUIET,
     RESULTS,
+    SLIPPED,
     SPILL,
     SPILLED,
     SPILLED_IN_VAIN,
@@ -205,11 +206,12 @@ def lived_through(graph, state, acts):
         graph.answered(done, Answer(result, 9.0 if ended else -1.0, ended))
 
 
-def test_acts_that_changed_nothing_are_left_out_the_next_time(loaded):
-    """The target was missed and pushed in vain, then brought in four acts; laws say that nothing can be picked."""
+@pytest.mark.parametrize("result", [MISSED, SLIPPED, KNOCKED_IN_VAIN])
+def test_acts_in_vain_are_left_out_the_next_time(loaded, result):
+    """The target was picked and pushed in vain, then brought in four acts; laws say that nothing can be picked."""
     graph = TrayGraph()
     way = [(PICK_TOP, 1, DONE), (ASIDE, 1, DONE), (PICK_TARGET, 0, DONE), (GENTLY, 0, DONE)]
-    lived_through(graph, loaded, [(PICK_TARGET, 0, MISSED), (PUSH_TARGET, 0, MISSED), *way])
+    lived_through(graph, loaded, [(PICK_TARGET, 0, result), (PUSH_TARGET, 0, MISSED), *way])
     nothing = dict.fromkeys(range(N_SITUATED), 1.0)
     again = OutcomePlanner(model_of(graph.nodes(()), nothing))
     assert again.q[0, 0, PICK_TARGET] == pytest.approx(-1 - 3 + 9)
@@ -220,6 +222,12 @@ def test_acts_that_changed_nothing_are_left_out_the_next_time(loaded):
     after = OutcomePlanner(model_of(graph.nodes(()), nothing))
     assert after.plan().acts[0] == PUSH_TARGET
     assert after.q[0, 0, [PICK_TARGET, PICK_TOP, PUSH_TARGET]] == pytest.approx([4.0, 4.0, 5.0])
+
+
+def test_an_act_that_spilled_is_not_left_out(loaded):
+    graph = TrayGraph()
+    lived_through(graph, loaded, [(PICK_TARGET, 0, SPILLED_IN_VAIN), (PICK_NEIGHBOUR, 2, MISSED)])
+    assert graph.nodes(()).answered[0].nonzero()[0].tolist() == [PICK_TARGET]
 
 
 def test_a_push_that_made_no_room_may_make_room_when_it_is_repeated(loaded):

@@ -1,7 +1,7 @@
 """The states that an episode can go through on a tray, as arrays for plans: what was lived, and what is foreseen.
 
 The same scene answers the same act alike: where an episode of this task has taken an act after the same acts, its
-answer is known. Acts that missed have left the scene as it was: what came after them is expected without them,
+answer is known. Acts in vain have left the scene about as it was: what came after them is expected without them,
 too, so that the next episode leaves them out. Beyond what was lived, states are foreseen by `tray_states`.
 """
 
@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from lifelore.agent.long_lived.families.tray_states import (
     ACTS,
     GIVE_UP,
-    MISSED,
+    IN_VAIN,
     MOST_FAILED,
     RESULTS,
+    SPILLS,
     VERB,
     TrayState,
 )
@@ -25,6 +26,8 @@ from lifelore.domains.tabletop_job.job import PUSH_APART
 Done = tuple[tuple[int, int], ...]
 """Verbs and objects of the actions of an episode."""
 Node = tuple[Done | None, TrayState]
+HARMLESS = frozenset(IN_VAIN) - frozenset(SPILLS)
+"""Results that leave a scene about as it was."""
 _Row = tuple[int, int, int, list[int], list[int]]
 """State, act, cause, and by result what it is paid for and the state that follows."""
 
@@ -95,11 +98,11 @@ class TrayGraph:
         """The last of some actions had this answer."""
         if done not in self.answers:
             self.answers[done] = answer
-            self._alike[self._without_misses(done)] = done
+            self._alike[self._without_vain(done)] = done
             self._made.clear()
 
-    def _without_misses(self, done: Done) -> Done:
-        """Actions without those before the last that changed nothing.
+    def _without_vain(self, done: Done) -> Done:
+        """Actions without those before the last that were in vain and spilled nothing.
 
         A push that made no room may have moved its object: it counts where the last action is a push, too.
         """
@@ -107,13 +110,13 @@ class TrayGraph:
         before = [
             action
             for k, action in enumerate(done[:-1])
-            if self.answers[done[: k + 1]].result != MISSED or action[0] == verb == PUSH_APART
+            if self.answers[done[: k + 1]].result not in HARMLESS or action[0] == verb == PUSH_APART
         ]
         return (*before, done[-1])
 
     def _answer(self, done: Done) -> tuple[Done, Answer] | None:
         """The answer to the last of some actions, and the actions after which it was lived; None if unknown."""
-        lived = done if done in self.answers else self._alike.get(self._without_misses(done))
+        lived = done if done in self.answers else self._alike.get(self._without_vain(done))
         return None if lived is None else (lived, self.answers[lived])
 
     def ways(self, state: TrayState) -> list[_Way]:
