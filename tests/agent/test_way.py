@@ -18,7 +18,7 @@ from lifelore.agent.way import Way, path_message, poses_along, way, write_poses
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.learning.known_world import unknown_world
 from lifelore.domains.buildings.floor import floor_of
-from lifelore.domains.buildings.occupancy_map import UNKNOWN, OccupancyMap, write_occupancy_map
+from lifelore.domains.buildings.occupancy_map import UNKNOWN, OccupancyMap, read_occupancy_map, write_occupancy_map
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
 from lifelore.memory import open_memory
@@ -88,6 +88,21 @@ def test_a_way_leads_through_the_door(tmp_path):
     # Two straight lines by way of the door's corner (6.05, 5.0 + radius) are a lower bound.
     bound = np.hypot(6.05 - 1.25, 5.2 - 1.25) * 2 - 0.2
     assert bound < found.length < bound * 1.03
+
+
+@pytest.mark.parametrize(("lived", "asks"), [(0.2, 0.3), (0.3, 0.2)])
+def test_a_robot_of_another_radius_finds_a_way(tmp_path, lived, asks):
+    """A door of 1 m lets both through; what the other has learnt serves where this robot's map has the move."""
+    rooms, memory = two_rooms(tmp_path, "rooms", (2,)), MemorySettings(str(tmp_path / "life.db"))
+    live(LifeSettings(WorldSettings(map=rooms, robot_radius=lived), memory=memory, tasks=6, jobs=1))
+    found = way(WorldSettings(map=rooms, robot_radius=asks), LEFT, RIGHT, memory.location)
+    assert np.abs(np.diff(found.poses[:, 0] > 6.05)).sum() == 1
+    occupancy = read_occupancy_map(rooms)
+    floor = floor_of(occupancy, world_from_settings(WorldSettings(map=rooms, robot_radius=asks), occupancy))
+    row, column = np.rint(floor.pixels(poses_along(found.poses[:, :2], 0.1)[:, :2])).astype(int).T
+    assert (
+        floor.distance[row, column].min() * occupancy.resolution > asks - 0.1
+    )  # half a pixel's diagonal and more
 
 
 def test_of_two_doors_the_remembered_one_is_used(tmp_path):

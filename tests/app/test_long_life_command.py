@@ -89,6 +89,7 @@ def test_explain_says_why(ask, where):
     ("arguments", "words"),
     [
         (["live", "--domain", "factory-customers", "--map", "a.yaml"], "--map does not apply to domain"),
+        (["live", "--domain", "factory-customers", "--out", "a"], "--serve draws the life at /life"),
         (["live", "--domain", "factory-customers", "--agent", "lore"], "agent must be one of full"),
         (["live", "--domain", "building-days", "--set", "change=0.1"], "take domain factory-customers"),
         (["live", "--domain", "factory-customers", "--set", "change=1"], "change must be at least 0 and below 1"),

@@ -24,7 +24,8 @@ def live_long_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_
 
     if foreign := [f"--{name}" for name in FOREIGN if name in values]:
         names = ", ".join(foreign)
-        raise InputError(f"{names} does not apply to domain {values['domain']}; leave it out")
+        pictures = "; --json prints all numbers, and --serve draws the life at /life" if "out" in values else ""
+        raise InputError(f"{names} does not apply to domain {values['domain']}; leave it out{pictures}")
     labels, change, memory = values.get("labels", False), values.get("change", 0.0), values.get("memory")
     family = family_named(values["domain"], values["seed"], labelled=labels, change=change)
     stored = {"memory": default_path() if memory is None else memory}

@@ -8,9 +8,13 @@ import pytest
 
 from lifelore.agent.advise.guided_walk import begin_walk, resume_walk, take_step, walk_desk
 from lifelore.agent.advise.walk_building import MOST_STATES, PLACE_NAMES, walk_building, walk_buildings
+from lifelore.agent.live.buildings.recognition import recognised_place
+from lifelore.agent.live.goals.destinations import NamedPlaces
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
+from lifelore.domains.buildings.floor import floor_of
 from lifelore.domains.grids.grid_world import MOVE_NAMES
+from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
 from lifelore.memory import open_memory
 
 MAZE = "advice:3"
@@ -89,6 +93,26 @@ def test_experts_walk_a_shortest_way_to_each_place(maze):
         place = int(agent.split("/")[0])
         assert states[-1] == maze.places[place]
         assert len(states) - 1 == maze.distance[place, states[0]]
+
+
+def test_a_served_map_has_the_names_of_its_jobs(memory):
+    """Two named places of a job list; a third is blocked in the map. Without a job list, places have numbers."""
+    assert walk_building("office", {"office": str(OFFICE)}, memory).names[:2] == ("place 1", "place 2")
+    settings = WorldSettings(map=str(OFFICE))
+    occupancy = map_from_settings(settings)
+    world = world_from_settings(settings, occupancy)
+    place = recognised_place(settings, world, occupancy, memory)
+    floor = floor_of(occupancy, world)
+    points = dict(zip(("dock", "goods lift"), floor.metres(floor.anchors[[7, 900]]).tolist(), strict=True))
+    names = NamedPlaces.of(place)
+    records = [names.record(name, (x, y)) for name, (x, y) in {**points, "wall": (900.0, 900.0)}.items()]
+    memory.contribute("robot", [*place.news, *records], process="p", seq=0, task={})
+    office = walk_building("office", {"office": str(OFFICE)}, memory)
+    assert dict(zip(office.names, office.places.tolist(), strict=True)) == {"dock": 7, "goods lift": 900}
+    walk = begin_walk(office, walk_desk(memory, office, True, {"office": str(OFFICE)}), "ada")
+    assert walk["goal"] in points
+    found = moves_to(office.world, int(office.places[office.names.index(walk["goal"])]))
+    assert walk["shortest"] == found[walk["state"]]
 
 
 def test_what_a_person_sees_is_near_and_not_behind_a_wall(maze, desk):

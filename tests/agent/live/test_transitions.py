@@ -2,7 +2,15 @@
 
 import numpy as np
 
-from lifelore.agent.live.transitions import agreement, cells_of, frame_key, from_record, model_table, to_record
+from lifelore.agent.live.transitions import (
+    agreement,
+    cells_of,
+    forget_contradicted,
+    frame_key,
+    from_record,
+    model_table,
+    to_record,
+)
 from lifelore.core.learning.known_world import UNKNOWN, unknown_world
 from lifelore.domains.grids.grid_world import GridWorld
 
@@ -78,3 +86,35 @@ def test_a_picture_that_has_grown_is_the_same_place():
     corner = new.state_of[2, 0]  # the lower left corner is where it was
     assert back.percept[corner] == old.percepts[old.state_of[1, 0]]
     assert back.target[corner, 0] == new.state_of[1, 0]
+
+
+def test_moves_of_a_robot_of_another_radius_hold_where_the_map_has_them():
+    """A thin robot passes the gap in the middle, a wide one does not; each learns from the other."""
+    thin, wide = world(".....\n.#.#.\n....."), world(".....\n.#.#.\n..#..")
+
+    def there(floor):
+        return np.where(floor.neighbour < 0, np.arange(floor.n_states)[:, None], floor.neighbour)
+
+    def unknown(own, other):
+        model = from_record(own, record_of(other, knowing(other)))
+        forget_contradicted(own, model)
+        known = model.target != UNKNOWN
+        assert (model.target == there(own))[known].all()
+        return {(int(state), int(move)) for state, move in np.argwhere(~known)}
+
+    gap = int(thin.state_of[2, 2])
+    around = [((2, 1), 2), ((2, 3), 3), ((1, 2), 1)]  # cells beside the gap, and the move into it
+    into = {(int(thin.state_of[cell]), move) for cell, move in around}
+    assert unknown(thin, wide) == into | {(gap, move) for move in range(4)}
+    assert unknown(wide, thin) == {(int(wide.state_of[cell]), move) for cell, move in around}
+
+
+def test_a_refused_move_holds_for_another_radius_where_the_surroundings_are_the_same():
+    floor = world(".....")
+    model = knowing(floor)
+    model.target[1, 2] = 1  # something that the map does not show
+    forget_contradicted(floor, model)
+    assert model.target[1, 2] == 1
+    model.percept[1] += 1
+    forget_contradicted(floor, model)
+    assert model.target[1].tolist() == [1, 1, UNKNOWN, 0]

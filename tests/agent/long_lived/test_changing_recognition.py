@@ -150,8 +150,8 @@ def test_the_static_agent_mixes_types(knowledge):
 def test_a_change_to_an_unknown_type_is_noticed_and_learnt(knowledge):
     drawn = DrawnTask(100, 0, "0")
     lived, _ = live_task(knowledge, drawn, ChangingDoorTask(drawn, "2", 4), FULL, FOLLOWING, "r.100")
-    assert lived.changes == [(4, "r.100.4")]
-    assert knowledge.types["r.100.4"].effects.counts([0, 1]) == pytest.approx(np.array([[0, 1], [0, 1]]))
+    assert lived.changes == [(4, "r.100-4")]
+    assert knowledge.types["r.100-4"].effects.counts([0, 1]) == pytest.approx(np.array([[0, 1], [0, 1]]))
 
 
 def test_a_single_known_type_can_only_become_an_unknown_one():
@@ -175,4 +175,4 @@ def test_an_agent_without_types_follows_too():
     lived, _ = live_task(made, drawn, ChangingDoorTask(drawn, "2", 4), FULL, FOLLOWING, "r.0")
     assert lived.changes
     assert lived.decisions[-1][0].act == 2
-    assert sorted(made.types) == ["r.0", f"r.0.{lived.changes[0][0]}"]
+    assert sorted(made.types) == ["r.0", f"r.0-{lived.changes[0][0]}"]

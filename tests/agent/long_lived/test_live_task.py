@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.agent.long_lived.curiosity import context_to_practise, curious_contexts, curious_types
-from lifelore.agent.long_lived.explanation import explained, task_document
+from lifelore.agent.long_lived.explanation import explained, task_document, type_words
 from lifelore.agent.long_lived.knowledge import Knowledge, SpanNews, TaskNews
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task
 from lifelore.agent.long_lived.task_family import AGENTS
@@ -120,9 +120,15 @@ def test_the_explanation_names_belief_act_and_novelty(settled):
     family, _, tasks, _ = settled
     document = task_document(tasks[-1], family, 8.8)
     text = "\n".join(explained(document))
-    assert f"→ {family.acts[int(tasks[-1].drawn.hidden_type)]}, as for r." in text
+    assert f"→ {family.acts[int(tasks[-1].drawn.hidden_type)]}, as for type " in text
     assert "known types were not ruled out" in text
     assert "the agent knew no type yet" in "\n".join(explained(task_document(tasks[0], family, 8.8)))
+
+
+def test_types_are_named_by_the_tasks_that_showed_them_first():
+    assert type_words("robot.0") == "type 0 of robot"
+    assert type_words("ann.0+ann.4+bo.2") == "type 0+4 of ann, 2 of bo"
+    assert type_words("big.robot.5-3") == "type 5-3 of big.robot"  # a type that began in episode 3 of the task
 
 
 def test_spare_time_goes_where_the_type_is_in_doubt():

@@ -1,5 +1,7 @@
 """Tabletop jobs as tasks of the long-lived agent: features of trays by hand, causes and effects, plans."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -10,7 +12,7 @@ from lifelore.domains.tabletop_job.job_types import job_type_named
 pytest.importorskip("mujoco", reason="needs the extra sim")
 pytestmark = pytest.mark.sim
 
-from lifelore.agent.long_lived.families.pick_lessons import LIVED  # noqa: E402
+from lifelore.agent.long_lived.families.pick_lessons import LIVED, Lesson  # noqa: E402
 from lifelore.agent.long_lived.families.tabletop import TabletopFamily  # noqa: E402
 from lifelore.agent.long_lived.families.tabletop_task import TabletopTask, reward_bin  # noqa: E402
 from lifelore.agent.long_lived.families.tray_features import (  # noqa: E402
@@ -22,6 +24,7 @@ from lifelore.agent.long_lived.families.tray_states import (  # noqa: E402
     DONE,
     GENTLY,
     GIVE_UP,
+    KNOCK,
     MISSED,
     N_SITUATED,
     PICK_TARGET,
@@ -103,6 +106,15 @@ def test_acts_have_causes_and_effects(family):
     assert task.act(GIVE_UP).ended
 
 
+def test_a_bin_of_rewards_is_no_second_reward(family):
+    """An act that cost 4.39 points is learnt as a bin; its words give the bin's ends, and what it counts."""
+    knocked = N_SITUATED + KNOCK
+    assert family.cause_name(knocked) == "another object was knocked: points for each"
+    assert family.effect_name(knocked, reward_bin(-4.39)) == "-4.5 to -4.0"
+    assert family.effect_name(knocked, reward_bin(-1000.0)) == "at most -9.5"
+    assert family.effect_name(knocked, reward_bin(1000.0)) == "at least +11.0"
+
+
 def test_without_relations_the_agent_sees_places_alone(family):
     job = TabletopJob(sample_tray(3, 0), KIND)
     seen = look_without_relations(job)
@@ -162,6 +174,24 @@ def test_the_hidden_type_is_not_read():
         found.append((task.context, task.describe(), task.plan(laws, np.ones(family.n_causes, bool), 1, shared)))
     assert found[0][:2] == found[1][:2]
     np.testing.assert_array_equal(found[0][2].values, found[1][2].values)
+
+
+def test_a_scene_after_two_ways_is_one_example(family, tmp_path, monkeypatch):
+    """Two acts that missed leave the same picture; what picks show after either labels one scene."""
+    for number in range(12):
+        _, task = family.meet(number, AGENTS["full"])
+        task.act(PICK_TARGET)
+        for lesson in list(task.lessons().values()):
+            other = replace(lesson.labels[0], a=98, b=99)
+            ways = {(): lesson, ((0, 1),): Lesson(lesson.tray, (lesson.labels[0], other))}
+            monkeypatch.setattr(task, "lessons", lambda ways=ways: ways)
+            (record,) = task.relation_examples()
+            with open_memory(tmp_path / "m.db") as memory:
+                memory.contribute("ada", [record], process="p", seq=0, task={})
+                (scene,) = recall_scenes(memory, LIVED)
+            assert {(one.a, one.b) for one in scene.truth} == {(o.a, o.b) for o in (*lesson.labels, other)}
+            return
+    pytest.fail("no pick has shown a relation")
 
 
 def test_what_picks_have_shown_is_stored_as_examples_of_relations(family, tmp_path):

@@ -26,6 +26,7 @@ from lifelore.agent.long_lived.families.tray_states import (
     PUSH_TARGET,
     QUIET,
     RESULTS,
+    SLIPPED,
     SPILL,
     SPILLED,
     SPILLED_IN_VAIN,
@@ -191,6 +192,53 @@ def test_what_a_tray_has_answered_is_remembered(loaded):
     assert again.plan().acts[0] != PICK_TARGET
     # It counts the reward that was paid, and goes on from what was seen: 10 − 1 for each of four acts, and −3.
     assert again.q[0, 0, PICK_TARGET] == pytest.approx(-3 + 10 - 4)
+
+
+def lived_through(graph, state, acts):
+    """Add an episode to a graph: acts with their results; each costs 1, handing over ends it with 9 points."""
+    done = ()
+    graph.saw(done, state)
+    for act, number, result in acts:
+        done, ended = (*done, (VERB[act], number)), act == GENTLY
+        if not ended:
+            state = state.after(act, number)[result]
+            graph.saw(done, state)
+        graph.answered(done, Answer(result, 9.0 if ended else -1.0, ended))
+
+
+@pytest.mark.parametrize("result", [MISSED, SLIPPED, KNOCKED_IN_VAIN])
+def test_acts_in_vain_are_left_out_the_next_time(loaded, result):
+    """The target was picked and pushed in vain, then brought in four acts; laws say that nothing can be picked."""
+    graph = TrayGraph()
+    way = [(PICK_TOP, 1, DONE), (ASIDE, 1, DONE), (PICK_TARGET, 0, DONE), (GENTLY, 0, DONE)]
+    lived_through(graph, loaded, [(PICK_TARGET, 0, result), (PUSH_TARGET, 0, MISSED), *way])
+    nothing = dict.fromkeys(range(N_SITUATED), 1.0)
+    again = OutcomePlanner(model_of(graph.nodes(()), nothing))
+    assert again.q[0, 0, PICK_TARGET] == pytest.approx(-1 - 3 + 9)
+    assert again.q[0, 0, PICK_TOP] == pytest.approx(-3 + 9)
+    assert again.plan().acts[0] == PICK_TOP
+    # What the shorter way then answers itself counts more than what the longer way lets expect.
+    lived_through(graph, loaded, [(PICK_TOP, 1, MISSED)])
+    after = OutcomePlanner(model_of(graph.nodes(()), nothing))
+    assert after.plan().acts[0] == PUSH_TARGET
+    assert after.q[0, 0, [PICK_TARGET, PICK_TOP, PUSH_TARGET]] == pytest.approx([4.0, 4.0, 5.0])
+
+
+def test_an_act_that_spilled_is_not_left_out(loaded):
+    graph = TrayGraph()
+    lived_through(graph, loaded, [(PICK_TARGET, 0, SPILLED_IN_VAIN), (PICK_NEIGHBOUR, 2, MISSED)])
+    assert graph.nodes(()).answered[0].nonzero()[0].tolist() == [PICK_TARGET]
+
+
+def test_a_push_that_made_no_room_may_make_room_when_it_is_repeated(loaded):
+    graph = TrayGraph()
+    pushed = ((VERB[PUSH_TARGET], 0),)
+    graph.saw(pushed, TrayState.seen(loaded.tray))  # the tray is looked at again, and another push is possible
+    lived_through(graph, loaded, [(PUSH_TARGET, 0, MISSED), (PICK_NEIGHBOUR, 2, MISSED)])
+    first, then = graph.nodes(()), graph.nodes(pushed)
+    assert first.answered[0, [PUSH_TARGET, PICK_NEIGHBOUR]].all()
+    assert then.answered[0, PICK_NEIGHBOUR]
+    assert not then.answered[0, PUSH_TARGET]
 
 
 def test_untried_acts_are_hoped_for_by_the_unknown_type_alone():

@@ -4,12 +4,18 @@ import numpy as np
 import pytest
 
 from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.agent.live.goals.destinations import Destination
+from lifelore.agent.live.goals.job_list import Job
+from lifelore.agent.live.life import live
+from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.agent.live.lore import observation_key
 from lifelore.agent.live.transitions import cells_of, model_table, to_record
 from lifelore.agent.watch_life import known_map as module
 from lifelore.agent.watch_life.known_map import known_map
 from lifelore.core.learning.known_world import unknown_world
+from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.domains.worlds import WorldSettings, world_from_settings
 from lifelore.memory import Memory, open_memory
 
 #: Three cells in a row below one at the left:  a . .
@@ -60,7 +66,7 @@ def test_known_cells_stand_where_the_map_has_them(memory, world):
     assert {(row, column): percept for row, column, percept, *_ in found["cells"]} == {
         (0, 0): int(world.percepts[0]), (1, 0): int(world.percepts[1]), (1, 1): int(world.percepts[2])
     }  # fmt: skip
-    assert (found["prior"], found["arrows"]) == (None, [])
+    assert (found["prior"], found["arrows"], found["names"]) == (None, [], [])
     assert {arrow for *_, arrow, _ in found["cells"]} == {-1}
 
 
@@ -88,6 +94,29 @@ def test_of_a_large_map_the_nearest_places_are_given(memory, world, monkeypatch)
     found = known(memory, world.fingerprint, near=(1, 2))
     assert found["known"] == 3
     assert {tuple(cell[:2]) for cell in found["cells"]} == {(1, 1), (1, 0)}
+
+
+@pytest.mark.parametrize("yaw", [0.0, np.pi / 2])
+def test_named_places_stand_in_their_cells(tmp_path, yaw):
+    """The life of a job list; the map's frame may be turned."""
+    state = np.ones((42, 62), np.uint8)
+    state[1:-1, 1:-1] = 0
+    write_occupancy_map(tmp_path / "hall.yaml", OccupancyMap(state, 0.1, (3.0, -1.0, yaw)))
+    settings = WorldSettings(map=str(tmp_path / "hall.yaml"))
+    frame = world_from_settings(settings).frame
+    ends = {"dock": (1.75, 2.75), "lift": (4.75, 1.25)}  # metres from the lower left corner, along the picture
+    jobs = tuple(
+        Job(Destination(tuple(frame.metres(x / frame.cell, y / frame.cell)[0].tolist()), name))
+        for name, (x, y) in ends.items()
+    )
+    memory = MemorySettings(str(tmp_path / "m.db"))
+    lived = live(LifeSettings(settings, goals=jobs, memory=memory, jobs=1))
+    with open_memory(memory.location) as opened:
+        found = known(opened, lived.world.fingerprint)
+    rows = found["shape"][0]
+    assert {one["name"]: one["at"] for one in found["names"]} == {
+        name: [rows - 1 - int(y / frame.cell), int(x / frame.cell)] for name, (x, y) in ends.items()
+    }
 
 
 def test_of_a_world_without_moves_nothing_is_known(memory):

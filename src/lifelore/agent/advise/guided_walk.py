@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.advise.advice_desk import AdviceDesk, register_desk
-from lifelore.agent.advise.walk_building import PLACE_NAMES, WalkBuilding
+from lifelore.agent.advise.walk_building import WalkBuilding
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.domains.grids.grid_world import MOVE_NAMES
 from lifelore.memory import Memory
@@ -171,7 +171,7 @@ def _errand(building: WalkBuilding, start: int, place: int) -> dict[str, Any]:
     return {
         "shape": list(world.shape),
         "cell": world.frame.cell,
-        "goal": PLACE_NAMES[place],
+        "goal": building.names[place],
         "shortest": int(building.distance[place, start]),
         "kappa": KAPPA,
     }
@@ -195,6 +195,6 @@ def _cells(building: WalkBuilding, states: NDArray[np.integer]) -> dict[str, Any
     return {
         "seen": np.column_stack([world.cells[states], bits]).tolist(),
         "places": [
-            {"name": PLACE_NAMES[place], "at": world.cells[building.places[place]].tolist()} for place in places
+            {"name": building.names[place], "at": world.cells[building.places[place]].tolist()} for place in places
         ],
     }

@@ -10,15 +10,21 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from lifelore.agent.advise.advise import AdviseSettings, world_settings
+from lifelore.agent.live.buildings.recognition import recognised_place
+from lifelore.agent.live.goals.destinations import NamedPlaces
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.learning.known_world import GOAL, goal_distances
 from lifelore.core.streams import stream
-from lifelore.domains.buildings.floor import floor_of, floor_of_cells
+from lifelore.domains.buildings.floor import Floor, floor_of, floor_of_cells
 from lifelore.domains.buildings.visibility import visible_places
 from lifelore.domains.grids.grid_world import GridWorld
-from lifelore.domains.worlds import map_from_settings, world_from_settings
+from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
+from lifelore.memory import Memory
 
 PLACE_NAMES = ("kitchen", "printer", "library", "workshop", "post room", "studio", "archive", "reception")
+"""Names of the places of generated worlds. Those of a served map have the user's names, or numbers."""
+MOST_NAMES = 20
+"""Largest number of the user's places in a building, the first by name; more take longer to prepare."""
 REACH = 6.0
 """Metres that a person sees; in a maze, cells. Larger makes the search easier."""
 WALKS = 30
@@ -40,13 +46,15 @@ class WalkBuilding:
 
     name : str, the map's name or NAME:SEED
     world : GridWorld
-    places : (n_places,) int64, states of the places that people look for
+    names : (n_places,) names of the places that people look for
+    places : (n_places,) int64, their states
     distance : (n_places, n_states) int32, moves to each place
     sight : (n_states, n_states) bool, sparse, whether a state is in sight of another
     """
 
     name: str
     world: GridWorld
+    names: tuple[str, ...]
     places: NDArray[np.int64]
     distance: NDArray[np.int32]
     sight: sparse.csr_array
@@ -102,8 +110,11 @@ def walk_buildings(maps: Mapping[str, str]) -> list[dict[str, str]]:
     return served + [{"name": name, "title": title} for name, title in GENERATED]
 
 
-def walk_building(name: str, maps: Mapping[str, str]) -> WalkBuilding:
+def walk_building(name: str, maps: Mapping[str, str], memory: Memory | None = None) -> WalkBuilding:
     """One of the `walk_buildings`.
+
+    People look for the destinations that memory knows by name in a served map; without any, for places far from
+    each other.
 
     Raises
     ------
@@ -124,8 +135,26 @@ def walk_building(name: str, maps: Mapping[str, str]) -> WalkBuilding:
             "serve a map of a part of it"
         )
     floor = floor_of_cells(world) if occupancy is None else floor_of(occupancy, world)
-    places, distance = spread_places(name, world)
-    return WalkBuilding(name, world, places, distance, visible_places(floor, world, REACH))
+    named = _named_places(settings, world, floor, memory) if memory is not None and name in maps else {}
+    if named:
+        places, distance = np.array(list(named)), np.array([_distances(world, state) for state in named])
+        names = tuple(named.values())
+    else:
+        places, distance = spread_places(name, world)
+        names = tuple(f"place {number + 1}" for number in range(len(places))) if name in maps else PLACE_NAMES
+    return WalkBuilding(name, world, names, places, distance, visible_places(floor, world, REACH))
+
+
+def _named_places(settings: WorldSettings, world: GridWorld, floor: Floor, memory: Memory) -> dict[int, str]:
+    """Names that memory knows in a building, by state; a point where this map has no free place is left out."""
+    place = recognised_place(settings, world, floor.occupancy, memory)
+    found = dict[int, str]()
+    for name, point in list(NamedPlaces.of(place).points(memory).items())[:MOST_NAMES]:
+        try:
+            found.setdefault(floor.state_at(name, point), name)
+        except InputError:
+            continue  # it is blocked in this map
+    return found
 
 
 def spread_places(name: str, world: GridWorld) -> tuple[NDArray[np.int64], NDArray[np.int32]]:

@@ -82,7 +82,9 @@ class Lore:
         if own is None:
             changed = same_place(world, memory, grid)
             model = transitions.from_record(world, changed.record if changed else None, grid.corner)
-            if changed and grid.building is not None and changed.record.about.get("building") == grid.building:
+            if changed and changed.record.about["frame"] != grid.frame:
+                transitions.forget_contradicted(world, model)
+            elif changed and grid.building is not None and changed.record.about.get("building") == grid.building:
                 transitions.forget_changed(world, model)
         return cls(world, scope, prior, model, grid, GoalCounts.recalled(world, grid, memory), stored)
 
@@ -124,18 +126,20 @@ class EarlierVersion(NamedTuple):
 def same_place(world: GridWorld, memory: Memory, grid: BuildingGrid) -> EarlierVersion | None:
     """The stored version of this place with the most unchanged cells; None if there is none.
 
-    Versions that are not known to be of this building must agree in `SAME_PLACE` of their cells.
+    Versions that are not known to be of this building must agree in `SAME_PLACE` of their cells. A version of this
+    building by a robot of another radius counts where there is none by a robot of this radius.
     """
-    best = None
+    best, best_rank = None, (False, 0.0)
     for key, version, about in memory.keys(transitions.KIND):
-        if version != transitions.VERSION or about.get("frame") != grid.frame:
+        building, same_frame = about.get("building"), about.get("frame") == grid.frame
+        known = grid.building is not None and building == grid.building
+        other_radius = known and about.get("settings", {}).get("cell") == world.frame.cell
+        foreign = not known and None not in (building, grid.building)
+        if version != transitions.VERSION or foreign or not (same_frame or other_radius):
             continue
-        building = about.get("building")
-        if building is not None and grid.building is not None and building != grid.building:
-            continue
-        least = 0.0 if building is not None and building == grid.building else transitions.SAME_PLACE
         record = memory.recall(transitions.KIND, key, version)
         share = transitions.agreement(world, record, grid.corner) if record else 0.0
-        if record and share >= max(least, best.agreement if best else 0.0):
-            best = EarlierVersion(record, share)
+        rank = same_frame, share
+        if record and share >= (0.0 if known else transitions.SAME_PLACE) and rank >= best_rank:
+            best, best_rank = EarlierVersion(record, share), rank
     return best

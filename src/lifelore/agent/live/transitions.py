@@ -50,6 +50,7 @@ def to_record(
     slots = cells_of(world)[state] * width + column
     order = np.argsort(slots)
     about = {"world": world.name, "states": world.n_states, "frame": grid.frame, "shape": list(world.shape)}
+    about |= {"settings": world.about}
     if grid.building is not None:
         about |= {"corner": list(grid.corner), "building": grid.building}
     return Record(KIND, world.fingerprint, VERSION, "newest", slots[order], table[state, column][order], about)
@@ -78,6 +79,18 @@ def forget_changed(world: GridWorld, model: WorldModel) -> None:
     changed = model.percept != world.percepts
     model.target[changed] = UNKNOWN
     model.percept[changed] = UNKNOWN
+
+
+def forget_contradicted(world: GridWorld, model: WorldModel) -> None:
+    """Forget the moves of another robot's model that the map of this world does not have.
+
+    A robot of another radius has other cells with open sides: its moves hold where this map has them, too. Where
+    the surroundings are the same for both, its refused moves hold, too.
+    """
+    changed = (model.percept != UNKNOWN) & (model.percept != world.percepts)
+    there = np.where(world.neighbour < 0, np.arange(world.n_states)[:, None], world.neighbour)
+    model.target[changed[:, None] & (model.target != there)] = UNKNOWN
+    model.percept[changed] = world.percepts[changed]
 
 
 def agreement(world: GridWorld, record: Record, corner: tuple[int, int] = (0, 0)) -> float:

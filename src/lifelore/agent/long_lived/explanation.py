@@ -17,17 +17,18 @@ def task_document(lived: TaskLog, family: TaskFamily, best: float) -> dict[str, 
 
     ``best_return`` and ``hidden_type`` are for scoring; the agent knows neither.
     """
-    names = [*lived.types, UNKNOWN]
+    known = [type_words(name) for name in lived.types]
+    names = [*known, UNKNOWN]
     return {
         "task": lived.drawn.number,
         "context": lived.drawn.context,
         "hidden_type": lived.drawn.hidden_type,
         "best_return": round(best, 4),
         "returns": [round(value, 4) for value in lived.returns],
-        "prior": _by_name(lived.prior, lived.types),
+        "prior": _by_name(lived.prior, known),
         "alarm": lived.alarm,
         "alarm_score": round(lived.alarm_score, 3),
-        "learnt": lived.learnt,
+        "learnt": type_words(lived.learnt),
         "new_type": lived.learnt not in _members(lived.types),
         "first_episode": [_decision(one, family, names) for one in lived.decisions[0]],
         "last_episode": [_decision(one, family, names) for one in lived.decisions[-1]],
@@ -41,10 +42,22 @@ def episodes_document(lived: TaskLog, episodes: list[tuple[str, float]]) -> dict
     of the type that learnt most from then on. ``hidden_types`` and ``best_returns`` are for scoring.
     """
     return {
-        "changes": [list(change) for change in lived.changes],
+        "changes": [[episode, type_words(learnt)] for episode, learnt in lived.changes],
         "hidden_types": [hidden for hidden, _ in episodes],
         "best_returns": [round(best, 4) for _, best in episodes],
     }
+
+
+def type_words(name: str) -> str:
+    """A type's name in memory in words: ``"ann.0+ann.4+bo.2"`` is "type 0+4 of ann, 2 of bo".
+
+    A type has the number of the task in which the robot first met it.
+    """
+    numbers: dict[str, list[str]] = {}
+    for member in name.split("+"):
+        robot, _, number = member.rpartition(".")
+        numbers.setdefault(robot, []).append(number)
+    return "type " + ", ".join(f"{'+'.join(found)} of {robot}" for robot, found in numbers.items())
 
 
 def _members(types: list[str]) -> set[str]:

@@ -151,7 +151,7 @@ def attempt_task(
     began.append(len(effects))
     for span, last in zip(spans, [*(one.first for one in spans[1:]), settings.n_episodes], strict=True):
         own = effects[began[span.first] : began[last]]
-        own_name = f"{name}.{span.first}" if span.first else name
+        own_name = f"{name}-{span.first}" if span.first else name
         taught.append(SpanNews(_learning(known, span, own, own_name, abilities), own))
     learners = [max(one.belief, key=one.belief.__getitem__) for one in taught]
     lived.learnt = learners[0]

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from lifelore.agent.long_lived.curiosity import CuriousContext, curious_contexts, curious_types
+from lifelore.agent.long_lived.explanation import type_words
 from lifelore.agent.long_lived.families.by_name import family_named
 from lifelore.agent.long_lived.knowledge import Knowledge
 from lifelore.agent.long_lived.long_life import recalled
@@ -45,7 +46,7 @@ def known_family(memory: Memory, domain: str, seed: int = 0) -> dict[str, Any]:
     telling = _telling(knowledge)
     types = [
         {
-            "name": one.name,
+            "name": type_words(one.name),
             "tasks": round(one.n_tasks, 2),
             "untried": round(one.untried, 4),
             "telling": telling[one.name],
@@ -56,7 +57,7 @@ def known_family(memory: Memory, domain: str, seed: int = 0) -> dict[str, Any]:
 
 
 def _contexts(knowledge: Knowledge) -> list[dict[str, Any]]:
-    names = [one.name for one in knowledge.known_types().types]
+    names = [type_words(one.name) for one in knowledge.known_types().types]
     prior, sighted = knowledge.type_prior(), list(knowledge.sighted())
     today = max(date for date, _ in sighted)
     seen = [context for _, context in sighted]

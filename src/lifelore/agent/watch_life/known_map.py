@@ -9,8 +9,11 @@ from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
 from lifelore.action.priors.action_prior import VERSION as PRIOR_VERSION
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.live import transitions
+from lifelore.agent.live.buildings.building_record import remembered_buildings
+from lifelore.agent.live.goals.destinations import NamedPlaces
 from lifelore.agent.live.lore import observation_key
 from lifelore.core.protocols import Record
+from lifelore.domains.buildings.registration import inverse, moved
 from lifelore.domains.grids.cell_numbers import COLUMN_BITS
 from lifelore.domains.grids.grid_world import MOVE_NAMES
 from lifelore.memory import Memory
@@ -39,7 +42,7 @@ def known_map(memory: Memory, world: str, near: tuple[int, int] | None = None) -
         percept is a code of `grid_world.PERCEPT`, arrow a number of a row of ``arrows``, -1 where the prior has
         no counts, and untried the number of open moves that were never made; ``arrows``, probabilities of the
         moves north, south, east, west; ``prior``, what the prior is conditioned on: ``"observation"``,
-        ``"state"``, or null.
+        ``"state"``, or null; ``names``, the user's destinations in this map: {"name", "at": (row, column)}.
     """
     record = memory.recall(transitions.KIND, world, transitions.VERSION)
     if record is None:
@@ -58,7 +61,25 @@ def known_map(memory: Memory, world: str, near: tuple[int, int] | None = None) -
         "cells": np.column_stack([row[shown], column[shown], percepts[shown], arrow_of, untried[shown]]).tolist(),
         "arrows": arrows.round(3).tolist(),
         "prior": kind,
+        "names": _names(memory, record),
     }
+
+
+def _names(memory: Memory, record: Record) -> list[dict[str, Any]]:
+    """The destinations that memory knows by name in the building of a map, by name."""
+    about, (rows, columns) = record.about, record.about["shape"]
+    cell = about.get("settings", {}).get("cell")
+    building = next((one for one in remembered_buildings(memory) if one.key == about.get("building")), None)
+    if building is None or cell is None:
+        return []
+    bottom, left = about["corner"]
+    found = []
+    for name, point in NamedPlaces(building.key).points(memory).items():
+        x, y = moved(inverse(building.frame.origin), np.array([point]))[0] / cell
+        row, column = rows - 1 - (int(np.floor(y)) - bottom), int(np.floor(x)) - left
+        if 0 <= row < rows and 0 <= column < columns:
+            found.append({"name": name, "at": [row, column]})
+    return found
 
 
 def _known_cells(record: Record) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

@@ -1,6 +1,7 @@
 """A grid world as a floor plan: pale floor, inked walls, also those between two free cells."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,6 +23,42 @@ _SIDES = np.array(
     ]
 )
 _NICE_LENGTHS = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
+
+
+@dataclass(frozen=True, eq=False)
+class FloorPlan:
+    """The cells of a grid world as the ground of a picture; its metres are cells from the lower left corner.
+
+    Parameters
+    ----------
+    shape, cells, neighbour
+        See `draw_floor_plan`.
+    """
+
+    shape: tuple[int, int]
+    cells: NDArray[np.integer]
+    neighbour: NDArray[np.integer]
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Height and width, cells."""
+        height, width = np.ptp(self.cells, axis=0) + 3.0
+        return float(height), float(width)
+
+    @property
+    def lane(self) -> float:
+        """Cells between the ways of two tasks through one cell: beside each other in a large plan, too."""
+        return float(np.clip(self.size[1] / 400.0, 0.15, 0.22))
+
+    def placed(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Where points are drawn, (n, 2) column and row; whole numbers are the middles of cells."""
+        x, y = np.asarray(points, float).reshape(-1, 2).T
+        return np.column_stack([x - 0.5, self.shape[0] - 0.5 - y])
+
+    def draw(self, axes: "Axes") -> None:
+        """Draw the floor and its walls."""
+        wall_width = float(np.clip(90.0 / self.size[1], 0.7, 1.8))
+        draw_floor_plan(axes, self.shape, self.cells, self.neighbour, wall_width=wall_width)
 
 
 def draw_floor_plan(

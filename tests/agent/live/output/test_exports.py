@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lifelore.agent.live.output.exports import NO_PRIOR, decided_percent, write_paths, write_prior_map
+from lifelore.agent.live.output.exports import NO_PRIOR, decided_percent, path_points, write_paths, write_prior_map
 from lifelore.agent.live.output.greedy_paths import GreedyPaths
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, read_occupancy_map
 from lifelore.domains.grids.grid_world import Frame, GridWorld
@@ -22,7 +22,7 @@ def corridor() -> GridWorld:
 
 
 def test_paths_are_in_metres_of_the_turned_map(corridor, tmp_path):
-    write_paths(tmp_path / "paths.csv", corridor, [GreedyPaths(6, 3, [np.array([1, 2, 3])], 1.0)])
+    write_paths(tmp_path / "paths.csv", {6: path_points(corridor, GreedyPaths(6, 3, [np.array([1, 2, 3])], 1.0))})
     assert (tmp_path / "paths.csv").read_text(encoding="utf-8").splitlines() == [
         "task,path,step,x,y",
         "6,0,0,9.7500,20.7500",

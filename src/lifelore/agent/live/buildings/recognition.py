@@ -122,7 +122,9 @@ def _place(
     report = {
         "name": building.name,
         "recognised": recognised,
-        "agreement": round(earlier.agreement, 4) if earlier else None,
+        "agreement": round(earlier.agreement, 4)
+        if earlier and earlier.record.about["frame"] == grid.frame
+        else None,
         "walls": round(found.walls, 4) if reason is None else None,
         "pose": list(found.pose) if recognised else None,
         "reason": None if recognised else reason,

@@ -137,3 +137,8 @@ class NamedPlaces:
         """The names that memory knows, sorted."""
         start = self.key + "/"
         return sorted(key.removeprefix(start) for key, _, _ in memory.keys(KIND) if key.startswith(start))
+
+    def points(self, memory: Memory) -> dict[str, Point]:
+        """The points in the map's frame that memory knows, by name."""
+        found = ((name, self.remembered(name, memory)) for name in self.names(memory))
+        return {name: point for name, point in found if point is not None}

@@ -1,7 +1,7 @@
 """Writes the files for other programs, in metres: greedy paths as CSV, the prior as a ROS map."""
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -21,28 +21,33 @@ _MEANING = (
 )
 
 
-def write_paths(path: Path, world: GridWorld, tasks: Sequence[GreedyPaths], floor: Floor | None = None) -> None:
-    """Write greedy paths as CSV: task, path (from 0 in each task), step, x and y in metres in the map's frame.
+def path_points(world: GridWorld, task: GreedyPaths, floor: Floor | None = None) -> list[NDArray[np.float64]]:
+    """The paths of a task as lines, each (n, 2) x and y in metres of the map's frame.
 
-    With the `floor` of a building, a path has the ends of a greedy path and is the shortest between them that is
-    clear of obstacles by the robot's radius; a step is a corner of it. Without a floor, a step is the centre of a
-    cell.
+    With the `floor` of a building, a line has the ends of a greedy path and is the shortest between them that is
+    clear of obstacles by the robot's radius. Without a floor, it goes from the centre of each cell to the next.
+    """
+    if floor is None:
+        return [world.positions(states) for states in task.paths]
+    return [_clear(floor, states, task.goal_point) for states in task.paths]
+
+
+def write_paths(path: Path, lines: Mapping[int, Sequence[NDArray[np.float64]]]) -> None:
+    """Write paths as CSV: task, path (from 0 in each task), step (a point of the line), x and y.
+
+    Parameters
+    ----------
+    path : Path
+    lines : mapping of int to sequence of (n, 2) float64
+        By number of the task, as `path_points` makes them.
     """
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["task", "path", "step", "x", "y"])
-        for task in tasks:
-            for number, points in enumerate(path_points(world, task, floor)):
+        for task, paths in lines.items():
+            for number, points in enumerate(paths):
                 for step, (x, y) in enumerate(points):
-                    writer.writerow([task.task, number, step, f"{x:.4f}", f"{y:.4f}"])
-
-
-def path_points(world: GridWorld, task: GreedyPaths, floor: Floor | None = None) -> list[NDArray[np.float64]]:
-    """The corners of a task's paths, each (n, 2) in metres of the map's frame; see `write_paths`."""
-    return [
-        world.positions(states) if floor is None else _clear(floor, states, task.goal_point)
-        for states in task.paths
-    ]
+                    writer.writerow([task, number, step, f"{x:.4f}", f"{y:.4f}"])
 
 
 def _clear(floor: Floor, states: NDArray[np.int32], goal: tuple[float, float] | None) -> NDArray[np.float64]:

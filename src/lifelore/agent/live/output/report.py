@@ -3,17 +3,20 @@
 import json
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from lifelore.agent.live.baselines import AGENTS
-from lifelore.agent.live.goals.destinations import Point
 from lifelore.agent.live.driven.driven_job import DrivenJob
+from lifelore.agent.live.goals.destinations import Point
 from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
 from lifelore.agent.live.lived_tasks import Result
 from lifelore.agent.live.output.drive_figure import drives_figure
-from lifelore.agent.live.output.exports import write_paths, write_prior_map
+from lifelore.agent.live.output.exports import path_points, write_paths, write_prior_map
 from lifelore.agent.live.output.greedy_paths import GreedyPaths, greedy_paths_of
 from lifelore.agent.live.output.known_building import NAV2_FILES, KnownBuilding
 from lifelore.agent.live.output.logged_life import Recorder, goal_points, write_life_log
@@ -21,7 +24,10 @@ from lifelore.agent.live.output.nav2_masks import write_directions
 from lifelore.agent.live.summary import third
 from lifelore.agent.live.task_result import THRESHOLD, TaskResult
 from lifelore.core.errors import InputError, StoreError
+from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.figures.lives.floor_plan import FloorPlan
 from lifelore.figures.lives.life_curves import draw_life
+from lifelore.figures.lives.map_plan import MapPlan
 from lifelore.figures.lives.prior_map import draw_prior_map
 from lifelore.figures.lives.task_curves import draw_task_curves
 from lifelore.figures.lives.world_map import draw_world_map
@@ -116,13 +122,14 @@ def _write_all(life: Life, folder: Path) -> None:
     if not life.results:
         return
     paths = _last_paths(life)
+    lines = {task.task: path_points(life.world, task, life.floor) for task in paths}
     if life.driven:
         save_figure(drives_figure(life, _place(life)), folder / "life.png")
     else:
         save_figure(_life_figure(life), folder / "life.png")
         save_figure(_task_figure(life), folder / "learning_curves.png")
-    save_figure(_world_figure(life, paths), folder / "world.png")
-    write_paths(folder / "paths.csv", life.world, paths, life.floor)
+    save_figure(_world_figure(life, paths, lines), folder / "world.png")
+    write_paths(folder / "paths.csv", lines)
     if _has_prior(life):
         _write_prior(life, folder)
     if life.building is not None:
@@ -228,22 +235,33 @@ def _last_paths(life: Life) -> list[GreedyPaths]:
     return paths
 
 
-def _world_figure(life: Life, last: Sequence[GreedyPaths]):
+def _world_figure(life: Life, last: Sequence[GreedyPaths], lines: Mapping[int, Sequence[NDArray[np.float64]]]):
+    """The ways of the last tasks, over the building's map or, in other worlds, over the cells."""
     world = life.world
-    shown = [
+    ways = [
         {
             "label": f"task {_named(task)}, {_arriving(life, task)}",
-            "goal": world.cells[task.goal],
-            "paths": [world.cells[path] for path in task.paths],
+            "goal": lines[task.task][0][-1] if task.paths else task.goal_point or _point(world, task.goal),
+            "paths": lines[task.task],
         }
         for task in last
     ]
-    tasks = life.report["tasks"]
-    earlier = [task["goal"] for task in tasks[life.first_here : len(tasks) - len(last)]]
+    tasks = life.report["tasks"][life.first_here : len(life.report["tasks"]) - len(last)]
+    earlier = [task.get("position") or _point(world, int(world.state_of[tuple(task["goal"])])) for task in tasks]
     title = f"{_place(life)}: paths of {_agents(life)[0]} in its last {_count(len(last), 'task')}"
-    return draw_world_map(
-        world.shape, world.cells, world.neighbour, shown, goals=earlier, cell=_metres(life), title=title
-    )
+    return draw_world_map(_plan(life), ways, goals=earlier, title=title)
+
+
+def _plan(life: Life) -> FloorPlan | MapPlan:
+    if life.building is None:
+        world = life.world
+        return FloorPlan(world.shape, world.cells, world.neighbour)
+    occupancy = life.building.occupancy
+    return MapPlan(occupancy.grey, occupancy.resolution, occupancy.origin)
+
+
+def _point(world: GridWorld, state: int) -> NDArray[np.float64]:
+    return world.positions(np.array([state]))[0]
 
 
 def _arriving(life: Life, task: GreedyPaths) -> str:

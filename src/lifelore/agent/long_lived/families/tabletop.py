@@ -5,7 +5,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.long_lived.families.tabletop_task import BIN_MIDDLES, N_BINS, N_RESULTS, TabletopTask
+from lifelore.agent.long_lived.families.tabletop_task import (
+    BIN_MIDDLES,
+    N_BINS,
+    N_RESULTS,
+    PAID_FOR,
+    TabletopTask,
+    bin_in_words,
+)
 from lifelore.agent.long_lived.families.tray_features import (
     look_at_raw_cloud,
     look_with_labels,
@@ -138,8 +145,9 @@ class TabletopFamily(TaskFamily):
         """A cause in words."""
         if cause < N_SITUATED:
             return situated_cause_name(cause)
-        return f"{PAYMENTS[cause - N_SITUATED]}: reward"
+        payment = cause - N_SITUATED
+        return f"{PAYMENTS[payment]}: {PAID_FOR.get(payment, 'points')}"
 
     def effect_name(self, cause: int, effect: int) -> str:
         """An effect in words."""
-        return RESULTS[effect] if cause < N_SITUATED else f"{BIN_MIDDLES[effect]:+.2f} points"
+        return RESULTS[effect] if cause < N_SITUATED else bin_in_words(effect)

@@ -64,7 +64,19 @@ def reward_bin(reward: float) -> int:
     return int(np.clip(np.floor((reward - LOWEST) / BIN), 0, N_BINS - 1))
 
 
+def bin_in_words(number: int) -> str:
+    """The rewards of a bin; no single number, so that nobody takes it for the reward that was paid."""
+    low = LOWEST + BIN * number
+    if number == 0:
+        return f"at most {low + BIN:+.1f}"
+    return f"at least {low:+.1f}" if number == N_BINS - 1 else f"{low:+.1f} to {low + BIN:+.1f}"
+
+
 BIN_MIDDLES = LOWEST + BIN * (np.arange(N_BINS) + 0.5)
+
+
+PAID_FOR = {QUIET: f"points in {USUAL_SECONDS:g} seconds", KNOCK: "points for each", SPILL: "points for each"}
+"""What the bins of some payments count; those of the others count the points of the act."""
 
 
 def points_each(payment: int, reward: float, events: Events) -> float:
@@ -166,8 +178,15 @@ class TabletopTask:
         }
 
     def relation_examples(self) -> list[Record]:
-        """See `ShowsRelations`."""
-        return [scene_record(LIVED, LabelledScene(tray.pairs, labels)) for tray, labels in self.lessons().values()]
+        """See `ShowsRelations`; a scene that came after several ways is one example, with the labels of all."""
+        scenes: dict[str, tuple[TrayPairs, dict[frozenset[int], PairLabel]]] = {}
+        for tray, labels in self.lessons().values():
+            _, joined = scenes.setdefault(LabelledScene(tray.pairs, ()).digest, (tray, {}))
+            joined |= {frozenset((label.a, label.b)): label for label in labels}
+        return [
+            scene_record(LIVED, LabelledScene(tray.pairs, tuple(joined.values())))
+            for tray, joined in scenes.values()
+        ]
 
     # ---- plans --------------------------------------------------------------------------------------
 

@@ -1,7 +1,8 @@
 """The states that an episode can go through on a tray, as arrays for plans: what was lived, and what is foreseen.
 
 The same scene answers the same act alike: where an episode of this task has taken an act after the same acts, its
-answer is known. Beyond what was lived, states are foreseen by `tray_states`.
+answer is known. Acts in vain have left the scene about as it was: what came after them is expected without them,
+too, so that the next episode leaves them out. Beyond what was lived, states are foreseen by `tray_states`.
 """
 
 from dataclasses import dataclass, field
@@ -13,15 +14,20 @@ from numpy.typing import NDArray
 from lifelore.agent.long_lived.families.tray_states import (
     ACTS,
     GIVE_UP,
+    IN_VAIN,
     MOST_FAILED,
     RESULTS,
+    SPILLS,
     VERB,
     TrayState,
 )
+from lifelore.domains.tabletop_job.job import PUSH_APART
 
 Done = tuple[tuple[int, int], ...]
 """Verbs and objects of the actions of an episode."""
 Node = tuple[Done | None, TrayState]
+HARMLESS = frozenset(IN_VAIN) - frozenset(SPILLS)
+"""Results that leave a scene about as it was."""
 _Row = tuple[int, int, int, list[int], list[int]]
 """State, act, cause, and by result what it is paid for and the state that follows."""
 
@@ -45,7 +51,7 @@ class TrayNodes:
         0 where an act is not available.
     payments, following : (n, n_acts - 1, n_results) int64
     answered : (n, n_acts - 1) bool
-        Whether an act's answer is known.
+        Whether an act's answer is known, or expected from the same scene.
     answers, paid : (n_answered, n_results) and (n_answered,) float64
         The known results, of probability 1, and their rewards.
     lived : dict of int to TrayState
@@ -78,6 +84,7 @@ class TrayGraph:
 
     states: dict[Done, TrayState] = field(default_factory=dict)
     answers: dict[Done, Answer] = field(default_factory=dict)
+    _alike: dict[Done, Done] = field(default_factory=dict)
     _ways: dict[TrayState, list[_Way]] = field(default_factory=dict)
     _made: dict[Done, TrayNodes] = field(default_factory=dict)
 
@@ -91,7 +98,26 @@ class TrayGraph:
         """The last of some actions had this answer."""
         if done not in self.answers:
             self.answers[done] = answer
+            self._alike[self._without_vain(done)] = done
             self._made.clear()
+
+    def _without_vain(self, done: Done) -> Done:
+        """Actions without those before the last that were in vain and spilled nothing.
+
+        A push that made no room may have moved its object: it counts where the last action is a push, too.
+        """
+        verb = done[-1][0]
+        before = [
+            action
+            for k, action in enumerate(done[:-1])
+            if self.answers[done[: k + 1]].result not in HARMLESS or action[0] == verb == PUSH_APART
+        ]
+        return (*before, done[-1])
+
+    def _answer(self, done: Done) -> tuple[Done, Answer] | None:
+        """The answer to the last of some actions, and the actions after which it was lived; None if unknown."""
+        lived = done if done in self.answers else self._alike.get(self._without_vain(done))
+        return None if lived is None else (lived, self.answers[lived])
 
     def ways(self, state: TrayState) -> list[_Way]:
         """What can be done in a state, but giving up."""
@@ -125,9 +151,9 @@ class TrayGraph:
         known: list[tuple[int, int, Answer]] = []
         for at, (lived, state) in enumerate(order):  # grows while it is read
             for way in self.ways(state):
-                then = None if lived is None else (*lived, (VERB[way.act], way.number))
-                answer = None if then is None else self.answers.get(then)
-                if then is not None and answer is not None:
+                known_answer = None if lived is None else self._answer((*lived, (VERB[way.act], way.number)))
+                if known_answer is not None:
+                    then, answer = known_answer
                     known.append((at, way.act, answer))
                     after = -1 if answer.ended else place((then, self.states[then]))
                     following = [after] * len(RESULTS)

@@ -45,7 +45,7 @@ def router(service: Service) -> APIRouter:
     def building_of(name: str) -> WalkBuilding:
         with opening:
             if name not in open_buildings:
-                open_buildings[name] = walk_building(name, maps)
+                open_buildings[name] = walk_building(name, maps, service.memory)
             return open_buildings[name]
 
     def desk_of(building: WalkBuilding, advice: bool) -> AdviceDesk:

@@ -113,7 +113,7 @@ export function drawStacks(container, columns, { x, y, words, height = 190 }) {
 const STEPS = [[-1, 0], [1, 0], [0, 1], [0, -1]]; // rows and columns of north, south, east, west
 const NEGLIGIBLE = 0.05, SHADES = 4, NEAR = 12;
 
-/** Draw the known cells of a map, walls, arrows of the prior, places with untried moves, and goals [{row, column, text, chosen}]. */
+/** Draw the known cells of a map, walls, arrows of the prior, places with untried moves, named places, and goals [{row, column, text, chosen}]. */
 export function drawMap(container, map, goals, { near, words }) {
   const rows = map.cells.map((cell) => cell[0]), columns = map.cells.map((cell) => cell[1]);
   let box = [Math.min(...columns) - 0.5, Math.min(...rows) - 0.5, Math.max(...columns) + 1.5, Math.max(...rows) + 1.5];
@@ -135,6 +135,11 @@ export function drawMap(container, map, goals, { near, words }) {
     const at = { cx: goal.column + 0.5, cy: goal.row + 0.5, r: (goal.chosen ? 0.95 : 0.6) * (near ? 0.6 : 1) };
     drawn.append(svg("circle", { ...at, fill: goal.chosen ? ORANGE : PAPER, stroke: INK, "stroke-width": 0.12 }));
     if (goal.chosen) drawn.append(svg("text", { x: goal.column + 0.5, y: goal.row + (near ? 0.72 : 0.87), "text-anchor": "middle", "font-size": near ? 0.6 : 1, "font-weight": 700, fill: INK }, goal.text));
+  }
+  const letters = near ? 0.6 : Math.max(1, (right - left) / 60);
+  for (const { name, at: [row, column] } of map.names) {
+    const text = { x: column + 0.5, y: row - 0.3, "text-anchor": "middle", "font-size": letters, "font-weight": 600, fill: INK };
+    drawn.append(svg("text", { ...text, stroke: PAPER, "stroke-width": letters / 4, "paint-order": "stroke" }, name));
   }
   container.replaceChildren(drawn);
 }
