@@ -18,7 +18,7 @@ from lifelore.action.priors.prior_file import load_prior
 DOCS = Path(__file__).parents[1] / "docs"
 EXPECTED = {
     "start/robots": [
-        "30 tasks in examples/data/office.yaml",
+        "30 goals searched in examples/data/office.yaml",
         "lore compared with scratch, last third: steps to 80 % ×0.153 [0.120, 0.202]",
         "recognised as office",
         "this robot has finished 36 tasks in all",
