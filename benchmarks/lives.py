@@ -17,6 +17,7 @@ from benchmarks.peers.list_loop import tuned_rate
 from benchmarks.rounds import at_most, counted, interleaved, row, row_beside
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
+from lifelore.agent.live.task_result import TaskResult
 from lifelore.core.protocols import Progress
 from lifelore.domains.worlds import make_world
 
@@ -79,7 +80,8 @@ def life_seconds(agent: str, tasks: int, learner: str = "model", steps: list[int
         life = live(settings)
         seconds = time.process_time() - started
     if steps is not None:
-        steps += [int(results["scratch"].curve.steps.sum()) for results in life.results]
+        alone = [results["scratch"] for results in life.results]
+        steps += [int(one.curve.steps.sum()) for one in alone if isinstance(one, TaskResult)]
     return seconds
 
 

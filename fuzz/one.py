@@ -8,7 +8,7 @@ from pathlib import Path
 import atheris  # pyright: ignore[reportMissingImports]
 
 os.environ["NUMBA_DISABLE_JIT"] = "1"  # Numba cannot compile what atheris has instrumented
-with atheris.instrument_imports(include=["lifelore", "pypcd4", "trimesh"]):
+with atheris.instrument_imports(include=["lifelore", "pypcd4", "trimesh"]):  # type: ignore[attr-defined]
     from fuzz.targets import targets
     from lifelore.core.errors import LifeloreError
 

@@ -31,7 +31,7 @@ from lifelore.agent.learn_from.run_log import read_runs
 from lifelore.agent.live.goals.job_list import read_jobs
 from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.log.log_lines import read_lines
-from lifelore.bridges.rosbag_poses import read_bag_poses
+from lifelore.bridges.rosbag_poses import read_bag_log
 from lifelore.core.protocols import Record
 from lifelore.domains.buildings.occupancy_map import read_occupancy_map
 from lifelore.perception.clouds.camera_intrinsics import read_intrinsics
@@ -195,7 +195,7 @@ def targets() -> dict[str, Target]:
         "npz": Target(cloud, [_arrays(points=np.zeros((2, 3)), labels=np.ones(2, int)), _npy()]),
         "depth": Target(_depth, [_depth_seed()]),
         "camera": Target(_of_file(read_intrinsics, "camera.yaml"), [CAMERA]),
-        "bag": Target(_of_file(read_bag_poses, "poses.mcap"), [b"\x89MCAP0\r\n\x89MCAP0\r\n"]),
+        "bag": Target(_of_file(read_bag_log, "poses.mcap"), [b"\x89MCAP0\r\n\x89MCAP0\r\n"]),
         "map": Target(_map, [_map_seed()]),
         "jobs": Target(_of_file(read_jobs, "jobs.csv"), [b"time,name,x,y\n08:00,dock,1.0,2.0\n09:00,dock,,\n"]),
         "runs": Target(_of_file(read_runs, "runs.csv"), [b"time,x,y,outcome\n0,1,1,\n1,1.2,1,goal\n"]),

@@ -252,7 +252,8 @@ def make_log(folder: Path) -> None:
 if __name__ == "__main__":
     place = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
     makers = (
-        make_map, make_jobs, make_courier_jobs, make_new_map, make_runs, make_night, make_log, make_walks, make_clouds,
+        make_map, make_jobs, make_courier_jobs, make_new_map, make_runs, make_night, make_log, make_walks,
+        make_clouds,
     )  # fmt: skip
     for make in makers:
         make(place)

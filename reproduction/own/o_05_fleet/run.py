@@ -8,6 +8,7 @@ where its tasks have at most a tenth of the refused moves (into a wall) of robot
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,7 +60,11 @@ def _task(world: str, memory: Path, robot: int, seed: int, moves: int) -> tuple[
         tasks=1,
         jobs=1,
     )
-    live(settings, watch=lambda task, of: found.append((of["lore"].collisions, of["scratch"].collisions)))
+
+    def watch(task: dict, results: Mapping[str, Any]) -> None:
+        found.append((results["lore"].collisions, results["scratch"].collisions))
+
+    live(settings, watch=watch)
     return found[0]
 
 

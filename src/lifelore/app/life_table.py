@@ -26,9 +26,10 @@ def print_life(report: dict, written: list[str]) -> None:
     console = Console() if sys.stdout.isatty() else Console(width=110)
     tasks, memory = report["tasks"], report["memory"]
     place = report["map"] or report["domain"]
-    what = "jobs driven" if report["how"] == "driven" else "goals searched"
+    noun, verb = ("job", "driven") if report["how"] == "driven" else ("goal", "searched")
     console.print(
-        f"{len(tasks)} {what} in {place}, {report['n_states']:,} places, {report['seconds']:.1f} s; "
+        f"{len(tasks)} {noun}{'s' * (len(tasks) != 1)} {verb} in {place}, {report['n_states']:,} places, "
+        f"{report['seconds']:.1f} s; "
         f"this robot has finished {memory['tasks_after']} tasks in all",
         highlight=False,
         soft_wrap=True,
