@@ -52,7 +52,7 @@ def test_a_new_user(tmp_path):
 def test_its_commands_run_as_printed(tmp_path):
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     commands = re.findall(r"^lifelore .*", README, flags=re.M)
-    assert len(commands) == 3
+    assert len(commands) == 4
     for command in commands:
         words = shlex.split(command, comments=True)[1:]
         done = subprocess.run(

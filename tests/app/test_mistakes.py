@@ -34,7 +34,7 @@ ASKED_WRONGLY = {
     "live extra": "extra",
     "memory nonsense": "No such command 'nonsense'",
     "memory export": "Missing argument",
-    "memory forget --memory {known}": "forget needs a robot, --source RUNS (of one robot or of all) or --building NAME",
+    "memory forget --memory {known}": "forget needs a robot, --source RUNS (of one robot or of all) or --building",
     "version extra": "extra",
     "doctor --nonsense": "--nonsense",
 }
