@@ -51,15 +51,15 @@ napoleon_custom_sections = [("Attributes", "params_style")]
 
 # The rooms in the order in which the reference shows them, and a title for each.
 ROOMS = {
-    "lifelore.agent.personalise": "Personalisation",
-    "lifelore.interaction.evaluation": "Off-policy evaluation",
-    "lifelore.domains.tabletop_job": "Tabletop jobs",
     "lifelore.verbs": "A robot in a building",
-    "lifelore.agent": "Verbs",
+    "lifelore.agent": "Verbs, and the long-lived agent",
     "lifelore.perception": "Perception",
     "lifelore.action": "Action priors",
     "lifelore.interaction": "Policy reuse",
+    "lifelore.interaction.evaluation": "Off-policy evaluation",
+    "lifelore.agent.personalise": "Personalisation",
     "lifelore.domains": "Worlds",
+    "lifelore.domains.tabletop_job": "Tabletop jobs",
     "lifelore.figures": "Figures",
     "lifelore.memory": "Memory",
     "lifelore.core": "Tasks, learners and protocols",
@@ -99,6 +99,11 @@ def first_line(documented: object) -> str:
     return re.sub(r"(?<!`)`([^`]+)`(?!`)", r"``\1``", (inspect.getdoc(documented) or "").split("\n")[0])
 
 
+def room_of(module: str) -> str | None:
+    """The room, of the most specific name, in which a module lives; None where `ROOMS` lists none."""
+    return max((room for room in ROOMS if module.startswith(room)), key=len, default=None)
+
+
 def undocumented(name: str) -> list[str]:
     """A public name and its public methods and properties that have no docstring of their own."""
     value = PUBLIC[name][1]
@@ -123,7 +128,7 @@ def write_reference(app: Sphinx) -> None:
     ]
     left = dict(HOMES)
     for room, title in ROOMS.items():
-        names = sorted((name for name in left if left[name].startswith(room)), key=str.lower)
+        names = sorted((name for name in left if room_of(left[name]) == room), key=str.lower)
         index += [title, "-" * len(title), "", first_line(import_module(room)), ""]
         index += [".. list-table::", "   :widths: 28 72", "   :class: wide", ""]
         for name in names:
