@@ -44,11 +44,3 @@ def test_the_sentences_count_as_the_table_does():
             assert high >= 0, f"{world} is certainly below the textbook"
     assert list(above.values()) == [10, 8]
     assert "certainly above the textbook in ten worlds, in the last tenth in eight" in " ".join(PAGE.split())
-
-
-def test_the_rows_by_features_run_after_the_example():
-    block = next(part for part in re.findall(r"```python\n(.*?)```", PAGE, flags=re.S) if "feature_rows" in part)
-    names: dict = {}
-    exec((ROOT / "examples" / "own_matrices.py").read_text(encoding="utf-8"), names)
-    exec(block, names)
-    assert len(names["prior"]) == 143  # every cell but the goal, after the reward 0

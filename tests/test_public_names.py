@@ -4,6 +4,7 @@ import inspect
 import subprocess
 import sys
 from importlib import import_module
+from pathlib import Path
 
 import pytest
 
@@ -30,6 +31,8 @@ def test_what_a_room_exports_exists_is_documented_and_is_what_the_package_export
         assert not callable(value) or inspect.getdoc(value), export
         assert getattr(lifelore, export, value) is value, export
     assert set(room.__all__) <= set(dir(room))
+    beside = {path.stem for path in Path(room.__path__[0]).iterdir()}
+    assert not beside & set(room._HOME), "a module of the same name hides an export once it is imported"
     with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
         room.nothing  # noqa: B018
 

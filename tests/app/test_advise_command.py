@@ -28,15 +28,15 @@ ASK = '{"agent": "lost", "state": [1, 5], "action": null}\n{"agent": "lost", "st
 
 
 def test_lines_from_stdin(experts, monkeypatch, capsys):
-    monkeypatch.setattr("sys.stdin", io.StringIO(ASK))
+    monkeypatch.setattr("sys.stdin", io.StringIO(ASK + 4 * ASK.splitlines(keepends=True)[1]))
     advise("lattice", str(experts), method="thesis")
-    first, second = map(json.loads, capsys.readouterr().out.splitlines())
+    first, second, *_, last = map(json.loads, capsys.readouterr().out.splitlines())
     assert first["agent"] == "lost"
-    assert first["theta"] == [0, 0, 1, 0]
+    assert first["theta"] == pytest.approx([0.1 / 1.4, 0.1 / 1.4, 1.1 / 1.4, 0.1 / 1.4])
     assert first["p_normal"] == 0.5
     # One step west, against the expert: P(west | M₁) = .1/1.4 against 1/4.
     assert second["p_normal"] == pytest.approx((0.1 / 1.4) / (0.1 / 1.4 + 0.25))
-    assert second["advise"]
+    assert (second["advise"], last["advise"]) == (False, True)
 
 
 def test_lines_from_a_file_as_one_document(experts, tmp_path, capsys):

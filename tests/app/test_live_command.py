@@ -389,5 +389,5 @@ def test_help_is_one_screen(ask, monkeypatch):
     assert len(lines) <= 40
     assert all(len(line) <= 80 for line in lines)
     options = [line.split()[0] for line in lines if line.startswith("  --")]
-    assert len(options) == 16
+    assert len(options) == 17
     assert options[-1] == "--help"

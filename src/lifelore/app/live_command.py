@@ -85,9 +85,8 @@ def live(
 ) -> int:
     """Live through tasks in one world and learn from each.
 
-    With known goals (--goal, --goals) the robot drives, and learns what its building does to it: slow hours,
-    blocked places. Without, each goal is hidden, and the agent searches. Memory stores what was learnt after each
-    task: the next run continues the life, in this building or in another one.
+    Known goals (--goal, --goals) are driven to, hidden ones are searched for. Memory stores what was learnt; the
+    next run continues the life.
     """
     from lifelore.agent.long_lived.families.by_name import FAMILIES
 

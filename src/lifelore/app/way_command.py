@@ -46,7 +46,7 @@ def way(
         bool, Option("--json", help="One JSON document on stdout, with the keys of nav_msgs/Path.")
     ] = False,
 ) -> None:
-    """Find the path that is expected to take the least time, and is clear of obstacles.
+    """Find the quickest clear path between two places.
 
     Use it after `live` or `learn-from`. The way leads over remembered moves only, and around those that were slow
     or refused at this time. The path keeps the robot's radius from all that the map does not show as free.

@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 from scipy.special import stdtrit
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.evaluation.clustered_estimate import clustered_estimate
+from lifelore.interaction.evaluation.estimate_by_user import clustered_estimate
 from lifelore.interaction.evaluation.estimators import (
     doubly_robust,
     inverse_propensity,
     logged_value,
     self_normalised,
 )
-from lifelore.interaction.evaluation.importance_weights import importance_weights
+from lifelore.interaction.evaluation.propensity_weights import importance_weights
 
 
 def case(seed, n=120, n_policies=4):

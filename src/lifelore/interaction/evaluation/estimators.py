@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.evaluation.clustered_estimate import ClusteredEstimate, clustered_estimate, user_codes
+from lifelore.interaction.evaluation.estimate_by_user import ClusteredEstimate, clustered_estimate, user_codes
 
 Array = NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.evaluation.clustered_estimate import user_codes
+from lifelore.interaction.evaluation.estimate_by_user import user_codes
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]

@@ -90,8 +90,13 @@ def test_a_model_of_its_own_decides_which_places_are_known(settings, memory, tmp
     assert set(MASK_FILES) == {path.name for path in (tmp_path / "one").iterdir()}
 
 
-def test_a_robot_of_another_radius_and_a_file_as_folder_are_refused(settings, memory, tmp_path):
+def test_a_robot_of_another_radius_gets_masks_of_its_own_places(settings, memory, tmp_path):
     other = WorldSettings("building", settings.map, robot_radius=0.3)
+    assert set(MASK_FILES) <= set(write_known_building(tmp_path, other, memory))
+
+
+def test_another_cell_and_a_file_as_folder_are_refused(settings, memory, tmp_path):
+    other = WorldSettings("building", settings.map, cell=1.0)
     with pytest.raises(NotFoundError, match=r"memory knows no place of the map .*; live there first"):
         write_known_building(tmp_path, other, memory)
     with pytest.raises(InputError, match="out must name a folder"):

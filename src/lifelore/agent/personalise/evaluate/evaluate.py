@@ -33,7 +33,7 @@ from lifelore.agent.personalise.study import Study, known_users, open_study
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.evaluation.estimators import logged_value
-from lifelore.interaction.evaluation.importance_weights import decision_numbers
+from lifelore.interaction.evaluation.propensity_weights import decision_numbers
 from lifelore.interaction.evaluation.reward_models import RewardModel, user_folds
 from lifelore.interaction.selection import rule_named
 from lifelore.memory import Memory

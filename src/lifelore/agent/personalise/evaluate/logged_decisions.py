@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from lifelore.agent.personalise.log.log import ReuseLog, read_log
 from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.evaluation.importance_weights import MOST
+from lifelore.interaction.evaluation.propensity_weights import MOST
 
 CERTAIN = 1 - 1e-9
 """Probability from which a decision counts as without alternative."""

@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from lifelore.agent.personalise.evaluate.logged_decisions import CERTAIN, MOST_CERTAIN, LoggedDecisions
 from lifelore.agent.personalise.evaluate.target_policies import TargetPolicy
-from lifelore.interaction.evaluation.clustered_estimate import ClusteredEstimate
+from lifelore.interaction.evaluation.estimate_by_user import ClusteredEstimate
 from lifelore.interaction.evaluation.estimators import doubly_robust, inverse_propensity, self_normalised
-from lifelore.interaction.evaluation.importance_weights import (
+from lifelore.interaction.evaluation.propensity_weights import (
     WeightSummary,
     decision_numbers,
     importance_weights,

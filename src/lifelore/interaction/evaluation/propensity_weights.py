@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.evaluation.clustered_estimate import clustered_estimate, user_codes, user_sums
+from lifelore.interaction.evaluation.estimate_by_user import clustered_estimate, user_codes, user_sums
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]

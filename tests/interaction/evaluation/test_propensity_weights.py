@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.evaluation.importance_weights import (
+from lifelore.interaction.evaluation.propensity_weights import (
     decision_numbers,
     importance_weights,
     trajectory_weights,
