@@ -5,7 +5,7 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
-import atheris  # pyright: ignore[reportMissingImports]
+import atheris  # pyright: ignore[reportMissingModuleSource]
 
 os.environ["NUMBA_DISABLE_JIT"] = "1"  # Numba cannot compile what atheris has instrumented
 with atheris.instrument_imports(include=["lifelore", "pypcd4", "trimesh"]):  # type: ignore[attr-defined]
