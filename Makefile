@@ -18,7 +18,7 @@ endif
 DEEP := .venv-deep
 DEEP_TESTS = $(shell grep -rl --include='*.py' 'mark\.deep' tests)
 
-PYTHON_FILES := src reproduction benchmarks tests examples docs/conf.py docs/pictures
+PYTHON_FILES := src reproduction benchmarks fuzz tests examples docs/conf.py docs/pictures
 
 .PHONY: help setup setup-test demo test test-fast test-deep test-cluster coverage check format bench soak fuzz docs reproduction-pages \
 	wheel-test reproduce clean
