@@ -12,10 +12,14 @@ NO_FRAME = "camera"
 
 def header(document: Mapping[str, Any]) -> dict[str, Any]:
     """Fields of `std_msgs/Header` of a scene: name and time of the camera's frame; time 0 where it is unknown."""
-    whole, part = divmod(document["frame"]["stamp"] or 0.0, 1.0)
+    return header_at(document["frame"]["name"] or NO_FRAME, document["frame"]["stamp"] or 0.0)
+
+
+def header_at(frame: str, seconds: float) -> dict[str, Any]:
+    """Fields of `std_msgs/Header` of a frame at a time."""
+    whole, part = divmod(seconds, 1.0)
     more, nanoseconds = divmod(round(part * 1e9), 10**9)
-    stamp = {"sec": int(whole) + more, "nanosec": nanoseconds}
-    return {"stamp": stamp, "frame_id": document["frame"]["name"] or NO_FRAME}
+    return {"stamp": {"sec": int(whole) + more, "nanosec": nanoseconds}, "frame_id": frame}
 
 
 def detection_array(document: Mapping[str, Any], head: Mapping[str, Any] | None = None) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.bridges.detection3d import header_at
 from lifelore.bridges.mcap_file import mcap_writer
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED
 
@@ -59,11 +60,6 @@ def _nanoseconds(seconds: float) -> int:
     return round(seconds * 1e9)
 
 
-def _header(seconds: float) -> dict[str, Any]:
-    whole, rest = divmod(_nanoseconds(seconds), 10**9)
-    return {"stamp": {"sec": whole, "nanosec": rest}, "frame_id": FRAME}
-
-
 def _grid(occupancy: "OccupancyMap", grey: NDArray[np.uint8], seconds: float) -> dict[str, Any]:
     """A grid has the lowest row first; values above 100 are unknown."""
     rows, columns = grey.shape
@@ -74,14 +70,14 @@ def _grid(occupancy: "OccupancyMap", grey: NDArray[np.uint8], seconds: float) ->
         "origin": _pose(*occupancy.origin),
     }
     data = np.where(grey <= 100, grey.astype(np.int8), -1)[::-1].ravel()
-    return {"header": _header(seconds), "info": about, "data": data}
+    return {"header": header_at(FRAME, seconds), "info": about, "data": data}
 
 
 def _path(points: NDArray[np.float64], seconds: float) -> dict[str, Any]:
     """Each pose faces the next; the last one has the heading of the pose before it."""
     headings = [math.atan2(b[1] - a[1], b[0] - a[0]) for a, b in pairwise(points.tolist())]
     headings = [*headings, headings[-1] if headings else 0.0]
-    header = _header(seconds)
+    header = header_at(FRAME, seconds)
     poses = [
         {"header": header, "pose": _pose(x, y, yaw)} for (x, y), yaw in zip(points.tolist(), headings, strict=True)
     ]
@@ -96,7 +92,8 @@ def _pose(x: float, y: float, yaw: float) -> dict[str, Any]:
 def _markers(number: int, name: str, point: tuple[float, float], seconds: float) -> list[dict[str, Any]]:
     """A point, red for what was refused, and its name above it."""
     about: Mapping[str, Any] = {
-        "header": _header(seconds), "id": number, "pose": _pose(*point, 0.0), "scale": dict.fromkeys("xyz", SIZE),
+        "header": header_at(FRAME, seconds), "id": number, "pose": _pose(*point, 0.0),
+        "scale": dict.fromkeys("xyz", SIZE),
     }  # fmt: skip
     colour = RED if name.startswith("refused") else GREEN
     dot = {"ns": "events", "type": SPHERE, "color": dict(zip("rgba", colour, strict=True))}

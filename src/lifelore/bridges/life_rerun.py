@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.bridges.scene_rerun import rerun
+from lifelore.bridges.scene_rerun import recording
 from lifelore.domains.buildings.occupancy_map import OCCUPIED
 from lifelore.domains.grids.grid_world import Frame
 
@@ -38,15 +38,12 @@ def write_life_rrd(
     OSError
         The file cannot be written.
     """
-    rr = rerun()
-    Path(path).touch()  # the library only warns of a file that it cannot write
     dear = (costs > 0) & (costs <= MOST)
     heat = np.column_stack([np.full(dear.sum(), 255), 255 - 2 * costs[dear], np.zeros(dear.sum())]).astype(
         np.uint8
     )
     half = occupancy.resolution / 2
-    with rr.RecordingStream("lifelore") as log:
-        log.save(path)
+    with recording(path) as (rr, log):
         log.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         walls = _flat(_centres(occupancy, occupancy.state == OCCUPIED))
         log.log("map", rr.Points3D(walls, radii=half), static=True)

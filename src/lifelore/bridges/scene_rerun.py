@@ -4,7 +4,8 @@ Points, boxes, contact points with normals and contact edges stand in the scene'
 is the pose of the camera's frame, and below ``relations`` each relation is a graph.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -30,10 +31,7 @@ def write_scene_rrd(path: str | Path, scene: "Scene", document: Mapping[str, Any
     OSError
         The file cannot be written.
     """
-    rr = rerun()
-    Path(path).touch()  # the library only warns of a file that it cannot write
-    with rr.RecordingStream("lifelore") as log:
-        log.save(path)
+    with recording(path) as (rr, log):
         log.log("scene", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         pose = scene.cloud.origin.T_scene_camera
         log.log("camera", rr.Transform3D(translation=pose[:3, 3], mat3x3=pose[:3, :3]), static=True)
@@ -47,6 +45,16 @@ def write_scene_rrd(path: str | Path, scene: "Scene", document: Mapping[str, Any
         edges = [[scene.position(e.a, e.node_a), scene.position(e.b, e.node_b)] for e in scene.contact_edges]
         log.log("scene/contact_edges", rr.LineStrips3D(np.array(edges).reshape(-1, 2, 3)), static=True)
         _log_relations(rr, log, document)
+
+
+@contextmanager
+def recording(path: str | Path) -> Iterator[tuple[Any, Any]]:
+    """The library, and a log that it writes to a file; errors as in `write_scene_rrd`."""
+    rr = rerun()
+    Path(path).touch()  # the library only warns of a file that it cannot write
+    with rr.RecordingStream("lifelore") as log:
+        log.save(path)
+        yield rr, log
 
 
 def rerun() -> Any:

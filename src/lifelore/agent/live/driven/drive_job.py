@@ -24,7 +24,7 @@ Expected = Callable[[float], NDArray[np.float64]]
 Building = Callable[[NDArray[np.int64], float], Drive]
 """States of a way and the clock at its start to what a robot observes on it, up to the first refused move."""
 Observe = Callable[[NDArray, NDArray, NDArray, NDArray], None]
-"""Told states, actions, clocks and seconds (n,) of moves; seconds are NaN for a refused move."""
+"""Called with states, actions, clocks and seconds (n,) of moves; a refused move has NaN seconds."""
 
 
 def drive_job(
