@@ -11,6 +11,7 @@ from lifelore.memory.refusal import BUSY_SECONDS, one_line_refusals
 from lifelore.memory.schema import APPLICATION_ID, refuse_newer
 
 _MAGIC = b"SQLite format 3\0"
+_JOURNAL_MAGIC = bytes.fromhex("d9d505f920a163d7")
 _HEADER = 100
 # Largest file of which every page is read and checked before opening (0.1 s for 16 MiB); for larger files use
 # `Memory.check`.
@@ -36,11 +37,20 @@ def refuse_unless_ours(path: Path) -> None:
     with one_line_refusals(str(path)):
         if path.is_dir():
             raise StoreError(f"memory {path} is a folder; name a file in it, such as {path / 'lifelore.db'}")
-        if not path.exists() or path.stat().st_size == 0:
+        if not path.exists() or path.stat().st_size == 0 or _was_being_made(path):
             return
         _refuse_foreign(path, read_header(path))
         if not _sidecar(path, "-journal"):
             _refuse_damaged(path)
+
+
+def _was_being_made(path: Path) -> bool:
+    """Whether the power failed while the file was made: SQLite then empties it as its journal says."""
+    journal = path.with_name(path.name + "-journal")
+    if not _sidecar(path, "-journal"):
+        return False
+    header = read_header(journal)
+    return header.startswith(_JOURNAL_MAGIC) and header[16:20] == bytes(4)  # pages before the transaction
 
 
 def read_header(path: Path) -> bytes:
