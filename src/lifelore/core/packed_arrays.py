@@ -7,7 +7,6 @@ anywhere: too large, of another format, newer or damaged ones raise an InputErro
 import io
 import json
 import zipfile
-import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, BinaryIO
@@ -18,11 +17,6 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 
 Arrays = dict[str, NDArray[Any]]
-UNREADABLE = (
-    zipfile.BadZipFile, zlib.error, OSError, EOFError, KeyError, ValueError, TypeError, NotImplementedError,
-    RuntimeError, MemoryError,
-)  # fmt: skip
-"""Errors that NumPy and zipfile raise for damaged archives."""
 
 
 @dataclass(frozen=True)
@@ -88,11 +82,11 @@ class PackedFormat:
                     raise ValueError(f"it unpacks to {size} bytes, more than {self.largest}")
             source.seek(0)
             with np.load(source, allow_pickle=False) as packed:
-                arrays = {name: packed[name] for name in packed.files}
+                arrays = {name: np.asarray(packed[name]) for name in packed.files}
             header = json.loads(arrays.pop("about").tobytes())
             if not isinstance(header, dict) or header.get("format") != self.name:
                 raise ValueError("another kind of file")
-        except UNREADABLE as error:
+        except Exception as error:  # a damaged archive raises what its parsers raise: zlib, struct, tokenize, …
             raise self.damaged(where, error) from None
         version, oldest = header.get("version"), self.oldest or self.version
         if not (isinstance(version, int) and oldest <= version <= self.version):

@@ -77,7 +77,7 @@ def read_objects(lines: Iterable[str], name: str) -> Iterator[tuple[int, dict[st
             continue
         try:
             document = json.loads(line)
-        except ValueError:
+        except (ValueError, RecursionError):
             raise InputError(
                 f"{name} line {number}: not JSON, got {line.strip()[:60]!r}; one object a line"
             ) from None

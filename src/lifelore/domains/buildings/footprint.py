@@ -56,7 +56,7 @@ class Footprint:
         """
         try:
             return cls(json.loads(text))
-        except json.JSONDecodeError:
+        except (json.JSONDecodeError, RecursionError):
             return cls(text)
 
     @property

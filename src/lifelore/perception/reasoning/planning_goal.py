@@ -41,7 +41,7 @@ def read_goal(text: str) -> tuple[Statement, ...]:
         match = STATEMENT.match(lower, at)
         if match is None:
             raise InputError(
-                f"goal must be statements, got '{text}', which is none from '{text[at:].strip()}': {FORM}"
+                f"goal must be statements, got '{text[:80]}', which is none from '{text[at:].strip()[:80]}': {FORM}"
             )
         denied, name, inside = match.groups()
         arguments = tuple(part.strip() for part in inside.split(",")) if inside.strip() else ()
@@ -49,7 +49,7 @@ def read_goal(text: str) -> tuple[Statement, ...]:
         if (at := match.end()) == len(lower):
             return tuple(statements)
         if (joint := re.match(r"and\b", lower[at:])) is None:
-            raise InputError(f"goal must join statements by `and`, got '{text[at:].strip()}' in '{text}': {FORM}")
+            raise InputError(f"goal must join statements by `and`, got '{text[at:].strip()[:80]}' in '{text[:80]}': {FORM}")
         at += joint.end()
 
 
