@@ -131,6 +131,15 @@ def live_in(
         without a key.
     StoreError
         Memory cannot store the task, or the CSV file cannot be written; earlier tasks stay stored.
+
+    Examples
+    --------
+    >>> import gymnasium as gym
+    >>> from lifelore import GymnasiumWorld
+    >>> world = GymnasiumWorld(gym.make("FrozenLake-v1", is_slippery=False), state=int, context=int)
+    >>> report = live_in(world, tasks=2, episodes=3, max_steps=10)
+    >>> sorted(report["summary"])
+    ['agents', 'lore_vs_scratch', 'lore_vs_textbook']
     """
     began = time.perf_counter()
     _check_tasks(tasks)

@@ -70,6 +70,11 @@ class PerceiveSettings:
     InputError
         `memory` is given without the name of a model, `min_confidence` is no probability, `goal` is no goal, or
         a planner has no goal.
+
+    Examples
+    --------
+    >>> PerceiveSettings(up="z", units="mm").labels
+    'auto'
     """
 
     up: "Up" = "table"

@@ -57,6 +57,11 @@ class FitSettings:
         For finding types.
     variant : {"standard", "thesis"}
         ``thesis``: the rule in its printed form, see `printed_rule`.
+
+    Examples
+    --------
+    >>> FitSettings(types=3, incumbent="calm").control
+    0.1
     """
 
     name: str = "default"
@@ -131,6 +136,17 @@ def fit(
     ------
     InputError, NotFoundError
         A log or setting breaks its rule; memory is as it was.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from lifelore import open_memory
+    >>> names = ["ann", "ben", "carl", "dora"]
+    >>> log = {"user": names * 2, "policy": ["calm"] * 4 + ["jazz"] * 4, "outcome": [8, 2, 9, 3, 2, 9, 1, 8]}
+    >>> with tempfile.TemporaryDirectory() as folder, open_memory(f"{folder}/songs.db") as memory:
+    ...     found = fit(log, memory, FitSettings(types=2, model="gaussian"))
+    >>> [policy["name"] for policy in found["policies"]]
+    ['calm', 'jazz']
     """
     settings = settings or FitSettings()
     log = read_log(sources, form)
