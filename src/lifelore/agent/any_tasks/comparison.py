@@ -60,7 +60,7 @@ def compare_agents(
     >>> import gymnasium as gym
     >>> make = lambda number: gym.make("CliffWalking-v1", is_slippery=number % 2 == 1)
     >>> how = {"key": "cliff", "state": int, "features": int, "episodes": 3, "max_steps": 20}
-    >>> report = compare_agents(make, ["monday", "monday"], ("full", "textbook"), **how)
+    >>> report = compare_agents(make, ["monday", "monday"], ("scratch", "textbook"), **how)
     >>> sorted(report)
     ['summary', 'tasks']
     """

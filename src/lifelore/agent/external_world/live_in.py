@@ -136,8 +136,9 @@ def live_in(
     --------
     >>> import gymnasium as gym
     >>> from lifelore import GymnasiumWorld
-    >>> world = GymnasiumWorld(gym.make("FrozenLake-v1", is_slippery=False), state=int, context=int)
-    >>> report = live_in(world, tasks=2, episodes=3, max_steps=10)
+    >>> make = lambda task: gym.make("CliffWalking-v1", is_slippery=task % 2 == 1)
+    >>> world = GymnasiumWorld(make, state=int, context=lambda place: place // 12)
+    >>> report = live_in(world, tasks=2, episodes=30, max_steps=200)
     >>> sorted(report["summary"])
     ['agents', 'lore_vs_scratch', 'lore_vs_textbook']
     """
