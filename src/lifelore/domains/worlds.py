@@ -17,7 +17,7 @@ from lifelore.domains.grids.noise_maze import noise_maze
 
 @dataclass(frozen=True)
 class WorldSettings:
-    """What makes a world; None is the domain's own default.
+    """Settings of a world; None is the default of the domain.
 
     Parameters
     ----------
@@ -101,7 +101,7 @@ _WORLDS: dict[str, tuple[Callable[..., GridWorld], tuple[str, ...]]] = {
 
 
 def domain_names() -> tuple[str, ...]:
-    """The names `make_world` knows.
+    """Names of the domains of `make_world`.
 
     Examples
     --------

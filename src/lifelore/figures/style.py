@@ -116,7 +116,7 @@ def width_of(name: str) -> float:
 
 @contextmanager
 def house_style() -> Iterator[None]:
-    """Draw within this: sets the style and puts the former settings back.
+    """Context in which figures have the house style; the former settings return at its end.
 
     Examples
     --------

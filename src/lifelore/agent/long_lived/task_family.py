@@ -50,7 +50,7 @@ class Step:
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """What each behaviour would do now, and what it is worth under each type.
+    """The act of each behaviour now, and its expected return under each type.
 
     Parameters
     ----------

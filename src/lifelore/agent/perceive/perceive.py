@@ -35,7 +35,7 @@ STAGES = ("reading", "finding objects", "finding contacts and relations", "drawi
 
 @dataclass(frozen=True)
 class PerceiveSettings:
-    """How a cloud is read, segmented and classified.
+    """Settings of `perceive`: reading, segmentation and classification.
 
     Parameters
     ----------

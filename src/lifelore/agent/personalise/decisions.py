@@ -92,7 +92,7 @@ class Request:
 def choose(
     memory: Memory, study: Study, user: str, *, seed: int = 0, novelty: bool = False, **known: Any
 ) -> Answer:
-    """Choose a policy for a user's next time and remember that it was chosen.
+    """Choose a policy for a user's next visit, and store the decision.
 
     Parameters
     ----------
@@ -389,7 +389,7 @@ def _answer(request: Request, decision: DecisionRow, repeated: bool, about: Answ
 
 
 def update(memory: Memory, study: Study, decision: str, outcome: float) -> Answer:
-    """Take in how a decision ended, once, however late.
+    """Store the outcome of a decision, once, at any later time.
 
     Returns
     -------
@@ -425,7 +425,7 @@ def update(memory: Memory, study: Study, decision: str, outcome: float) -> Answe
 def observe(
     memory: Memory, study: Study, outcomes: Sequence[tuple[str, float]], *, brief: bool = False
 ) -> list[Answer | LifeloreError]:
-    """Take in how decisions ended, each once, in one transaction; beliefs learn in the order of the decisions.
+    """Store the outcomes of decisions, each once, in one transaction; beliefs learn in the order of the decisions.
 
     Parameters
     ----------

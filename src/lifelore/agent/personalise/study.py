@@ -233,7 +233,7 @@ def known_users(
 
 
 def open_study(memory: Memory, name: str = "default") -> Study:
-    """The study of that name.
+    """Open the study of a name.
 
     Raises
     ------

@@ -40,7 +40,7 @@ def report(
     incumbent: str | None = None,
     split: str | None = None,
 ) -> dict[str, Any]:
-    """Compare those chosen for by belief with the control group, with the best single policy, and the incumbent.
+    """Compare users served by belief with the control group, the best single policy and the incumbent.
 
     The best single policy is chosen by the users of the fit. Its outcome, and that of the incumbent, is measured
     on the control group, so neither is chosen and measured on the same outcomes. `split` makes sure of it where

@@ -14,7 +14,7 @@ GROUPS = ("personalise", "perceive", "advise", "memory", "pages")
 
 @dataclass(frozen=True)
 class ServiceSettings:
-    """What the service serves and how much it accepts.
+    """Settings of the service: memory, tokens, limits and groups of routes.
 
     Parameters
     ----------

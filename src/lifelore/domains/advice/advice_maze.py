@@ -73,7 +73,7 @@ def advice_maze(
 
 
 def maze_goals(world: GridWorld) -> NDArray[np.int32]:
-    """The states people of this maze go to, (n_goals,).
+    """The states to which people of this maze go, (n_goals,).
 
     Examples
     --------

@@ -34,7 +34,7 @@ _GREY_OF_STATE = np.array([254, 0, 205], np.uint8)  # what map_saver writes; 205
 
 @dataclass(frozen=True, eq=False)
 class OccupancyMap:
-    """What is known of a floor, pixel by pixel.
+    """Map of a floor: the occupancy of each pixel.
 
     Parameters
     ----------

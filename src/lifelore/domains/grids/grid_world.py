@@ -51,7 +51,7 @@ def tabulate(params, midpoints):
 
 @dataclass(frozen=True)
 class Frame:
-    """Where a grid lies in the world: cell (row, column) to metres.
+    """Pose of a grid in the world, from cells (row, column) to metres.
 
     Row 0 is the top of the picture; `origin` is the world position (x, y, yaw) of the lower left corner
     of the lower left cell, as ROS has it; `cell` is the side of a cell in metres.

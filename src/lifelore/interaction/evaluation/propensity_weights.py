@@ -106,7 +106,7 @@ def trajectory_weights(weights: Array, users: ArrayLike) -> tuple[Array, Array]:
 
 @dataclass(frozen=True)
 class WeightSummary:
-    """How much evidence the weights leave.
+    """Diagnostics of importance weights: mean, largest weight, effective number of users.
 
     Parameters
     ----------

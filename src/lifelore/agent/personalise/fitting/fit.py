@@ -40,7 +40,7 @@ KEPT_SETTINGS = ("control", "incumbent", "rule", "explore", "change", "models")
 
 @dataclass(frozen=True)
 class FitSettings:
-    """How a log becomes a study.
+    """Settings of `fit`.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def fit(
     settings: FitSettings | None = None,
     form: LogFormat | None = None,
 ) -> dict[str, Any]:
-    """Learn a study from logs and keep it in memory in place of an earlier one of its name.
+    """Learn a study from logs, and store it in memory in place of an earlier study of its name.
 
     Users' decisions in memory stay; beliefs follow the new library. Policies retired stay so, and those that the
     logs no longer know are retired; a pilot that the logs know becomes active.

@@ -19,7 +19,7 @@ LEAVE_OUT, REFUSE = "leave-out", "refuse"
 
 @dataclass(frozen=True)
 class LogFormat:
-    """How to read a log.
+    """Columns, separators and missing values of a log.
 
     Parameters
     ----------
