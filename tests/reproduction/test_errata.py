@@ -20,7 +20,7 @@ def test_entries_are_numbered_and_name_tests_that_exist():
     assert numbers == list(range(1, len(numbers) + 1))
     sections = re.split(r"^## ", PAGE, flags=re.MULTILINE)[1:]
     for section in sections:
-        assert all(f"**{part}.**" in section for part in ("Printed", "Why not", "Here", "Shown by")), section[:40]
+        assert all(f"**{part}.**" in section for part in ("Problem", "Here", "Test")), section[:40]
     for path, name in re.findall(r"`(tests/\S+\.py)::(\w+)`", PAGE):
         assert f"def {name}(" in (ROOT / path).read_text(encoding="utf-8"), name
 

@@ -33,6 +33,16 @@ class PriorMask(gymnasium.Wrapper):
     ------
     InputError
         The prior is for another number of actions, or `escape` breaks its rule.
+
+    Examples
+    --------
+    >>> import minigrid
+    >>> from lifelore import ActionPrior
+    >>> from lifelore.bridges import SymbolicView, open_directions
+    >>> env = PriorMask(SymbolicView(gymnasium.make("MiniGrid-Empty-5x5-v0")), ActionPrior(3), open_directions)
+    >>> observation, info = env.reset(seed=0)
+    >>> env.action_masks().tolist()
+    [True, True, True]
     """
 
     def __init__(

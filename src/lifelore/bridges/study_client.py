@@ -129,6 +129,14 @@ class StudyClient:
         An argument breaks its rule, another client uses the queue's file, or the service refuses the request.
     ServiceUnavailable
         Without `fallback`: the service gave no table within two seconds.
+
+    Examples
+    --------
+    >>> client = StudyClient("http://127.0.0.1:9", "playlists", fallback="slow")  # no service answers here
+    >>> choice = client.decide("ada")
+    >>> choice.policy, choice.source
+    ('slow', 'fallback')
+    >>> client.close()
     """
 
     def __init__(

@@ -43,6 +43,11 @@ class CloudOrigin:
     ------
     InputError
         The shape of the motion is wrong.
+
+    Examples
+    --------
+    >>> CloudOrigin().T_camera_scene.round(1)[0].tolist()
+    [1.0, 0.0, 0.0, 0.0]
     """
 
     T_scene_camera: NDArray[np.float64] = field(default_factory=lambda: np.eye(4))

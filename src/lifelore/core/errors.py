@@ -12,20 +12,54 @@ line and exits 2.
 
 
 class LifeloreError(Exception):
-    """Base of every error that this package raises on purpose."""
+    """Base of every error that this package raises on purpose.
+
+    Examples
+    --------
+    >>> from lifelore import ActionPrior
+    >>> try:
+    ...     ActionPrior(n_actions=0)
+    ... except LifeloreError as error:
+    ...     print(error)
+    n_actions must be at least 1, got 0
+    """
 
 
 class InputError(LifeloreError, ValueError):
-    """An argument, option or file breaks its rule."""
+    """An argument, option or file breaks its rule.
+
+    Examples
+    --------
+    >>> issubclass(InputError, ValueError)
+    True
+    """
 
 
 class NotFoundError(LifeloreError, LookupError):
-    """No object has this name."""
+    """No object has this name.
+
+    Examples
+    --------
+    >>> issubclass(NotFoundError, LookupError)
+    True
+    """
 
 
 class MissingExtraError(LifeloreError, ImportError):
-    """An optional package is not installed; the message says which extra brings it."""
+    """An optional package is not installed; the message says which extra brings it.
+
+    Examples
+    --------
+    >>> issubclass(MissingExtraError, ImportError)
+    True
+    """
 
 
 class StoreError(LifeloreError, OSError):
-    """Memory or disk refuses: damaged, foreign, newer, full or read-only."""
+    """Memory or disk refuses: damaged, foreign, newer, full or read-only.
+
+    Examples
+    --------
+    >>> issubclass(StoreError, (LifeloreError, OSError))
+    True
+    """

@@ -36,6 +36,12 @@ class LabelledCloud:
     ------
     InputError
         A shape or value breaks its rule.
+
+    Examples
+    --------
+    >>> cloud = LabelledCloud(np.zeros((3, 3)), np.array([1, 2, 2]))
+    >>> cloud.of(2).shape
+    (2, 3)
     """
 
     points: NDArray[np.float64]

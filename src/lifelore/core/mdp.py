@@ -33,6 +33,13 @@ class Tables(NamedTuple):
         Cumulative probabilities of the outcomes; the last is 1. One row may serve all states and actions.
     starts : (n_starts,) int32
         An episode starts in one of these states, drawn uniformly.
+
+    Examples
+    --------
+    >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
+    >>> tables = Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2)
+    >>> tables.n_states, tables.n_actions
+    (3, 2)
     """
 
     next_state: NDArray[np.int32]
@@ -130,6 +137,12 @@ class Domain:
         loop. Must equal the table enumerated through `step`, the default.
 
     Thesis: §3.2.2.
+
+    Examples
+    --------
+    >>> walk = lambda params, s, a, u: (min(s + a, 3), float(s + a >= 3), TERMINAL if s + a >= 3 else NOTHING)
+    >>> Domain("walk", 4, 2, walk, discount=0.9).step((), 2, 1, 0.5)
+    (3, 1.0, 1)
     """
 
     name: str
@@ -165,6 +178,13 @@ class Task:
         Initial states S₀, drawn uniformly.
     goal : int, optional
         The goal state, where the task has one.
+
+    Examples
+    --------
+    >>> walk = lambda params, s, a, u: (min(s + a, 3), float(s + a >= 3), TERMINAL if s + a >= 3 else NOTHING)
+    >>> task = Task(Domain("walk", 4, 2, walk, discount=0.9), params=(), starts=np.arange(3), goal=3)
+    >>> task.tables().n_states
+    4
     """
 
     domain: Domain

@@ -31,7 +31,13 @@ class Estimate:
 
 
 def mean_estimate(values: ArrayLike) -> Estimate:
-    """Mean and median of `values` (n,), with a bias-corrected accelerated (BCa) bootstrap interval."""
+    """Mean and median of `values` (n,), with a bias-corrected accelerated (BCa) bootstrap interval.
+
+    Examples
+    --------
+    >>> mean_estimate([1.0, 2.0, 3.0, 4.0]).value
+    2.5
+    """
     values = _checked(values)
     return Estimate(float(values.mean()), float(np.median(values)), bca_interval([values], np.mean), len(values))
 
@@ -42,6 +48,11 @@ def interquartile_mean_estimate(values: ArrayLike) -> Estimate:
     The interquartile mean is the mean of the middle half of all values: a few runs that fail, or a few tasks with
     large returns, do not decide it. The interval resamples runs within each task (a stratum), 2.5 to 97.5 %.
     After Agarwal et al. (2021), "Deep reinforcement learning at the edge of the statistical precipice".
+
+    Examples
+    --------
+    >>> interquartile_mean_estimate(np.arange(8.0).reshape(4, 2)).value
+    3.5
     """
     from scipy.stats import trim_mean
 
@@ -59,7 +70,13 @@ def interquartile_mean_estimate(values: ArrayLike) -> Estimate:
 
 
 def difference_estimate(values: ArrayLike, others: ArrayLike) -> Estimate:
-    """Mean and median of the differences of paired values (n,), with a paired BCa interval."""
+    """Mean and median of the differences of paired values (n,), with a paired BCa interval.
+
+    Examples
+    --------
+    >>> difference_estimate([3.0, 4.0, 6.0], [1.0, 2.0, 3.0]).value
+    2.3333333333333335
+    """
     first, other = _checked(values), _checked(others)
     _check_paired(first, other)
     return mean_estimate(first - other)

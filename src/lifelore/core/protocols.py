@@ -39,7 +39,15 @@ class World(Protocol):
 
 @runtime_checkable
 class Policy(Protocol):
-    """A policy: state in, action out. An array of actions indexed by state is a policy too."""
+    """A policy: state in, action out. An array of actions indexed by state is a policy too.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from lifelore.core import greedy_policy
+    >>> greedy_policy(np.array([[0.0, 2.0], [1.0, 0.0]])).tolist()
+    [1, 0]
+    """
 
     def __call__(self, state: Any) -> int: ...
 
@@ -76,6 +84,11 @@ class Record:
         Slots are unique within a record.
     about : mapping of str to JSON values
         Description for people; merging ignores it.
+
+    Examples
+    --------
+    >>> Record("goal_counts", "office", 1, "add", np.array([3, 7]), np.array([1, 2])).values.tolist()
+    [1, 2]
     """
 
     kind: str

@@ -19,7 +19,13 @@ is a stated parameter in the middle of 20–25 mm, not learned from a handful of
 
 @dataclass(frozen=True)
 class PairLabel:
-    """A label of a pair: ``relation(a, b)`` with confidence 3 (certain), 2 (probable) or 1 (doubtful)."""
+    """A label of a pair: ``relation(a, b)`` with confidence 3 (certain), 2 (probable) or 1 (doubtful).
+
+    Examples
+    --------
+    >>> PairLabel(3, 4, "on")
+    PairLabel(a=3, b=4, relation='on', confidence=3)
+    """
 
     a: int
     b: int

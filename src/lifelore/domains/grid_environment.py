@@ -39,6 +39,14 @@ class GridEnvironment(TaskEnvironment):
 
     ``info["collision"]`` tells whether the last move was refused, ``info["percept"]`` what the agent
     perceives around it (`grid_world.PERCEPT`).
+
+    Examples
+    --------
+    >>> from lifelore.domains.grids.grid_world import GridWorld
+    >>> env = GridEnvironment(GridWorld.from_free("room", np.ones((2, 3), bool)), goal=5)
+    >>> observation, info = env.reset(seed=0)
+    >>> env.action_space
+    Discrete(4)
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012

@@ -35,6 +35,14 @@ class TaskEnvironment(gymnasium.Env):
     `task`: the task. `render_mode`: None, or what a subclass offers.
 
     ``info["collision"]`` tells whether the last move was refused by the world.
+
+    Examples
+    --------
+    >>> from lifelore import Task, make_world
+    >>> env = TaskEnvironment(make_world("lattice", size=9).task(0))
+    >>> observation, info = env.reset(seed=0)
+    >>> env.action_space
+    Discrete(4)
     """
 
     def __init__(self, task: Task, render_mode: str | None = None) -> None:

@@ -54,7 +54,7 @@ class DrawnTask:
 
 @dataclass(frozen=True)
 class TaskStream:
-    """Which context and which type each task has.
+    """Draws the context and the hidden type of each task.
 
     Parameters
     ----------

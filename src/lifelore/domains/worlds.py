@@ -17,7 +17,7 @@ from lifelore.domains.grids.noise_maze import noise_maze
 
 @dataclass(frozen=True)
 class WorldSettings:
-    """What makes a world; None is the domain's own default.
+    """Settings of a world; None is the default of the domain.
 
     Parameters
     ----------
@@ -45,6 +45,11 @@ class WorldSettings:
         Number of cells a side, for ``lattice`` and ``noise``, 23, and ``advice``, 30.
     loops : float, optional
         Share of the walls between corridors that are opened, for ``advice``; 0.1. See `advice_maze`.
+
+    Examples
+    --------
+    >>> WorldSettings("noise", size=9, seed=1).domain
+    'noise'
     """
 
     domain: str = "building"
@@ -96,7 +101,13 @@ _WORLDS: dict[str, tuple[Callable[..., GridWorld], tuple[str, ...]]] = {
 
 
 def domain_names() -> tuple[str, ...]:
-    """The names `make_world` knows."""
+    """Names of the domains of `make_world`.
+
+    Examples
+    --------
+    >>> "lattice" in domain_names()
+    True
+    """
     return tuple(_WORLDS)
 
 
@@ -115,6 +126,11 @@ def world_from_settings(settings: WorldSettings, occupancy: OccupancyMap | None 
         No domain has this name.
     InputError
         A setting is given that the domain has no use for, or one breaks its rule.
+
+    Examples
+    --------
+    >>> world_from_settings(WorldSettings("lattice", size=9)).n_states
+    40
     """
     if settings.domain not in _WORLDS:
         raise NotFoundError(f"domain must be one of {', '.join(_WORLDS)}, got {settings.domain!r}")

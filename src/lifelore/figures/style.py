@@ -116,7 +116,13 @@ def width_of(name: str) -> float:
 
 @contextmanager
 def house_style() -> Iterator[None]:
-    """Draw within this: sets the style and puts the former settings back."""
+    """Context in which figures have the house style; the former settings return at its end.
+
+    Examples
+    --------
+    >>> with house_style():
+    ...     figure = new_figure(4, 2)
+    """
     import matplotlib
 
     with matplotlib.rc_context(_PARAMETERS):  # type: ignore[arg-type]
@@ -124,7 +130,14 @@ def house_style() -> Iterator[None]:
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """An empty figure, `width` × `height` inches, whose parts arrange themselves."""
+    """An empty figure, `width` × `height` inches, whose parts arrange themselves.
+
+    Examples
+    --------
+    >>> figure = new_figure(4, 2)
+    >>> figure.subplots().set_title("steps by task").get_text()
+    'steps by task'
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -146,6 +159,13 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     ------
     StoreError
         The disk refuses, or the picture is too rich for the limit at any resolution.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     save_figure(new_figure(2, 1), f"{folder}/empty.png").name
+    'empty.png'
     """
     path = Path(path)
     image = _small_enough(figure, path)

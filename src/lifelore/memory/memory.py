@@ -81,6 +81,16 @@ class Memory:
 
     Several processes may use one memory at the same time. Each method is one transaction; one process writes at a
     time.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from lifelore.core.protocols import Record
+    >>> goals = Record("goal_counts", "office", 1, "add", slots=[3, 7], values=[1, 2])
+    >>> with tempfile.TemporaryDirectory() as folder, open_memory(f"{folder}/fleet.db") as memory:
+    ...     stored = [memory.contribute("rosie", [goals], process="p", seq=task, task={}) for task in (0, 1)]
+    ...     memory.recall("goal_counts", "office", 1).values.tolist()
+    [2, 4]
     """
 
     def __init__(self, store: Store) -> None:

@@ -61,6 +61,16 @@ class Scene:
     ------
     InputError
         An interface or a relation names an object that has no points, or a pair has two interfaces.
+
+    Examples
+    --------
+    >>> from lifelore import perceived_scene
+    >>> plane = np.stack(np.meshgrid(np.linspace(0, 1, 30), np.linspace(0, 1, 30)), -1).reshape(-1, 2)
+    >>> sizes = ((1, 0), (0.1, 0.05), (0.1, 0.06))  # the table, and two plates above each other
+    >>> points = [np.column_stack([side * plane, np.full(900, height)]) for side, height in sizes]
+    >>> scene = perceived_scene(LabelledCloud(np.concatenate(points), np.repeat([1, 2, 3], 900)))
+    >>> scene.objects, len(scene.networks[2].nodes) > 0
+    ((2, 3), True)
     """
 
     cloud: LabelledCloud

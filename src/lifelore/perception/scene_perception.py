@@ -43,6 +43,16 @@ def perceived_scene(
     InputError
         The labels are 0 and 1 alone, and what is labelled 1 is too high to be the table: two objects of a user who
         numbers from 0, as the thesis does.
+
+    Examples
+    --------
+    >>> from lifelore import LabelledCloud
+    >>> plane = np.stack(np.meshgrid(np.linspace(0, 1, 30), np.linspace(0, 1, 30)), -1).reshape(-1, 2)
+    >>> table = np.column_stack([plane, np.zeros(900)])
+    >>> block = np.column_stack([0.1 * plane, np.full(900, 0.05)])
+    >>> scene = perceived_scene(LabelledCloud(np.concatenate([table, block]), np.repeat([1, 2], 900)))
+    >>> scene.objects
+    (2,)
     """
     _check_numbers(cloud)
     model = model or shipped_model()

@@ -50,6 +50,11 @@ class AdviceSettings:
         With a limit: number of saved steps at which advice begins; it continues until they are spent; ≥ 1.
     own_steps_only : bool
         Whether steps that followed advice are excluded from H.
+
+    Examples
+    --------
+    >>> AdviceSettings(kappa=0.2).window
+    300
     """
 
     kappa: float = 0.5
@@ -128,6 +133,17 @@ class Advisor:
     -----
     States are 0 … n_states - 1. In states that no expert passed there is no advice, and the experts' model is
     uniform, so that a step there is no evidence for or against `Uniform`.
+
+    Examples
+    --------
+    >>> from lifelore.action import Trajectory
+    >>> walk = Trajectory(np.arange(12), np.zeros(11, int))
+    >>> advisor = Advisor.of_thesis([GoalModel.from_trajectories([walk] * 20, 12, 3, goals=[11])])
+    >>> watched = advisor.watch()
+    >>> for _ in range(6):
+    ...     advisor.observe(watched, state=5, action=2)
+    >>> advisor.consider(watched, state=5).advise
+    True
     """
 
     def __init__(

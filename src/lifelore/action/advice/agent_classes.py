@@ -33,6 +33,15 @@ class ClassAdvisor:
     names : tuple of str
     advisor : Advisor
     class_of_goal : (n_goals,) int64, numbers of `names`
+
+    Examples
+    --------
+    >>> from lifelore.action import GoalModel, Trajectory
+    >>> walks = [Trajectory(np.arange(4), np.zeros(3, int)), Trajectory(np.arange(4)[::-1], np.ones(3, int))]
+    >>> models = [GoalModel.from_trajectories([walk] * 9, 4, 2, goals=[walk.states[-1]]) for walk in walks]
+    >>> advisor = ClassAdvisor(("staff", "visitor"), Advisor(models), np.array([0, 1]))
+    >>> advisor.names
+    ('staff', 'visitor')
     """
 
     names: tuple[str, ...]

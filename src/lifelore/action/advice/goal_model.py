@@ -16,7 +16,13 @@ from lifelore.core.learning.known_world import GOAL, goal_distances
 
 
 class Trajectory(NamedTuple):
-    """States passed, (n + 1,) with the last one, and the action taken in each but the last, (n,)."""
+    """States passed, (n + 1,) with the last one, and the action taken in each but the last, (n,).
+
+    Examples
+    --------
+    >>> Trajectory(np.array([0, 1, 2]), np.array([1, 1])).actions.size
+    2
+    """
 
     states: NDArray[np.int64]
     actions: NDArray[np.int64]
@@ -36,6 +42,13 @@ class GoalModel:
         Mean number of steps that the experts still had to go, inf in states that no expert passed.
     advised_alpha0 : float
         α⁰ of the advice, in states that experts passed; above 0, actions that no expert took are advised at times.
+
+    Examples
+    --------
+    >>> walk = Trajectory(np.array([0, 1, 2]), np.array([1, 1]))
+    >>> model = GoalModel.from_trajectories([walk] * 5, 3, 2, goals=[2])
+    >>> model.theta[0].round(2).tolist()
+    [0.0, 1.0]
     """
 
     goals: tuple[int, ...]

@@ -26,7 +26,13 @@ LARGEST = 2**62
 
 
 class Demonstration(NamedTuple):
-    """Steps of one agent in one task: states (n,) int64, and the actions in them (n,) int64."""
+    """Steps of one agent in one task: states (n,) int64, and the actions in them (n,) int64.
+
+    Examples
+    --------
+    >>> Demonstration("kitchen", "ada", np.array([0, 1]), np.array([1, 1])).agent
+    'ada'
+    """
 
     task: str
     agent: str
@@ -60,7 +66,18 @@ def demonstrations_from_lines(lines: Iterable[str], where: str = "demonstrations
 
 
 def read_demonstrations(path: str | Path) -> list[Demonstration]:
-    """Demonstrations from a file of JSON lines; see `demonstrations_from_lines`."""
+    """Demonstrations from a file of JSON lines; see `demonstrations_from_lines`.
+
+    Examples
+    --------
+    >>> import pathlib
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     path = pathlib.Path(folder, "shown.jsonl")
+    ...     written = path.write_text('{"task": "kitchen", "agent": "ada", "state": 0, "action": 1}')
+    ...     read_demonstrations(path)[0].agent
+    'ada'
+    """
     try:
         text = Path(path).read_text(encoding="utf-8")
     except OSError as error:
@@ -112,6 +129,14 @@ def count_demonstrations(
         The (n,) contexts of a demonstration's states.
     weights : mapping of agent to w(π), optional
         See `competence`; default 1 for every agent.
+
+    Examples
+    --------
+    >>> prior = ActionPrior(2)
+    >>> shown = Demonstration("kitchen", "ada", np.array([0, 1]), np.array([1, 1]))
+    >>> count_demonstrations(prior, [shown], lambda demonstration: demonstration.states)
+    >>> prior.probs([0]).round(2).tolist()
+    [[0.08, 0.92]]
     """
     for one in demonstrations:
         if weights is not None and one.agent not in weights:

@@ -27,6 +27,13 @@ class CountedFeatures:
 
     codes : (n,) int64, of `features`, may repeat
     counts : (n, n_actions) float, at least 0, without α⁰
+
+    Examples
+    --------
+    >>> columns = [[0, 0], [0, 1], [1, 0], [1, 1]]
+    >>> counted = CountedFeatures.from_columns(columns, [[1, 0], [1, 0], [0, 1], [0, 1]])
+    >>> counted.features.names, counted.entropy()
+    (('f0', 'f1'), 0.0)
     """
 
     features: FeatureSet

@@ -93,6 +93,13 @@ class FeatureAcquisition:
         A candidate is among the features of the start.
     NotFoundError
         A name is none of `features`.
+
+    Examples
+    --------
+    >>> acquisition = FeatureAcquisition(FeatureSet(("wall", "odd"), (2, 2)), ["wall"], ["left", "right"])
+    >>> acquisition.update(np.arange(4), np.eye(2, dtype=bool)[[0, 1, 0, 1]])
+    >>> acquisition.probs(np.arange(2)).round(2).tolist()
+    [[0.5, 0.5], [0.5, 0.5]]
     """
 
     def __init__(

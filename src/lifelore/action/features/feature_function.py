@@ -31,7 +31,14 @@ class FeatureFunction(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class StateFeatures:
-    """Features from a table with a row for each state, (n_states, n_features) int."""
+    """Features from a table with a row for each state, (n_states, n_features) int.
+
+    Examples
+    --------
+    >>> phi = StateFeatures(FeatureSet(("wall", "odd"), (2, 2)), np.array([[0, 0], [0, 1], [1, 0]]))
+    >>> context_codes(phi, [0, 2]).tolist()
+    [0, 2]
+    """
 
     features: FeatureSet
     table: NDArray[np.integer]
@@ -42,7 +49,14 @@ class StateFeatures:
 
 @dataclass(frozen=True)
 class TaskFeature:
-    """One feature of the task description: ``of_task(task)`` in [0, size)."""
+    """One feature of the task description: ``of_task(task)`` in [0, size).
+
+    Examples
+    --------
+    >>> urgent = TaskFeature("urgent", 2, lambda task: int(task["due"] < 10))
+    >>> context_codes(urgent, [0, 1], task={"due": 5}).tolist()
+    [1, 1]
+    """
 
     name: str
     size: int
@@ -87,7 +101,13 @@ class LastReward:
 
 @dataclass(frozen=True)
 class AgentClass:
-    """The class of the acting agent, one of `classes`; agents of a class share their counts (§3.7)."""
+    """The class of the acting agent, one of `classes`; agents of a class share their counts (§3.7).
+
+    Examples
+    --------
+    >>> context_codes(AgentClass(("visitor", "staff"), "staff"), [0, 1]).tolist()
+    [1, 1]
+    """
 
     classes: tuple[str, ...]
     own: str
@@ -108,7 +128,15 @@ class AgentClass:
 
 @dataclass(frozen=True)
 class JoinedFeatures:
-    """The features of several feature functions joined."""
+    """The features of several feature functions joined.
+
+    Examples
+    --------
+    >>> urgent = TaskFeature("urgent", 2, lambda task: int(task["due"] < 10))
+    >>> joined = JoinedFeatures((urgent, AgentClass(("visitor", "staff"), "staff")))
+    >>> joined.features.names, context_codes(joined, [0], task={"due": 5}).tolist()
+    (('urgent', 'agent class'), [3])
+    """
 
     parts: tuple[FeatureFunction, ...]
 
@@ -140,6 +168,12 @@ def context_codes(
     task : any, optional
     last_rewards : (n,) float, or a number for all states
         Rewards received on entering each state; 0 at the start of an episode.
+
+    Examples
+    --------
+    >>> phi = StateFeatures(FeatureSet(("wall", "odd"), (2, 2)), np.array([[0, 0], [0, 1], [1, 0]]))
+    >>> context_codes(phi, [0, 1, 2]).tolist()
+    [0, 1, 2]
     """
     states = np.asarray(states, np.int64).ravel()
     rewards = np.asarray(last_rewards, float).ravel()

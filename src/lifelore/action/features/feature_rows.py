@@ -42,6 +42,16 @@ def feature_rows(
     ------
     InputError
         φ tells more than 256 classes of rewards apart.
+
+    Examples
+    --------
+    >>> from lifelore import ActionPrior, QLearning
+    >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
+    >>> tables = Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2)
+    >>> from lifelore.action import FeatureSet, StateFeatures
+    >>> phi = StateFeatures(FeatureSet(("odd",), (2,)), np.array([[0], [1], [0]]))
+    >>> QLearning(20).learn(tables, 0.9, rows=feature_rows(tables, phi, ActionPrior(2).probs))[1].returns.shape
+    (20,)
     """
     rewards, reward_of = np.unique(np.append(0.0, tables.reward), return_inverse=True)
     states = np.arange(tables.n_states)

@@ -50,6 +50,13 @@ def best_feature_set(counted: CountedFeatures, penalty: float = 0.0) -> FeatureS
         At most `MOST_FEATURES` features.
     penalty : float
         c ≥ 0, bits per feature.
+
+    Examples
+    --------
+    >>> columns = [[0, 0], [0, 1], [1, 0], [1, 1]]
+    >>> counted = CountedFeatures.from_columns(columns, [[1, 0], [1, 0], [0, 1], [0, 1]])
+    >>> best_feature_set(counted, penalty=0.1).names
+    ('f0',)
     """
     n = len(counted.features)
     if n > MOST_FEATURES:
@@ -178,6 +185,12 @@ class OnlineFeatureSelection:
     chosen : FeatureSet
     choices : list of FeatureChoice
         The choice after each task.
+
+    Examples
+    --------
+    >>> online = OnlineFeatureSelection(FeatureSet(("wall", "odd"), (2, 2)), ["left", "right"])
+    >>> online.update(np.arange(4), [[True, False], [True, False], [False, True], [False, True]]).names
+    ('wall',)
     """
 
     def __init__(

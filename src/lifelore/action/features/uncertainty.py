@@ -66,6 +66,12 @@ def why_uncertain(
         Bits above which the entropy of a context counts as high.
     enough : float
         Least mean counts of the full configurations in a context for another reason than "too few counts".
+
+    Examples
+    --------
+    >>> counted = CountedFeatures.from_columns([[0], [0], [1], [1]], [[9, 0], [0, 9], [9, 0], [9, 0]])
+    >>> why_uncertain(counted, ["f0"]).entropy.round(2).tolist()
+    [1.0, -0.0]
     """
     features = counted.features
     fine_codes, fine = pooled_counts(counted.codes, counted.counts)

@@ -41,6 +41,16 @@ def prior_rows(
         How the greedy step breaks ties between best actions.
     reward_class : (n_states, n_actions, n_outcomes) int, optional
         Class of each outcome's reward, below n_classes, at most 256.
+
+    Examples
+    --------
+    >>> from lifelore import ActionPrior, QLearning
+    >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
+    >>> tables, prior = Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2), ActionPrior(2)
+    >>> prior.update([0, 1], [[False, True], [False, True]])
+    >>> rows = prior_rows(tables, np.arange(3), prior.probs)
+    >>> QLearning(20).learn(tables, 0.9, rows=rows)[1].returns[-1].round(2)
+    np.float64(1.0)
     """
     if ties not in TIES:
         raise NotFoundError(f"ties must be one of {', '.join(TIES)}, got '{ties}'")

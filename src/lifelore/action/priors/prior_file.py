@@ -32,6 +32,16 @@ def save_prior(prior: ActionPrior, path: str | Path, about: Mapping[str, Any] | 
         `about` holds a value that is not JSON, or α⁰ is a function of the context.
     StoreError
         The file cannot be written.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> prior = ActionPrior(2)
+    >>> prior.update([7], [[True, False]])
+    >>> with TemporaryDirectory() as folder:
+    ...     save_prior(prior, f"{folder}/prior.npz", {"world": "office"})
+    ...     load_prior(f"{folder}/prior.npz")
+    <ActionPrior: 2 actions, 1 contexts, 1 counts, alpha0=0.1>
     """
     content = prior_bytes(prior, about)
     try:
@@ -48,6 +58,14 @@ def load_prior(path: str | Path) -> ActionPrior:
     ------
     InputError
         The file is missing or damaged, has another format, or comes from a newer version.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     save_prior(ActionPrior(3, alpha0=0.5), f"{folder}/prior.npz")
+    ...     load_prior(f"{folder}/prior.npz")
+    <ActionPrior: 3 actions, 0 contexts, 0 counts, alpha0=0.5>
     """
     return prior_from_bytes(_content(path), str(path))
 

@@ -35,6 +35,13 @@ def prior_report(
         Eq. 3.11), ``sure_rate`` (share of `contexts` with one action only), ``useful_actions`` (share of actions
         that the mask allows, Fig. 3.1), ``exclusion_rate`` (share of `contexts` whose every best action the mask
         excludes; None without `best`).
+
+    Examples
+    --------
+    >>> prior = ActionPrior(2)
+    >>> prior.update([7, 9], [[True, False], [True, True]])
+    >>> prior_report(prior)["contexts"]
+    2
     """
     if best is not None and contexts is None:
         raise InputError("best needs contexts, got none: pass contexts=")

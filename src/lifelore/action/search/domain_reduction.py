@@ -40,6 +40,13 @@ def reachable_states(tables: Tables, best: ArrayLike) -> States:
         A state entered by a TERMINAL event is reached, but its actions are not followed: the episode is over.
     best : (n_states, n_actions) bool
         The policy's actions; each of several tied actions may be taken.
+
+    Examples
+    --------
+    >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
+    >>> tables = Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2, starts=[1])
+    >>> reachable_states(tables, [[False, True], [False, True], [False, False]]).tolist()
+    [False, True, True]
     """
     best = _checked(tables, best)
     visited = np.zeros(tables.n_states, bool)
@@ -67,12 +74,26 @@ def task_futile_states(tables: Tables, best: ArrayLike) -> States:
 
 
 def domain_futile_actions(policies: Sequence[ArrayLike]) -> Pairs:
-    """Pairs that are futile in every task (Def. 3.2.3)."""
+    """Pairs that are futile in every task (Def. 3.2.3).
+
+    Examples
+    --------
+    >>> domain_futile_actions([[[False, True], [False, True]], [[False, True], [True, True]]]).tolist()
+    [[True, False], [False, False]]
+    """
     return np.logical_and.reduce([task_futile_actions(best) for best in policies])
 
 
 def domain_futile_states(tasks: Sequence[Tables], policies: Sequence[ArrayLike]) -> States:
-    """States that are futile in every task (Def. 3.2.4)."""
+    """States that are futile in every task (Def. 3.2.4).
+
+    Examples
+    --------
+    >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
+    >>> tables = Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2, starts=[1])
+    >>> domain_futile_states([tables], [[[False, True], [False, True], [False, False]]]).tolist()
+    [True, False, False]
+    """
     futile = [task_futile_states(tables, best) for tables, best in _paired(tasks, policies)]
     return np.logical_and.reduce(futile)
 
@@ -91,6 +112,13 @@ class MinimisedDomain:
         The (s, a) with s in Ŝ and a in Â.
     kept_mass : (n_states, n_actions) float
         The probability that the outcome of a pair in `pairs` lies in Ŝ, which is 1/η; 0 for other pairs.
+
+    Examples
+    --------
+    >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
+    >>> tables = Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2, starts=[1])
+    >>> minimised_domain([tables], [[[False, True], [False, True], [False, False]]]).states.tolist()
+    [False, True, True]
     """
 
     form: str
@@ -122,6 +150,13 @@ def minimised_domain(
         Best or tied-best actions of each task; rows of goals and completed configurations all False.
     form : {"repaired", "printed", "closed"}
         See the module.
+
+    Examples
+    --------
+    >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
+    >>> tables = Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2)
+    >>> minimised_domain([tables], [[[False, True], [False, True], [False, False]]]).pairs.tolist()
+    [[False, True], [False, True], [False, False]]
     """
     if form not in FORMS:
         raise NotFoundError(f"form must be one of {', '.join(FORMS)}, got '{form}'")
@@ -144,6 +179,14 @@ def minimised_transitions(tables: Tables, domain: MinimisedDomain) -> list[spars
 
     Rows of pairs in the domain sum to 1, other rows are 0. With the form "printed" a pair all of whose outcomes
     leave Ŝ (`MinimisedDomain.without_successor`, η = 1/0) has a row of zeros, too.
+
+    Examples
+    --------
+    >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
+    >>> tables = Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2)
+    >>> domain = minimised_domain([tables], [[[False, True], [False, True], [False, False]]], form="printed")
+    >>> minimised_transitions(tables, domain)[1].toarray().tolist()
+    [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]]
     """
     follow = tables.next_state
     inside = domain.pairs[:, :, None] & domain.states[follow]

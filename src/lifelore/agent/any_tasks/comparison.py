@@ -54,6 +54,15 @@ def compare_agents(
     ------
     InputError, NotFoundError
         A setting or an agent breaks its rule.
+
+    Examples
+    --------
+    >>> import gymnasium as gym
+    >>> make = lambda number: gym.make("CliffWalking-v1", is_slippery=number % 2 == 1)
+    >>> how = {"key": "cliff", "state": int, "features": int, "episodes": 3, "max_steps": 20}
+    >>> report = compare_agents(make, ["monday", "monday"], ("scratch", "textbook"), **how)
+    >>> sorted(report)
+    ['summary', 'tasks']
     """
     given = dict(agents) if isinstance(agents, Mapping) else dict.fromkeys(agents)
     own = check_own_agents({name: one for name, one in given.items() if one is not None}, tuple(AGENTS))

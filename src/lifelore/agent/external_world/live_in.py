@@ -131,6 +131,16 @@ def live_in(
         without a key.
     StoreError
         Memory cannot store the task, or the CSV file cannot be written; earlier tasks stay stored.
+
+    Examples
+    --------
+    >>> import gymnasium as gym
+    >>> from lifelore import GymnasiumWorld
+    >>> make = lambda task: gym.make("CliffWalking-v1", is_slippery=task % 2 == 1)
+    >>> world = GymnasiumWorld(make, state=int, context=lambda place: place // 12)
+    >>> report = live_in(world, tasks=2, episodes=30, max_steps=200)
+    >>> sorted(report["summary"])
+    ['agents', 'lore_vs_scratch', 'lore_vs_textbook']
     """
     began = time.perf_counter()
     _check_tasks(tasks)

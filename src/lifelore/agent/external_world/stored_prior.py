@@ -59,6 +59,18 @@ def prior_from_memory(
         The memory does not exist, or has no such prior; the message names the keys it has.
     InputError
         Several priors fit; the message names them.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> import gymnasium as gym
+    >>> from lifelore import GymnasiumWorld, live_in
+    >>> make = lambda task: gym.make("CliffWalking-v1", is_slippery=task % 2 == 1)
+    >>> world = GymnasiumWorld(make, state=int, context=lambda place: place // 12)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     report = live_in(world, tasks=2, episodes=30, max_steps=200, memory=f"{folder}/a.db", key="cliff")
+    ...     prior_from_memory(f"{folder}/a.db", key="cliff").n_actions
+    4
     """
     if "://" not in str(location) and not Path(location).exists():
         raise NotFoundError(f"no memory at {location}; give the memory= of your live_in")

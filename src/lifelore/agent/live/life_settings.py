@@ -126,6 +126,11 @@ class MemorySettings:
     ------
     InputError
         A name breaks its rule.
+
+    Examples
+    --------
+    >>> MemorySettings("office.db", robot="rosie").refresh
+    False
     """
 
     location: str | None = None

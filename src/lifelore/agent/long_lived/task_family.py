@@ -36,6 +36,11 @@ class Step:
         Causes and their effects; none for an act that shows nothing.
     ended : bool
         Whether the episode ended.
+
+    Examples
+    --------
+    >>> Step(reward=1.0, effects=((0, 1),), ended=False).effects
+    ((0, 1),)
     """
 
     reward: float
@@ -45,7 +50,7 @@ class Step:
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """What each behaviour would do now, and what it is worth under each type.
+    """The act of each behaviour now, and its expected return under each type.
 
     Parameters
     ----------
@@ -54,6 +59,11 @@ class Plan:
     acts : (n_behaviours,) int64
     trying : (n_behaviours,) int64
         The same where giving up is ruled out, because it teaches nothing.
+
+    Examples
+    --------
+    >>> Plan(values=np.array([[1.0, 0.0]]), acts=np.array([2, 0]), trying=np.array([1])).acts.tolist()
+    [2, 0]
     """
 
     values: Array

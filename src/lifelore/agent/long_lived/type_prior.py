@@ -34,7 +34,7 @@ LEAST_BELIEF = 1e-6
 
 
 class TypePrior:
-    """Which types to expect, in a context and at a date.
+    """Prior over types, by context and date.
 
     Parameters
     ----------

@@ -35,7 +35,7 @@ STAGES = ("reading", "finding objects", "finding contacts and relations", "drawi
 
 @dataclass(frozen=True)
 class PerceiveSettings:
-    """How a cloud is read, segmented and classified.
+    """Settings of `perceive`: reading, segmentation and classification.
 
     Parameters
     ----------
@@ -70,6 +70,11 @@ class PerceiveSettings:
     InputError
         `memory` is given without the name of a model, `min_confidence` is no probability, `goal` is no goal, or
         a planner has no goal.
+
+    Examples
+    --------
+    >>> PerceiveSettings(up="z", units="mm").labels
+    'auto'
     """
 
     up: "Up" = "table"

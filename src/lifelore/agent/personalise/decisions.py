@@ -53,6 +53,11 @@ class Request:
     request : str, optional
         Identifier of the request, unique for the user. The same request again gets the decision that it got
         before, and nothing is stored.
+
+    Examples
+    --------
+    >>> Request("ann", context="phone", available=["calm", "jazz"]).user
+    'ann'
     """
 
     user: str
@@ -87,7 +92,7 @@ class Request:
 def choose(
     memory: Memory, study: Study, user: str, *, seed: int = 0, novelty: bool = False, **known: Any
 ) -> Answer:
-    """Choose a policy for a user's next time and remember that it was chosen.
+    """Choose a policy for a user's next visit, and store the decision.
 
     Parameters
     ----------
@@ -116,6 +121,18 @@ def choose(
         archived, or the request was made before with other available policies.
     NotFoundError
         There is no such policy or feature.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from lifelore import PolicyLibrary, open_memory
+    >>> from lifelore.agent.personalise.registration import register
+    >>> library = PolicyLibrary.from_means([[8.0, 2.0], [3.0, 9.0]], 1.0, policies=["calm", "jazz"])
+    >>> with tempfile.TemporaryDirectory() as folder, open_memory(f"{folder}/songs.db") as memory:
+    ...     study = register(memory, "songs", library)
+    ...     made = choose(memory, study, "ann")
+    >>> sorted(made)[:3]
+    ['available', 'belief', 'context']
     """
     (answer,) = decide(memory, study, [Request(user, **known)], seed=seed)
     if isinstance(answer, LifeloreError):
@@ -143,6 +160,18 @@ def decide(
     -------
     list
         For each request the document of `choose`, or the error of this request alone.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from lifelore import PolicyLibrary, open_memory
+    >>> from lifelore.agent.personalise.registration import register
+    >>> library = PolicyLibrary.from_means([[8.0, 2.0], [3.0, 9.0]], 1.0, policies=["calm", "jazz"])
+    >>> with tempfile.TemporaryDirectory() as folder, open_memory(f"{folder}/songs.db") as memory:
+    ...     study = register(memory, "songs", library)
+    ...     made = decide(memory, study, [Request("ann"), Request("ben", available=["jazz"])])
+    >>> made[1]["policy"]
+    'jazz'
     """
     if study.archived:
         raise InputError(f"study '{study.name}' is archived; make it active again first")
@@ -360,7 +389,7 @@ def _answer(request: Request, decision: DecisionRow, repeated: bool, about: Answ
 
 
 def update(memory: Memory, study: Study, decision: str, outcome: float) -> Answer:
-    """Take in how a decision ended, once, however late.
+    """Store the outcome of a decision, once, at any later time.
 
     Returns
     -------
@@ -374,6 +403,18 @@ def update(memory: Memory, study: Study, decision: str, outcome: float) -> Answe
         No such decision: never made here, or forgotten.
     InputError
         The outcome is no finite number, none of the values a categorical library knows, or another one was taken.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from lifelore import PolicyLibrary, open_memory
+    >>> from lifelore.agent.personalise.registration import register
+    >>> library = PolicyLibrary.from_means([[8.0, 2.0], [3.0, 9.0]], 1.0, policies=["calm", "jazz"])
+    >>> with tempfile.TemporaryDirectory() as folder, open_memory(f"{folder}/songs.db") as memory:
+    ...     study = register(memory, "songs", library)
+    ...     made = choose(memory, study, "ann")
+    ...     update(memory, study, made["decision"], 8.0)["taken"]
+    True
     """
     (answer,) = observe(memory, study, [(decision, outcome)])
     if isinstance(answer, LifeloreError):
@@ -384,7 +425,7 @@ def update(memory: Memory, study: Study, decision: str, outcome: float) -> Answe
 def observe(
     memory: Memory, study: Study, outcomes: Sequence[tuple[str, float]], *, brief: bool = False
 ) -> list[Answer | LifeloreError]:
-    """Take in how decisions ended, each once, in one transaction; beliefs learn in the order of the decisions.
+    """Store the outcomes of decisions, each once, in one transaction; beliefs learn in the order of the decisions.
 
     Parameters
     ----------
@@ -396,6 +437,18 @@ def observe(
     -------
     list
         For each outcome the document of `update`, or its error.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from lifelore import PolicyLibrary, open_memory
+    >>> from lifelore.agent.personalise.registration import register
+    >>> library = PolicyLibrary.from_means([[8.0, 2.0], [3.0, 9.0]], 1.0, policies=["calm", "jazz"])
+    >>> with tempfile.TemporaryDirectory() as folder, open_memory(f"{folder}/songs.db") as memory:
+    ...     study = register(memory, "songs", library)
+    ...     made = decide(memory, study, [Request("ann")])
+    ...     observe(memory, study, [(made[0]["decision"], 8.0)])[0]["taken"]
+    True
     """
     return _again_if_raced(_observed, memory, study, outcomes, brief)
 

@@ -233,7 +233,7 @@ def known_users(
 
 
 def open_study(memory: Memory, name: str = "default") -> Study:
-    """The study of that name.
+    """Open the study of a name.
 
     Raises
     ------
@@ -241,6 +241,17 @@ def open_study(memory: Memory, name: str = "default") -> Study:
         There is none; the message names those there are.
     StoreError
         It is damaged.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from lifelore import PolicyLibrary, open_memory
+    >>> from lifelore.agent.personalise.registration import register
+    >>> library = PolicyLibrary.from_means([[8.0, 2.0], [3.0, 9.0]], 1.0, policies=["calm", "jazz"])
+    >>> with tempfile.TemporaryDirectory() as folder, open_memory(f"{folder}/songs.db") as memory:
+    ...     study = register(memory, "songs", library)
+    ...     open_study(memory, "songs").active == study.active
+    True
     """
     check_study_name(name)
     found = newest_version(memory, name)

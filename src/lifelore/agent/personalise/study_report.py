@@ -40,7 +40,7 @@ def report(
     incumbent: str | None = None,
     split: str | None = None,
 ) -> dict[str, Any]:
-    """Compare those chosen for by belief with the control group, with the best single policy, and the incumbent.
+    """Compare users served by belief with the control group, the best single policy and the incumbent.
 
     The best single policy is chosen by the users of the fit. Its outcome, and that of the incumbent, is measured
     on the control group, so neither is chosen and measured on the same outcomes. `split` makes sure of it where
@@ -78,6 +78,17 @@ def report(
         There is no such split or policy, or the study does not know when it was fitted.
     StoreError
         The disk refuses.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from lifelore import PolicyLibrary, open_memory
+    >>> from lifelore.agent.personalise.registration import register
+    >>> library = PolicyLibrary.from_means([[8.0, 2.0], [3.0, 9.0]], 1.0, policies=["calm", "jazz"])
+    >>> with tempfile.TemporaryDirectory() as folder, open_memory(f"{folder}/songs.db") as memory:
+    ...     study = register(memory, "songs", library)
+    ...     report(memory, study)["decisions"]
+    0
     """
     incumbent = incumbent or study.incumbent
     if incumbent is not None and incumbent not in study.states:

@@ -14,7 +14,7 @@ GROUPS = ("personalise", "perceive", "advise", "memory", "pages")
 
 @dataclass(frozen=True)
 class ServiceSettings:
-    """What the service serves and how much it accepts.
+    """Settings of the service: memory, tokens, limits and groups of routes.
 
     Parameters
     ----------
@@ -36,6 +36,11 @@ class ServiceSettings:
         Groups of routes that the service has, some of `GROUPS`; health, metrics and ``/docs`` are always there.
     access_log : bool
         Whether answered requests are logged too; errors always are.
+
+    Examples
+    --------
+    >>> ServiceSettings(memory="shop.db", only=["personalise"]).seed
+    0
     """
 
     memory: str | None = None

@@ -19,6 +19,12 @@ def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDAr
     Sweeps in place until no value moves by more than `tolerance` times the largest reward. Where every
     reward but a terminal one is zero or a loss, values settle exactly after as many sweeps as the longest
     shortest path.
+
+    Examples
+    --------
+    >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
+    >>> optimal_q(Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2), 0.9).round(2).tolist()
+    [[0.81, 0.9], [0.81, 1.0], [0.0, 0.0]]
     """
     return _sweep(tables.by_pair, float(discount), tolerance * max(1.0, float(np.abs(tables.reward).max())))
 
@@ -67,6 +73,11 @@ def best_actions(
     Tied are values within `tolerance` · |the row's best| or `floor` · |the largest finite value of all rows|,
     whichever is more: where the best value is 0, rounding must not choose. A value that is not finite marks an
     action that does not exist.
+
+    Examples
+    --------
+    >>> best_actions(np.array([[1.0, 1.0, 0.0], [0.0, 2.0, 1.0]])).tolist()
+    [[True, True, False], [False, True, False]]
     """
     best = q.max(axis=1, keepdims=True)
     largest = np.abs(q).max(where=np.isfinite(q), initial=0.0)
@@ -88,6 +99,12 @@ def optimal_actions(tables: Tables, discount: float) -> NDArray[np.bool_]:
     """The best or tied-best actions of the optimal policies, (n_states, n_actions) bool, for `ActionPrior.update`.
 
     Rows in which no episode takes an action, such as the goal's, are all False (errata E3).
+
+    Examples
+    --------
+    >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
+    >>> optimal_actions(Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2), 0.9).tolist()
+    [[False, True], [False, True], [False, False]]
     """
     acting = np.zeros(tables.n_states, bool)
     frontier = np.unique(tables.starts)
@@ -103,6 +120,11 @@ def learnt_best_actions(q: NDArray[np.float64]) -> NDArray[np.bool_]:
 
     Where every move costs, an untried action has the best value of its row. A value just learned may be very
     small, so there is no floor.
+
+    Examples
+    --------
+    >>> learnt_best_actions(np.array([[0.0, 2.0], [0.0, 0.0]])).tolist()
+    [[False, True], [False, False]]
     """
     return best_actions(q, floor=0.0) & (q.max(axis=1, keepdims=True) != 0)
 
@@ -112,6 +134,11 @@ def greedy_policy(q: NDArray[np.float64]) -> NDArray[np.int32]:
 
     A learner without a value above zero in a state has no policy there yet. It counts as standing still, with
     value 0, for every learner alike.
+
+    Examples
+    --------
+    >>> greedy_policy(np.array([[0.0, 2.0], [0.0, 0.0]])).tolist()
+    [1, -1]
     """
     return np.where(q.max(axis=1) > 0, q.argmax(axis=1), -1).astype(np.int32)
 
@@ -126,6 +153,13 @@ def policy_values(tables: Tables, policy: NDArray[np.int32], discount: float) ->
         Action of each state; -1: stand still, value 0.
     discount : float
         γ in [0, 1).
+
+    Examples
+    --------
+    >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
+    >>> tables = Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2)
+    >>> policy_values(tables, np.array([1, 1, -1], np.int32), 0.9).round(2).tolist()
+    [0.9, 1.0, 0.0]
     """
     policy = np.ascontiguousarray(policy, dtype=np.int32)
     if tables.n_outcomes == 1:
@@ -183,5 +217,13 @@ def _iterate(tables, policy, discount, tolerance):
 
 
 def mean_start_value(tables: Tables, values: NDArray[np.float64]) -> float:
-    """A value function averaged over the initial states S₀."""
+    """A value function averaged over the initial states S₀.
+
+    Examples
+    --------
+    >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
+    >>> tables = Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2, starts=[0, 1])
+    >>> mean_start_value(tables, np.array([0.9, 1.0, 0.0]))
+    0.95
+    """
     return float(values[tables.starts].mean())

@@ -73,7 +73,13 @@ def advice_maze(
 
 
 def maze_goals(world: GridWorld) -> NDArray[np.int32]:
-    """The states people of this maze go to, (n_goals,)."""
+    """The states to which people of this maze go, (n_goals,).
+
+    Examples
+    --------
+    >>> maze_goals(advice_maze(np.random.default_rng(3))).size
+    8
+    """
     return np.asarray(world.about["goals"], np.int32)
 
 

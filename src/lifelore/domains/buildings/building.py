@@ -64,6 +64,13 @@ def building_from_map(
     InputError
         `cell`, `robot_radius` or `min_free` breaks its rule, no region of at least two cells is free, or more than
         `MAX_STATES` cells are.
+
+    Examples
+    --------
+    >>> from lifelore.domains.buildings.office import office_map
+    >>> office = office_map(seed=1, width_m=16.0, height_m=12.0)
+    >>> building_from_map(office, cell=1.0, robot_radius=0.2).n_states > 50
+    True
     """
     _check(occupancy, cell, robot_radius, min_free)
     _, free, grid, largest = pieces_of(occupancy, float(cell), float(robot_radius))

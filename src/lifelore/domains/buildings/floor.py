@@ -158,7 +158,17 @@ class Floor:
 
 
 def floor_of(occupancy: OccupancyMap, world: GridWorld) -> Floor:
-    """The floor of a building that `building_from_map` made of this map."""
+    """The floor of a building that `building_from_map` made of this map.
+
+    Examples
+    --------
+    >>> from lifelore.domains.buildings.building import building_from_map
+    >>> from lifelore.domains.buildings.office import office_map
+    >>> office = office_map(seed=1, width_m=16.0, height_m=12.0)
+    >>> world = building_from_map(office, cell=1.0, robot_radius=0.2)
+    >>> floor_of(office, world).n_states == world.n_states
+    True
+    """
     about = world.about
     _, _, grid, largest = pieces = pieces_of(occupancy, about["cell"], about["robot_radius"])
     state = world.state_of[np.ix_(grid.row_of, grid.column_of)]

@@ -34,7 +34,7 @@ _GREY_OF_STATE = np.array([254, 0, 205], np.uint8)  # what map_saver writes; 205
 
 @dataclass(frozen=True, eq=False)
 class OccupancyMap:
-    """What is known of a floor, pixel by pixel.
+    """Map of a floor: the occupancy of each pixel.
 
     Parameters
     ----------
@@ -46,6 +46,11 @@ class OccupancyMap:
         World pose of the lower left corner of the lower left pixel, metres and radians.
     source : str
         Where it came from, for people.
+
+    Examples
+    --------
+    >>> OccupancyMap(np.zeros((20, 30), np.uint8), resolution=0.05).state.shape
+    (20, 30)
     """
 
     state: NDArray[np.uint8]
@@ -93,6 +98,15 @@ def read_occupancy_map(path: str | Path) -> OccupancyMap:
     InputError
         The YAML or the image is missing, damaged, too large (over 10⁸ pixels) or breaks a rule of the
         format; the message names the file, the key and the rule.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> drawn = OccupancyMap(np.zeros((20, 30), np.uint8), resolution=0.05)
+    >>> with TemporaryDirectory() as folder:
+    ...     path = write_occupancy_map(f"{folder}/room.yaml", drawn)
+    ...     read_occupancy_map(f"{folder}/room.yaml").resolution
+    0.05
     """
     path = Path(path)
     settings = _settings_from(path, _mapping_from(path))
@@ -217,6 +231,14 @@ def write_occupancy_map(
         `grey` is not such an array, `mode` is unknown, `resolution` or `origin` breaks its rule.
     StoreError
         The files cannot be written.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> drawn = OccupancyMap(np.zeros((20, 30), np.uint8), resolution=0.05)
+    >>> with TemporaryDirectory() as folder:
+    ...     write_occupancy_map(f"{folder}/room.yaml", drawn).name
+    'room.pgm'
     """
     if isinstance(grey, OccupancyMap):
         resolution = grey.resolution if resolution is None else resolution

@@ -41,6 +41,11 @@ def office_map(
     ------
     InputError
         `width_m` or `height_m` breaks its rule.
+
+    Examples
+    --------
+    >>> office_map(seed=1, width_m=16.0, height_m=12.0).state.shape
+    (280, 360)
     """
     for label, length in (("width_m", width_m), ("height_m", height_m)):
         if not (math.isfinite(length) and _SMALLEST <= length <= _LARGEST):

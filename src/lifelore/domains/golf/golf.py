@@ -30,7 +30,7 @@ SHOTS = 3
 
 @dataclass(frozen=True)
 class Golf:
-    """Clubs and training holes as numbers.
+    """The golf domain of §4.6.1: clubs and training holes as numbers.
 
     Parameters
     ----------

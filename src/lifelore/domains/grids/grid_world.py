@@ -51,10 +51,15 @@ def tabulate(params, midpoints):
 
 @dataclass(frozen=True)
 class Frame:
-    """Where a grid lies in the world: cell (row, column) to metres.
+    """Pose of a grid in the world, from cells (row, column) to metres.
 
     Row 0 is the top of the picture; `origin` is the world position (x, y, yaw) of the lower left corner
     of the lower left cell, as ROS has it; `cell` is the side of a cell in metres.
+
+    Examples
+    --------
+    >>> Frame(cell=0.5, origin=(1.0, 2.0, 0.0)).metres([0, 4], [0, 2]).tolist()
+    [[1.0, 2.0], [3.0, 3.0]]
     """
 
     cell: float = 1.0
@@ -88,6 +93,12 @@ class GridWorld:
     about : dict
         What else must agree for two grids to be the same world (robot radius, say); part of
         `fingerprint`.
+
+    Examples
+    --------
+    >>> world = GridWorld.from_free("room", np.ones((2, 3), bool))
+    >>> world.n_states, world.task(5).tables().n_actions
+    (6, 4)
     """
 
     name: str

@@ -84,6 +84,11 @@ class PacmanMaze:
     ----------
     rows, columns : int
         Of the free rectangle; odd and at least 5 and 3. The centre cell is where Pacman starts.
+
+    Examples
+    --------
+    >>> PacmanMaze().n_cells
+    29
     """
 
     rows: int = 7
@@ -153,6 +158,12 @@ class PacmanTask:
 
     Episodes start with Pacman in the centre and the ghost in any phase of its strategy that is elsewhere, each as
     likely. Thesis: §4.6.3; the errata say what it leaves open.
+
+    Examples
+    --------
+    >>> maze = PacmanMaze()
+    >>> PacmanTask(maze, maze.draw_foods(np.random.default_rng(0)), "random").n_observations > 0
+    True
     """
 
     maze: PacmanMaze

@@ -55,7 +55,7 @@ METRICS = ("chebyshev", "euclidean")
 
 @dataclass(frozen=True)
 class Surveillance:
-    """The reserve as numbers.
+    """The surveillance domain of §4.6.4: the reserve as numbers.
 
     Parameters
     ----------

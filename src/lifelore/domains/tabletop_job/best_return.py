@@ -76,7 +76,7 @@ class _Node:
 
 
 class OutcomeTree:
-    """What sequences of actions do to a tray under a gripper; each is simulated once.
+    """Outcomes of sequences of actions on a tray under a gripper; each is simulated once.
 
     Parameters
     ----------

@@ -60,7 +60,7 @@ UTILITY_OF_PATH = tuple(UTILITIES.index(sum(rewards_of(path))) for path in PATHS
 
 @dataclass(frozen=True)
 class Telephone:
-    """Callers and language models as numbers.
+    """The telephone domain of §4.6.2: callers and language models as numbers.
 
     Parameters
     ----------

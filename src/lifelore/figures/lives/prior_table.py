@@ -46,6 +46,13 @@ def plot_prior(
     ------
     InputError
         The prior has no counts, `actions` has another length than the prior's actions, or `most` is below 1.
+
+    Examples
+    --------
+    >>> from lifelore import ActionPrior
+    >>> prior = ActionPrior(2)
+    >>> prior.update([7, 9], [[True, False], [True, True]])
+    >>> figure = plot_prior(prior, actions=["left", "right"])
     """
     names = [str(action) for action in (range(prior.n_actions) if actions is None else actions)]
     if len(names) != prior.n_actions:

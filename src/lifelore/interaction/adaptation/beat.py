@@ -80,6 +80,15 @@ class Beat:
     ------
     InputError
         ε or the prior breaks its rule.
+
+    Examples
+    --------
+    >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; the second type swaps left and right
+    >>> sets = {"left": [0], "right": [1]}
+    >>> beat = Beat.from_tasks([T, T[:, ::-1]], np.eye(3)[2], sets, 0.9, starts=[0])
+    >>> beat.update("right", [(1, 1, 2)])
+    >>> beat.belief.round(2).tolist(), beat.select()
+    ([1.0, 0.0], 1)
     """
 
     def __init__(

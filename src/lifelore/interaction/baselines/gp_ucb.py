@@ -41,6 +41,13 @@ class GPUCB(Baseline):
     `from_library` takes ``kernel="performance"`` (how alike policies did in training), ``"covariance"`` (over the
     library's types), or an array of the caller's own metric; means and noise under G₀.
     Thesis: §4.6.4, §4.7.3, Fig. 4.11.
+
+    Examples
+    --------
+    >>> player = GPUCB(2, kernel=[[1.0, 0.5], [0.5, 1.0]], noise=0.5)
+    >>> player.update(0, 2.0)
+    >>> player.posterior()[0].round(2).tolist()
+    [[1.6, 0.8]]
     """
 
     name: ClassVar[str] = "gp-ucb"

@@ -32,6 +32,14 @@ class IntervalEstimation(ArmBaseline):
 
     `from_library` gives each policy's mean and whole deviation (between types and within them) under G₀.
     Thesis: §4.6.4.
+
+    Examples
+    --------
+    >>> player = IntervalEstimation(2)
+    >>> for policy, payoff in ((0, 1.0), (0, 1.1), (1, 3.0), (1, 3.1)):
+    ...     player.update(policy, payoff)
+    >>> player.select()
+    1
     """
 
     name: ClassVar[str] = "interval-estimation"

@@ -26,6 +26,13 @@ class GaussianThompson(ArmBaseline):
         As in `Baseline`.
 
     `from_library` takes all three under the library's prior over types.
+
+    Examples
+    --------
+    >>> player = GaussianThompson(2, noise=0.1)
+    >>> player.update(0, 1.0)
+    >>> player.beliefs()[0].round(2).tolist()
+    [[0.99, 0.0]]
     """
 
     name: ClassVar[str] = "thompson"

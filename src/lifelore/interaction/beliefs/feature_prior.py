@@ -53,6 +53,13 @@ class FeaturePrior:
         The chosen one of `STRENGTHS`.
     gain : float
         Held-out log likelihood in nats a row, less that of leaving the features out.
+
+    Examples
+    --------
+    >>> ages = np.array([[20.0], [22.0], [25.0], [60.0], [63.0], [70.0]] * 5)
+    >>> prior = FeaturePrior.fit(ages, [0, 0, 0, 1, 1, 1] * 5, [0.5, 0.5], ["age"])
+    >>> prior.prior({"age": 24.0}).argmax()
+    np.int64(0)
     """
 
     names: tuple[str, ...]

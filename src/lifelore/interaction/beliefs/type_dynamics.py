@@ -39,6 +39,15 @@ class TypeDynamics:
     ------
     InputError
         There is no such kind, or rate and law do not fit it.
+
+    Examples
+    --------
+    >>> from lifelore import BayesianPolicyReuse, PolicyLibrary
+    >>> library = PolicyLibrary.from_means([[9.0, 5.0], [4.0, 8.0]], 2.0)
+    >>> agent = BayesianPolicyReuse(library, dynamics=TypeDynamics.hazard(0.1, library.prior))
+    >>> agent.update(0, 9.0)
+    >>> agent.belief.round(2).tolist()
+    [0.91, 0.09]
     """
 
     kind: Literal["static", "hazard", "transitions"] = "static"

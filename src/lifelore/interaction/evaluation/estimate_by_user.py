@@ -34,6 +34,13 @@ class ClusteredEstimate:
     n_decisions, n_users : int
     influence : (n_users,) float64
         φ of each user, in the order of the sorted users; sums to 0.
+
+    Examples
+    --------
+    >>> from lifelore.interaction.evaluation import logged_value
+    >>> found = logged_value([1.0, 0.0, 1.0, 1.0], ["ann", "ann", "ben", "carl"])
+    >>> found.value, found.n_users
+    (0.75, 3)
     """
 
     value: float

@@ -37,6 +37,11 @@ def logged_value(outcomes: ArrayLike, users: ArrayLike) -> ClusteredEstimate:
     ------
     InputError
         Arrays of different lengths, without rows, or with values that are not finite.
+
+    Examples
+    --------
+    >>> logged_value([1.0, 0.0, 1.0, 1.0], ["ann", "ann", "ben", "carl"]).value
+    0.75
     """
     (outcomes,) = _checked(users, outcomes=outcomes)
     value = outcomes.mean()
@@ -85,6 +90,12 @@ def self_normalised(
     ------
     InputError
         As in `logged_value`, or all weights of a step are 0.
+
+    Examples
+    --------
+    >>> weights = np.array([2.0, 0.0, 2.0, 0.0])
+    >>> self_normalised([8.0, 2.0, 3.0, 9.0], weights, ["ann", "ann", "ben", "ben"]).value
+    5.5
     """
     outcomes, weights = _checked(users, outcomes=outcomes, weights=weights)
     step = np.zeros(len(outcomes), np.int64) if steps is None else np.unique(steps, return_inverse=True)[1]
@@ -126,6 +137,13 @@ def doubly_robust(
     ------
     InputError
         As in `logged_value`.
+
+    Examples
+    --------
+    >>> weights = np.array([2.0, 0.0, 2.0, 0.0])
+    >>> users = ["ann", "ann", "ben", "ben"]
+    >>> doubly_robust([8.0, 2.0, 3.0, 9.0], weights, [7.0, 3.0, 4.0, 8.0], [7.0, 7.0, 4.0, 4.0], users).value
+    5.5
     """
     earlier = np.ones(np.shape(outcomes)) if before is None else before
     outcomes, weights, logged, target, earlier = _checked(

@@ -106,7 +106,7 @@ def trajectory_weights(weights: Array, users: ArrayLike) -> tuple[Array, Array]:
 
 @dataclass(frozen=True)
 class WeightSummary:
-    """How much evidence the weights leave.
+    """Diagnostics of importance weights: mean, largest weight, effective number of users.
 
     Parameters
     ----------
@@ -119,6 +119,11 @@ class WeightSummary:
         give the same precision.
     largest_share : float
         Share of the user with the largest sum of weights in the sum of all.
+
+    Examples
+    --------
+    >>> weight_summary(np.array([2.0, 0.0, 2.0, 0.0]), ["ann", "ann", "ben", "ben"]).mean
+    1.0
     """
 
     mean: float
@@ -134,7 +139,13 @@ class WeightSummary:
 
 
 def weight_summary(weights: Array, users: ArrayLike) -> WeightSummary:
-    """Diagnostics of weights (n,) of the decisions of users (n,); n is at least 1."""
+    """Diagnostics of weights (n,) of the decisions of users (n,); n is at least 1.
+
+    Examples
+    --------
+    >>> weight_summary(np.array([2.0, 0.0, 2.0, 0.0]), ["ann", "ann", "ben", "ben"]).effective_users
+    2.0
+    """
     by_user = user_sums(weights, users)
     mean = clustered_estimate(float(weights.mean()), (weights - weights.mean()) / len(weights), users)
     total = float(by_user.sum())

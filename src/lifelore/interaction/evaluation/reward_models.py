@@ -68,6 +68,13 @@ def policy_means(outcomes: Array, policies: Numbers, n_policies: int, folds: Num
         In 0 … n_policies − 1.
     folds : (n,) int64
         See `user_folds`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> model = policy_means(np.array([8.0, 2.0, 6.0, 4.0]), np.array([0, 1, 0, 1]), 2, np.array([0, 0, 1, 1]))
+    >>> model.table.tolist()
+    [[6.0, 4.0], [8.0, 2.0]]
     """
     n_folds = int(folds.max()) + 1
     cell = folds * n_policies + policies

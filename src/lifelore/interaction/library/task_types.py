@@ -133,6 +133,13 @@ def landmark_library(library: PolicyLibrary, types: TaskTypes) -> PolicyLibrary:
     ------
     InputError
         `types` covers another number of tasks than the library has types.
+
+    Examples
+    --------
+    >>> from lifelore import PolicyLibrary
+    >>> library = PolicyLibrary.from_means([[9.0, 5.0], [8.5, 5.0], [4.0, 8.0]], 2.0)
+    >>> landmark_library(library, epsilon_types(library.performance.mean, 1.0)).n_types
+    2
     """
     if len(types.labels) != library.n_types:
         raise InputError(f"types must cover the library's {library.n_types} types, covers {len(types.labels)}")

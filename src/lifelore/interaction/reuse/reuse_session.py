@@ -45,6 +45,17 @@ def save_session(agent: BayesianPolicyReuse, path: str | Path) -> None:
         The rule is not one of `RULES`, or one of its settings is no plain value.
     StoreError
         The disk refuses.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from lifelore import PolicyLibrary
+    >>> agent = BayesianPolicyReuse(PolicyLibrary.from_means([[9.0, 5.0], [4.0, 8.0]], 2.0))
+    >>> agent.update(0, 4.0)
+    >>> with TemporaryDirectory() as folder:
+    ...     save_session(agent, f"{folder}/session.npz")
+    ...     np.array_equal(load_session(f"{folder}/session.npz").belief, agent.belief)
+    True
     """
     content = session_bytes(agent)
     try:
@@ -66,6 +77,16 @@ def load_session(path: str | Path, signal: SignalModel | None = None) -> Bayesia
     ------
     InputError
         The file does not exist, is of another kind, newer or damaged.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from lifelore import PolicyLibrary
+    >>> agent = BayesianPolicyReuse(PolicyLibrary.from_means([[9.0, 5.0], [4.0, 8.0]], 2.0))
+    >>> with TemporaryDirectory() as folder:
+    ...     save_session(agent, f"{folder}/session.npz")
+    ...     load_session(f"{folder}/session.npz").select() == agent.select()
+    True
     """
     try:
         content = Path(path).read_bytes()

@@ -40,6 +40,13 @@ class BeliefEntropy(Deterministic):
     ------
     InputError
         `kappa` is negative, `mass` outside (0, 1], or there is no such variant.
+
+    Examples
+    --------
+    >>> from lifelore import PolicyLibrary
+    >>> library = PolicyLibrary.from_means([[9.0, 5.0], [4.0, 8.0]], 2.0)
+    >>> BeliefEntropy(kappa=1.0).scores(library, np.array([0.5, 0.5])).round(2).tolist()
+    [6.93, 6.72]
     """
 
     kappa: float | None = None

@@ -52,6 +52,13 @@ def best_plan(library: Any, horizon: int, belief: Array | None = None, n_bins: i
     ------
     InputError
         The horizon is below 1, the tree would be too large, or the belief is no distribution over the types.
+
+    Examples
+    --------
+    >>> from lifelore import PolicyLibrary
+    >>> library = PolicyLibrary.from_means([[9.0, 5.0], [4.0, 8.0]], 2.0)
+    >>> round(best_plan(library, horizon=2).value, 1)
+    14.6
     """
     table, mean = library.table(n_bins), library.performance.mean
     layers = _layers(table, library, belief, horizon)

@@ -15,7 +15,15 @@ MOST_TYPES = 128
 
 @dataclass(frozen=True)
 class BeliefSampling:
-    """Selects the best response to a type drawn from the belief; also called posterior or Thompson sampling."""
+    """Selects the best response to a type drawn from the belief; also called posterior or Thompson sampling.
+
+    Examples
+    --------
+    >>> from lifelore import PolicyLibrary
+    >>> library = PolicyLibrary.from_means([[9.0, 5.0], [4.0, 8.0]], 2.0)
+    >>> BeliefSampling().probabilities(library, np.array([0.3, 0.7])).tolist()
+    [0.3, 0.7]
+    """
 
     name: ClassVar[str] = "sampling"
     by_means: ClassVar[bool] = True

@@ -23,6 +23,13 @@ class EpsilonGreedy:
     ------
     InputError
         `epsilon` lies outside [0, 1].
+
+    Examples
+    --------
+    >>> from lifelore import PolicyLibrary
+    >>> library = PolicyLibrary.from_means([[9.0, 5.0], [4.0, 8.0]], 2.0)
+    >>> EpsilonGreedy(0.2).probabilities(library, np.array([1.0, 0.0])).tolist()
+    [0.9, 0.1]
     """
 
     epsilon: float = 0.3

@@ -8,7 +8,16 @@ from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrar
 
 @dataclass(frozen=True)
 class Greedy(Deterministic):
-    """Selects the policy of the largest expected utility; never explores."""
+    """Selects the policy of the largest expected utility; never explores.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from lifelore import PolicyLibrary
+    >>> library = PolicyLibrary.from_means([[9.0, 5.0], [4.0, 8.0]], 2.0)
+    >>> Greedy().scores(library, np.array([0.5, 0.5])).tolist()
+    [6.5, 6.5]
+    """
 
     name: ClassVar[str] = "greedy"
     by_means: ClassVar[bool] = True

@@ -32,6 +32,15 @@ class InformationDirected(Deterministic):
     ------
     InputError
         `mass` lies outside (0, 1].
+
+    Examples
+    --------
+    >>> from lifelore import BayesianPolicyReuse, PolicyLibrary
+    >>> library = PolicyLibrary.from_means([[9.0, 5.0, 6.0], [4.0, 8.0, 6.0]], 2.0, policies=["A", "B", "C"])
+    >>> agent = BayesianPolicyReuse(library, InformationDirected())
+    >>> agent.update("A", 4.0)
+    >>> library.policies[agent.select()]
+    'B'
     """
 
     mass: float = MASS

@@ -51,6 +51,15 @@ class KnowledgeGradient(Deterministic):
     ------
     InputError
         `mass` lies outside (0, 1], `lookahead` is negative, or there is no such variant.
+
+    Examples
+    --------
+    >>> from lifelore import BayesianPolicyReuse, PolicyLibrary
+    >>> library = PolicyLibrary.from_means([[9.0, 5.0, 6.0], [4.0, 8.0, 6.0]], 2.0, policies=["A", "B", "C"])
+    >>> agent = BayesianPolicyReuse(library, KnowledgeGradient())
+    >>> agent.update("A", 4.0)
+    >>> library.policies[agent.select()]
+    'B'
     """
 
     variant: Variant = "standard"

@@ -35,6 +35,13 @@ class ProbabilityOfImprovement(Deterministic):
     ------
     InputError
         `target` is not finite, `margin` not positive, or there is no such variant.
+
+    Examples
+    --------
+    >>> from lifelore import PolicyLibrary
+    >>> library = PolicyLibrary.from_means([[9.0, 5.0], [4.0, 8.0]], 2.0)
+    >>> ProbabilityOfImprovement(target=7.0).scores(library, np.array([0.5, 0.5])).round(2).tolist()
+    [0.45, 0.43]
     """
 
     target: float | None = None

@@ -75,7 +75,18 @@ class SelectionRule(Protocol):
 
 
 class Deterministic:
-    """Base of rules whose scores draw no random numbers: the best policies are equally likely."""
+    """Base of rules whose scores draw no random numbers: the best policies are equally likely.
+
+    Examples
+    --------
+    >>> from lifelore import PolicyLibrary
+    >>> class Cautious(Deterministic):
+    ...     def scores(self, library, belief, **_):
+    ...         return library.performance.mean.min(axis=0)
+    >>> library = PolicyLibrary.from_means([[9.0, 6.0], [4.0, 5.0]], 2.0)
+    >>> Cautious().probabilities(library, np.array([0.5, 0.5])).tolist()
+    [0.0, 1.0]
+    """
 
     def probabilities(self, library: RuleLibrary, belief: Array, *, episodes_left: float | None = None) -> Array:
         """Probability of selecting each policy, (P,) or (k, P); rows sum to 1."""

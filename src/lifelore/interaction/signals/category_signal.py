@@ -38,6 +38,12 @@ class CategoryModel:
     ------
     InputError
         A row is no distribution, or there are too few names or equal names.
+
+    Examples
+    --------
+    >>> near = CategoryModel([[[0.9, 0.1], [0.2, 0.8]], [[0.5, 0.5], [0.5, 0.5]]], ["near", "far"])
+    >>> np.exp(near.log_likelihood(0, "near")).round(2).tolist()
+    [0.9, 0.5]
     """
 
     def __init__(self, probs: ArrayLike, categories: Sequence[Hashable] | None = None) -> None:

@@ -23,6 +23,13 @@ class ReturnSignal:
     ----------
     outcomes : OutcomeModel
         Not copied: the signal model uses what the outcomes learn in place.
+
+    Examples
+    --------
+    >>> from lifelore import PolicyLibrary
+    >>> library = PolicyLibrary.from_means([[9.0, 5.0], [4.0, 8.0]], 2.0)
+    >>> ReturnSignal(library.performance).log_likelihood(0, 9.0).round(2).tolist()
+    [-1.61, -4.74]
     """
 
     kind: ClassVar[str] = "return"

@@ -48,6 +48,11 @@ class CameraIntrinsics:
     ------
     InputError
         A value breaks its rule.
+
+    Examples
+    --------
+    >>> CameraIntrinsics(640, 480, 525.0, 525.0, 319.5, 239.5).grid
+    (480, 640)
     """
 
     width: int

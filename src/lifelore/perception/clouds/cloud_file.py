@@ -50,6 +50,11 @@ def read_cloud(source: str | os.PathLike[str] | NDArray, *, units: str = "m", la
     InputError
         The file is missing, too large, of no known kind, damaged, empty, or breaks a rule; the message names
         it.
+
+    Examples
+    --------
+    >>> read_cloud(np.random.default_rng(0).random((100, 3)), units="m").points.shape
+    (100, 3)
     """
     check_rule(labels)
     if isinstance(source, np.ndarray):

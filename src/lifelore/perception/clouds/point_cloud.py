@@ -42,6 +42,12 @@ class PointCloud:
     ------
     InputError
         A shape or value breaks its rule.
+
+    Examples
+    --------
+    >>> camera = CameraIntrinsics(4, 3, 5.0, 5.0, 1.5, 1.0)
+    >>> PointCloud.from_depth(np.full((3, 4), 0.8), camera).points.shape
+    (12, 3)
     """
 
     points: NDArray[np.floating]

@@ -30,6 +30,15 @@ class ContactPointNetwork:
     nodes : tuple of ContactPoint
     edges : (m, 2) int64
         Pairs of node numbers, a spanning tree: m is one less than the number of nodes (0 for none).
+
+    Examples
+    --------
+    >>> from lifelore.perception import contact_networks
+    >>> plane = np.stack(np.meshgrid(np.linspace(0, 0.1, 20), np.linspace(0, 0.1, 20)), -1).reshape(-1, 2)
+    >>> lower, upper = (np.column_stack([plane, np.full(400, height)]) for height in (0.0, 0.01))
+    >>> network, _ = contact_networks(upper, lower)
+    >>> len(network.nodes), network.positions.shape
+    (1, (1, 3))
     """
 
     object_id: int

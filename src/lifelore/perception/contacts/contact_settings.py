@@ -35,6 +35,11 @@ class ContactSettings:
     ------
     InputError
         A length or cost that is not positive (`voxel` and `min_support` may be 0).
+
+    Examples
+    --------
+    >>> ContactSettings().min_support, ContactSettings.of_thesis().as_printed
+    (7.0, True)
     """
 
     voxel: float = 0.003

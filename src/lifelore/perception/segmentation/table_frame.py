@@ -63,7 +63,17 @@ class SegmentedScene:
 def to_scene(
     cloud: PointCloud, up: Up = "table", segmentation: SegmentationSettings | None = None
 ) -> LabelledCloud:
-    """A cloud as a scene: upright, on its table, labelled; see `segmented_scene`."""
+    """A cloud as a scene: upright, on its table, labelled; see `segmented_scene`.
+
+    Examples
+    --------
+    >>> from lifelore import read_cloud
+    >>> plane = np.stack(np.meshgrid(np.linspace(0, 1, 30), np.linspace(0, 1, 30)), -1).reshape(-1, 2)
+    >>> table = np.column_stack([plane, np.full(900, 0.7), np.ones(900)])
+    >>> block = np.column_stack([0.4 + 0.2 * plane, np.full(900, 0.8), np.full(900, 2)])
+    >>> to_scene(read_cloud(np.concatenate([table, block])), up="z").of(2)[:, 2].mean().round(2)
+    np.float64(0.1)
+    """
     return segmented_scene(cloud, up, segmentation).cloud
 
 

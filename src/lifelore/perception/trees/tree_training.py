@@ -51,6 +51,11 @@ class TreeSettings:
     ------
     InputError
         A number breaks its rule.
+
+    Examples
+    --------
+    >>> TreeSettings(n_trees=40).seed
+    0
     """
 
     n_trees: int = 200

@@ -57,6 +57,13 @@ class L2Log:
     ------
     InputError, StoreError
         An argument breaks its rule; the folder cannot be written.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     log = L2Log(folder, "maze", ["performance"])
+    ...     log.add("train", "maze_0", {"performance": [0.1, 0.4]})
     """
 
     def __init__(

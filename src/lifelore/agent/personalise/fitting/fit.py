@@ -40,7 +40,7 @@ KEPT_SETTINGS = ("control", "incumbent", "rule", "explore", "change", "models")
 
 @dataclass(frozen=True)
 class FitSettings:
-    """How a log becomes a study.
+    """Settings of `fit`.
 
     Parameters
     ----------
@@ -57,6 +57,11 @@ class FitSettings:
         For finding types.
     variant : {"standard", "thesis"}
         ``thesis``: the rule in its printed form, see `printed_rule`.
+
+    Examples
+    --------
+    >>> FitSettings(types=3, incumbent="calm").control
+    0.1
     """
 
     name: str = "default"
@@ -88,7 +93,7 @@ def fit(
     settings: FitSettings | None = None,
     form: LogFormat | None = None,
 ) -> dict[str, Any]:
-    """Learn a study from logs and keep it in memory in place of an earlier one of its name.
+    """Learn a study from logs, and store it in memory in place of an earlier study of its name.
 
     Users' decisions in memory stay; beliefs follow the new library. Policies retired stay so, and those that the
     logs no longer know are retired; a pilot that the logs know becomes active.
@@ -131,6 +136,17 @@ def fit(
     ------
     InputError, NotFoundError
         A log or setting breaks its rule; memory is as it was.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from lifelore import open_memory
+    >>> names = ["ann", "ben", "carl", "dora"]
+    >>> log = {"user": names * 2, "policy": ["calm"] * 4 + ["jazz"] * 4, "outcome": [8, 2, 9, 3, 2, 9, 1, 8]}
+    >>> with tempfile.TemporaryDirectory() as folder, open_memory(f"{folder}/songs.db") as memory:
+    ...     found = fit(log, memory, FitSettings(types=2, model="gaussian"))
+    >>> [policy["name"] for policy in found["policies"]]
+    ['calm', 'jazz']
     """
     settings = settings or FitSettings()
     log = read_log(sources, form)

@@ -19,7 +19,7 @@ LEAVE_OUT, REFUSE = "leave-out", "refuse"
 
 @dataclass(frozen=True)
 class LogFormat:
-    """How to read a log.
+    """Columns, separators and missing values of a log.
 
     Parameters
     ----------
@@ -44,6 +44,11 @@ class LogFormat:
         Names of columns of numbers that are known of a user beforehand.
     probabilities : bool
         Whether to read the column ``probability``, which the log must then have, and ``group``.
+
+    Examples
+    --------
+    >>> LogFormat({"user": "household", "outcome": "bought"}, separator="semicolon").missing_policy
+    'refuse'
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
