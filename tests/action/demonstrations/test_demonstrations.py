@@ -1,7 +1,5 @@
 """Demonstrations: the file format by hand, bad lines by number, and counting."""
 
-import json
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -55,17 +53,6 @@ def test_what_is_written_is_read(told):
     demonstrations = [demonstration(*one) for one in told]
     text = "\n".join(demonstration_lines(demonstrations))
     assert plain(demonstrations_from_lines(text.split("\n"))) == plain(demonstrations)
-
-
-def test_files_are_added_to(tmp_path):
-    path = tmp_path / "shown.jsonl"
-    one, two = demonstration("t\u2028", "änn", [(1, 2), (3, 0)]), demonstration("t\u2028", "änn", [(1, 2)])
-    write_demonstrations(path, [one])
-    write_demonstrations(path, [two], append=True)
-    assert plain(read_demonstrations(path)) == plain([one, two])
-    assert json.loads(path.read_text().splitlines()[0])["state"] == 1
-    write_demonstrations(path, [two])
-    assert plain(read_demonstrations(path)) == plain([two])
 
 
 GOOD = '{"task": "t", "agent": "a", "state": 1, "action": 0}'

@@ -6,19 +6,6 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.baselines import IntervalEstimation
 
 
-def test_limits_by_hand():
-    player = IntervalEstimation(2, quantile="normal", alpha=0.05)
-    for policy, paid in ((0, 1.0), (0, 3.0), (1, 2.0), (1, 2.0)):
-        player.update(policy, paid)
-    # Mean 2, s = √2, √n = √2: 2 + 1.6449; the second policy never varied.
-    assert player._scores()[0] == pytest.approx([3.6449, 2.0], abs=1e-4)
-    student = IntervalEstimation(2, alpha=0.05)
-    student.update(0, 1.0)
-    student.update(0, 3.0)
-    # t with one degree of freedom at 0.95 is tan(0.45 π) = 6.3138.
-    assert student._scores()[0][0] == pytest.approx(2 + 6.3138, abs=1e-4)
-
-
 def test_the_limit_is_the_one_sided_interval_of_scipy():
     seen = np.random.default_rng(0).normal(5, 2, 12)
     player = IntervalEstimation(1, alpha=0.1)

@@ -22,14 +22,6 @@ def test_bayes_by_hand():
     assert math.exp(after.log_evidence) == pytest.approx(0.25)
 
 
-def test_what_no_type_explains_leaves_the_belief():
-    belief = log_prior([0.5, 0.25, 0.25, 0.0])
-    for said in ([-INF] * 4, [-INF, -INF, -INF, 0.0]):
-        after = update(belief, said)
-        assert after.log_evidence == -INF
-        assert np.array_equal(after.log_belief, belief)
-
-
 def test_a_belief_of_zero_stays_zero_and_a_tiny_one_may_rise_again():
     belief = log_prior([0.5, 0.5, 0.0])
     for _ in range(100):
@@ -53,18 +45,6 @@ def test_likelihoods_at_the_ends_of_the_range_of_numbers():
     assert np.exp(update(log_prior([1.0, 0.0]), [-1e308, 1e308]).log_belief).tolist() == [1.0, 0.0]
 
 
-def test_one_type_only_stays_certain():
-    after = update(log_prior([1.0]), [-3.0])
-    assert (after.log_belief.tolist(), float(after.log_evidence)) == ([0.0], -3.0)
-
-
-def test_identical_types_keep_their_shares():
-    belief = log_prior([0.1, 0.3, 0.6])
-    for said in (-1.0, -400.0, 25.0):
-        belief = update(belief, [said] * 3).log_belief
-    assert np.exp(belief) == pytest.approx([0.1, 0.3, 0.6], rel=1e-12)
-
-
 def test_many_users_broadcast():
     beliefs = np.log(np.random.default_rng(0).dirichlet(np.ones(4), (3, 5)))
     said = np.random.default_rng(1).normal(size=(5, 4))
@@ -81,7 +61,7 @@ def test_many_users_broadcast():
 LOGS = st.one_of(st.floats(-800, 300), st.just(-INF))
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=30)
 @given(st.lists(st.tuples(LOGS, LOGS), min_size=1, max_size=9))
 def test_agrees_with_the_slow_twin(pairs):
     weights, said = zip(*pairs, strict=True)
@@ -92,24 +72,6 @@ def test_agrees_with_the_slow_twin(pairs):
     assert after.log_belief == pytest.approx(expected, rel=1e-12, abs=1e-12)
     assert after.log_evidence == pytest.approx(evidence, rel=1e-12, abs=1e-12)
     assert (after.log_belief <= 0).all()
-
-
-@settings(deadline=None, max_examples=60)
-@given(st.integers(2, 5), st.permutations(range(8)), st.integers(0, 2**32 - 1))
-def test_signals_may_come_in_any_order(n_types, order, seed):
-    random = np.random.default_rng(seed)
-    said = random.normal(scale=30, size=(8, n_types))
-    said[random.random(said.shape) < 0.05] = -INF
-    one = other = log_prior(random.dirichlet(np.ones(n_types)))
-    explained = True
-    for i in range(8):
-        one, evidence = update(one, said[i])
-        explained &= evidence > -INF
-    for i in order:
-        other = update(other, said[i]).log_belief
-    # A signal that nothing explains is left out, and which one that is depends on the order.
-    if explained:
-        assert np.exp(one) == pytest.approx(np.exp(other), abs=1e-11)
 
 
 @pytest.mark.slow

@@ -21,12 +21,6 @@ def test_what_is_too_small_becomes_zero_and_rows_sum_to_one():
     assert table.probs[0, 0].tolist() == [1.0, 0.0]
 
 
-def test_the_callers_array_is_left_alone():
-    probs = np.array([[[1 - 1e-12, 1e-12]]])
-    assert SignalTable(probs).probs is not probs
-    assert probs[0, 0, 1] == 1e-12
-
-
 @pytest.mark.parametrize("entropy_first", [False, True])
 def test_a_part_is_the_table_of_these_users_and_policies(entropy_first):
     probs = np.random.default_rng(0).dirichlet(np.ones(3), (4, 2, 5))

@@ -6,7 +6,6 @@ import pytest
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
-from lifelore.interaction.selection import RULES, rule_named
 
 MEAN = np.random.default_rng(3).normal(scale=30, size=(7, 5))
 
@@ -74,25 +73,6 @@ def test_unknown_names_are_an_error_by_default():
     with pytest.raises(InputError, match="unknown must be"):
         UserBeliefs(exact(), 2, unknown="maybe")  # type: ignore[arg-type]
     assert users.n_users == 1
-
-
-@pytest.mark.parametrize("name", RULES)
-@pytest.mark.parametrize("make", [exact, learnt])
-def test_only_available_policies_are_selected(make, name):
-    random, n, every = np.random.default_rng(1), 30, np.arange(30)
-    users, rule = UserBeliefs(make(), n, "f8"), rule_named(name)
-    users.update(every, random.integers(0, 5, n), random.normal(scale=40, size=n))
-    mask = random.random((n, 5)) < 0.5
-    mask[:, 1] |= ~mask.any(axis=1)
-    for available in (mask, mask[0]):
-        rows = np.broadcast_to(available, (n, 5))
-        chosen = users.select(every, rule, available=available, episodes_left=3)
-        stated = users.probabilities(every, rule, available=available, episodes_left=3)
-        assert stated.sum(axis=1) == pytest.approx(np.ones(n))
-        assert (stated[~rows] == 0).all()
-        assert (stated[every, chosen] > 0).all()
-    again = users.update_and_select(every, np.zeros(n, int), np.zeros(n), rule, available=mask, episodes_left=2)
-    assert mask[every, again].all()
 
 
 @pytest.mark.parametrize("make", [exact, learnt])

@@ -8,11 +8,8 @@ from hypothesis import strategies as st
 from lifelore.core.errors import InputError
 from lifelore.interaction.selection import (
     RULES,
-    EpsilonGreedy,
     Greedy,
     KnowledgeGradient,
-    belief_program,
-    choose,
     rule_named,
 )
 from lifelore.interaction.selection.belief_program import best_plan, value_of_rule
@@ -72,38 +69,6 @@ def test_agrees_with_plain_recursion_and_no_rule_is_better(seed, horizon):
     assert plan.values[plan.first] == plan.value
     for name in RULES:
         assert value_of_rule(library, rule_named(name), horizon) <= plan.value + 1e-9, name
-
-
-def test_a_random_rule_by_hand():
-    library = small_library(1)
-    # ε = 1 selects each policy a third of the time whatever it has seen.
-    expected = 2 * (library.prior @ library.performance.mean).mean()
-    assert value_of_rule(library, EpsilonGreedy(1.0), 2) == pytest.approx(expected)
-
-
-@pytest.mark.slow
-def test_the_value_of_a_rule_is_what_playing_it_earns():
-    library = small_library(6)
-    exact = value_of_rule(library, KnowledgeGradient(), 3)
-    random, probs, rule = np.random.default_rng(0), library.table().probs, KnowledgeGradient()
-    earned = []
-    for _ in range(1500):
-        type_, belief, total = random.choice(3, p=library.prior), library.prior, 0.0
-        for left in (2, 1, 0):
-            policy = choose(rule.scores(library, belief, episodes_left=left), random)
-            total += library.performance.mean[type_, policy]
-            belief = belief * probs[:, policy, random.choice(3, p=probs[type_, policy])]
-            belief = belief / belief.sum()
-        earned.append(total)
-    # Five standard errors of the mean.
-    assert np.mean(earned) == pytest.approx(exact, abs=5 * np.std(earned) / np.sqrt(1500))
-
-
-def test_values_are_the_same_a_few_beliefs_at_a_time(monkeypatch):
-    library = small_library(2)
-    whole = value_of_rule(library, KnowledgeGradient(), 3)
-    monkeypatch.setattr(belief_program, "NUMBERS_AT_ONCE", 30)
-    assert value_of_rule(library, KnowledgeGradient(), 3) == pytest.approx(whole, rel=1e-12)
 
 
 def test_horizons_below_one_and_trees_too_large_are_refused():

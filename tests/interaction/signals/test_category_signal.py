@@ -38,17 +38,6 @@ def test_table_keeps_few_categories_and_joins_many():
     np.testing.assert_allclose(joined, [[[0.9, 0.1]], [[0.3, 0.7]]])
 
 
-def test_draws_follow_the_probabilities():
-    drawn = CategorySignal(GOLF).sample(np.random.default_rng(0), 1, 0, 20_000)
-    # Standard error at most 0.5 / √20,000 = 0.0035; five of them.
-    np.testing.assert_allclose(np.bincount(drawn) / 20_000, GOLF[1][0], atol=0.018)
-
-
-def test_some_types():
-    some = CategorySignal(GOLF, ["a", "b", "c"]).take(types=[1])
-    np.testing.assert_allclose(some.log_likelihood(0, "c"), np.log([0.7]))
-
-
 @pytest.mark.parametrize("signal", [3, -1, "far", None, np.nan, [0], 1.5])
 def test_unknown_categories_are_refused(signal):
     with pytest.raises(InputError, match="signal must be one of"):
