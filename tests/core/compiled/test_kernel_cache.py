@@ -14,7 +14,6 @@ import lifelore
 from lifelore.core.compiled import kernel_cache
 from lifelore.core.compiled.kernel_cache import STALE_DAYS, cache_folder, kernel_folder, kernel_sources
 
-
 PACKAGE = Path(lifelore.__file__).parent
 
 DRAWING = """

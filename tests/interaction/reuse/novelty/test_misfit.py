@@ -73,6 +73,6 @@ def test_rows_are_single_tasks_and_sums_are_those_of_all_pairs(kind):
     np.testing.assert_allclose(many.statistic(np.arange(20)), singles, rtol=1e-9, atol=1e-9)
     # The naive sum over all pairs of what has been shown.
     pairs = pairs_of(library.signal)
-    shown = many.evidence.broad.signals.shown[pairs.statistics]
+    shown = many.evidence.broad.signals.shown
     whole = sum(pairs.misfit(shown[:, policy], np.full(20, policy)) for policy in range(4))
     np.testing.assert_allclose(many.by_type, whole, rtol=1e-9, atol=1e-9)
