@@ -1,4 +1,4 @@
-"""The exact program over beliefs: by hand, as plain recursion, and no rule above it."""
+"""The exact program over beliefs: by hand, and as plain recursion."""
 
 import numpy as np
 import pytest
@@ -6,13 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.selection import (
-    RULES,
-    Greedy,
-    KnowledgeGradient,
-    rule_named,
-)
-from lifelore.interaction.selection.belief_program import best_plan, value_of_rule
+from lifelore.interaction.selection.belief_program import best_plan
 
 from ..twins import naive_rules as naive
 from .small_libraries import SmallLibrary, as_lists
@@ -53,22 +47,17 @@ def test_looking_once_is_worth_it_by_hand():
     assert (three.value, three.first) == (pytest.approx(17), 2)
     # Guessing first and looking then leaves one episode to know: 5 - 3 + 10; less than guessing three times.
     assert three.values == pytest.approx([15, 15, 17])
-    assert value_of_rule(library, Greedy(), 3) == pytest.approx(15)
-    # With two episodes left the gradient weighs what is learnt, 5, twice: -3 + 10 beats 5.
-    assert value_of_rule(library, KnowledgeGradient(), 3) == pytest.approx(17)
     assert best_plan(library, 3, np.array([1.0, 0.0])).value == pytest.approx(30)
 
 
 @settings(deadline=None, max_examples=15)
 @given(st.integers(0, 2**32 - 1), st.integers(1, 3))
-def test_agrees_with_plain_recursion_and_no_rule_is_better(seed, horizon):
+def test_agrees_with_plain_recursion(seed, horizon):
     library = small_library(seed)
     mean, _, laws = as_lists(library)
     plan = best_plan(library, horizon)
     assert plan.value == pytest.approx(naive_value(library.prior.tolist(), mean, laws, horizon), rel=1e-9)
     assert plan.values[plan.first] == plan.value
-    for name in RULES:
-        assert value_of_rule(library, rule_named(name), horizon) <= plan.value + 1e-9, name
 
 
 def test_horizons_below_one_and_trees_too_large_are_refused():
@@ -78,6 +67,5 @@ def test_horizons_below_one_and_trees_too_large_are_refused():
     with pytest.raises(InputError, match="too large"):
         best_plan(library, 12)
     for belief in ([2.0, -1.0], [1.0], [np.nan, 1.0], [0.5, 0.6]):
-        for plan in (best_plan, lambda *given, **k: value_of_rule(given[0], Greedy(), given[1], **k)):
-            with pytest.raises(InputError, match="prior must be"):
-                plan(library, 2, belief=np.array(belief))
+        with pytest.raises(InputError, match="prior must be"):
+            best_plan(library, 2, np.array(belief))

@@ -88,7 +88,7 @@ class CountedLaw(PolicyLaw):
         """Add cells of distinct users."""
         shown[users, policies, signals] += np.asarray(signals) >= 0
 
-    def tried(self, shown: Array) -> Array:
+    def tried(self, shown: Array) -> Any:
         """Whether each row of counts (..., n_cells) has one, (...)."""
         return shown.any(axis=-1)
 

@@ -98,7 +98,7 @@ class PolicyLaw(Law):
     words: str
     amounts: Any = slice(None)
 
-    def tried(self, shown: Array) -> Array:
+    def tried(self, shown: Array) -> Any:
         """Whether each row (..., n_numbers) has shown something, (...)."""
         return shown[..., 0] != 0
 
