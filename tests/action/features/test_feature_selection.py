@@ -54,15 +54,6 @@ def naive_entropy(rows, kept) -> float:
 # ---- Eq. 3.9-3.11 ------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
-@given(tables)
-def test_entropy_is_the_printed_sum(rows):
-    case = counted(rows)
-    for n in range(4):
-        for kept in combinations(range(3), n):
-            assert case.entropy([f"f{i}" for i in kept]) == pytest.approx(naive_entropy(rows, kept), abs=1e-9)
-
-
 def test_entropy_of_a_prior_leaves_alpha0_out():
     features = FeatureSet(("wall", "items"), (2, 3))
     entropies = []
@@ -113,17 +104,6 @@ def test_the_best_set_is_the_least_of_all(rows, penalty):
 
 
 # ---- Alg. 5 ------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.slow
-@given(tables)
-def test_independent_selection_is_alg_5(rows):
-    choice = independent_features(counted(rows))
-    full = naive_entropy(rows, (0, 1, 2))
-    delta = {f"f{i}": naive_entropy(rows, [j for j in range(3) if j != i]) - full for i in range(3)}
-    assert choice.increase == pytest.approx(delta, abs=1e-9)
-    mean = sum(delta.values()) / 3
-    assert all((name in choice.names) == (d >= mean) for name, d in delta.items() if abs(d - mean) > 1e-9)
 
 
 def test_two_copies_of_a_feature_are_both_dropped_by_alg_5_alone():

@@ -8,27 +8,9 @@ from hypothesis import strategies as st
 from lifelore.action.priors import action_prior, context_index
 from lifelore.action.priors.action_prior import BLOCK, ActionPrior
 from lifelore.action.priors.context_index import ContextIndex
-from lifelore.action.priors.count_rows import merged_rows
 from lifelore.core.streams import stream
 
 codes = st.one_of(st.integers(-5, 5), st.integers(-(2**61), 2**61))
-more = st.lists(st.tuples(codes, st.lists(st.integers(0, 9), min_size=3, max_size=3)), min_size=1, max_size=12)
-
-
-@pytest.mark.slow
-@given(st.dictionaries(codes, st.lists(st.integers(0, 9), min_size=3, max_size=3), max_size=8), more)
-def test_merged_rows_are_a_dictionary(known, added):
-    twin = {code: list(row) for code, row in known.items()}
-    for code, row in added:
-        own = twin.setdefault(code, [0, 0, 0])
-        for action in range(3):
-            own[action] += 5 * row[action]
-    before = sorted(known)
-    counts = np.array([known[code] for code in before], np.int64).reshape(-1, 3)
-    new = np.array([code for code, _ in added], np.int64)
-    found, total = merged_rows(np.array(before, np.int64), counts, new, np.array([row for _, row in added]), 5)
-    assert found.tolist() == sorted(twin)
-    assert total.tolist() == [twin[code] for code in sorted(twin)]
 
 
 @pytest.mark.slow

@@ -9,7 +9,6 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.learning.curve import new_curve
 from lifelore.core.learning.q_learning import Schedule, learn, new_learner, uniform_rows
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
-from lifelore.core.planning.planning import optimal_q, policy_values
 from lifelore.core.streams import stream
 
 SIDE = 4
@@ -49,20 +48,6 @@ def test_with_a_uniform_prior_it_is_q_learning_bit_for_bit(ties):
     plain = learnt(tables, uniform_rows(tables))
     for a, b in zip((*guided[0], *guided[1]), (*plain[0], *plain[1]), strict=True):
         assert np.array_equal(a, b)
-
-
-@pytest.mark.parametrize("form", ["proportion", "support", "tempered"])
-def test_with_a_misleading_prior_it_still_finds_the_optimum(form):
-    tables = room()
-    best = optimal_q(tables, 0.95)
-    worst = best == best.min(axis=1, keepdims=True)
-    prior = ActionPrior(4, alpha0=1.0)
-    prior.update(np.arange(tables.n_states), worst, weight=5.0)  # every task so far taught the opposite
-    states = np.arange(tables.n_states)
-    rows = prior_rows(tables, states, lambda codes: prior.probs(codes, form, escape=0.2))
-    who, _ = learnt(tables, rows, episodes=5000, epsilon=0.5, alpha=1.0)
-    values = policy_values(tables, who.q.argmax(axis=1), 0.95)
-    assert values[tables.starts] == pytest.approx(best.max(axis=1)[tables.starts])
 
 
 def test_rows_are_read_by_context():

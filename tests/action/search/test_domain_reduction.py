@@ -279,15 +279,3 @@ def test_the_transitions_of_the_minimised_domain_term_by_term(drawn, form):
             row = found[a][[s]].toarray()[0]
             assert row == pytest.approx([eta * own.get(t, 0.0) for t in range(tables.n_states)])
             assert row.sum() == pytest.approx(float(domain.pairs[s, a] and not domain.without_successor[s, a]))
-
-
-def test_what_is_not_boolean_is_refused():
-    task = goal_task(CORRIDOR, 3, [1])
-    policy = np.where(best_of(task, 3), 0.9, 0.1)
-    for call in (
-        lambda: reachable_states(task, policy),
-        lambda: task_futile_actions(policy),
-        lambda: minimised_domain([task], [policy]),
-    ):
-        with pytest.raises(InputError, match=r"best must be boolean.*got float64: apply best_actions"):
-            call()

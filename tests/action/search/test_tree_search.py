@@ -174,21 +174,6 @@ def test_by_hand_puct_visits():
     assert sum(after) == 40
 
 
-def test_a_prior_towards_the_goal_saves_simulations_and_one_away_from_it_costs_them():
-    tables = corridor(30, goal=29)
-
-    def reached(probs):
-        guide = search_guidance(tables, [probs])
-        episodes = [
-            play(tables, guide, 15, ENDS, 25, np.random.default_rng(0), np.random.default_rng(i))
-            for i in range(20)
-        ]
-        return sum(episode.reached for episode in episodes)
-
-    assert reached([0.1, 0.9]) == 20
-    assert reached([0.1, 0.9]) > reached([0.5, 0.5]) >= reached([0.9, 0.1])
-
-
 def test_an_episode_by_hand():
     # Two moves to the right of a corridor: 0.9 · 1, and no wall is met.
     tables = corridor(4, goal=3)

@@ -8,13 +8,7 @@ from hypothesis import strategies as st
 from lifelore.core.learning.curve import new_curve
 from lifelore.core.learning.known_value import KnownValue
 from lifelore.core.learning.known_world import (
-    GOAL,
-    UNKNOWN,
     WorldModel,
-    add_moves,
-    find_goal_distances,
-    goal_distances,
-    no_incoming_moves,
     unknown_world,
 )
 from lifelore.core.learning.model_learning import (
@@ -91,23 +85,3 @@ def test_any_world_and_any_remembered_model(draw_world, seed):
     model = WorldModel(random.integers(-1, 12, (12, 3)).astype(np.int32), random.integers(0, 2, 12))
     _, values = follow(tables, model, seed=seed, chunk=3, chunks=60)
     assert values[:, 0] == pytest.approx(values[:, 1], rel=1e-12, abs=1e-300)
-
-
-@settings(max_examples=40)
-@given(seeds)
-def test_moves_added_in_any_order_give_the_distances_found_at_once(seed):
-    random = np.random.default_rng(seed)
-    truth = random.integers(0, 25, (25, 3)).astype(np.int32)
-    place = random.choice([0, 1, 1, 1, 2], 25).astype(np.int8)
-    place[random.integers(25)] = GOAL
-    target = np.full_like(truth, UNKNOWN)
-    ways = no_incoming_moves(25, 3, np.arange(25, dtype=np.int32))
-    find_goal_distances(target, place, ways)
-    for moves in np.array_split(random.permutation(75), 9):
-        target.flat[moves] = truth.flat[moves]
-        add_moves(target, place, np.concatenate([moves, moves[:2]]), ways)  # a move twice is one move
-        expected = goal_distances(target, place)
-        assert ways.distance.tolist() == expected.tolist()
-        counts = np.bincount(expected[expected > 0], minlength=26)
-        assert ways.starts_at[1:].tolist() == counts[1:].tolist()
-        assert ways.farthest[0] >= expected.max()

@@ -91,24 +91,6 @@ def test_the_goal_is_seen_in_an_unknown_world_and_then_sought():
     assert ((model.percept == 0) == (explorer.place == LOOKED)).all()
 
 
-# ---- a world that changed ----------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("seed", range(10))
-def test_a_door_that_opened_unseen_is_found_when_nothing_is_left(seed):
-    """Two rooms 0-2 and 3-5; the wall between them has gone and nothing shows it."""
-    before, after = corridor(walls=(2,), start=0), corridor(start=0)
-    model = remembered(before)
-    model.target[3:] = UNKNOWN  # the other room was never entered
-    explorer, curve = lived(after, model, episodes=6, max_steps=200, seed=seed)
-    assert model.target[2, RIGHT] == 3
-    assert explorer.place[5] == GOAL
-    assert curve.reached[-1]
-    assert curve.steps[-1] == 5
-    # The outer wall was doubted too, at most once; the door is no collision.
-    assert curve.collisions.sum() <= 2
-
-
 # ---- a naive book-keeper beside every step ------------------------------------------------------------
 
 

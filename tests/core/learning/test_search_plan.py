@@ -1,7 +1,6 @@
 """The planner of the model-based learner against a naive Dijkstra; distances against SciPy."""
 
 import heapq
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,10 +15,7 @@ from lifelore.core.learning.known_world import (
     LOOKED,
     NOT_LOOKED,
     UNKNOWN,
-    WorldModel,
-    best_known_actions,
     goal_distances,
-    known_policy,
 )
 from lifelore.core.learning.model_learning import StateInfo, new_model_learner
 from lifelore.core.learning.search_plan import NO_CRUMBS, OUT_OF_REACH, plan_search
@@ -137,39 +133,3 @@ def test_goal_distances_are_scipys(seed):
     nearest[place == DEAD_END] = np.inf
     expected = np.where(np.isinf(nearest), -1, nearest)
     assert goal_distances(target, place).tolist() == expected.tolist()
-
-
-@settings(max_examples=40, deadline=None)
-@given(seeds)
-def test_best_known_actions_shorten_the_way_and_leave_none_out(seed):
-    target, place, *_ = knowledge(seed, n_states=15, goal=True)
-    explorer = new_model_learner(15, 3, stream(0), stream(1))
-    explorer.place[:] = place
-    model = WorldModel(target, np.zeros(15, np.int64))
-    distance = goal_distances(target, place)
-    expected = [
-        [t != UNKNOWN and distance[s] > 0 and distance[t] == distance[s] - 1 for t in target[s]] for s in range(15)
-    ]
-    best = best_known_actions(model, explorer.place)
-    assert best.tolist() == expected
-    assert (best.any(axis=1) == (distance > 0)).all()
-    policy = known_policy(model, explorer.place)
-    assert policy.tolist() == [row.index(True) if True in row else -1 for row in expected]
-
-
-# ---- along a tour ------------------------------------------------------------------------------------
-def row_of_places(known: int) -> Any:
-    """Places in a row, moves left and right; nothing is known beyond place `known` - 1."""
-    target = np.array([[max(s - 1, 0), s + 1] for s in range(8)], np.int32)
-    target[-1, 1] = 7
-    target[known - 1, 1] = UNKNOWN
-    place = np.full(8, NOT_LOOKED, np.int8)
-    place[2] = LOOKED
-    return target, place, np.zeros(8, np.int32), np.array([[0.0, 0.0]])
-
-
-def test_nearer_places_that_are_not_on_the_tour_and_moves_never_made_come_first():
-    assert planned(*row_of_places(8), start=2, wanted=5, later=[1, 4, 5]) == [1]
-    # The move out of place 4 costs three steps, as place 0 does two.
-    assert planned(*row_of_places(5), start=2, wanted=0, later=[0, 1, 3, 4]) == [0, 0]
-    assert planned(*row_of_places(4), start=3, wanted=0, later=[0, 1, 2]) == [1]

@@ -62,13 +62,3 @@ def test_a_door_that_closed_is_left_out_and_the_goal_still_found():
     for goal in (0, world.n_states // 2, world.n_states - 1):
         learner, _, _ = lived(world, WorldModel(model.target.copy(), model.percept.copy()), goal, goal)
         assert learner.cursor[GOALS] == 1
-
-
-def test_a_place_out_of_reach_does_not_stop_the_search():
-    world = lattice(23)
-    model, goal = remembered(world), 100
-    model.target[model.target == 40] = (
-        UNKNOWN  # no known move leads into place 40, but its own moves out are known
-    )
-    learner, _, _ = lived(world, model, goal, episodes=50)
-    assert learner.cursor[GOALS] == 1

@@ -100,15 +100,3 @@ def test_the_search_order_against_all_orders(seed):
     least = min(mean_time(way) for way in permutations(places))
     # Local search ends in a local optimum; of these six draws, none is a tenth above the least.
     assert least <= mean_time(order) <= 1.1 * least
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_the_search_order_is_no_worse_than_the_tour_itself(seed):
-    target, cells = rooms(seed)
-    near = near_distances(known_neighbours(target), cells)
-    tour, n = closed_tour(near, walk_of(target)), len(cells)
-    start = int(tour[0])
-    order = search_order(near, tour, np.arange(n) != start, start, int(near.nearest[start, 0]))
-    assert np.array_equal(np.sort(order), np.delete(np.arange(n), start))
-    along = min(arrival_times(way, near).sum() for way in (tour, np.roll(tour[::-1], 1)))
-    assert arrival_times(np.r_[np.int32(start), order], near).sum() <= along

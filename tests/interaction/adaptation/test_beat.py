@@ -43,27 +43,6 @@ def test_belief_and_choice_by_hand():
     assert (beat.step, beat.episode) == (2, 0)
 
 
-@pytest.mark.parametrize("epsilon", [0.0, 0.3, "1/n", "by episode"])
-def test_the_algorithm_as_printed_gives_the_same_decisions(epsilon):
-    """Algorithm 9 with products and no normalisation, for as long as floats can hold them."""
-    lib, probs, value = library()
-    beat = Beat(lib, epsilon=epsilon, seed=np.random.default_rng(9))
-    draws, world = np.random.default_rng(9), np.random.default_rng(1)
-    belief, state = np.full(N_TYPES, 1 / N_TYPES), 0
-    for step in range(60):
-        episode = step // 20
-        chosen = beat.select()
-        explores = draws.random() < rule_at(epsilon, step, episode).epsilon
-        assert chosen == int((draws.random(N_SETS) if explores else belief @ value).argmax())
-        triple = move(world, probs, 2, chosen, state)
-        belief = belief * probs[:, chosen, triple[0], triple[1], triple[2]]
-        beat.update(chosen, [triple])
-        state = triple[2]
-        assert beat.belief == pytest.approx(belief / belief.sum(), abs=1e-12)
-        if step % 20 == 19:
-            beat.end_episode()
-
-
 @pytest.mark.slow
 def test_logs_hold_what_products_lose():
     lib, probs, _ = library()

@@ -9,7 +9,6 @@ from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.belief import entropy, log_prior, log_sum, update
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 
 from ..twins import naive_reuse as naive
 
@@ -72,38 +71,6 @@ def test_agrees_with_the_slow_twin(pairs):
     assert after.log_belief == pytest.approx(expected, rel=1e-12, abs=1e-12)
     assert after.log_evidence == pytest.approx(evidence, rel=1e-12, abs=1e-12)
     assert (after.log_belief <= 0).all()
-
-
-@pytest.mark.slow
-def test_a_million_hostile_updates_leave_beliefs():
-    random = np.random.default_rng(0)
-    beliefs = np.log(random.dirichlet(np.full(5, 0.2), 2000))
-    beliefs[::7, 0] = -INF
-    beliefs = update(beliefs, np.zeros(5)).log_belief
-    changing = TypeDynamics.hazard(0.01, np.full(5, 0.2))
-    kept, revived = 0, 0
-    for number in range(500):
-        scale = 10.0 ** random.uniform(-3, 308, (2000, 1))
-        said = np.where(random.random((2000, 5)) < 0.5, random.normal(size=(2000, 5)), 0.0)
-        with np.errstate(over="ignore"):
-            said = np.clip(said * np.where(random.random((2000, 1)) < 0.5, scale, 3.0), -1.7e308, 1.7e308)
-        said[random.random(said.shape) < 0.3] = -INF
-        after = update(beliefs, said)
-        assert not np.isnan(after.log_belief).any()
-        assert (after.log_belief <= 0).all()
-        assert np.abs(np.exp(after.log_belief).sum(axis=1) - 1).max() < 1e-9
-        assert not np.isnan(after.log_evidence).any()
-        dead = after.log_evidence == -INF
-        kept += dead.sum()
-        np.testing.assert_allclose(after.log_belief[dead], beliefs[dead], rtol=1e-14, atol=1e-14)
-        beliefs = after.log_belief
-        if number % 10 == 0:
-            revived += (beliefs == -INF).sum()
-            beliefs = changing.step(beliefs)
-            assert np.isfinite(beliefs).all()
-            assert (beliefs <= 0).all()
-    assert kept > 1000
-    assert revived > 1000
 
 
 @pytest.mark.parametrize("bad", [math.nan, INF])

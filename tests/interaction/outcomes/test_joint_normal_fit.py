@@ -6,15 +6,11 @@ from scipy.stats import multivariate_normal
 
 from lifelore.interaction.outcomes.joint_normal_fit import (
     PSEUDO,
-    JointNormalFit,
     UserMeans,
-    expected,
     first_fit,
-    halved,
     joint_normal_fit,
     step,
 )
-from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 
 FACTORS = np.array([[0.9, 0.0], [0.8, 0.1], [0.0, 0.9], [0.2, -0.8], [0.5, 0.5]])
@@ -110,20 +106,3 @@ def test_types_with_shared_items_are_both_found():
     assert fit.weights == pytest.approx([0.5, 0.5], abs=0.06)
     assert (fit.probs.argmax(axis=1) == types).mean() > 0.95
     assert fit.model.covariance == pytest.approx(COVARIANCE, abs=0.2)
-
-
-def test_halves_of_own_variance_keep_the_likelihood_of_single_outcomes():
-    model = JointNormalOutcomes(MEAN, COVARIANCE, 0.3)
-    users, policies = np.repeat(np.arange(20), 3), np.tile([[0, 1, 3], [2, 4, 1]], (10, 1)).ravel()
-    rows = OutcomeRows(users, policies, np.random.default_rng(0).normal(size=60), (20, 5))
-    fit = JointNormalFit(model, np.array([0.4, 0.6]), np.ones((20, 2)), 1.0, 0.0)
-    changed = fit._replace(model=halved(model))
-    likelihoods = [expected(UserMeans.of(rows), each)[1].log_likelihood for each in (fit, changed)]
-    assert likelihoods[0] == pytest.approx(likelihoods[1])
-    # The largest share of every variance that the covariance can lack, by trying.
-    shares = np.linspace(0, 1, 10_001)
-    diagonal = np.diag(COVARIANCE)
-    least = np.linalg.eigvalsh(COVARIANCE - shares[:, None, None] * np.diag(diagonal))[:, 0]
-    unshared = shares[least >= 0].max() * diagonal
-    assert changed.model.noise**2 == pytest.approx((unshared + 0.09) / 2, abs=1e-3)
-    assert changed.model.deviation == pytest.approx(model.deviation)

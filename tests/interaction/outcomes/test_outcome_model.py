@@ -155,34 +155,6 @@ def test_observing_is_fitting_with_one_more_but_for_what_is_pooled(name):
 
 
 @every_model
-def test_a_type_and_a_policy_more(name):
-    model = models()[name]
-    grown = model.with_type([[5.0, 6.0], [1.0, np.nan]])
-    assert (grown.n_types, grown.n_policies) == (4, 2)
-    np.testing.assert_array_equal(grown.mean[:3], model.mean)
-    assert grown.mean[3, 0] > grown.mean[3, 1]
-    wider = model.with_policy([[5.0], [1.0], [0.0]])
-    assert (wider.n_types, wider.n_policies) == (3, 3)
-    np.testing.assert_array_equal(wider.log_density(1, 2.0), model.log_density(1, 2.0))
-    assert wider.log_density(2, 1.0).shape == (3,)
-    with pytest.raises(InputError, match=r"samples must be \(2, n\), one row for each of the policies"):
-        model.with_type([[5.0], [1.0], [0.0]])
-    with pytest.raises(InputError, match="every pair of type and policy needs a sample"):
-        model.with_policy([[5.0], [np.nan], [0.0]])
-
-
-@every_model
-def test_some_types_and_policies(name):
-    model = models()[name]
-    some = model.take(types=[2, 0], policies=[1])
-    np.testing.assert_allclose(some.mean, model.mean[[2, 0]][:, [1]], rtol=1e-14)
-    np.testing.assert_array_equal(some.log_density(0, 3.0), model.log_density(1, 3.0)[[2, 0]])
-    for bad in ([], [3], [-1], [[0]]):
-        with pytest.raises(InputError, match="the chosen numbers must be"):
-            model.take(types=bad)
-
-
-@every_model
 def test_arrays_give_the_same_bits_back(name):
     model = models()[name]
     model.observe(0, 0, 1.0)

@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.outcome_kinds import KINDS
-from lifelore.interaction.outcomes.outcome_model import rows_of_samples
 
 
 def samples(seed=0, n=7):
@@ -49,17 +48,6 @@ def test_a_weight_of_0_leaves_an_outcome_out():
     assert state(PolicyLibrary.from_samples(samples(), weights=weights)) == state(
         PolicyLibrary.from_samples(masked)
     )
-
-
-def test_rows_and_frames_take_weights_alike():
-    frame = {
-        "type": ["x", "x", "y", "y"], "policy": ["a"] * 4, "outcome": [1.0, 3.0, 5.0, 9.0],
-        "w": [1.0, 3.0, 1.0, 1.0],
-    }  # fmt: skip
-    library = PolicyLibrary.from_frame(frame, weight="w")
-    assert library.performance.mean.ravel().tolist() == [2.5, 7.0]
-    rows = rows_of_samples([[[1.0, 3.0]], [[5.0, 9.0]]])
-    assert state(PolicyLibrary.from_rows(rows, weights=frame["w"])) == state(library)
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy.stats import norm
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
@@ -83,24 +80,6 @@ def test_an_unexplained_signal_keeps_the_belief_and_raises_the_surprise():
     assert agent.explain().evidence == {"type 0": [0.0, 0.0], "type 1": [pytest.approx(-math.log(2)), 0.0]}
     agent.update(0, 1)
     assert agent.belief.tolist() == [0.0, 1.0]
-
-
-@settings(deadline=None, max_examples=30)
-@given(st.permutations(range(10)), st.integers(0, 2**32 - 1))
-def test_late_signals_in_any_order_lead_to_the_same_belief(order, seed):
-    random = np.random.default_rng(seed)
-    library = grid_library()
-    signals = [(int(random.integers(8)), float(random.normal(-3, 3))) for _ in range(10)]
-    at_once, late = (BayesianPolicyReuse(library, dynamics=STATIC) for _ in range(2))
-    for policy, signal in signals:
-        at_once.select()
-        at_once.update(policy, signal)
-    for _ in range(4):
-        late.select()
-    for place in order:
-        late.update(*signals[place])
-    assert late.belief == pytest.approx(at_once.belief, abs=1e-12)
-    assert late.surprise == pytest.approx(at_once.surprise, rel=1e-9)
 
 
 def test_types_may_change_once_after_all_signals_of_an_episode():
@@ -185,31 +164,6 @@ def test_evidence_is_kept_where_a_model_answers_in_one_array_each_time():
 
 
 # ---- the printed form --------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("rule", ["greedy", "expected-improvement", "probability-of-improvement"])
-def test_the_printed_algorithm_from_samples_step_by_step(rule):
-    # Eq. 4.1, 4.5 and the indices of §4.5.2.1 with the Gaussian of each pair's own samples.
-    random = np.random.default_rng(7)
-    runs = random.normal(random.normal(scale=3, size=(4, 3, 1)), 2.0, (4, 3, 9))
-    mean, deviation = runs.mean(axis=2), runs.std(axis=2, ddof=1)
-    agent = BayesianPolicyReuse.of_thesis(PolicyLibrary.from_samples(runs, shrinkage=0), rule, seed=1)
-    belief = np.full(4, 0.25)
-    for _ in range(10):
-        utility = belief @ mean
-        index = {
-            "greedy": utility,
-            "expected-improvement": belief @ norm.sf(utility.max(), mean, deviation),
-            # U⁺ "larger than the current best estimate", here by 2 % of the range of the means.
-            "probability-of-improvement": belief @ norm.pdf(utility.max() + 0.02 * np.ptp(mean), mean, deviation),
-        }[rule]
-        policy = agent.select()
-        assert policy == int(np.argmax(index))
-        outcome = random.normal(mean[2, policy], deviation[2, policy])
-        agent.update(policy, outcome)
-        belief = belief * norm.pdf(outcome, mean[:, policy], deviation[:, policy])
-        belief /= belief.sum()
-        assert agent.belief == pytest.approx(belief, abs=1e-12)
 
 
 def test_the_printed_algorithm_takes_a_rule_and_refuses_one_of_our_own():

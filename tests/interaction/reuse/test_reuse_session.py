@@ -132,21 +132,6 @@ def test_the_evidence_of_an_unknown_type_goes_on_to_the_bit(models, kind):
     assert lived(loaded) == lived(agent)
 
 
-@pytest.mark.parametrize("version", [1, 2])
-def test_sessions_of_earlier_versions_have_no_evidence_of_an_unknown_type(version):
-    agent = BayesianPolicyReuse(library(), seed=5, models="plug-in")
-    played(agent, 3)
-
-    def earlier(header, _):
-        header.update(version=version)
-        if version == 1:
-            header.pop("models")
-
-    loaded = session_from_bytes(repacked(session_bytes(agent), earlier))
-    assert loaded.novelty is None
-    assert played(loaded, 12) == played(agent, 12)
-
-
 @pytest.mark.parametrize(
     ("change", "message"),
     [

@@ -12,9 +12,8 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection import ExpectedImprovement, Greedy
-from lifelore.interaction.signals.category_signal import CategorySignal
 
-from ..twins.naive_models import NormalPair, category_predictive, normal_moments, over_spreads
+from ..twins.naive_models import NormalPair, normal_moments, over_spreads
 
 STATIC = TypeDynamics.static()
 
@@ -73,24 +72,6 @@ def cuts_of(agent: BayesianPolicyReuse, probs: np.ndarray) -> np.ndarray:
     outcomes, below = predicted(agent), probs[:, 1].cumsum(axis=1)[:, :-1]
     quantiles = stats.norm.ppf(np.where(np.abs(below - 0.5) < 0.5 - 1e-4, below, np.nan))
     return outcomes.mean[:, 1, None] + outcomes.deviation[:, 1, None] * quantiles
-
-
-def test_a_users_table_of_categories_is_that_of_urns():
-    signal = CategorySignal(np.random.default_rng(0).dirichlet(np.ones(3), (2, 2)), count=5)
-    library = PolicyLibrary(learnt(2, 2).performance, signal)
-    agent = BayesianPolicyReuse(library, Greedy(), dynamics=STATIC)
-    for category in (2, 0, 2):
-        agent.update(1, category)
-    law, table = agent.algorithm.signals.law, agent.algorithm.known(0).table(3)
-    weights, earlier = np.exp(agent.algorithm.signals.log_weights[0]), [(2, 1.0), (0, 1.0), (2, 1.0)]
-    assert len(weights) > 1
-    for type_ in range(2):
-        counts = (5 * signal.probs[type_, 1]).tolist()
-        urns = [
-            [np.exp(category_predictive(counts, rho, earlier, c)) for c in range(3)] for rho in law.spread.values
-        ]
-        assert table.probs[type_, 1] == pytest.approx(weights @ np.array(urns), rel=1e-9)
-    assert table.probs[:, 0] == pytest.approx(signal.probs[:, 0], rel=1e-9)
 
 
 def test_dirichlet_counts_are_those_of_polya_urns():

@@ -14,7 +14,6 @@ from lifelore.interaction.reuse import user_beliefs
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 from lifelore.interaction.selection import BeliefSampling, ExpectedImprovement, Greedy
-from lifelore.interaction.signals.category_signal import CategorySignal
 
 from .families import FAMILIES, N_POLICIES, N_TYPES, with_spread
 
@@ -110,28 +109,6 @@ def test_what_float32_reads_as_zero_it_does_not_forget():
     for _ in range(3):
         users.update([0], [0], [20.0])
     assert users.belief([0]) == pytest.approx(np.array([[0.5, 0.5]]), abs=1e-3)
-
-
-@both_precisions
-def test_a_hazard_steps_where_no_type_explains_the_signal_and_spares_impossible_types(dtype):
-    probs = np.array([[[1.0, 0.0, 0.0]], [[0.5, 0.5, 0.0]], [[0.5, 0.5, 0.0]]])
-    model = PolicyLibrary.from_means(np.eye(3, 1), 1.0, signal=CategorySignal(probs), prior=[0.5, 0.5, 0.0])
-    dynamics = TypeDynamics.hazard(0.1, model.prior)
-    users = UserBeliefs(model, 2, dtype, dynamics=dynamics)
-    assert users.update([0, 1], [0, 0], [0, 2]).tolist() == [pytest.approx(np.log(0.75)), -np.inf]
-    assert users.belief([0])[0] == pytest.approx([0.9 * 2 / 3 + 0.05, 0.9 / 3 + 0.05, 0.0], rel=1e-6)
-    assert users.belief([1])[0] == pytest.approx([0.5, 0.5, 0.0], rel=1e-6)
-    # A signal of the second type alone, then none: 0.9 * 1 + 0.05, and from there 0.9 * 0.95 + 0.05.
-    users.update([0], [0], [1])
-    assert users.belief([0])[0] == pytest.approx([0.05, 0.95, 0.0], rel=1e-6)
-    users.update([0], [0], [2])
-    assert users.belief([0])[0] == pytest.approx([0.095, 0.905, 0.0], rel=1e-6)
-    # A belief in a type that the prior excludes stays in the logarithm however small it is.
-    users = UserBeliefs(
-        PolicyLibrary.from_means([[0.0], [40.0]], 1.0), 1, dtype, dynamics=TypeDynamics.hazard(0.1, [1.0, 0.0])
-    )
-    users.update([0], [0], [0.0])
-    assert users.log_belief[0, 1] == pytest.approx(-800 + np.log(0.9), rel=1e-6)
 
 
 @pytest.mark.slow

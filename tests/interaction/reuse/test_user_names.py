@@ -75,25 +75,6 @@ def test_unknown_names_are_an_error_by_default():
     assert users.n_users == 1
 
 
-@pytest.mark.parametrize("make", [exact, learnt])
-@pytest.mark.parametrize("dtype", ["f4", "f8"])
-def test_the_best_few_are_in_order_and_begin_with_the_best(make, dtype):
-    random, n = np.random.default_rng(1), 50
-    users, every = UserBeliefs(make(), n, dtype), np.arange(n)
-    users.update(every, random.integers(0, 5, n), random.normal(scale=40, size=n))
-    best = users.select_top(every, 3, "greedy")
-    assert np.array_equal(best[:, 0], users.select(every, "greedy"))
-    assert all(len(set(row)) == 3 for row in best.tolist())
-    whole = users.select_top(every, 5, "greedy")
-    assert np.array_equal(whole[:, :3], best)
-    mask = np.array([True, False, True, False, True])
-    assert set(users.select_top(every, 3, "greedy", available=mask).ravel().tolist()) == {0, 2, 4}
-    assert users.select_top(every, 2).shape == users.select_top(every, 2, "expected-improvement").shape == (n, 2)
-    for k, available in ((0, None), (6, None), (4, mask)):
-        with pytest.raises(InputError, match="k must be 1 to"):
-            users.select_top(every, k, available=available)
-
-
 def test_policies_are_available_by_name_number_or_mask():
     users = UserBeliefs(exact(), 3)
     for available in ("policy 1", ["policy 1"], [1], np.arange(5) == 1):

@@ -11,8 +11,6 @@ from hypothesis.extra.numpy import arrays
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.selection import (
     RULES,
-    BeliefSampling,
-    EpsilonGreedy,
     choose,
     propensities,
     rule_named,
@@ -65,17 +63,6 @@ def test_only_the_best_are_chosen_and_only_ties_draw(scores, seed):
     assert (np.take_along_axis(shares, chosen[:, None], axis=1) > 0).all()
     twin.random(int((shares.max(axis=1) < 1).sum()))
     assert random.bit_generator.state == twin.bit_generator.state
-
-
-def test_equals_are_chosen_evenly_and_by_the_generator():
-    scores = np.array([1.0, 3.0, 3.0 * (1 + 1e-12), -INF, 3.0])
-    assert tied_shares(scores) == pytest.approx([0, 1 / 3, 1 / 3, 0, 1 / 3])
-    drawn = [choose(scores, np.random.default_rng(seed)) for seed in range(3000)]
-    # Deviation of a third of 3000: √(3000 · 2/9) = 26; five of them.
-    assert np.bincount(drawn, minlength=5) == pytest.approx([0, 1000, 1000, 0, 1000], abs=130)
-    assert [choose(scores, np.random.default_rng(7)) for _ in range(3)] == [drawn[7]] * 3
-    rows = choose(np.tile(scores, (3000, 1)), np.random.default_rng(0))
-    assert np.bincount(rows, minlength=5) == pytest.approx([0, 1000, 1000, 0, 1000], abs=130)
 
 
 @pytest.mark.parametrize(
@@ -203,23 +190,3 @@ def test_users_with_masks_of_their_own_are_scored_as_alone(name, own):
         assert shares[user] == pytest.approx(propensities(rule, alone, belief, mask, episodes_left=3))
         if name not in ("epsilon-greedy", "sampling"):
             assert scores[user] == pytest.approx(scored(rule, alone, belief, mask, episodes_left=3), rel=1e-6)
-
-
-def test_sampling_takes_the_best_available_response_by_hand():
-    library = SmallLibrary([[9.0, 5.0, 1.0], [1.0, 2.0, 8.0], [7.0, 3.0, 3.0]])
-    belief, mask, rule = np.array([0.5, 0.3, 0.2]), np.array([False, True, True]), BeliefSampling()
-    # Without the first policy, the first type's best response is the second; the third type's two are equal.
-    assert propensities(rule, library, belief, mask) == pytest.approx([0.0, 0.5 + 0.1, 0.3 + 0.1])
-    random = np.random.default_rng(0)
-    drawn = choose(scored(rule, library, np.tile(belief, (2000, 1)), mask, generator=random), random)
-    # Four deviations of a share of 2,000 draws: 4 √(0.24 / 2000) = 0.044.
-    assert np.bincount(drawn, minlength=3) / 2000 == pytest.approx([0.0, 0.6, 0.4], abs=0.044)
-
-
-def test_exploration_is_over_available_policies_by_hand():
-    library, mask = SmallLibrary([[9.0, 5.0, 1.0, 3.0]]), np.array([False, True, True, True])
-    rule, random = EpsilonGreedy(0.3), np.random.default_rng(0)
-    assert propensities(rule, library, np.ones(1), mask) == pytest.approx([0, 0.8, 0.1, 0.1])
-    drawn = choose(scored(rule, library, np.ones((4000, 1)), mask, generator=random), random)
-    # Five deviations of a share of 4,000 draws: 5 √(0.16 / 4000) = 0.032.
-    assert np.bincount(drawn, minlength=4) / 4000 == pytest.approx([0, 0.8, 0.1, 0.1], abs=0.032)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.stats import norm
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.finite_signals.signal_table import SignalTable
@@ -34,7 +33,6 @@ from lifelore.interaction.selection import knowledge_gradient as gradient_module
 from lifelore.interaction.selection.information import mutual_information
 from lifelore.interaction.selection.knowledge_gradient import knowledge_gain, responses
 from lifelore.interaction.selection.support import truncated
-from lifelore.interaction.selection.value_of_perfect_information import perfect_gain
 
 from ..twins import naive_rules as naive
 from .small_libraries import SmallLibrary, as_lists, problem, user_problem
@@ -133,22 +131,6 @@ def test_rows_are_scored_as_one_by_one(rule, seed, n_types, n_policies):
         assert found == pytest.approx(np.array(one_by_one), rel=close, abs=1e-10)
 
 
-@pytest.mark.parametrize("rule", [EpsilonGreedy(0.4), BeliefSampling(), Greedy()], ids=repr)
-def test_rules_select_as_often_as_they_say(rule):
-    users, beliefs = user_problem(3, 2)
-    shared, random, n = users.row(0), np.random.default_rng(0), 4000
-    stated = propensities(rule, shared, beliefs[0])
-    drawn = [choose(rule.scores(shared, beliefs[0], generator=random), random) for _ in range(n)]
-    many = choose(rule.scores(shared, np.tile(beliefs[0], (n, 1)), generator=random), random)
-    for found in (drawn, many):
-        # The deviation of a share of 4000 is at most 0.5 / √4000 = 0.0079; five of them.
-        assert np.bincount(found, minlength=4) / n == pytest.approx(stated, abs=0.04)
-    stated = propensities(rule, users, beliefs)
-    own = np.array([choose(rule.scores(users, beliefs, generator=random), random) for _ in range(n)])
-    for row in range(2):
-        assert np.bincount(own[:, row], minlength=4) / n == pytest.approx(stated[row], abs=0.04)
-
-
 # ---- by hand -------------------------------------------------------------------------------------------------
 
 
@@ -186,27 +168,6 @@ def test_perfect_information_by_hand():
     risky = SmallLibrary([[0.0, 4.0], [10.0, 4.0]])
     assert rule.scores(risky, belief).tolist() == [5.0 + 4 * 2.0, 4.0]
     assert rule.scores(SmallLibrary([[3.0], [5.0]]), belief).tolist() == [4.0]
-
-
-def test_perfect_information_about_uncertain_means_agrees_with_an_integral():
-    random = np.random.default_rng(3)
-    mean, deviation, belief = random.normal(11, 3, (2, 3)), random.uniform(1, 4, (2, 3)), np.array([0.3, 0.7])
-
-    class UncertainMeans:
-        """Mean pays that are normal themselves."""
-
-        def expected_mean_excess(self, threshold):
-            z = (mean - threshold) / deviation
-            return deviation * (z * norm.cdf(z) + norm.pdf(z))
-
-    now = belief @ mean
-    found = perfect_gain(UncertainMeans(), belief, now)
-    for policy in range(3):
-        other = np.delete(now, policy).max()
-        means = [norm(mean[t, policy], deviation[t, policy]) for t in range(2)]
-        known = sum(b * law.expect(lambda m, o=other: max(m, o)) for b, law in zip(belief, means, strict=True))
-        assert found[policy] == pytest.approx(known - now.max(), rel=1e-4)
-        assert found[policy] > 0
 
 
 @pytest.mark.parametrize("noise", [1.0, 1e3])

@@ -44,26 +44,6 @@ def test_unknown_categories_are_refused(signal):
         CategorySignal(GOLF).log_likelihood(0, signal)
 
 
-def test_many_categories_are_found_by_name_or_number():
-    numbered, named = CategorySignal(GOLF), CategorySignal(GOLF, ["short", "near", "far"])
-    for given in ([0, 2], np.array([0, 2]), np.array([0, 2], np.uint8)):
-        assert numbered.places_of(given).tolist() == [0, 2]
-    assert (
-        named.places_of(["short", "far"]).tolist()
-        == named.places_of(np.array(["short", "far"])).tolist()
-        == [0, 2]
-    )
-    assert (numbered.places_of(2), named.places_of("far")) == (2, 2)
-    for signal, bad in (
-        (numbered, np.array([0, 3])),
-        (numbered, np.array([-1])),
-        (named, ["far", "out"]),
-        (named, [0]),
-    ):
-        with pytest.raises(InputError, match=r"category numbers 0 to 2|signal must be one of"):
-            signal.places_of(bad)
-
-
 def test_other_bad_input_is_refused():
     with pytest.raises(NotFoundError, match="unknown policy"):
         CategorySignal(GOLF).log_likelihood(-1, 0)

@@ -7,10 +7,6 @@ from scipy.stats import norm
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.domains.golf.golf import EDGES, Golf, category_of
-from lifelore.interaction.library.library_file import SIGNALS
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.selection import KnowledgeGradient
 from lifelore.interaction.signals import ordered_normal_fit
 from lifelore.interaction.signals.ordered_normal_signal import OrderedNormalSignal
 
@@ -66,27 +62,6 @@ def test_many_runs_find_the_probabilities(cuts):
         assert signal.mean[[3, 1], [0, 2]] == pytest.approx([-5.0, 0.0], abs=1.0)
         assert signal.deviation[[3, 1], [0, 2]] == pytest.approx([8.0, 6.0], abs=0.8)
         assert signal.cuts.tolist() == list(EDGES)
-
-
-def test_a_library_saves_it_and_rules_look_ahead_with_it(tmp_path):
-    names = ["short", "near", "far", "out"]
-    signal = OrderedNormalSignal(MEAN, DEVIATION, CUTS, names, lapse=0.01)
-    library = PolicyLibrary.from_means([[9.0, 1.0], [1.0, 8.0]], 1.0, signal=signal)
-    library.save(tmp_path / "library.npz")
-    loaded = PolicyLibrary.load(tmp_path / "library.npz")
-    assert SIGNALS["ordered-normal"] is OrderedNormalSignal
-    assert isinstance(loaded.signal, OrderedNormalSignal)
-    assert loaded.to_bytes() == library.to_bytes()
-    assert np.array_equal(loaded.signal.probs, signal.probs)
-    agents = [BayesianPolicyReuse(one, KnowledgeGradient()) for one in (library, loaded)]
-    for agent in agents:
-        agent.update(0, "short")
-    assert agents[0].select() == agents[1].select()
-    assert agents[0].belief.tolist() == agents[1].belief.tolist()
-    taken = library.take(policies=[1]).signal
-    assert isinstance(taken, OrderedNormalSignal)
-    assert taken.categories == tuple(names)
-    assert np.array_equal(taken.probs, signal.probs[:, [1]])
 
 
 @pytest.mark.parametrize(

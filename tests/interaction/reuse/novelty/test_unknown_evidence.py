@@ -55,25 +55,6 @@ def test_rows_are_single_tasks(kind, models):
     np.testing.assert_allclose(many.log_odds, [one.log_odds[0] for one in alone], rtol=1e-10)
 
 
-@pytest.mark.parametrize("models", ["uncertain", "plug-in"])
-def test_the_belief_is_the_same_with_and_without(models):
-    with_it, without = (
-        BayesianPolicyReuse(learnt(), seed=3, models=models, novelty=mass) for mass in (0.05, None)
-    )
-    random = np.random.default_rng(2)
-    for _ in range(12):
-        policy = with_it.select()
-        assert without.select() == policy
-        outcome = float(random.normal(TRUE[1, policy], 20))
-        with_it.update(policy, outcome)
-        without.update(policy, outcome)
-    assert with_it.log_belief.tobytes() == without.log_belief.tobytes()
-    assert without.novelty is None
-    assert without.explain().novelty is None
-    assert with_it.novelty is not None
-    assert with_it.explain().novelty == with_it.novelty.probability
-
-
 def test_mistakes_are_said():
     for mass in (0.0, 1.0, float("nan")):
         with pytest.raises(InputError, match="novelty must lie between 0 and 1"):
