@@ -89,6 +89,7 @@ def test_with_alpha0_counted_in_a_feature_that_tells_everything_would_seem_to_ha
 
 
 @pytest.mark.slow
+@settings(max_examples=25)
 @given(tables, st.sampled_from([0.0, 0.05, 0.3]))
 def test_the_best_set_is_the_least_of_all(rows, penalty):
     found = best_feature_set(counted(rows), penalty)
@@ -178,7 +179,7 @@ def test_reasons_by_hand():
     assert told.share_of("tasks disagree") == pytest.approx(32 / 98)
 
 
-@settings(max_examples=50)
+@settings(max_examples=25)
 @given(tables)
 def test_the_two_reasons_add_up_to_the_entropy(rows):
     case = counted([(cell, row) for cell, row in rows if any(row)] or [((0, 0, 0), [1, 0, 0])])
@@ -214,7 +215,7 @@ def test_broken_rules(call, message):
         call()
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(tables)
 def test_the_entropies_of_the_actions_sum_to_that_of_the_action_set(rows):
     found = counted(rows)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.action.features.feature_set import FeatureSet
@@ -30,6 +30,7 @@ def test_codes_by_hand():
     assert features.codes([[0] * 10, [0] * 8 + [1, 2], [3] * 9 + [2]]).tolist() == [0, 5, 786_431]
 
 
+@settings(max_examples=25)
 @given(rows())
 def test_codes_lead_back_to_the_columns(case):
     features, columns = case
@@ -39,6 +40,7 @@ def test_codes_lead_back_to_the_columns(case):
 
 
 @pytest.mark.slow
+@settings(max_examples=25)
 @given(rows(), st.randoms(use_true_random=False))
 def test_coarser_codes_are_the_codes_of_fewer_columns(case, random):
     features, columns = case

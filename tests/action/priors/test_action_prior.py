@@ -85,6 +85,7 @@ def test_forms_by_hand():
 
 
 @pytest.mark.slow
+@settings(max_examples=25)
 @given(updates, st.lists(codes, max_size=5))
 def test_batched_reading_is_a_dictionary_of_lists(steps, asked):
     twin: dict[int, list[float]] = {}
@@ -108,6 +109,7 @@ def test_batched_reading_is_a_dictionary_of_lists(steps, asked):
 
 
 @pytest.mark.slow
+@settings(max_examples=25)
 @given(st.lists(updates, min_size=1, max_size=5), st.randoms(use_true_random=False))
 def test_any_order_and_grouping_give_the_same_bits(parts, random):
     priors = [prior_of(steps) for steps in parts]
@@ -124,6 +126,7 @@ def test_any_order_and_grouping_give_the_same_bits(parts, random):
 
 
 @pytest.mark.slow
+@settings(max_examples=25)
 @given(updates)
 def test_a_record_holds_the_prior(steps):
     prior = prior_of(steps)
@@ -148,7 +151,7 @@ def test_a_foreign_record_is_refused():
 
 
 @pytest.mark.slow
-@settings(max_examples=50)
+@settings(max_examples=25)
 @given(updates, st.sampled_from(FORMS), st.floats(0, 20), st.floats(0, 1))
 def test_rows_sum_to_one_in_every_form(steps, form, beta, escape):
     prior = prior_of(steps)
@@ -192,6 +195,7 @@ def test_entropy_by_hand():
 
 
 @pytest.mark.slow
+@settings(max_examples=25)
 @given(updates, st.integers(1, 5))
 def test_coarser_contexts_keep_every_count(steps, modulus):
     prior = prior_of(steps)

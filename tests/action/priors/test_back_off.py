@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.action.priors.action_prior import ActionPrior
@@ -33,6 +33,7 @@ counts = st.tuples(st.integers(0, 50), st.integers(0, 50))
 
 
 @pytest.mark.slow
+@settings(max_examples=25)
 @given(st.dictionaries(st.integers(0, 15), counts, max_size=8), st.floats(0.01, 2))
 def test_without_coarser_levels_it_is_the_proportion(counts_by_context, alpha0):
     prior = counted(counts_by_context, alpha0)

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.action.priors.action_prior import ONE, ActionPrior
@@ -45,6 +45,7 @@ def packed(about=None, about_text=None, **arrays) -> bytes:
 
 
 @pytest.mark.slow
+@settings(max_examples=25)
 @given(rows, st.floats(1e-9, 1e9), st.text())
 def test_the_same_bits_come_back(counted, alpha0, key):
     prior = ActionPrior(3, alpha0, key)

@@ -51,7 +51,7 @@ def follow(tables, model, strategy=ExplorationStrategy(), seed=0, chunk=7, chunk
 
 
 @pytest.mark.slow
-@settings(max_examples=40)
+@settings(max_examples=25)
 @given(
     seeds,
     st.sampled_from(

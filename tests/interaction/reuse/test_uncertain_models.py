@@ -74,27 +74,6 @@ def cuts_of(agent: BayesianPolicyReuse, probs: np.ndarray) -> np.ndarray:
     return outcomes.mean[:, 1, None] + outcomes.deviation[:, 1, None] * quantiles
 
 
-def test_dirichlet_counts_are_those_of_polya_urns():
-    values = [0.0, 1.0, 5.0]
-    samples = np.random.default_rng(0).choice(values, size=(3, 2, 8))
-    library = PolicyLibrary.from_samples(samples, model="categorical", values=values)
-    library.performance.spread = Spread.known(0.0)
-    agent, shown = BayesianPolicyReuse(library, Greedy(), dynamics=STATIC), [0, 2, 2, 1]
-    evidence = np.ones(3)
-    counts = library.performance.counts[:, 1].copy()
-    for cell in shown:
-        agent.update(1, values[cell])
-        evidence *= counts[:, cell] / counts.sum(axis=1)
-        counts[:, cell] += 1
-    assert agent.belief == pytest.approx(evidence / evidence.sum(), rel=1e-10)
-    probs, found = counts / counts.sum(axis=1, keepdims=True), predicted(agent)
-    mean, within = probs @ values, probs @ np.square(values) - (probs @ values) ** 2
-    assert found.mean[:, 1] == pytest.approx(mean)
-    assert found.deviation[:, 1] == pytest.approx(np.sqrt(within))
-    # The variance of a mean under a Dirichlet law of weight A is that of a value over A + 1.
-    assert found.mean_variance[:, 1] == pytest.approx(within / (counts.sum(axis=1) + 1))
-
-
 def test_a_task_teaches_the_library_once():
     library = learnt(2, 2)
     samples = [30.0, 31.0, 28.0]
