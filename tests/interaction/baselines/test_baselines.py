@@ -9,7 +9,7 @@ import pytest
 
 import lifelore.interaction.baselines as room
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.baselines import BASELINES, Baseline
+from lifelore.interaction.baselines import BASELINES, Baseline, BayesOKR
 from lifelore.interaction.library.policy_library import PolicyLibrary
 
 SETTINGS = {"exp3": {"horizon": 50}}
@@ -97,3 +97,70 @@ def test_no_policies_or_tasks_is_refused(name, library):
     only = BASELINES[name](1, **extra)
     only.update(only.select(), 1.0)
     assert only.select() == 0
+
+
+TWO = PolicyLibrary.from_means([[1.0, 0.0], [0.0, 1.0]], 0.1)
+GIVEN = {
+    "gp-ucb": {"kernel": np.eye(2), "noise": 1.0},
+    "lin-ucb": {"features": np.eye(2)},
+    "bpr-plus": {"library": TWO},
+}
+DEVIATIONS = {"prior_means": [0, 0], "prior_deviations": [1, 1]}
+
+
+@pytest.mark.parametrize(
+    ("name", "settings", "said"),
+    [
+        ("bpr-plus", {"n_policies": 3}, "n_policies must be the library's 2, got 3"),
+        ("bpr-plus", {"floor": 0.6}, r"floor must lie in \[0, 1/2\], got 0.6"),
+        ("bpr-plus", {"threshold": 1.1}, r"threshold in \[0, 1\], got 10 and 1.1"),
+        ("epsilon-greedy-means", {"epsilon": np.nan}, "epsilon must lie in"),
+        ("exp3", {}, "give either gamma or horizon"),
+        ("exp3", {"gamma": 0.1, "horizon": 5}, "give either gamma or horizon"),
+        ("exp3", {"gamma": np.nan}, "must"),
+        ("exp3", {"horizon": 0}, "must"),
+        ("gp-ucb", {"kernel": np.eye(3)}, "kernel must be 2 × 2"),
+        ("gp-ucb", {"kernel": [[1, 2], [0, 1]]}, "kernel must be symmetric"),
+        ("gp-ucb", {"kernel": [[1, 2], [2, 1]]}, "kernel must be positive semidefinite"),
+        ("gp-ucb", {"noise": 0}, "noise must be finite and positive"),
+        ("gp-ucb", {"beta": -1}, "beta must be finite and at least 0"),
+        ("gp-ucb", {"delta": 1}, "delta must lie between 0 and 1"),
+        ("interval-estimation", {"alpha": np.nan}, "alpha must lie between 0 and 1"),
+        ("interval-estimation", {"quantile": "cauchy"}, "quantile must be 'student' or 'normal'"),
+        ("interval-estimation", {"prior_means": [0, 0]}, "must be given both or neither"),
+        ("interval-estimation", {**DEVIATIONS, "prior_pulls": 1}, "prior_pulls must be at least 2"),
+        (
+            "interval-estimation",
+            {**DEVIATIONS, "prior_deviations": [1, -1]},
+            "prior_deviations must be at least 0",
+        ),
+        ("lin-ucb", {"features": [[1.0]]}, r"features must be \(2, n_features\), finite, got shape \(1, 1\)"),
+        ("lin-ucb", {"features": [[1.0], [np.inf]]}, "features must be"),
+        ("lin-ucb", {"noise": 0.0}, "noise must be finite and positive, got 0.0"),
+        ("lin-ucb", {"ridge": -1.0}, "ridge must be finite and positive"),
+        ("lin-ucb", {"alpha": np.nan}, "alpha must be finite and at least 0"),
+        ("sliding-window-ucb", {"window": 3, "horizon": 4}, "give either window or horizon"),
+        ("sliding-window-ucb", {"window": 0}, "window must be at least 1, got 0"),
+        ("sliding-window-ucb", {"changes": 0}, "changes must be at least 1, got 0"),
+        ("thompson", {"noise": 0}, "must be"),
+        ("thompson", {"prior_deviations": [1, 0]}, "must be"),
+        ("try-all", {"rounds": 0}, "rounds must be at least 1, got 0"),
+        ("ucb1", {"exploration": np.nan}, "exploration must be finite and at least 0"),
+        ("ucb1", {"scale": (1, 1)}, "scale must be"),
+        ("ucb1", {"prior_means": [1, 2, 3]}, "prior_means must be one number or 2 of them"),
+        ("ucb1", {"prior_means": [1, 2], "prior_pulls": 0}, "prior_pulls must be finite and above 0"),
+    ],
+)
+def test_bad_settings(name, settings, said):
+    with pytest.raises(InputError, match=said):
+        BASELINES[name](**{"n_policies": 2, **GIVEN.get(name, {}), **settings})
+
+
+def test_bad_settings_of_bayes_okr():
+    for settings, said in (
+        ({"weight": 1.1}, r"weight must lie in \[0, 1\] and window be at least 1, got 1.1 and 1"),
+        ({"floor": 0.6}, r"floor must lie in \[0, 1/2\], got 0.6"),
+        ({"prior": [0.5, 0.5, 0.0]}, r"prior must be \(2,\), got \(3,\)"),
+    ):
+        with pytest.raises(InputError, match=said):
+            BayesOKR(TWO, **settings)

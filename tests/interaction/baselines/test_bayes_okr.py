@@ -112,18 +112,3 @@ def test_a_bad_signal_or_return_changes_nothing():
         each.observe(0, -1.0)
     twin.observe(0, -1.0)
     assert agent.belief == pytest.approx(twin.belief)
-
-
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        ({"weight": 1.1}, r"weight must lie in \[0, 1\] and window be at least 1, got 1.1 and 1"),
-        ({"window": 0}, "window be at least 1"),
-        ({"floor": 0.5}, r"floor must lie in \[0, 1/3\], got 0.5"),
-        ({"prior": [0.5, 0.5]}, r"prior must be \(3,\), got \(2,\)"),
-        ({"prior": [0.5, 0.5, 0.5]}, "prior must sum to 1"),
-    ],
-)
-def test_bad_settings(settings, said):
-    with pytest.raises(InputError, match=said):
-        BayesOKR(library(), **settings)

@@ -5,7 +5,6 @@ from math import exp, pi, sqrt
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.baselines import BPRPlus
 from lifelore.interaction.library.policy_library import PolicyLibrary
 
@@ -62,18 +61,3 @@ def test_each_task_of_many_has_the_belief_that_it_has_alone():
         for player, policy, value in zip(alone, policies, paid, strict=True):
             player.update(int(policy), float(value))
         assert many.belief == pytest.approx(np.array([player.belief for player in alone]))
-
-
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        ({"n_policies": 2}, "n_policies must be the library's 3, got 2"),
-        ({"floor": 0.6}, r"floor must lie in \[0, 1/2\], got 0.6"),
-        ({"floor": -0.1}, "floor must lie in"),
-        ({"window": -1}, "window must be at least 0"),
-        ({"threshold": 1.1}, r"threshold in \[0, 1\], got 10 and 1.1"),
-    ],
-)
-def test_bad_settings(settings, said):
-    with pytest.raises(InputError, match=said):
-        BPRPlus(**{"n_policies": 3, "library": PolicyLibrary.from_means(MEAN, 0.1), **settings})

@@ -5,7 +5,6 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.baselines import LinUCB
 from lifelore.interaction.library.policy_library import PolicyLibrary
 
@@ -62,20 +61,3 @@ def test_a_library_without_noise_keeps_the_precision():
         player.update(number % 6, means[1, number % 6])
     assert player.weights == pytest.approx([0, 1, 0], abs=1e-6)
     assert player.select() == means[1].argmax()
-
-
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        ({"features": [[1.0]]}, r"features must be \(2, n_features\), finite, got shape \(1, 1\)"),
-        ({"features": [1.0, 2.0]}, "features must be"),
-        ({"features": [[1.0], [np.inf]]}, "features must be"),
-        ({"noise": 0.0}, "noise must be finite and positive, got 0.0"),
-        ({"ridge": -1.0}, "ridge must be finite and positive"),
-        ({"alpha": -1.0}, "alpha must be finite and at least 0"),
-        ({"alpha": np.nan}, "alpha must be"),
-    ],
-)
-def test_bad_settings(settings, said):
-    with pytest.raises(InputError, match=said):
-        LinUCB(2, **{"features": np.eye(2), **settings})

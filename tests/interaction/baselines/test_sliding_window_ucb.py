@@ -5,7 +5,6 @@ from math import log, sqrt
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.baselines import SlidingWindowUCB
 
 
@@ -34,17 +33,3 @@ def test_the_window_of_a_horizon():
     assert SlidingWindowUCB(2, horizon=200, changes=3).window == 38
     assert SlidingWindowUCB(2, horizon=1).window == 1
     assert SlidingWindowUCB(2).window == 100
-
-
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        ({"window": 3, "horizon": 4}, "give either window or horizon"),
-        ({"window": 0}, "window must be at least 1, got 0"),
-        ({"horizon": 0}, "horizon must be at least 1, got 0"),
-        ({"changes": 0}, "changes must be at least 1, got 0"),
-    ],
-)
-def test_bad_settings(settings, said):
-    with pytest.raises(InputError, match=said):
-        SlidingWindowUCB(2, **settings)

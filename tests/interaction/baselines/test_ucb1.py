@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.baselines import UCB1
 
 
@@ -44,19 +43,3 @@ def test_from_library_has_means_under_the_prior_on_a_scale_as_wide_as_the_deviat
     width = np.sqrt((0.1875 * (1 + 0.36) + 0.01 + 0.01) / 4)
     assert player._scores()[0] == pytest.approx((means - 0.39375) / width + 0.5)
     assert UCB1.from_library(library, prior_means=None)._scores()[0].tolist() == [np.inf] * 4
-
-
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        ({"exploration": -1}, "exploration must be finite and at least 0, got -1"),
-        ({"exploration": np.nan}, "exploration must be"),
-        ({"scale": (1, 1)}, "scale must be"),
-        ({"prior_means": [1, 2, 3]}, "prior_means must be one number or 2 of them"),
-        ({"prior_means": [1, np.nan]}, "prior_means must be finite"),
-        ({"prior_means": [1, 2], "prior_pulls": 0}, "prior_pulls must be finite and above 0"),
-    ],
-)
-def test_bad_settings(settings, said):
-    with pytest.raises(InputError, match=said):
-        UCB1(2, **settings)
