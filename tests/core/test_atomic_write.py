@@ -39,10 +39,3 @@ def test_a_link_stays_one(tmp_path):
         file.write(b"new")
     assert link.is_symlink()
     assert path.read_bytes() == b"new"
-
-
-def test_a_folder_that_is_missing_or_in_the_way_is_an_error(tmp_path):
-    for path in (tmp_path / "none" / "kept", tmp_path):
-        with pytest.raises(OSError), atomic_write(path) as file:
-            file.write(b"new")
-    assert list(tmp_path.iterdir()) == []

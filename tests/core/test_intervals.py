@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 import scipy.stats
 
-from lifelore.core import intervals
 from lifelore.core.intervals import bca_interval, percentile_interval, t_interval, welch_interval
 
 
@@ -34,13 +33,6 @@ def test_no_spread_and_too_few():
     # The rows differ, but every resample has the mean ratio 2.
     same = np.array([1.0, 2.0, 3.0])
     assert bca_interval([2 * same, same], lambda a, b, axis: a.mean(axis) / b.mean(axis)) == (2.0, 2.0)
-
-
-def test_the_same_interval_whatever_is_held_at_a_time(monkeypatch):
-    values = np.random.default_rng(0).exponential(size=300)
-    found = bca_interval([values], np.mean)
-    monkeypatch.setattr(intervals, "_BATCH", 1000)
-    assert bca_interval([values], np.mean) == pytest.approx(found, rel=1e-12)
 
 
 def test_percentiles_by_hand():

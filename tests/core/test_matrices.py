@@ -6,10 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import sparse
 
-from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.action.priors.exploration import prior_rows
 from lifelore.core.errors import InputError
-from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning.planning import optimal_actions, optimal_q
 
@@ -109,52 +106,6 @@ def test_memory_grows_with_the_next_states_of_a_move():
     tables = Tables.from_matrices([ahead, back], np.eye(1, n_states, n_states - 1)[0], terminal=[n_states - 1])
     assert sum(part.nbytes for part in tables) < 2e6
     assert optimal_actions(tables, GAMMA)[-101:].tolist() == [[True, False]] * 100 + [[False, False]]
-
-
-def test_outcomes_are_drawn_by_their_own_probabilities():
-    # One step from each start; the share of each next state is its T to within four standard errors.
-    transitions, _ = random_mdp(11, n_states=4, n_actions=2)
-    pays = np.arange(4.0)
-    tables = Tables.from_matrices(transitions, pays, terminal=[])
-    n = 40_000
-    for start in range(4):
-        one = tables._replace(starts=np.array([start], np.int32))
-        _, curve = QLearning(n, max_steps=1, epsilon=1.0, epsilon_decay=1.0).learn(one, GAMMA, seed=start)
-        share = np.bincount(curve.rewards.astype(int), minlength=4) / n
-        expected = transitions[start].mean(axis=0)  # actions are drawn uniformly
-        assert np.abs(share - expected).max() < 4 * np.sqrt(0.25 / n)
-
-
-def test_learning_approaches_the_optimal_values():
-    transitions, rewards = random_mdp(2, n_states=4, n_actions=2)
-    tables = Tables.from_matrices(transitions, rewards, terminal=[3])
-    learner, _ = QLearning(20_000, max_steps=50, epsilon=1.0, learning_rate=0.2, annealed=True).learn(
-        tables, GAMMA
-    )
-    assert np.abs(learner.q - optimal_q(tables, GAMMA)).max() < 0.15
-
-
-def test_a_prior_of_ten_tasks_on_an_eleventh():
-    # A 12 × 12 room; the goals of all tasks lie along its first row, the eleventh between the others.
-    n, side = 144, 12
-    row, column = np.divmod(np.arange(n), side)
-    moves = [(-1, 0), (1, 0), (0, -1), (0, 1)]
-    to = [(row + r).clip(0, 11) * side + (column + c).clip(0, 11) for r, c in moves]
-    ahead = [sparse.coo_array((np.ones(n), (np.arange(n), t)), (n, n)).tocsr() for t in to]
-    slips = [0.8 * a + 0.2 * sparse.eye_array(n) for a in ahead]
-
-    tasks = [
-        Tables.from_matrices(slips, np.arange(n) == goal, terminal=goal)
-        for goal in (0, 1, 2, 3, 4, 6, 7, 8, 9, 10, 5)
-    ]
-    prior = ActionPrior(n_actions=4)
-    for task in tasks[:10]:
-        prior.update(np.arange(n), optimal_actions(task, 0.95))
-    rows = prior_rows(tasks[10], np.arange(n), prior.probs)
-    _, guided = QLearning(100, max_steps=500).learn(tasks[10], 0.95, rows=rows)
-
-    _, uniform = QLearning(100, max_steps=500).learn(tasks[10], 0.95)
-    assert guided.steps[:20].mean() < 0.5 * uniform.steps[:20].mean()
 
 
 T, R = random_mdp(0)

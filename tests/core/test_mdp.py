@@ -30,12 +30,6 @@ def test_tables_by_hand():
     assert [a.dtype for a in tables] == [np.int32, np.float64, np.uint8, np.float64, np.int32]
 
 
-def test_last_cumulative_probability_is_one_to_the_bit():
-    tables = Task(row(outcome_probs=(0.1,) * 10), (2,), np.array([0])).tables()
-    assert tables.outcome_cum[-1] == 1.0
-    assert np.cumsum([0.1] * 10)[-1] != 1.0
-
-
 def test_tabulate_takes_the_place_of_the_enumeration():
     seen = []
 
@@ -66,9 +60,3 @@ def test_domains_that_break_a_rule(settings, message):
     given = {"name": "row", "n_states": 3, "n_actions": 1, "step": slippery, "discount": 0.9} | settings
     with pytest.raises(InputError, match=message):
         Domain(**given)
-
-
-@pytest.mark.parametrize("starts", [[], [3], [-1, 0]])
-def test_starts_must_be_states(starts):
-    with pytest.raises(InputError, match=r"starts must name at least one state, each in \[0, 3\)"):
-        Task(row(), (2,), np.array(starts, np.int32))

@@ -5,7 +5,6 @@ from dataclasses import FrozenInstanceError
 import numpy as np
 import pytest
 
-from lifelore.core.learning.curve import new_curve
 from lifelore.core.protocols import Policy, Record, SignalModel, World
 
 
@@ -41,10 +40,3 @@ def test_a_record_is_frozen():
     with pytest.raises(FrozenInstanceError):
         record.key = "other"  # type: ignore[misc]
     assert record.about == {}
-
-
-def test_a_new_curve_is_empty_and_its_arrays_are_apart():
-    curve = new_curve(3)
-    assert all(len(column) == 3 and not column.any() for column in curve)
-    curve.steps[:] = 1
-    assert not curve.collisions.any()

@@ -1,6 +1,5 @@
 """Streams by name: they never move between versions, and never meet."""
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -24,12 +23,3 @@ def test_depends_on_seed_and_names_alone(seed, path, other_seed, other_path):
     same = [(type(n), n) for n in (seed, *path)] == [(type(n), n) for n in (other_seed, *other_path)]
     first, second = stream(seed, *path), stream(other_seed, *other_path)
     assert (first.bit_generator.state == second.bit_generator.state) == same
-
-
-def test_a_numpy_integer_names_the_same_stream():
-    index = np.arange(5)[3]
-    assert stream(7, "task", index).random() == stream(7, "task", 3).random()
-
-
-def test_number_and_text_differ():
-    assert stream(7, 3).random() != stream(7, "3").random()

@@ -6,6 +6,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import BinaryIO
 
+from lifelore.core.errors import InputError, StoreError
+
 
 @contextmanager
 def atomic_write(path: str | Path) -> Iterator[BinaryIO]:
@@ -28,3 +30,20 @@ def atomic_write(path: str | Path) -> Iterator[BinaryIO]:
         with suppress(OSError):
             partial.unlink(missing_ok=True)
         raise
+
+
+def write_file(path: str | Path, content: bytes, what: str) -> None:
+    """Write a file at once; StoreError, which names `what` is in it, where the disk refuses."""
+    try:
+        with atomic_write(path) as file:
+            file.write(content)
+    except OSError as error:
+        raise StoreError(f"{what} cannot be written to {path}: {error.strerror}") from None
+
+
+def read_file(path: str | Path, what: str) -> bytes:
+    """The bytes of a file; InputError, which names `what` is in it, where it cannot be read."""
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        raise InputError(f"{what} {path} cannot be read: {error.strerror}") from None

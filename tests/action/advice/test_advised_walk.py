@@ -1,9 +1,4 @@
-"""Walks under an advisor's eyes: by hand, as the slow twin, compiled and plain alike."""
-
-import os
-import subprocess
-import sys
-from pathlib import Path
+"""Walks under an advisor's eyes: by hand, as the slow twin."""
 
 import numpy as np
 import pytest
@@ -21,7 +16,6 @@ from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 from .naive_advisor import NaiveAdvisor
 
 EAST, WEST = 0, 1
-KERNELS_RUN = Path(__file__).with_name("advice_kernels_run.py")
 
 
 def corridor(length: int) -> Tables:
@@ -105,41 +99,6 @@ def test_as_the_naive_twin(seed, n_goals, follows_advice, share):
         assert ended == (t == len(walk.states) - 1 and walk.reached)
     assert walk.reward == pytest.approx(total)
     assert walk.reached or len(walk.states) == 40
-
-
-def test_with_and_without_advice_the_same_numbers_are_drawn():
-    # κ out of reach: advised or not, the same walk.
-    advisor = Advisor([going_east(20)], settings=AdviceSettings(kappa=99))
-    policy = np.tile([0.5, 0.5], (20, 1))
-    one, other = (
-        advised_walk(corridor(20), policy, advisor, np.random.default_rng(3), 300, follows_advice=follows_advice)
-        for follows_advice in (True, False)
-    )
-    assert np.array_equal(one.states, other.states)
-    assert not one.advised.any()
-
-
-@pytest.mark.slow
-def test_compiled_and_plain_python_agree_to_the_bit(tmp_path):
-    for name, disabled in (("compiled", "0"), ("plain", "1")):
-        done = subprocess.run(
-            [sys.executable, "-W", "error", str(KERNELS_RUN), str(tmp_path / f"{name}.npz")],
-            env=os.environ | {"NUMBA_DISABLE_JIT": disabled},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
-        assert done.returncode == 0, done.stderr
-    with np.load(tmp_path / "compiled.npz") as compiled, np.load(tmp_path / "plain.npz") as plain:
-        assert set(compiled) == set(plain)
-        for name in compiled:
-            assert compiled[name].dtype == plain[name].dtype, name
-            if compiled[name].dtype.kind == "f":
-                # exp and log of NumPy and of compiled code may differ in the last bit.
-                assert compiled[name] == pytest.approx(plain[name], rel=1e-12, abs=1e-14), name
-            else:
-                assert np.array_equal(compiled[name], plain[name]), name
-        assert any(compiled[name].any() for name in compiled if "better" in name and "advised" in name)
 
 
 def test_each_broken_rule_is_one_clear_line():

@@ -12,8 +12,6 @@ from lifelore.action.advice.behaviour_models import Tabulated, Uniform
 from lifelore.action.advice.goal_model import GoalModel, Trajectory
 from lifelore.core.errors import InputError
 
-from .naive_advisor import NaiveAdvisor
-
 
 def all_open(theta, goals=()):
     """A purpose whose experts use alike all that `theta` (n_states, n_actions) does; α⁰ is drowned in counts."""
@@ -89,12 +87,6 @@ def test_silent_where_no_expert_was_and_such_steps_prove_nothing():
     assert advisor.consider(watch, 0).p_normal == pytest.approx(0.5)
 
 
-def test_kappa_0_advises_wherever_something_was_counted():
-    purpose = GoalModel.from_best_actions([[True, True], [True, False], [False, False]])
-    found = Advisor([purpose], settings=AdviceSettings(kappa=0)).assess([0, 1, 2, 0], [0, 0, 1, 1])
-    assert found.advise.tolist() == [True, True, False, True]
-
-
 def test_one_step_never_proves_a_model_wrong_for_good():
     # A model that excludes what was done keeps TRACE; without it log 0 - log 0 would follow.
     sure = Tabulated([[1.0, 0.0]])
@@ -130,16 +122,6 @@ def test_a_goal_left_again_is_dropped_and_the_nearest_of_the_rest_comes_next():
     # Both seen and still under way: it begins again.
     advisor.observe(watch, 4, 1)
     assert advisor.consider(watch, 1).goal == 0
-
-
-def test_the_agents_own_steps_tell_its_goal():
-    # From the middle both goals are two steps; who goes east by itself is told east.
-    theta_west, theta_east = np.tile([0.0, 1.0], (5, 1)), np.tile([1.0, 0.0], (5, 1))
-    advisor = Advisor([all_open(theta_west), all_open(theta_east)], settings=AdviceSettings(slip=0.05))
-    watch = advisor.watch()
-    for _ in range(3):
-        advisor.observe(watch, 2, 0)
-    assert advisor.consider(watch, 2).goal == 1
 
 
 def test_steps_that_followed_advice_make_any_agent_seem_an_expert_unless_they_are_left_out():
@@ -197,43 +179,6 @@ def test_the_printed_condition_step_by_step():
 
 
 # ---- against the twin ------------------------------------------------------------------------------
-
-OPTIONS = st.builds(
-    AdviceSettings,
-    kappa=st.sampled_from([0.0, 0.1, 0.4, 1.0]),
-    window=st.sampled_from([1, 3, 8, 300]),
-    slip=st.sampled_from([0.0, 0.05]),
-    share=st.sampled_from([1.0, 0.4]),
-    burst=st.sampled_from([1.0, 5.0]),
-    own_steps_only=st.booleans(),
-)
-
-
-@pytest.mark.slow
-@settings(max_examples=60)
-@given(st.integers(0, 10**6), st.integers(1, 4), OPTIONS)
-def test_step_by_step_as_the_naive_twin(seed, n_goals, options):
-    random = np.random.default_rng(seed)
-    advisor = random_advisor(random, n_goals, options)
-    watch, twin = advisor.watch(), NaiveAdvisor(advisor.guide, options)
-    state = int(random.integers(9))
-    for _ in range(40):
-        advice = advisor.consider(watch, state)
-        told, gain, posterior = twin.consider(state)
-        # Chosen among goals of equal worth, rounding decides; then both go on as the first has.
-        twin.target = advice.goal if twin.target != advice.goal and worth_ties(twin, state) else twin.target
-        assert advice.goal == twin.target
-        assert watch.posterior == pytest.approx(posterior, abs=1e-9)
-        assert advice.gain == pytest.approx(gain, abs=1e-9)
-        assert advice.advise == told
-        action = int(random.integers(-1, 3))
-        advisor.observe(watch, state, action, advice.advise)
-        twin.observe(state, action, told)
-        state = int(random.integers(9))
-
-
-def worth_ties(twin, state) -> bool:
-    return len(set(twin.guide.steps[:, state].round(9))) < len(twin.guide.theta)
 
 
 @settings(max_examples=40)

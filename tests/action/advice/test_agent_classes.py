@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.action.advice.advisor import BETTER, AdviceSettings, Advisor
+from lifelore.action.advice.advisor import AdviceSettings, Advisor
 from lifelore.action.advice.agent_classes import SURE, classes_with_goals, pooled_classes
 from lifelore.action.advice.goal_model import GoalModel, Trajectory
 from lifelore.core.errors import InputError, NotFoundError
@@ -42,31 +42,6 @@ def test_the_class_is_inferred_by_bayes(models):
     # With the uniform model: P(M | H) of both classes together.
     likelihood = np.array([0.1, 4.1]) / 4.2 * 4.1 / 4.2
     assert advice.p_normal == pytest.approx(likelihood.sum() / 4 / (likelihood.sum() / 4 + 0.5 * 0.25))
-
-
-def test_a_name_tag_is_a_prior_and_no_proof(models):
-    known = pooled_classes(models, PLAIN, {"visitor": 1.0, "staff": 9.0})
-    advisor = known.advisor
-    agent = advisor.watch()
-    assert advisor.consider(agent, 1).goal == STAFF
-    assert list(known.probs(agent).values()) == pytest.approx([0.9, 0.1])
-    advisor.observe(agent, 1, 1)
-    advisor.consider(agent, 1)
-    assert list(known.probs(agent).values()) == pytest.approx(np.array([0.9 * 0.1, 0.1 * 4.1]) / (0.09 + 0.41))
-    for _ in range(5):
-        advisor.observe(agent, 1, 1)
-    assert advisor.consider(agent, 1).goal == VISITOR
-
-
-def test_advised_steps_do_not_confirm_a_class(models):
-    known = pooled_classes(models)
-    advisor = known.advisor
-    assert advisor.settings == BETTER
-    agent = advisor.watch()
-    for _ in range(50):
-        advisor.observe(agent, 1, 1, advised=True)
-    advisor.consider(agent, 1)
-    assert known.probs(agent) == {"staff": 0.5, "visitor": 0.5}
 
 
 def test_one_class_is_one_prior_over_all_goals(models):

@@ -3,15 +3,11 @@
 import numpy as np
 import pytest
 
-from lifelore.action.advice.behaviour_models import Experts, Tabulated, Uniform
+from lifelore.action.advice.behaviour_models import Experts, Tabulated
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
 
 CONTEXTS = np.array([[0, -1], [1, -1], [1, 0], [1, 1]])
-
-
-def test_uniform():
-    assert Uniform(4).probs(CONTEXTS).tolist() == [[0.25] * 4] * 4
 
 
 def test_a_table_by_state_ignores_what_was_tried_last():

@@ -48,19 +48,6 @@ def test_by_steps_by_hand():
     assert found == pytest.approx({"ann": 1.0, "bob": 1 / 3, "cat": 0.0, "dan": 0.0})
 
 
-def test_tasks_of_one_agent_are_taken_together():
-    best = {"one": np.array([[True, False]]), "two": np.array([[False, True]])}
-    told = [demonstration("ann", [(0, 0)] * 3, "one"), demonstration("ann", [(0, 0)], "two")]
-    assert competence_by_steps(told, best.__getitem__) == {"ann": 0.5}  # (3 - 2) / (4 - 2)
-
-
-def test_steps_outside_the_task_are_refused():
-    with pytest.raises(
-        InputError, match="'ann' in task 't' must stay within its 1 states and 2 actions, got 1 and 0"
-    ):
-        competence_by_steps([demonstration("ann", [(1, 0)])], lambda task: np.ones((1, 2), bool))
-
-
 @pytest.mark.parametrize("skill", [0.0, 0.3, 0.7, 1.0])
 def test_by_steps_recovers_the_skill_of_simulated_people(skill):
     # h - e over n - e has the mean `skill` for this kind of person: P(best) = skill + (1 - skill) · share. With n
@@ -98,23 +85,6 @@ def test_an_expert_takes_a_shortest_way():
     from_there = simulated_demonstration(tables, best, 1.0, stream(2), task="t", agent="ann", start=34)
     assert from_there is not None
     assert from_there.actions.tolist() == [2]
-
-
-def test_people_give_up():
-    tables, best = grid(6)
-    assert simulated_demonstration(tables, best, 1.0, stream(3), task="t", agent="ann", most_steps=9) is None
-
-
-def test_uncertain_outcomes_follow_their_probabilities():
-    # One action: stay with 3/4, end with 1/4; the number of steps is geometric with mean 4 and deviation √12.
-    tables = Tables(
-        np.zeros((1, 1, 2), np.int32), np.zeros((1, 1, 2)), np.array([[[0, TERMINAL]]], np.uint8),
-        np.array([0.75, 1.0]), np.zeros(1, np.int32),
-    )  # fmt: skip
-    random = stream(4)
-    told = [simulated_demonstration(tables, [[True]], 1.0, random, task="t", agent="a") for _ in range(2000)]
-    steps = [len(one.states) for one in told if one is not None]
-    assert np.mean(steps) == pytest.approx(4.0, abs=4 * np.sqrt(12 / 2000))
 
 
 def test_broken_rules():

@@ -1,10 +1,8 @@
 """Demonstrations: the file format by hand, bad lines by number, and counting."""
 
-import json
-
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.action.demonstrations.demonstrations import (
@@ -18,7 +16,7 @@ from lifelore.action.demonstrations.demonstrations import (
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError, StoreError
 
-texts = st.text(min_size=1).filter(lambda text: text.isprintable() or "\u2028" in text)
+texts = st.text(st.characters(categories=["L", "N", "P", "S"], include_characters=" \u2028"), min_size=1)
 steps = st.lists(st.tuples(st.integers(0, 2**61), st.integers(0, 99)), min_size=1, max_size=5)
 shown = st.lists(st.tuples(texts, texts, steps), max_size=5)
 
@@ -50,22 +48,12 @@ def test_lines_by_hand():
 
 
 @pytest.mark.slow
+@settings(max_examples=25)
 @given(shown)
 def test_what_is_written_is_read(told):
     demonstrations = [demonstration(*one) for one in told]
     text = "\n".join(demonstration_lines(demonstrations))
     assert plain(demonstrations_from_lines(text.split("\n"))) == plain(demonstrations)
-
-
-def test_files_are_added_to(tmp_path):
-    path = tmp_path / "shown.jsonl"
-    one, two = demonstration("t\u2028", "änn", [(1, 2), (3, 0)]), demonstration("t\u2028", "änn", [(1, 2)])
-    write_demonstrations(path, [one])
-    write_demonstrations(path, [two], append=True)
-    assert plain(read_demonstrations(path)) == plain([one, two])
-    assert json.loads(path.read_text().splitlines()[0])["state"] == 1
-    write_demonstrations(path, [two])
-    assert plain(read_demonstrations(path)) == plain([two])
 
 
 GOOD = '{"task": "t", "agent": "a", "state": 1, "action": 0}'

@@ -56,29 +56,6 @@ def test_tasks_that_disagree_teach_that_no_feature_helps():
     assert agent.entropy == pytest.approx(1.0, abs=0.01)
 
 
-def test_a_sure_prior_stays_as_it_is():
-    rng = np.random.default_rng(2)
-    agent = FeatureAcquisition(WORLD, ["seen"], ["a", "b"], settings=QUICK)
-    for _ in range(5):
-        agent.update(*task(rng, lambda columns: columns[:, 0]))
-    assert agent.trials == []
-    assert agent.on_trial is None
-    assert agent.entropy == 0.0
-
-
-def test_patience_and_trial_count_tasks():
-    rng = np.random.default_rng(3)
-    settings = AcquisitionSettings(patience=3, trial=2)
-    agent = FeatureAcquisition(WORLD, ["seen"], ["a", "b"], ["hidden"], settings)
-    tried = []
-    for _ in range(6):
-        agent.update(*task(rng, by_hidden))
-        tried.append(agent.on_trial)
-    assert tried == [None, None, "hidden", "hidden", None, None]
-    # The counts of the two tasks of the trial and of the one after it; earlier tasks did not record the feature.
-    assert agent.prior.counts(agent.prior.contexts).sum() == 3 * 600
-
-
 def test_wrong_names_and_settings_are_refused():
     with pytest.raises(InputError, match="candidates must be none of the features at the start, got 'seen'"):
         FeatureAcquisition(WORLD, ["seen"], ["a"], ["seen"])

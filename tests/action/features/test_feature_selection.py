@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.action.features.counted_features import CountedFeatures, action_set_entropy, pooled_counts
+from lifelore.action.features.counted_features import CountedFeatures, action_set_entropy
 from lifelore.action.features.feature_selection import (
     OnlineFeatureSelection,
     best_feature_set,
@@ -54,23 +54,6 @@ def naive_entropy(rows, kept) -> float:
 # ---- Eq. 3.9-3.11 ------------------------------------------------------------------------------------------
 
 
-def test_entropy_by_hand():
-    # Context 0 leaves two actions open (1 bit), context 1 none; P is 3/4 and 1/4.
-    case = counted([((0,), [3, 3]), ((1,), [0, 2])], (2,))
-    assert case.entropy() == pytest.approx(0.75)
-    # Together 3 and 5 of 8.
-    assert case.entropy([]) == pytest.approx(-3 / 8 * math.log2(3 / 8) - 5 / 8 * math.log2(5 / 8))
-
-
-@pytest.mark.slow
-@given(tables)
-def test_entropy_is_the_printed_sum(rows):
-    case = counted(rows)
-    for n in range(4):
-        for kept in combinations(range(3), n):
-            assert case.entropy([f"f{i}" for i in kept]) == pytest.approx(naive_entropy(rows, kept), abs=1e-9)
-
-
 def test_entropy_of_a_prior_leaves_alpha0_out():
     features = FeatureSet(("wall", "items"), (2, 3))
     entropies = []
@@ -102,36 +85,11 @@ def test_with_alpha0_counted_in_a_feature_that_tells_everything_would_seem_to_ha
     assert independent_features(case).names == ("tells",)
 
 
-@pytest.mark.slow
-@given(tables)
-def test_a_feature_more_never_adds_entropy(rows):
-    case = counted(rows)
-    for name in case.features.names:
-        others = [other for other in case.features.names if other != name]
-        assert case.entropy() <= case.entropy(others) + 1e-9
-        assert case.entropy() <= math.log2(3) + 1e-9
-
-
-@pytest.mark.slow
-@given(st.lists(st.tuples(st.one_of(st.integers(0, 5), st.integers(0, 2**47 - 1)), count_rows), max_size=20))
-def test_pooled_counts_are_a_dictionary(rows):
-    twin: dict[int, list[float]] = {}
-    for code, row in rows:
-        own = twin.setdefault(code, [0.0, 0.0, 0.0])
-        for a in range(3):
-            own[a] += row[a]
-    codes, counts = pooled_counts(
-        np.array([code for code, _ in rows], np.int64), np.array([row for _, row in rows], float).reshape(-1, 3)
-    )
-    found = {code: row for code, row in zip(codes.tolist(), counts.tolist(), strict=True) if any(row)}
-    assert found == {code: row for code, row in twin.items() if any(row)}
-    assert (np.diff(codes) > 0).all()
-
-
 # ---- Eq. 3.12 ----------------------------------------------------------------------------------------------
 
 
 @pytest.mark.slow
+@settings(max_examples=25)
 @given(tables, st.sampled_from([0.0, 0.05, 0.3]))
 def test_the_best_set_is_the_least_of_all(rows, penalty):
     found = best_feature_set(counted(rows), penalty)
@@ -146,59 +104,7 @@ def test_the_best_set_is_the_least_of_all(rows, penalty):
     assert len(found.names) == min(map(len, equal))
 
 
-def test_the_penalty_decides_how_many_features():
-    # f0 halves the entropy from 2 bits to 1, f1 from 1 to 0; f2 says nothing.
-    rows = [((i, j, k), np.eye(4)[2 * i + j].tolist()) for i, j, k in product(range(2), repeat=3)]
-    case = counted(rows, (2, 2, 2))
-    assert best_feature_set(case).names == ("f0", "f1")
-    assert best_feature_set(case, 0.9).names == ("f0", "f1")
-    assert best_feature_set(case, 1.1).names == ()
-    assert len(best_feature_set(case).entropies) == 8
-
-
-@pytest.mark.slow
-def test_fifteen_features_are_searched_and_sixteen_refused():
-    rows = [(cell, [1.0, 0.0] if cell[7] else [0.0, 1.0]) for cell in map(tuple, np.eye(15, dtype=int).tolist())]
-    found = best_feature_set(counted(rows, (2,) * 15), 1e-3)
-    assert found.names == ("f7",)
-    assert len(found.entropies) == 2**15
-    with pytest.raises(InputError, match=r"at most 15 features, got 16; use Alg\. 5"):
-        best_feature_set(counted([], (2,) * 16))
-
-
 # ---- Alg. 5 ------------------------------------------------------------------------------------------------
-
-
-def test_independent_selection_by_hand():
-    # f0 tells the action; f1 tells it only in part (3 of 4); f2 says nothing.
-    rows = [((0, 0, k), [3.0, 0.0]) for k in range(2)] + [((0, 1, k), [1.0, 0.0]) for k in range(2)]
-    rows += [((1, 1, k), [0.0, 3.0]) for k in range(2)] + [((1, 0, k), [0.0, 1.0]) for k in range(2)]
-    choice = independent_features(counted(rows, (2, 2, 2)))
-    h = -0.75 * math.log2(0.75) - 0.25 * math.log2(0.25)
-    assert choice.full_entropy == pytest.approx(0.0)
-    assert choice.increase == pytest.approx({"f0": h, "f1": 0.0, "f2": 0.0})
-    assert choice.threshold == pytest.approx(h / 3)  # ω = mean Δ
-    assert choice.names == ("f0",)
-    assert independent_features(counted(rows, (2, 2, 2)), threshold=0.0).names == ("f0", "f1", "f2")
-
-
-@pytest.mark.slow
-@given(tables)
-def test_independent_selection_is_alg_5(rows):
-    choice = independent_features(counted(rows))
-    full = naive_entropy(rows, (0, 1, 2))
-    delta = {f"f{i}": naive_entropy(rows, [j for j in range(3) if j != i]) - full for i in range(3)}
-    assert choice.increase == pytest.approx(delta, abs=1e-9)
-    mean = sum(delta.values()) / 3
-    assert all((name in choice.names) == (d >= mean) for name, d in delta.items() if abs(d - mean) > 1e-9)
-
-
-def test_equal_features_reach_their_own_mean():
-    # Three thirds: the mean of three equal numbers may round above them, and none would be chosen.
-    rows = [((i, j, k), np.eye(8)[4 * i + 2 * j + k].tolist()) for i, j, k in product(range(2), repeat=3)]
-    for scale in (1.0, 0.1, 1 / 3):
-        scaled = [(cell, [scale * x for x in row]) for cell, row in rows]
-        assert independent_features(counted(scaled, (2, 2, 2))).names == ("f0", "f1", "f2")
 
 
 def test_two_copies_of_a_feature_are_both_dropped_by_alg_5_alone():
@@ -213,13 +119,6 @@ def test_two_copies_of_a_feature_are_both_dropped_by_alg_5_alone():
     assert features_by_removal(case, 0.2) in (("f0",), ("f1",))
     assert case.entropy(features_by_removal(case, 0.2)) < 0.5
     assert best_feature_set(case, 0.2).names == ("f0",)
-
-
-def test_where_nothing_matters_the_mean_threshold_keeps_everything():
-    # Δ = 0 for all, so ω = 0 and Δ ≥ ω for all.
-    rows = [((i, j, k), [1.0, 1.0]) for i, j, k in product(range(2), repeat=3)]
-    assert independent_features(counted(rows, (2, 2, 2))).names == ("f0", "f1", "f2")
-    assert features_by_removal(counted(rows, (2, 2, 2)), 0.0) == ()
 
 
 # ---- Alg. 6 ------------------------------------------------------------------------------------------------
@@ -244,19 +143,12 @@ def test_online_selection_after_each_task():
     assert online.prior.key == FeatureSet(("tells",), (2,)).key(("left", "right"))
 
 
-def test_online_selection_refuses_codes_of_another_set():
-    online = OnlineFeatureSelection(FeatureSet(("a",), (2,)), ("x", "y"))
-    with pytest.raises(InputError, match=r"codes must lie in \[0, 2\), got 2..2"):
-        online.update([2], [[True, False]])
-    assert len(online.full) == 0
-
-
 def test_a_million_configurations_reduced_to_four_features():
     # The thesis's §3.4.6: from 4^9 · 3 to 4^4 configurations, told by the four neighbours alone.
     names = ("UL", "UM", "UR", "ML", "MM", "MR", "DL", "DM", "DR", "Items")
     features = FeatureSet(names, (4,) * 9 + (3,))
     random = stream(0, "neighbours")
-    columns = np.column_stack([random.integers(0, size, 30_000) for size in features.sizes])
+    columns = np.column_stack([random.integers(0, size, 8_000) for size in features.sizes])
     passable = columns[:, [1, 7, 5, 3]] != 1  # north, south, east, west
     online = OnlineFeatureSelection(features, ("N", "S", "E", "W"))
     online.update(features.codes(columns), passable)
@@ -287,7 +179,7 @@ def test_reasons_by_hand():
     assert told.share_of("tasks disagree") == pytest.approx(32 / 98)
 
 
-@settings(max_examples=50)
+@settings(max_examples=25)
 @given(tables)
 def test_the_two_reasons_add_up_to_the_entropy(rows):
     case = counted([(cell, row) for cell, row in rows if any(row)] or [((0, 0, 0), [1, 0, 0])])
@@ -323,29 +215,7 @@ def test_broken_rules(call, message):
         call()
 
 
-def test_a_prior_of_other_contexts_is_refused():
-    prior = ActionPrior(2)
-    prior.update([5], [[True, False]])
-    with pytest.raises(InputError, match=r"codes must lie in \[0, 4\), got 5..5"):
-        CountedFeatures.from_prior(prior, FeatureSet(("a",), (4,)))
-
-
-def test_columns_name_themselves():
-    case = CountedFeatures.from_columns([[0, 2], [1, 0]], [[1, 0], [0, 1]])
-    assert (case.features.names, case.features.sizes) == (("f0", "f1"), (2, 3))
-    assert action_set_entropy(np.zeros((3, 2))) == 0.0
-
-
-def test_the_entropy_of_one_action_by_hand_and_their_sum():
-    # Two configurations of 4 counts each, so P = ½: θ = (½, ½) and (1, 0). Eq. 3.9: H̄(0) = H̄(1) = ½ · ½ bit.
-    found = CountedFeatures.from_columns([[0], [1]], [[2, 2], [4, 0]])
-    assert found.action_entropies().tolist() == [0.25, 0.25]
-    # Without the feature θ = (¾, ¼).
-    assert found.action_entropies([]) == pytest.approx([0.75 * math.log2(4 / 3), 0.25 * 2])
-    assert CountedFeatures.from_columns([[0]], [[0, 0]]).action_entropies().tolist() == [0.0, 0.0]
-
-
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(tables)
 def test_the_entropies_of_the_actions_sum_to_that_of_the_action_set(rows):
     found = counted(rows)

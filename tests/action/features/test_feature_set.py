@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.action.features.feature_set import MOST_CODES, FeatureSet
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.action.features.feature_set import FeatureSet
+from lifelore.core.errors import InputError
 
 sets = st.lists(st.integers(1, 5), min_size=0, max_size=6)
 
@@ -30,6 +30,7 @@ def test_codes_by_hand():
     assert features.codes([[0] * 10, [0] * 8 + [1, 2], [3] * 9 + [2]]).tolist() == [0, 5, 786_431]
 
 
+@settings(max_examples=25)
 @given(rows())
 def test_codes_lead_back_to_the_columns(case):
     features, columns = case
@@ -39,6 +40,7 @@ def test_codes_lead_back_to_the_columns(case):
 
 
 @pytest.mark.slow
+@settings(max_examples=25)
 @given(rows(), st.randoms(use_true_random=False))
 def test_coarser_codes_are_the_codes_of_fewer_columns(case, random):
     features, columns = case
@@ -62,14 +64,6 @@ def test_a_key_tells_features_and_actions():
     assert len(others) == 4
 
 
-def test_the_largest_set_fits_and_a_larger_one_is_refused():
-    features = named((2,) * 47)
-    assert features.n_codes == MOST_CODES
-    assert features.codes([[1] * 47]).tolist() == [2**47 - 1]
-    with pytest.raises(InputError, match=r"at most 2\*\*47 configurations, got 281474976710656; drop"):
-        named((2,) * 48)
-
-
 @pytest.mark.parametrize(
     ("call", "message"),
     [
@@ -88,8 +82,3 @@ def test_the_largest_set_fits_and_a_larger_one_is_refused():
 def test_broken_rules(call, message):
     with pytest.raises(InputError, match=message):
         call()
-
-
-def test_an_unknown_feature_names_the_known_ones():
-    with pytest.raises(NotFoundError, match="features must be among f0, f1, got 'x'"):
-        named((2, 3)).subset(["f0", "x"])

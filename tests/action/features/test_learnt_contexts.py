@@ -25,12 +25,6 @@ def test_each_situation_has_a_code_of_its_own_whatever_the_units():
     assert len(pairs) == len({code for _, code in pairs}) == 4
 
 
-def test_without_standardising_the_large_unit_decides():
-    seen, _ = situations()
-    contexts = LearntContexts.fit(seen, n_codes=2, standardise=False)
-    assert contexts([0, 0]) == contexts([1, 0]) != contexts([0, 1000])
-
-
 @given(st.lists(st.floats(-3, 3, width=32), min_size=6, max_size=6))
 def test_the_code_is_the_nearest_centre(numbers):
     """The naive twin: distances in units of the scale. Equal distances, up to rounding, may go either way."""
@@ -71,8 +65,3 @@ def test_a_file_gives_the_same_bits(tmp_path):
 def test_wrong_observations(observations, settings, message):
     with pytest.raises(InputError, match=message):
         LearntContexts.fit(observations, **settings)
-
-
-def test_an_observation_of_another_shape_is_refused():
-    with pytest.raises(InputError, match="must have 2 numbers, as in fit, got 3"):
-        LearntContexts.fit(situations()[0], n_codes=2)([1, 2, 3])

@@ -2,8 +2,6 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import SENSIBLE, TRY_COST, prior_rows, try_costs
@@ -11,7 +9,6 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.learning.curve import new_curve
 from lifelore.core.learning.q_learning import Schedule, learn, new_learner, uniform_rows
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
-from lifelore.core.planning.planning import optimal_q, policy_values
 from lifelore.core.streams import stream
 
 SIDE = 4
@@ -53,32 +50,6 @@ def test_with_a_uniform_prior_it_is_q_learning_bit_for_bit(ties):
         assert np.array_equal(a, b)
 
 
-@pytest.mark.parametrize("form", ["proportion", "support", "tempered"])
-def test_with_a_misleading_prior_it_still_finds_the_optimum(form):
-    tables = room()
-    best = optimal_q(tables, 0.95)
-    worst = best == best.min(axis=1, keepdims=True)
-    prior = ActionPrior(4, alpha0=1.0)
-    prior.update(np.arange(tables.n_states), worst, weight=5.0)  # every task so far taught the opposite
-    states = np.arange(tables.n_states)
-    rows = prior_rows(tables, states, lambda codes: prior.probs(codes, form, escape=0.2))
-    who, _ = learnt(tables, rows, episodes=5000, epsilon=0.5, alpha=1.0)
-    values = policy_values(tables, who.q.argmax(axis=1), 0.95)
-    assert values[tables.starts] == pytest.approx(best.max(axis=1)[tables.starts])
-
-
-def test_a_prior_that_knows_the_way_arrives_at_once():
-    tables = room()
-    prior = ActionPrior(4, alpha0=0.01)
-    useful = optimal_q(tables, 0.95)
-    prior.update(np.arange(16), useful >= useful.max(axis=1, keepdims=True) - 1e-9, weight=100.0)
-    rows = prior_rows(tables, np.arange(16), prior.probs)
-    _, curve = learnt(tables, rows, episodes=20, epsilon=1.0)
-    # At most six steps from corner to corner; a stray move has odds of 1 in 2,500.
-    assert curve.steps.max() <= 6
-    assert curve.collisions.sum() == 0
-
-
 def test_rows_are_read_by_context():
     tables = room()
     prior = ActionPrior(4, alpha0=0.5)
@@ -115,23 +86,3 @@ def test_costs_by_hand():
     # Within e² of the best: nothing. A nat beyond: TRY_COST steps.
     probs = np.exp([[0.0, -SENSIBLE, -SENSIBLE - 1, -SENSIBLE - 2.5]])
     assert try_costs(probs)[0] == pytest.approx([0, 0, TRY_COST, 2.5 * TRY_COST])
-
-
-@pytest.mark.slow
-@given(st.lists(st.lists(st.floats(1e-9, 1), min_size=4, max_size=4), min_size=1, max_size=5))
-def test_costs_are_an_order(rows):
-    mass = np.array(rows)
-    probs = mass / mass.sum(axis=1, keepdims=True)
-    costs = try_costs(probs)
-    assert (costs >= 0).all()
-    assert np.isfinite(costs).all()
-    assert (costs[np.arange(len(rows)), probs.argmax(axis=1)] == 0).all()
-    order = np.argsort(-probs, axis=1, kind="stable")
-    assert (np.diff(np.take_along_axis(costs, order, axis=1), axis=1) >= 0).all()
-
-
-def test_an_excluded_move_is_dear_but_never_forbidden():
-    costs = try_costs(np.array([[1.0, 0.0, 1e-6, 0.0]]))[0]
-    assert np.isfinite(costs).all()
-    assert costs[0] == 0
-    assert costs[1] == costs[3] > costs[2] > 0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.action.priors.policy_counts import actions_to_count
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import InputError
 
 Q = np.array([[1.0, 1.0 - 5e-10, 0.0], [2.0, 0.0, 2.1], [0.0, 0.0, 0.0], [-1.0, -3.0, -1.0]])
 
@@ -45,8 +45,3 @@ def test_learnt_values_by_hand():
 def test_broken_rules(told, message):
     with pytest.raises(InputError, match=message):
         actions_to_count(Q, **told)
-
-
-def test_the_choice_is_explicit():
-    with pytest.raises(NotFoundError, match="over must be one of all, visited, got 'some'"):
-        actions_to_count(Q, "some")

@@ -2,12 +2,10 @@
 
 import io
 import json
-import zipfile
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.action.priors.action_prior import ONE, ActionPrior
@@ -19,8 +17,7 @@ from lifelore.action.priors.prior_file import (
     prior_from_bytes,
     save_prior,
 )
-from lifelore.core.errors import InputError, StoreError
-from lifelore.core.streams import stream
+from lifelore.core.errors import InputError
 
 ABOUT = {"format": FORMAT.name, "version": 1, "n_actions": 2, "alpha0": 0.5, "key": "k", "about": {}}
 rows = st.lists(
@@ -48,6 +45,7 @@ def packed(about=None, about_text=None, **arrays) -> bytes:
 
 
 @pytest.mark.slow
+@settings(max_examples=25)
 @given(rows, st.floats(1e-9, 1e9), st.text())
 def test_the_same_bits_come_back(counted, alpha0, key):
     prior = ActionPrior(3, alpha0, key)
@@ -113,47 +111,3 @@ def test_foreign_and_damaged_files_are_refused_in_one_line(tmp_path, content, re
         load_prior(path)
     assert str(refused.value).startswith(str(path))
     assert "\n" not in str(refused.value)
-
-
-def test_every_flipped_byte_is_noticed_or_harmless():
-    # A checksum guards each array; what is not under it are the archive's own notes.
-    content, random = prior_bytes(small()), stream(0, "flip")
-    whole = prior_from_bytes(content).fixed_point_counts()
-    refused = 0
-    for place in random.permutation(len(content))[:150]:
-        spoilt = bytearray(content)
-        spoilt[place] ^= 1 << int(random.integers(8))
-        try:
-            read = prior_from_bytes(bytes(spoilt))
-        except InputError:
-            refused += 1
-        else:
-            assert all(np.array_equal(a, b) for a, b in zip(read.fixed_point_counts(), whole, strict=True))
-    assert refused > 50
-
-
-def test_newer_files_and_large_ones(monkeypatch):
-    with pytest.raises(InputError, match="has version 2, this Lifelore reads 1; update it"):
-        prior_from_bytes(packed({"version": 2}))
-    monkeypatch.setattr("lifelore.action.priors.prior_file.FORMAT", replace(FORMAT, largest=100))
-    with pytest.raises(InputError, match="bytes, more than 100"):
-        prior_from_bytes(packed())
-
-
-def test_an_archive_of_something_else():
-    stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w") as file:
-        file.writestr("contexts.npy", b"nothing")
-    with pytest.raises(InputError, match="no action prior that can be read"):
-        prior_from_bytes(stream.getvalue())
-
-
-def test_places_that_cannot_be(tmp_path):
-    with pytest.raises(InputError, match="cannot be read: No such file"):
-        load_prior(tmp_path / "gone.npz")
-    with pytest.raises(StoreError, match=r"cannot be written to .*: No such file"):
-        save_prior(small(), tmp_path / "no" / "where.npz")
-    with pytest.raises(InputError, match="must be JSON values"):
-        prior_bytes(small(), {"x": object()})
-    with pytest.raises(InputError, match="must be JSON values"):
-        prior_bytes(small(), {"x": float("nan")})

@@ -7,7 +7,6 @@ import pytest
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.prior_report import prior_report
-from lifelore.core.errors import InputError
 
 
 def small() -> ActionPrior:
@@ -41,12 +40,3 @@ def test_of_the_contexts_met_by_hand():
     assert told["sure_rate"] == 0.5
     assert told["useful_actions"] == 0.75
     assert told["exclusion_rate"] == pytest.approx(1 / 3)
-
-
-def test_of_nothing():
-    told = prior_report(ActionPrior(3))
-    assert (told["contexts"], told["counted"]) == (0, 0.0)
-    assert {told[name] for name in ("unseen_rate", "entropy", "entropy_by_counts", "sure_rate")} == {None}
-    assert prior_report(ActionPrior(3), [1, 2])["unseen_rate"] == 1.0
-    with pytest.raises(InputError, match="best needs contexts, got none"):
-        prior_report(ActionPrior(3), best=[[True, False, False]])

@@ -19,7 +19,7 @@ from lifelore.action.search.domain_reduction import (
     task_futile_states,
     trap_states,
 )
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import InputError
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning.planning import optimal_q
 
@@ -97,12 +97,6 @@ def test_futile_states_and_actions_by_hand():
     assert domain_futile_actions(policies).tolist() == futile
 
 
-def test_all_tied_actions_are_followed():
-    # From 0 both actions lead to the goal 3 in two steps, by 1 or by 2.
-    task = goal_task([(1, 2), (3, 3), (3, 3), (3, 3)], 3, [0])
-    assert reachable_states(task, best_of(task, 3)).all()
-
-
 # ---- E8: the printed definition can be left --------------------------------------------------------------------
 
 
@@ -137,7 +131,7 @@ def test_renormalising_would_change_the_dynamics():
 
 
 @pytest.mark.slow
-@settings(max_examples=300)
+@settings(max_examples=40)
 @given(task_sets())
 def test_the_repaired_domain_is_never_left(case):
     tasks, policies = case
@@ -150,7 +144,7 @@ def test_the_repaired_domain_is_never_left(case):
 
 
 @pytest.mark.slow
-@settings(max_examples=300)
+@settings(max_examples=40)
 @given(task_sets())
 def test_the_repaired_domain_keeps_each_tasks_optimal_return(case):
     # Theorem 3.2.6, both parts: the same return from every start, and every optimal action still best.
@@ -166,7 +160,7 @@ def test_the_repaired_domain_keeps_each_tasks_optimal_return(case):
 
 
 @pytest.mark.slow
-@settings(max_examples=200)
+@settings(max_examples=40)
 @given(task_sets())
 def test_the_closed_domain_is_never_left_and_keeps_every_policy(case):
     tasks, policies = case
@@ -187,7 +181,7 @@ def test_the_closed_domain_is_never_left_and_keeps_every_policy(case):
 
 
 @pytest.mark.slow
-@settings(max_examples=300)
+@settings(max_examples=40)
 @given(task_sets())
 def test_reach_and_futility_are_the_definitions(case):
     tasks, policies = case
@@ -205,16 +199,6 @@ def test_reach_and_futility_are_the_definitions(case):
             assert repaired.pairs[s, a] == own
 
 
-@pytest.mark.slow
-@given(task_sets())
-def test_where_every_state_is_a_start_both_definitions_agree(case):
-    tasks, policies = case
-    everywhere = [t._replace(starts=np.arange(t.n_states, dtype=np.int32)) for t in tasks]
-    printed, repaired = printed_and_repaired(everywhere, policies)
-    assert np.array_equal(printed.pairs, repaired.pairs)
-    assert not printed.leading_out.any()
-
-
 # ---- traps: Prop. 3.2.7 ----------------------------------------------------------------------------------------
 
 
@@ -230,38 +214,6 @@ def test_the_minimised_domain_can_have_traps_where_the_domain_has_none():
     assert np.flatnonzero(trap_states(tasks[1], domain.pairs)).tolist() == [0, 1]
 
 
-def test_traps_by_hand():
-    # 0 leads to 1 or 2; 1 leads to the goal 3; 2 and 4 lead to each other for ever.
-    task = goal_task([(1, 2), (3, 3), (4, 4), (3, 3), (2, 2)], 3, [0])
-    assert np.flatnonzero(trap_states(task)).tolist() == [2, 4]
-    domain = minimised_domain([task], [best_of(task, 3)])
-    assert domain.states.tolist() == [True, True, False, True, False]
-    assert not (trap_states(task, domain.pairs) & domain.states).any()
-
-
-@pytest.mark.slow
-@given(task_sets())
-def test_from_every_state_a_minimised_domain_makes_no_traps(case):
-    # Where every state is a start each task keeps its own way from everywhere, so no trap is added.
-    tasks, policies = case
-    everywhere = [t._replace(starts=np.arange(t.n_states, dtype=np.int32)) for t in tasks]
-    domain = minimised_domain(everywhere, policies)
-    for tables in everywhere:
-        assert np.array_equal(trap_states(tables, domain.pairs), trap_states(tables))
-
-
-def test_tables_within_by_hand():
-    task = goal_task(CORRIDOR, 4, [0])
-    pairs = np.zeros((5, 2), bool)
-    pairs[:2, 1] = True
-    stay, free = (tables_within(task, pairs, word) for word in ("stay", "free"))
-    assert stay.next_state[..., 0].tolist() == [[1, 1], [2, 2], [2, 2], [3, 3], [4, 4]]
-    assert free.next_state[..., 0].tolist() == [[1, 1], [2, 2], [1, 3], [2, 4], [3, 4]]
-    assert stay.reward.sum() == 0
-    assert free.reward.sum() == 2  # 3 right, and 4 right against the wall
-    assert np.array_equal(task.next_state[..., 0], CORRIDOR)  # the task itself is unchanged
-
-
 # ---- Eq. 3.6 ---------------------------------------------------------------------------------------------------
 
 
@@ -275,15 +227,6 @@ def test_the_worst_case_is_the_priors_own_proportion(n_actions, alpha0):
         assert futile_goal_probability(n_actions, n_tasks, alpha0) == pytest.approx(expected, rel=1e-12)
         prior.update([0], [[True] * (n_actions - 1) + [False]])
     assert futile_goal_probability(n_actions, 0, alpha0) == pytest.approx(1 / n_actions)
-
-
-def test_percepts_pool_tasks_times_states():
-    # Ten states look alike; after two tasks the bound of Eq. 3.6 is that of twenty.
-    prior = ActionPrior(4, alpha0=0.1)
-    for _ in range(2):
-        prior.update([0] * 10, [[True, True, True, False]] * 10)
-    assert prior.probs([0])[0, 3] == pytest.approx(float(futile_goal_probability(4, 20, 0.1)))
-    assert prior.probs([0])[0, 3] < futile_goal_probability(4, 2, 0.1) / 9
 
 
 # ---- rules -----------------------------------------------------------------------------------------------------
@@ -316,13 +259,6 @@ def test_broken_rules(call, message):
         call()
 
 
-def test_unknown_words_name_the_known_ones():
-    with pytest.raises(NotFoundError, match="form must be one of repaired, printed, closed, got 'fixed'"):
-        minimised_domain([TASK], [BEST], "fixed")
-    with pytest.raises(NotFoundError, match="dead_ends must be one of stay, free"):
-        tables_within(TASK, BEST, "leave")
-
-
 # ---- T̂, and what is refused --------------------------------------------------------------------------------
 
 
@@ -343,15 +279,3 @@ def test_the_transitions_of_the_minimised_domain_term_by_term(drawn, form):
             row = found[a][[s]].toarray()[0]
             assert row == pytest.approx([eta * own.get(t, 0.0) for t in range(tables.n_states)])
             assert row.sum() == pytest.approx(float(domain.pairs[s, a] and not domain.without_successor[s, a]))
-
-
-def test_what_is_not_boolean_is_refused():
-    task = goal_task(CORRIDOR, 3, [1])
-    policy = np.where(best_of(task, 3), 0.9, 0.1)
-    for call in (
-        lambda: reachable_states(task, policy),
-        lambda: task_futile_actions(policy),
-        lambda: minimised_domain([task], [policy]),
-    ):
-        with pytest.raises(InputError, match=r"best must be boolean.*got float64: apply best_actions"):
-            call()

@@ -1,9 +1,5 @@
 """Tree search against a plain twin on dictionaries, by hand, and by what a guide must do."""
 
-import os
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from hypothesis import given
@@ -11,7 +7,6 @@ from hypothesis import strategies as st
 
 from lifelore.action.search.tree_search import (
     EpisodeResult,
-    SearchGuidance,
     SearchSettings,
     play,
     search,
@@ -20,7 +15,6 @@ from lifelore.action.search.tree_search import (
 from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
-from lifelore.core.planning.planning import best_actions, optimal_q
 
 ENDS = SearchSettings(simulations=60, depth=12)
 
@@ -156,15 +150,6 @@ def test_the_kernel_is_the_plain_twin_to_the_bit(seed, n_outcomes, simulations, 
     np.testing.assert_array_equal(found.means, [s / max(v, 1) for s, v in zip(sums, visits, strict=True)])
 
 
-def test_by_hand_one_simulation_takes_the_likeliest_action():
-    tables = corridor(4)
-    guide = search_guidance(tables, [[0.2, 0.8]])
-    found = search(tables, guide, 2, SearchSettings(1, 1, discount=0.5), np.random.default_rng(0))
-    assert found.visits.tolist() == [0, 1]
-    assert found.means.tolist() == [0.0, 1.0]
-    assert found.action == 1
-
-
 def test_by_hand_puct_visits():
     # Left pays -1 and right +1, both end. P = (0.9, 0.1), c = 1.
     tables = Tables(
@@ -189,49 +174,6 @@ def test_by_hand_puct_visits():
     assert sum(after) == 40
 
 
-@pytest.mark.parametrize("by_mean", [False, True])
-def test_many_simulations_find_the_best_move(by_mean):
-    tables = corridor(9, goal=6)
-    best = best_actions(optimal_q(tables, 0.95))
-    guide = search_guidance(tables)
-    for state in (3, 5, 7, 8):
-        settings = SearchSettings(800, 30, by_mean=by_mean)
-        found = search(tables, guide, state, settings, np.random.default_rng(state))
-        assert best[state, found.action], state
-
-
-def test_a_prior_towards_the_goal_saves_simulations_and_one_away_from_it_costs_them():
-    tables = corridor(30, goal=29)
-
-    def reached(probs):
-        guide = search_guidance(tables, [probs])
-        episodes = [
-            play(tables, guide, 15, ENDS, 25, np.random.default_rng(0), np.random.default_rng(i))
-            for i in range(20)
-        ]
-        return sum(episode.reached for episode in episodes)
-
-    assert reached([0.1, 0.9]) == 20
-    assert reached([0.1, 0.9]) > reached([0.5, 0.5]) >= reached([0.9, 0.1])
-
-
-def test_a_uniform_prior_is_no_prior():
-    tables = random_world(1, 2)
-    one, other = (
-        search(tables, guide, 0, ENDS, np.random.default_rng(5))
-        for guide in (search_guidance(tables), search_guidance(tables, np.full((7, 3), 1 / 3), rollout="uniform"))
-    )
-    assert one.visits.tolist() == other.visits.tolist()
-
-
-def test_rollouts_are_drawn_as_told():
-    tables, probs = random_world(1, 1), [[0.7, 0.2, 0.1]]
-    np.testing.assert_allclose(search_guidance(tables, probs).rollout_cum, [[0.7, 0.9, 1.0]])
-    np.testing.assert_allclose(
-        search_guidance(tables, probs, rollout="uniform").rollout_cum, [[1 / 3, 2 / 3, 1.0]]
-    )
-
-
 def test_an_episode_by_hand():
     # Two moves to the right of a corridor: 0.9 · 1, and no wall is met.
     tables = corridor(4, goal=3)
@@ -244,51 +186,6 @@ def test_an_episode_by_hand():
         tables, search_guidance(tables), 1, settings, 1, np.random.default_rng(0), np.random.default_rng(1)
     )
     assert short == EpisodeResult(1, False, 0.0, 0)
-
-
-def test_an_episode_counts_walls():
-    tables = corridor(5, goal=4)
-    leftwards = SearchGuidance(np.array([[1.0, 0.0]]), np.array([[1.0, 1.0]]), np.zeros(5, np.int32))
-    randoms = np.random.default_rng(0), np.random.default_rng(1)
-    played = play(tables, leftwards, 1, SearchSettings(3, 3, 100.0, 0.5), 3, *randoms)
-    assert played.collisions == 2
-    assert played.discounted_return == pytest.approx(-0.1 * 0.5 - 0.1 * 0.25)
-
-
-def test_the_same_generators_give_the_same_episode():
-    tables = random_world(3, 3)
-    one, other = (
-        play(tables, search_guidance(tables), 0, ENDS, 30, np.random.default_rng(1), np.random.default_rng(2))
-        for _ in range(2)
-    )
-    assert one == other
-
-
-PLAIN = """
-import numpy as np, sys
-sys.path.insert(0, sys.argv[1])
-from test_tree_search import *
-for seed in range(6):
-    tables, random = random_world(seed, 1 + seed % 3), np.random.default_rng(seed)
-    guide = search_guidance(tables, random.dirichlet(np.ones(3), 7))
-    settings = SearchSettings(20, 5, by_mean=bool(seed % 2))
-    print(play(tables, guide, 0, settings, 6, np.random.default_rng(1), np.random.default_rng(2)))
-    print(search(tables, guide, 0, settings, np.random.default_rng(3)))
-"""
-
-
-@pytest.mark.slow
-def test_compiled_and_plain_python_agree():
-    def said(disabled):
-        command = [sys.executable, "-W", "error", "-c", PLAIN, os.path.dirname(__file__)]
-        environment = os.environ | {"NUMBA_DISABLE_JIT": disabled}
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
-        return done.stdout
-
-    compiled = said("0")
-    assert compiled.count("EpisodeResult") == 6
-    assert compiled == said("1")
 
 
 def test_each_broken_rule_is_one_clear_line():

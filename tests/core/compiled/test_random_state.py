@@ -53,15 +53,6 @@ def test_largest_draw_stays_below_one():
     assert draw(np.array([2**64 - 1, 0], np.uint64), 1)[0] == 1 - 2.0**-53
 
 
-def test_uniform_in_law():
-    drawn = draw(random_state(stream(0, "law")), 100_000)
-    counts = np.histogram(drawn, 20, (0, 1))[0]
-    # Chi square with 19 degrees of freedom exceeds 43.8 with probability 0.001.
-    assert (((counts - 5000) ** 2) / 5000).sum() < 43.8
-    # The correlation of neighbours has deviation 1/√n = 0.0032; four of them.
-    assert abs(np.corrcoef(drawn[:-1], drawn[1:])[0, 1]) < 0.0127
-
-
 def test_a_state_is_never_all_zero_and_follows_its_generator():
     states = [random_state(stream(seed, "x")) for seed in range(50)]
     assert all(state.dtype == np.uint64 and state[0] & np.uint64(1) for state in states)

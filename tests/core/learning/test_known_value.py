@@ -5,21 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.core.learning.curve import NEWS, new_curve
+from lifelore.core.learning.curve import new_curve
 from lifelore.core.learning.known_value import KnownValue
 from lifelore.core.learning.known_world import (
-    GOAL,
-    UNKNOWN,
     WorldModel,
-    add_moves,
-    find_goal_distances,
-    goal_distances,
-    no_incoming_moves,
     unknown_world,
 )
 from lifelore.core.learning.model_learning import (
-    ALL_NEW,
-    MOST_NEWS,
     ExplorationStrategy,
     StateInfo,
     explore,
@@ -59,7 +51,7 @@ def follow(tables, model, strategy=ExplorationStrategy(), seed=0, chunk=7, chunk
 
 
 @pytest.mark.slow
-@settings(max_examples=60)
+@settings(max_examples=25)
 @given(
     seeds,
     st.sampled_from(
@@ -83,17 +75,8 @@ def test_kept_up_to_date_equals_evaluating_every_state(seed, strategy, goals, re
     assert values[:, 0] == pytest.approx(values[:, 1], rel=1e-12, abs=1e-300)
 
 
-def test_ways_are_found_and_get_better():
-    """Guards the property above against mazes in which nothing happens."""
-    _, values = follow(maze(3), unknown_world(40, 4), chunks=300)
-    steps = np.diff(values[:, 0])
-    assert values[0, 0] == 0
-    assert (steps >= -1e-12).all()
-    assert (steps > 0).sum() >= 3
-
-
 @pytest.mark.slow
-@settings(max_examples=60)
+@settings(max_examples=40)
 @given(seeds)
 def test_any_world_and_any_remembered_model(draw_world, seed):
     """Rewards on the way, bad ends, a model that is not true: then every state is evaluated."""
@@ -102,46 +85,3 @@ def test_any_world_and_any_remembered_model(draw_world, seed):
     model = WorldModel(random.integers(-1, 12, (12, 3)).astype(np.int32), random.integers(0, 2, 12))
     _, values = follow(tables, model, seed=seed, chunk=3, chunks=60)
     assert values[:, 0] == pytest.approx(values[:, 1], rel=1e-12, abs=1e-300)
-
-
-@settings(max_examples=60)
-@given(seeds)
-def test_moves_added_in_any_order_give_the_distances_found_at_once(seed):
-    random = np.random.default_rng(seed)
-    truth = random.integers(0, 25, (25, 3)).astype(np.int32)
-    place = random.choice([0, 1, 1, 1, 2], 25).astype(np.int8)
-    place[random.integers(25)] = GOAL
-    target = np.full_like(truth, UNKNOWN)
-    ways = no_incoming_moves(25, 3, np.arange(25, dtype=np.int32))
-    find_goal_distances(target, place, ways)
-    for moves in np.array_split(random.permutation(75), 9):
-        target.flat[moves] = truth.flat[moves]
-        add_moves(target, place, np.concatenate([moves, moves[:2]]), ways)  # a move twice is one move
-        expected = goal_distances(target, place)
-        assert ways.distance.tolist() == expected.tolist()
-        counts = np.bincount(expected[expected > 0], minlength=26)
-        assert ways.starts_at[1:].tolist() == counts[1:].tolist()
-        assert ways.farthest[0] >= expected.max()
-
-
-def test_more_news_than_are_listed_are_all_found():
-    n = MOST_NEWS * 2
-    line = np.stack([np.r_[np.arange(1, n), n - 1], np.r_[0, np.arange(n - 1)]], axis=1)
-    stays = line == np.arange(n)[:, None]
-    wins = ~stays & (line == n - 1)
-    tables = Tables(
-        line.astype(np.int32)[:, :, None],
-        np.where(stays, -10.0, np.where(wins, 100.0, 0.0))[:, :, None],
-        np.where(stays, COLLISION, np.where(wins, TERMINAL, 0)).astype(np.uint8)[:, :, None],
-        np.ones(1),
-        np.zeros(1, np.int32),
-    )
-    explorer = new_model_learner(n, 2, stream(0), stream(1))
-    model = unknown_world(n, 2)
-    known = KnownValue(tables, model, explorer, 0.999)
-    seen = StateInfo(np.zeros(n, np.int64), np.zeros(n, np.int32), np.zeros((1, 2)))
-    assert known.update() == 0
-    explore(tables, model, seen, ExplorationStrategy(), explorer, new_curve(1), 10**6, 0.999, 10**6)
-    assert explorer.cursor[NEWS] == ALL_NEW
-    assert known.update() == pytest.approx(100 * 0.999 ** (n - 2))
-    assert explorer.cursor[NEWS] == 0

@@ -1,7 +1,5 @@
 """The model-based learner: step by step beside a naive book-keeper, and in worlds that changed."""
 
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -79,28 +77,6 @@ def lived(tables, model, seen=None, strategy=PLANNED, episodes=3, max_steps=100,
 # ---- by hand -----------------------------------------------------------------------------------------
 
 
-def test_a_remembered_corridor_is_walked_to_its_end():
-    tables = corridor(start=0)
-    explorer, curve = lived(tables, remembered(tables))
-    # Each place lies beside the last one: five steps, no collision; later episodes go straight there.
-    assert curve.steps.tolist() == [5, 5, 5]
-    assert curve.returns == pytest.approx([100 * 0.9**4] * 3)
-    assert curve.rewards.tolist() == [100.0] * 3
-    assert not curve.collisions.any()
-    assert curve.reached.all()
-    assert explorer.place.tolist() == [LOOKED] * 5 + [GOAL]
-    assert explorer.tried[:5].tolist() == [[0, 3]] * 5
-    assert explorer.cursor[4] == 15
-
-
-def test_episodes_end_at_the_cap():
-    tables = corridor(start=0)
-    _, curve = lived(tables, remembered(tables), max_steps=4)
-    # The first ends one short of the goal; later ones never get further, as all begin at 0.
-    assert curve.steps.tolist() == [4] * 3
-    assert not curve.reached.any()
-
-
 def test_the_goal_is_seen_in_an_unknown_world_and_then_sought():
     tables = corridor(start=2)
     model = unknown_world(6, 2)
@@ -113,111 +89,6 @@ def test_the_goal_is_seen_in_an_unknown_world_and_then_sought():
     known = model.target != UNKNOWN
     assert (model.target[known] == tables.next_state[:, :, 0][known]).all()
     assert ((model.percept == 0) == (explorer.place == LOOKED)).all()
-
-
-def test_a_bad_end_is_avoided_thereafter():
-    tables = corridor(start=2)
-    tables.reward[1, LEFT], tables.event[1, LEFT] = -50, TERMINAL  # the left end is a pit
-    explorer, curve = lived(tables, unknown_world(6, 2), episodes=30, seed=3)
-    assert explorer.place[0] == DEAD_END
-    assert explorer.tried[1, LEFT] == 1
-    assert curve.reached.sum() == 29
-    assert curve.rewards.min() <= -50
-
-
-def test_least_tried_keeps_the_moves_of_a_place_even():
-    tables = corridor(start=2, n=4, goal=-1)
-    explorer, _ = lived(
-        tables, unknown_world(4, 2), strategy=ExplorationStrategy(planned=False), episodes=1, max_steps=1001
-    )
-    spread = explorer.tried.max(axis=1) - explorer.tried.min(axis=1)
-    assert (spread <= 1).all()
-    assert explorer.tried.sum() == 1001
-
-
-def test_senses_show_every_move_of_a_place_without_trying_it():
-    tables = corridor(start=0, goal=-1)
-    model = unknown_world(6, 2)
-    _, curve = lived(tables, model, strategy=ExplorationStrategy(senses=True), episodes=1, max_steps=3)
-    assert model.target[:3].tolist() == tables.next_state[:3, :, 0].tolist()
-    assert (model.target[3:] == UNKNOWN).all()
-    assert curve.collisions[0] == 0
-
-
-def test_exhaustive_tries_everything_before_it_settles():
-    tables = corridor(start=0, n=4, goal=3)
-    model = unknown_world(4, 2)
-    lived(tables, model, strategy=ExplorationStrategy(exhaustive=True), episodes=40)
-    assert (model.target[:3] != UNKNOWN).all()
-
-
-# ---- a world that changed ----------------------------------------------------------------------------
-
-
-def test_a_transition_found_wrong_is_overwritten_and_the_way_planned_anew():
-    # Remembered as a loop: from 0 left to 3 directly. Now the shortcut is walled up.
-    before = corridor(n=4, goal=3)
-    model = remembered(before)
-    model.target[0, LEFT] = 3
-    _, curve = lived(before, model, episodes=20)
-    assert model.target[0, LEFT] == 0
-    assert curve.collisions.sum() == 1
-    assert curve.reached[-1]
-    assert curve.steps[-1] == 3
-
-
-def test_a_changed_percept_forgets_the_moves_of_that_place_alone():
-    tables = corridor(start=2)
-    model = remembered(tables, percept=[7] * 6)
-    model.target[3, RIGHT] = 3  # there used to be a wall
-    _, curve = lived(tables, model, perceived(tables, [7, 7, 7, 9, 7, 7]), episodes=8)
-    assert model.percept.tolist()[3] == 9
-    assert model.target[3, RIGHT] == 4  # tried anew
-    assert curve.reached[-1]
-    # The refusals at places that look as they did were believed, so nobody ran into the left end.
-    assert curve.collisions.sum() == 0
-
-
-@pytest.mark.parametrize("seed", range(10))
-def test_a_door_that_opened_unseen_is_found_when_nothing_is_left(seed):
-    """Two rooms 0-2 and 3-5; the wall between them has gone and nothing shows it."""
-    before, after = corridor(walls=(2,), start=0), corridor(start=0)
-    model = remembered(before)
-    model.target[3:] = UNKNOWN  # the other room was never entered
-    explorer, curve = lived(after, model, episodes=6, max_steps=200, seed=seed)
-    assert model.target[2, RIGHT] == 3
-    assert explorer.place[5] == GOAL
-    assert curve.reached[-1]
-    assert curve.steps[-1] == 5
-    # The outer wall was doubted too, at most once; the door is no collision.
-    assert curve.collisions.sum() <= 2
-
-
-def test_refusals_met_in_this_task_are_not_doubted_again():
-    """A room without a door: every wall is met once, then nothing but wandering."""
-    tables = corridor(walls=(2,), start=1)
-    model = remembered(tables)
-    explorer, curve = lived(tables, model, episodes=1, max_steps=500)
-    assert not curve.reached.any()
-    assert model.target[:3].tolist() == tables.next_state[:3, :, 0].tolist()
-    assert explorer.tried[0, LEFT] >= 1
-    assert explorer.tried[2, RIGHT] >= 1
-    assert curve.steps[0] == 500
-
-
-def test_a_wall_across_the_remembered_way_is_met_once():
-    ring = np.array([[5, 1], [0, 2], [1, 3], [2, 4], [3, 5], [4, 0]], np.int32)  # left and right round six
-    blocked = ring.copy()
-    blocked[0, LEFT] = 0
-    event = np.zeros((6, 2, 1), np.uint8)
-    event[0, LEFT], event[4, RIGHT] = COLLISION, TERMINAL
-    reward = np.where(event == TERMINAL, 100.0, np.where(event == COLLISION, -10.0, 0.0))
-    tables = Tables(blocked[:, :, None], reward, event, np.ones(1), np.zeros(1, np.int32))
-    model = WorldModel(ring.copy(), np.zeros(6, np.int64))
-    _, curve = lived(tables, model, episodes=20)
-    assert curve.collisions.sum() <= 1
-    assert curve.steps[-1] == 5
-    assert curve.reached.all()
 
 
 # ---- a naive book-keeper beside every step ------------------------------------------------------------
@@ -361,22 +232,6 @@ def test_chunks_change_no_bit(draw_world, budget, strategy):
     parts = lived(tables, models[1], strategy=strategy, episodes=40, budget=budget)
     for a, b in zip((*whole[0], *whole[1], *models[0]), (*parts[0], *parts[1], *models[1]), strict=True):
         assert np.array_equal(a, b)
-
-
-def test_threads_change_no_bit(draw_world):
-    tables = draw_world(2, n_states=60, n_actions=4)
-
-    def one(seed):
-        model = unknown_world(60, 4)
-        explorer, curve = lived(tables, model, episodes=60, seed=seed)
-        return (*explorer, *curve, *model)
-
-    alone = [one(seed) for seed in range(6)]
-    with ThreadPoolExecutor(3) as pool:
-        together = list(pool.map(one, range(6)))
-    assert all(
-        np.array_equal(a, b) for x, y in zip(alone, together, strict=True) for a, b in zip(x, y, strict=True)
-    )
 
 
 def test_worlds_it_cannot_plan_in(draw_world):

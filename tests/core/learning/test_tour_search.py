@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from lifelore.core.learning.curve import EPISODE, GOALS, new_curve
-from lifelore.core.learning.known_world import LOOKED, UNKNOWN, WorldModel, unknown_world
+from lifelore.core.learning.curve import GOALS, new_curve
+from lifelore.core.learning.known_world import UNKNOWN, WorldModel, unknown_world
 from lifelore.core.learning.model_learning import ExplorationStrategy, StateInfo, explore, new_model_learner
-from lifelore.core.learning.tour_search import KnownTour, explore_on_tour, set_tour
+from lifelore.core.learning.tour_search import KnownTour, explore_on_tour
 from lifelore.core.streams import stream
 from lifelore.domains.grids.lattice import lattice
 from lifelore.domains.grids.noise_maze import noise_maze
@@ -36,18 +36,6 @@ def remembered(world) -> WorldModel:
     return WorldModel(np.where(refused, stays, world.neighbour).astype(np.int32), world.percepts.copy())
 
 
-def test_a_tour_finds_the_goal_sooner_than_the_nearest_place():
-    world = lattice(23)
-    steps = {
-        tour: np.mean(
-            [lived(world, remembered(world), goal, goal, tour)[2] for goal in range(0, world.n_states, 5)]
-        )
-        for tour in (True, False)
-    }
-    # No search needs less than half of the places on average.
-    assert world.n_states / 2 < steps[True] < steps[False]
-
-
 def test_a_world_without_knowledge_is_searched_as_before():
     world = noise_maze(stream(3, "maze"), density=0.6)
     learners = [lived(world, unknown_world(world.n_states, 4), 7, tour=tour)[0] for tour in (True, False)]
@@ -74,33 +62,3 @@ def test_a_door_that_closed_is_left_out_and_the_goal_still_found():
     for goal in (0, world.n_states // 2, world.n_states - 1):
         learner, _, _ = lived(world, WorldModel(model.target.copy(), model.percept.copy()), goal, goal)
         assert learner.cursor[GOALS] == 1
-
-
-def test_a_place_out_of_reach_does_not_stop_the_search():
-    world = lattice(23)
-    model, goal = remembered(world), 100
-    model.target[model.target == 40] = (
-        UNKNOWN  # no known move leads into place 40, but its own moves out are known
-    )
-    learner, _, _ = lived(world, model, goal, episodes=50)
-    assert learner.cursor[GOALS] == 1
-
-
-def test_the_next_episode_visits_the_rest():
-    world = lattice(23)
-    learner, _, _ = lived(world, remembered(world), 250, seed=4, max_steps=60, episodes=40)
-    assert learner.cursor[EPISODE] >= 3
-    order = learner.tour[: learner.tour_at[1]]
-    # The last tour was planned at the start of the last episode: what was visited before is not on it.
-    assert len(order) < world.n_states - 40
-    assert len(np.unique(order)) == len(order)
-
-
-def test_set_tour():
-    learner = new_model_learner(5, 2, stream(0), stream(1))
-    set_tour(learner, np.array([3, 1], np.int32))
-    set_tour(learner, np.array([2], np.int32))
-    assert learner.later.tolist() == [False, False, True, False, False]
-    assert learner.tour_at.tolist() == [0, 1]
-    assert learner.tour[0] == 2
-    assert (learner.place != LOOKED).all()

@@ -58,14 +58,6 @@ def test_lives_are_measured_one_by_one(one, other):
     )
 
 
-@settings(max_examples=20, deadline=None)
-@given(lives)
-def test_one_who_never_changes_transfers_nothing(life):
-    still = np.repeat(life[:1], 5, axis=0)
-    found = lifetime_transfer([still])
-    assert [found.forward_transfer.value, found.backward_transfer.value, found.forgetting.value] == [0, 0, 0]
-
-
 def test_plain_data_has_an_interval_of_each_measure():
     lives = [LIFE, LIFE * 2, LIFE * 3]
     plain = lifetime_transfer(lives).to_dict()

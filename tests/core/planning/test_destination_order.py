@@ -40,12 +40,6 @@ def test_by_hand():
     assert expected_time([0, 1, 2], steps, chance, 0.1, 100.0) == pytest.approx(31.3)
 
 
-def test_places_out_of_reach_are_left_out():
-    steps = np.array([[0.0, np.inf], [np.inf, 0.0], [3.0, np.inf]])
-    for rule in (by_rate, by_exact_search):
-        assert rule(steps, np.array([0.5, 0.4]), 0.1, 100.0) == [0]
-
-
 @pytest.mark.parametrize("seed", range(8))
 def test_the_exact_search_is_the_best_of_all_orders_of_all_subsets(seed):
     random = np.random.default_rng(seed)

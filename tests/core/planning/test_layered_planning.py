@@ -25,7 +25,7 @@ def rows_of(tables: Tables, size: int):
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(seeds, st.sampled_from([1, 3]), st.sampled_from([0.0, 0.5, 0.95]))
 def test_same_as_sweeps_over_all_layers(draw_layers, seed, n_outcomes, discount):
     tables = draw_layers(seed, n_layers=5, size=SIZE, n_outcomes=n_outcomes)
@@ -71,16 +71,6 @@ def test_a_corridor_by_hand(discount):
     assert best_actions(q).tolist() == [[False, True]] * 6
 
 
-def test_for_ever_may_beat_every_exit():
-    # At ½, for ever to and fro is worth -2, through the exit -100 at least.
-    tables = corridor(2, -100.0)
-    assert layered_q(tables, 2, 0.5) == pytest.approx(optimal_q(tables, 0.5), abs=1e-9)
-    assert layered_q(tables, 2, 0.5).max(axis=1) == pytest.approx(np.full(4, -2.0), abs=1e-9)
-    # And a reward for every step is better kept than ended.
-    endless = corridor(2, 1.0)._replace(reward=np.ones((4, 2, 1)))
-    assert layered_q(endless, 2, 0.5).max(axis=1) == pytest.approx(np.full(4, 2.0), abs=1e-9)
-
-
 def test_only_what_is_asked_for_is_solved(draw_layers):
     tables = draw_layers(3, n_layers=8, size=SIZE, reach=1)
     looked = []
@@ -97,12 +87,6 @@ def test_only_what_is_asked_for_is_solved(draw_layers):
     plan.values(0)
     assert 7 not in looked[1:]  # known already, not looked at again
     assert plan.solved[0]
-
-
-def test_the_values_handed_out_are_the_callers_own(draw_layers):
-    plan = LayeredPlan(rows_of(draw_layers(0, n_layers=3, size=SIZE), SIZE), 3, SIZE, 0.9)
-    plan.values(0)[:] = 7.0
-    assert (plan.values(0) != 7.0).all()
 
 
 def test_misuse_is_told(draw_layers):

@@ -8,9 +8,7 @@ from hypothesis import strategies as st
 from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL, Tables
 from lifelore.core.planning.planning import (
     best_actions,
-    greedy_policy,
     learnt_best_actions,
-    mean_start_value,
     optimal_actions,
     optimal_q,
     policy_values,
@@ -38,13 +36,6 @@ def ring(n=4) -> Tables:
     return Tables(next_state, reward, event, np.ones(1), np.array([0, 2], np.int32))
 
 
-def test_for_ever_round_the_ring():
-    # 1 / (1 - ½) = 2 for ever, or 5 now: end at once.
-    assert optimal_q(ring(), 0.5) == pytest.approx(np.tile([1 + 0.5 * 5, 5.0], (4, 1)))
-    # 1 / (1 - 0.9) = 10 beats 5.
-    assert optimal_q(ring(), 0.9) == pytest.approx(np.tile([10.0, 5.0], (4, 1)))
-
-
 def test_a_policy_on_a_cycle_and_into_it():
     # 0 ends (5), 1 stands still, 2 → 3 → 0: 1 + ½(1 + ½·5).
     assert policy_values(ring(), np.array([1, -1, 0, 0]), 0.5).tolist() == [5.0, 0.0, 2.75, 3.5]
@@ -61,7 +52,7 @@ def test_a_policy_on_a_cycle_and_into_it():
     assert policy_values(row, np.zeros(3, int), 0.5).tolist() == [-0.5, -1.0, -2.0]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(seeds, st.sampled_from([1, 3]), st.sampled_from([0.0, 0.5, 0.95]))
 def test_policy_values_solve_the_linear_equations(draw_world, seed, n_outcomes, discount):
     tables = draw_world(seed, n_states=9, n_outcomes=n_outcomes)
@@ -76,7 +67,7 @@ def test_policy_values_solve_the_linear_equations(draw_world, seed, n_outcomes, 
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(seeds, st.sampled_from([1, 3]), st.sampled_from([0.0, 0.5, 0.95]))
 def test_value_iteration_same_as_dense_sweeps(draw_world, seed, n_outcomes, discount):
     tables = draw_world(seed, n_outcomes=n_outcomes)
@@ -109,14 +100,6 @@ def test_ties_at_nothing_are_ties_whatever_the_rounding():
     assert best_actions(np.full((1, 2), -np.inf)).tolist() == [[True, True]]
     # What is learnt last, far from the goal, is little and yet learnt.
     assert learnt_best_actions(q)[0].tolist() == [False, True, False]
-
-
-def test_no_policy_where_nothing_is_promised():
-    assert greedy_policy(np.array([[0.0, -1.0], [0.1, 0.1], [0.0, 2.0]])).tolist() == [-1, 0, 1]
-
-
-def test_mean_over_the_starts():
-    assert mean_start_value(ring(), np.array([1.0, 50.0, 4.0, 50.0])) == 2.5
 
 
 def test_learnt_costs_teach_and_nothing_learnt_does_not():

@@ -8,7 +8,6 @@ from lifelore.interaction.adaptation.beat import EPSILONS, Beat, rule_at
 from lifelore.interaction.adaptation.move_signal import MoveSignal
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 from lifelore.interaction.signals.transition_signal import TransitionSignal
@@ -42,55 +41,6 @@ def test_belief_and_choice_by_hand():
     assert beat.belief == pytest.approx([0.81 / 1.06, 0.25 / 1.06])
     assert beat.select() == 0
     assert (beat.step, beat.episode) == (2, 0)
-
-
-def test_a_move_that_no_type_explains_keeps_the_belief():
-    signal = TransitionSignal(np.array([[[[1.0, 0.0]], [[0.0, 1.0]]]] * 2), 1)
-    beat = Beat(PolicyLibrary.from_means([[1.0], [0.0]], 1.0, signal=signal, prior=[0.3, 0.7]))
-    beat.update(0, [(0, 0, 1)])
-    assert beat.belief == pytest.approx([0.3, 0.7])
-    assert beat.surprises == 1
-
-
-@pytest.mark.parametrize("epsilon", [0.0, 0.3, "1/n", "by episode"])
-def test_the_algorithm_as_printed_gives_the_same_decisions(epsilon):
-    """Algorithm 9 with products and no normalisation, for as long as floats can hold them."""
-    lib, probs, value = library()
-    beat = Beat(lib, epsilon=epsilon, seed=np.random.default_rng(9))
-    draws, world = np.random.default_rng(9), np.random.default_rng(1)
-    belief, state = np.full(N_TYPES, 1 / N_TYPES), 0
-    for step in range(60):
-        episode = step // 20
-        chosen = beat.select()
-        explores = draws.random() < rule_at(epsilon, step, episode).epsilon
-        assert chosen == int((draws.random(N_SETS) if explores else belief @ value).argmax())
-        triple = move(world, probs, 2, chosen, state)
-        belief = belief * probs[:, chosen, triple[0], triple[1], triple[2]]
-        beat.update(chosen, [triple])
-        state = triple[2]
-        assert beat.belief == pytest.approx(belief / belief.sum(), abs=1e-12)
-        if step % 20 == 19:
-            beat.end_episode()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("epsilon", [0.0, 0.4])
-def test_beat_is_policy_reuse(epsilon):
-    """C4.16: ε-greedy, transition signal, action sets as policies, same generator."""
-    for seed in range(5):
-        lib, probs, _ = library(seed)
-        beat = Beat(lib, epsilon=epsilon, seed=np.random.default_rng(seed))
-        generator = np.random.default_rng(seed)
-        reuse = BayesianPolicyReuse(lib, EpsilonGreedy(epsilon), dynamics=TypeDynamics.static(), seed=generator)
-        world, state = np.random.default_rng(100 + seed), 0
-        for _ in range(400):
-            chosen = beat.select()
-            assert reuse.select() == chosen
-            triple = move(world, probs, seed % N_TYPES, chosen, state)
-            beat.update(chosen, [triple])
-            reuse.update(chosen, [triple])
-            state = triple[2]
-        assert np.array_equal(beat.log_belief, reuse.log_belief)
 
 
 @pytest.mark.slow
@@ -134,13 +84,6 @@ def test_bad_input():
         beat.update("none such", [(0, 0, 1)])
     assert beat.step == 0
     assert beat.belief == pytest.approx(np.full(N_TYPES, 1 / N_TYPES))
-
-
-def test_a_model_that_answers_for_many_at_once_is_named():
-    lib, _, _ = library()
-    lib.signal = type("Twice", (), {"log_likelihood": lambda self, policy, signal: np.zeros((2, N_TYPES))})()
-    with pytest.raises(InputError, match="signal model Twice must give"):
-        Beat(lib).update(0, [(0, 0, 1)])
 
 
 def test_many_users_equal_single_ones():

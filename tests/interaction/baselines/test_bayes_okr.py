@@ -1,13 +1,12 @@
 """Bayes-OKR: the naive twin of both beliefs, switches within few steps, the edges of an episode."""
 
-import pickle
 from math import exp, pi, sqrt
 
 import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.baselines import BayesOKR, BPRPlus
+from lifelore.interaction.baselines import BayesOKR
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
@@ -86,56 +85,6 @@ def test_a_naive_bayes_okr_has_the_same_beliefs_and_choices(settings):
         assert agent.belief.tolist() == pytest.approx(naive.between, rel=1e-9)
 
 
-def test_a_switch_each_episode_is_followed_within_it_and_not_by_returns_alone():
-    random = np.random.default_rng(2)
-    okr, plus = BayesOKR(library()), BPRPlus.from_library(library())
-    won = np.zeros(2)
-    for _ in range(400):
-        moves = random.choice(3, STEPS, p=MOVES[random.integers(3)]).tolist()
-        first, episode = plus.select(), [0, 0]
-        for move in moves:
-            policy = okr.select()
-            okr.observe(policy, move)
-            episode[0] += policy == move
-            episode[1] += first == move
-        okr.end_episode(episode[0])
-        plus.update(first, episode[1])
-        won += np.array(episode) / 400 / STEPS
-    # A type that is drawn anew each episode is a third by chance; five moves of it tell it in two or three.
-    assert won[1] < 0.40
-    assert won[0] > won[1] + 0.08
-
-
-def test_without_signals_it_is_policy_reuse_by_returns():
-    agent, plus = BayesOKR(library(), floor=0.001), BPRPlus.from_library(library(), window=0)
-    for paid in (1.0, 3.0, 4.0):
-        policy = agent.select()
-        agent.end_episode(paid)
-        plus.update(policy, paid)
-        assert agent.belief == pytest.approx(plus.belief)
-
-
-def test_an_episode_without_a_return_leaves_the_belief_between_episodes():
-    agent = BayesOKR(library([0.5, 0.3, 0.2]))
-    agent.observe(0, 2)
-    assert agent.belief[2] > 0.3
-    agent.end_episode()
-    assert agent.belief.tolist() == pytest.approx([0.5, 0.3, 0.2])
-
-
-def test_the_return_is_that_of_the_last_policy():
-    two, one = BayesOKR(library()), BayesOKR(library())
-    two.observe(0, 1)
-    two.observe(1, 1)
-    two.select()
-    one.observe(1, 1)
-    for agent in (two, one):
-        agent.end_episode(4.0)
-    assert two.between.tolist() == one.between.tolist()
-    one.update(1, 1, 4.0)
-    assert one.between[1] > two.between[1]
-
-
 def test_only_available_policies_are_selected():
     agent = BayesOKR(library([0.0, 1.0, 0.0]))
     assert agent.select() == 1
@@ -163,29 +112,3 @@ def test_a_bad_signal_or_return_changes_nothing():
         each.observe(0, -1.0)
     twin.observe(0, -1.0)
     assert agent.belief == pytest.approx(twin.belief)
-
-
-def test_a_pickled_agent_goes_on_as_the_first():
-    agent = BayesOKR(library(), window=2)
-    agent.observe(0, 1)
-    copied = pickle.loads(pickle.dumps(agent))
-    for each in (agent, copied):
-        each.observe(0, 1)
-        each.end_episode(2.0)
-    assert copied.between.tolist() == agent.between.tolist()
-    assert copied.select() == agent.select()
-
-
-@pytest.mark.parametrize(
-    ("settings", "said"),
-    [
-        ({"weight": 1.1}, r"weight must lie in \[0, 1\] and window be at least 1, got 1.1 and 1"),
-        ({"window": 0}, "window be at least 1"),
-        ({"floor": 0.5}, r"floor must lie in \[0, 1/3\], got 0.5"),
-        ({"prior": [0.5, 0.5]}, r"prior must be \(3,\), got \(2,\)"),
-        ({"prior": [0.5, 0.5, 0.5]}, "prior must sum to 1"),
-    ],
-)
-def test_bad_settings(settings, said):
-    with pytest.raises(InputError, match=said):
-        BayesOKR(library(), **settings)

@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.baselines import EpsilonGreedyMeans
 
 
@@ -21,9 +20,3 @@ def test_means_with_and_without_a_prior():
     # (2 · 3 - 4) / 4 = 0.5.
     assert known.arms.mean[0].tolist() == [0.0, 1.0, 0.5]
     assert known.select() == 1
-
-
-@pytest.mark.parametrize("epsilon", [-0.1, 1.1, np.nan])
-def test_bad_settings(epsilon):
-    with pytest.raises(InputError, match="epsilon must lie in"):
-        EpsilonGreedyMeans(2, epsilon=epsilon)

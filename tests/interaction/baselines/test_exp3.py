@@ -1,9 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.baselines import EXP3
 
 
@@ -26,29 +23,6 @@ def test_two_updates_by_hand():
     )
 
 
-def test_policies_are_drawn_by_their_probabilities():
-    player = EXP3(3, gamma=0.5, n_tasks=20_000, seed=1)
-    player.update(np.zeros(20_000, int), np.ones(20_000))
-    probs = player.probabilities[0]
-    shares = np.bincount(player.select(), minlength=3) / 20_000
-    # Five deviations of a share of 20,000 draws: 5 · √(p (1 - p) / 20000) < 0.0177.
-    assert np.abs(shares - probs).max() < 0.0177
-
-
-@pytest.mark.slow
-@settings(deadline=None)
-@given(
-    st.lists(st.tuples(st.integers(0, 2), st.floats(-1e6, 1e6)), max_size=60),
-    st.floats(0.01, 1.0),
-)
-def test_probabilities_stay_probabilities(history, gamma):
-    player = EXP3(3, gamma=gamma, scale=(-1.0, 1.0))
-    for policy, paid in history:
-        player.update(policy, paid)
-    assert player.probabilities.sum() == pytest.approx(1.0)
-    assert (player.probabilities >= gamma / 3 - 1e-12).all()
-
-
 def test_what_lies_outside_the_scale_is_clipped():
     high, one = EXP3(2, gamma=0.2, scale=(0, 10)), EXP3(2, gamma=0.2, scale=(0, 10))
     high.update(0, 1e9)
@@ -62,27 +36,3 @@ def test_payoffs_of_0_say_nothing():
     for step in range(140):
         player.update(step % 5, 0.0)
     assert player.probabilities == pytest.approx(0.2)
-
-
-def test_a_change_of_the_best_policy_is_followed():
-    """What it is for: payoffs that change in any way; 300 pulls of one best policy, then 2,000 of another."""
-    player = EXP3(2, gamma=0.1, seed=3)
-    late = []
-    for pull in range(2300):
-        policy = player.select()
-        player.update(policy, float(policy == (pull >= 300)))
-        late.append(policy)
-    assert np.mean(late[200:300]) < 0.2
-    assert np.mean(late[-300:]) > 0.8
-
-
-@pytest.mark.parametrize("given_", [{}, {"gamma": 0.1, "horizon": 5}])
-def test_one_of_gamma_and_horizon(given_):
-    with pytest.raises(InputError, match="give either gamma or horizon"):
-        EXP3(2, **given_)
-
-
-@pytest.mark.parametrize("bad", [{"gamma": 0}, {"gamma": 1.1}, {"gamma": np.nan}, {"horizon": 0}])
-def test_bad_settings(bad):
-    with pytest.raises(InputError, match="must"):
-        EXP3(2, **bad)

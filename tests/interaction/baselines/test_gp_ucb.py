@@ -3,7 +3,6 @@ import pytest
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF
 
-from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.baselines import GPUCB
 from lifelore.interaction.baselines.policy_kernels import metric_kernel
 
@@ -43,14 +42,6 @@ def test_tasks_side_by_side_are_tasks_one_by_one():
             assert ours[row] == pytest.approx(theirs[0], abs=1e-12)
 
 
-def test_bounds_by_hand():
-    player = GPUCB(2, kernel=[[1.0, 0.5], [0.5, 1.0]], noise=1.0, prior_means=[0.0, 1.0], beta=4.0)
-    assert player._scores()[0] == pytest.approx([2.0, 3.0])
-    player.update(0, 2.0)
-    # Gain ½ and ¼: means 1 and 1.5; variances 1 - ½ and 1 - ⅛.
-    assert player._scores()[0] == pytest.approx([1 + 2 * 0.5**0.5, 1.5 + 2 * 0.875**0.5])
-
-
 def test_beta_of_srinivas_by_hand():
     player = process(delta=0.1)
     # 2 ln(12 · 1 · π² / 0.6) = 10.57; and at t = 2 it grows by 2 ln 4.
@@ -59,41 +50,8 @@ def test_beta_of_srinivas_by_hand():
     assert player._beta() == pytest.approx(10.5703 + 2 * np.log(4), abs=1e-3)
 
 
-def test_a_certain_policy_and_a_repeated_one_keep_variances_at_least_zero():
-    kernel = np.ones((3, 3))  # all the same: one number is unknown
-    player = GPUCB(3, kernel=kernel, noise=1e-6)
-    for _ in range(40):
-        player.update(1, 5.0)
-    mean, deviation = player.posterior()
-    assert mean[0] == pytest.approx(5.0)
-    assert (deviation >= 0).all()
-    assert np.isfinite(player._scores()).all()
-
-
 @pytest.mark.parametrize("kernel", ["performance", "covariance", np.eye(4)])
 def test_from_library(library, kernel):
     player = GPUCB.from_library(library, kernel=kernel, beta=0)
     assert player._scores()[0] == pytest.approx([0.75, 0.35, 0.45, 0.025])
     assert player.noise == pytest.approx(0.1)
-
-
-def test_the_prior_covariance_tells_of_policies_not_played(library):
-    player = GPUCB.from_library(library, kernel="covariance", beta=0)
-    player.update(0, 0.0)
-    # Policy 0 paying nothing is the second type, of which policy 1 is the best.
-    assert player.select() == 1
-
-
-def test_bad_settings(library):
-    with pytest.raises(NotFoundError, match="kernel must be one of performance, covariance, or an array"):
-        GPUCB.from_library(library, kernel="magic")
-    for settings, said in (
-        ({"kernel": np.eye(3), "noise": 1}, "kernel must be 2 × 2"),
-        ({"kernel": [[1, 2], [0, 1]], "noise": 1}, "kernel must be symmetric"),
-        ({"kernel": [[1, 2], [2, 1]], "noise": 1}, "kernel must be positive semidefinite"),
-        ({"kernel": np.eye(2), "noise": 0}, "noise must be finite and positive"),
-        ({"kernel": np.eye(2), "noise": 1, "beta": -1}, "beta must be finite and at least 0"),
-        ({"kernel": np.eye(2), "noise": 1, "delta": 1}, "delta must lie between 0 and 1"),
-    ):
-        with pytest.raises(InputError, match=said):
-            GPUCB(2, **settings)

@@ -51,13 +51,6 @@ def test_the_prior_covariance_is_that_of_drawn_types(library):
     assert prior_covariance(library) == pytest.approx(drawn, abs=0.003)
 
 
-def test_performance_kernel_holds_alike_policies_together(library):
-    kernel = performance_kernel(library.performance.mean)
-    assert np.linalg.eigvalsh(kernel)[0] > -1e-12
-    assert kernel[2, 3] > kernel[0, 1]
-    assert np.diag(kernel) == pytest.approx(np.var([[1, 0.2, 0.4, 0], [0, 0.8, 0.6, 0.1]], axis=0).mean())
-
-
 @pytest.mark.parametrize(
     ("gaps", "settings", "said"),
     [

@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.baselines import GaussianThompson
 
 
@@ -39,9 +38,3 @@ def test_from_library_knows_spread_between_types_and_noise_within(library):
     assert deviation[0] == pytest.approx(np.sqrt(0.1875) * np.array([1, 0.6, 0.2, 0.1]))
     player.update(0, 0.75)
     assert player.beliefs()[1][0][0] == pytest.approx((1 / 0.1875 + 1 / 0.01) ** -0.5)
-
-
-@pytest.mark.parametrize("bad", [{"noise": 0}, {"prior_deviations": [1, 0]}, {"prior_means": [1, 2, 3]}])
-def test_bad_settings(bad):
-    with pytest.raises(InputError, match="must be"):
-        GaussianThompson(2, **bad)

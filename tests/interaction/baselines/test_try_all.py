@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.baselines import TryAll
 
 
@@ -24,8 +23,3 @@ def test_each_policy_as_often_as_told_and_then_the_best(rounds):
 def test_the_order_is_drawn_for_each_task():
     first = TryAll(6, n_tasks=200, seed=0).select()
     assert set(first) == set(range(6))
-
-
-def test_at_least_one_round():
-    with pytest.raises(InputError, match="rounds must be at least 1, got 0"):
-        TryAll(2, rounds=0)

@@ -4,13 +4,9 @@ import json
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.beliefs.feature_prior import PSEUDO_ROWS, SHARE, STRENGTHS, FeaturePrior
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.user_beliefs import UserBeliefs
+from lifelore.interaction.beliefs.feature_prior import PSEUDO_ROWS, SHARE, FeaturePrior
 
 WEIGHTS = 2 * np.random.default_rng(7).normal(size=(4, 3))
 
@@ -39,20 +35,6 @@ def test_with_many_rows_it_is_the_true_law(n_types):
     assert found.strength > 0
 
 
-@pytest.mark.slow
-def test_it_is_calibrated():
-    """Among users with a predicted probability of about p, a share p is of the type."""
-    features, types, _ = users(1500, 2)
-    found = FeaturePrior.fit(features, types, np.full(4, 0.25))
-    fresh, own, _ = users(8000, 3)
-    predicted, is_type = found.prior(fresh).ravel(), np.eye(4)[own].ravel()
-    for low in (0.0, 0.1, 0.3, 0.5, 0.7, 0.9):
-        inside = (predicted >= low) & (predicted < low + 0.2)
-        # Four deviations of a share, and 0.03 for what 1,500 rows leave uncertain.
-        error = 4 * np.sqrt(0.25 / inside.sum()) + 0.03
-        assert predicted[inside].mean() == pytest.approx(is_type[inside].mean(), abs=error)
-
-
 @pytest.mark.parametrize("n", [1, 2, 4])
 def test_few_rows_give_nearly_the_librarys_prior(n):
     features, types, _ = users(n, 4)
@@ -62,15 +44,6 @@ def test_few_rows_give_nearly_the_librarys_prior(n):
     counts = np.bincount(types, minlength=4) + PSEUDO_ROWS * prior
     expected = (1 - SHARE) * counts / counts.sum() + SHARE * prior
     assert found.prior(features[0]) == pytest.approx(expected)
-
-
-@pytest.mark.slow
-def test_features_that_tell_nothing_are_left_out():
-    random = np.random.default_rng(5)
-    types = random.integers(3, size=300)
-    found = [FeaturePrior.fit(random.normal(size=(300, 4)), types, np.full(3, 1 / 3)) for _ in range(5)]
-    assert [one.strength for one in found].count(0) >= 4
-    assert all(np.ptp(one.prior(random.normal(size=(50, 4))), axis=0).max() < 0.15 for one in found)
 
 
 def test_soft_types_are_as_rows_of_each_type():
@@ -87,14 +60,6 @@ def test_beyond_the_training_rows_it_extrapolates_no_further():
     far = found.prior(features.max(axis=0) + 1e9)
     assert np.array_equal(far, found.prior(features.max(axis=0)))
     assert (far >= SHARE * 0.25 - 1e-12).all()
-
-
-def test_a_type_that_nobody_has_is_as_likely_as_its_prior_allows():
-    features, types, _ = users(100, 9, WEIGHTS[:2])
-    found = FeaturePrior.fit(features, types, [0.45, 0.45, 0.1, 0.0])
-    probs = found.prior(features)
-    assert (probs[:, 3] == 0).all()
-    assert ((probs[:, 2] > 0) & (probs[:, 2] < 0.1)).all()
 
 
 def test_a_constant_feature_and_large_numbers_do_no_harm():
@@ -119,15 +84,6 @@ def test_to_dict_restores_every_bit_through_json():
 
 
 FITTED = FeaturePrior.fit(*users(100, 12)[:2], np.full(4, 0.25), ["age", "visits", "x"])
-
-
-@settings(max_examples=50, deadline=None)
-@given(st.lists(st.floats(-1e300, 1e300), min_size=3, max_size=3))
-def test_any_features_give_a_distribution(values):
-    prior = FITTED.prior(dict(zip(FITTED.names, values, strict=True)))
-    assert prior.sum() == pytest.approx(1)
-    assert (prior > 0).all()
-    assert np.array_equal(prior, FITTED.prior(values))
 
 
 @pytest.mark.parametrize(
@@ -162,40 +118,3 @@ def test_bad_rows_are_refused(rows, types, prior, words):
         FeaturePrior.fit(rows, types, prior)
     with pytest.raises(InputError, match="1 distinct ones"):
         FeaturePrior.fit([[1.0], [2.0]], [0, 1], [0.5, 0.5], ["a", "b"])
-
-
-@pytest.mark.slow
-def test_the_smallest_strength_that_is_not_worse_is_taken():
-    features, types, _ = users(3000, 13)
-    found = FeaturePrior.fit(features, types, np.full(4, 0.25))
-    assert found.strength in STRENGTHS[1:]
-    # A hundredth of the strength would be worse by more than its error.
-    assert found.strength >= 0.1
-
-
-def early_regret(types: np.ndarray, priors: np.ndarray, episodes: int = 5) -> np.ndarray:
-    """Mean regret over the first episodes of each user, exact models, when beliefs start from `priors`."""
-    means = 10 * np.eye(8)[:, :8] + np.random.default_rng(0).normal(size=(8, 8))
-    library = PolicyLibrary.from_means(means, 6.0)
-    beliefs, everyone = UserBeliefs(library, len(types), "f8", seed=1), np.arange(len(types))
-    beliefs.log_belief[:] = np.log(priors)
-    noise, lost = np.random.default_rng(2), np.zeros(len(types))
-    for _ in range(episodes):
-        chosen = beliefs.select(everyone, "information-directed")
-        lost += means.max(axis=1)[types] - means[types, chosen]
-        beliefs.update(everyone, chosen, noise.normal(means[types, chosen], 6.0))
-    return lost / episodes
-
-
-@pytest.mark.slow
-def test_a_prior_by_features_lowers_early_regret_by_45_percent():
-    """Regret over the first five episodes of 1,000 new users; 400 users with known types to learn from."""
-    weights = 4 * np.random.default_rng(3).normal(size=(8, 3))
-    features, types, _ = users(400, 14, weights)
-    found = FeaturePrior.fit(features, types, np.full(8, 1 / 8))
-    fresh, own, probs = users(1000, 15, weights)
-    # The features of a user name the type with probability 0.86.
-    assert probs.max(axis=1).mean() == pytest.approx(0.86, abs=0.03)
-    without = early_regret(own, np.full((1000, 8), 1 / 8))
-    by_features = early_regret(own, found.prior(fresh))
-    assert 1 - by_features.mean() / without.mean() >= 0.45

@@ -95,48 +95,6 @@ def test_many_users_are_single_users():
     assert np.exp(belief[2]) == pytest.approx(of_rows("outcome", likelihoods(0), [None] * 12)[-1], rel=1e-9)
 
 
-def gained(by: str, next_type, episodes: int = 60) -> float:
-    """Mean belief in the right type before an episode, in the last third, where every episode tells its type."""
-    prior, type_, seen = np.full(4, 0.25), 0, []
-    rows, belief = LearntDynamics(by).rows(1, prior, "f8"), log_prior(prior)  # pyright: ignore
-    for number in range(episodes):
-        seen.append(float(np.exp(belief[type_])))
-        belief = update(belief, np.where(np.arange(4) == type_, 0.0, -4.0)).log_belief
-        outcome = "won" if (number * 7) % 3 else "lost"
-        belief, type_ = rows.step(belief, 0, outcome), next_type(type_, outcome, number)
-    return float(np.mean(seen[-episodes // 3 :]))
-
-
-@pytest.mark.parametrize(
-    ("next_type", "least"),
-    [
-        (lambda type_, outcome, number: type_, {"time": 0.97, "type": 0.97, "outcome": 0.97}),
-        (lambda type_, outcome, number: (type_ + 1) % 4, {"type": 0.9, "outcome": 0.9}),
-        (lambda type_, outcome, number: 2 if outcome == "won" else 1, {"outcome": 0.9}),
-        (lambda type_, outcome, number: type_ if outcome == "won" else (type_ + 1) % 4, {"outcome": 0.8}),
-    ],
-    ids=["static", "cycle", "by outcome", "moves on after a loss"],
-)
-def test_patterns_are_found(next_type, least):
-    """And only by dynamics that can express them."""
-    for by in BY:
-        found = gained(by, next_type)
-        assert found > least[by] if by in least else found < 0.75, (by, found)
-
-
-def test_what_was_learnt_goes_on_in_the_next_task():
-    rows, belief = LearntDynamics("type").rows(1, PRIOR, "f8"), log_prior(PRIOR)
-    for number in range(30):
-        belief = rows.step(update(belief, np.where(np.arange(3) == number % 3, 0.0, -6.0)).log_belief, 0)
-    start = rows.learnt(0, belief)
-    assert start.n_types == 3
-    first = LearntDynamics("type").rows(1, PRIOR, "f8"), start.rows(1, PRIOR, "f8")
-    for one, least in zip(first, (0.0, 0.9), strict=True):
-        after = np.exp(one.step(log_prior([0.0, 1.0, 0.0]), 0))
-        assert after[2] > least
-    assert np.exp(first[0].step(log_prior([0.0, 1.0, 0.0]), 0))[2] < 0.5
-
-
 def test_states_go_on_to_the_bit():
     for by in BY:
         signals, outcomes = likelihoods(3), ["won", 2, None, "lost"] * 3
@@ -154,19 +112,6 @@ def test_states_go_on_to_the_bit():
         assert np.array_equal(other.step(belief, 4, "lost"), fresh.step(belief, 0, "lost"))
         with pytest.raises(InputError, match="not of these dynamics"):
             rows.restore(0, {"shares": np.zeros((2, 2))})
-
-
-def test_a_state_goes_to_rows_that_know_outcomes_in_another_order():
-    rows, other = (LearntDynamics("outcome").rows(1, PRIOR, "f8") for _ in range(2))
-    other.step(log_prior(PRIOR), 0, "lost")
-    belief = log_prior(PRIOR)
-    for number, signal in enumerate(likelihoods(1)):
-        belief = rows.step(update(belief, np.log(signal)).log_belief, 0, ("won", "lost")[number % 2])
-    other.restore(0, rows.state(0))
-    assert rows.step(belief, 0, "won") == pytest.approx(other.step(belief, 0, "won"), rel=1e-12)
-    start = rows.learnt(0, belief).rows(1, PRIOR, "f8")
-    start.step(belief, 0, "a third way")
-    start.reset(0)
 
 
 def test_the_share_that_has_just_changed_was_another_type():

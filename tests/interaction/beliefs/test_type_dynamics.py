@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import log_prior, update
+from lifelore.interaction.beliefs.belief import log_prior
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 
 from ..twins import naive_reuse as naive
@@ -14,25 +14,11 @@ from ..twins import naive_reuse as naive
 INF = np.inf
 
 
-def test_static_types_stay_to_the_bit():
-    belief = log_prior([0.2, 0.8, 0.0])
-    assert np.array_equal(TypeDynamics.static().step(belief), belief)
-
-
 def test_a_hazard_by_hand():
     changing = TypeDynamics.hazard(0.2, [0.5, 0.5, 0.0])
     assert np.exp(changing.step(log_prior([1.0, 0.0, 0.0]))) == pytest.approx([0.9, 0.1, 0.0])
     assert np.exp(TypeDynamics.hazard(1, [0.3, 0.7]).step(log_prior([1.0, 0.0]))) == pytest.approx([0.3, 0.7])
     assert np.exp(TypeDynamics.hazard(0, [0.3, 0.7]).step(log_prior([1.0, 0.0]))).tolist() == [1.0, 0.0]
-
-
-def test_a_hazard_is_its_matrix():
-    prior, beliefs = np.array([0.2, 0.3, 0.5]), np.log(np.random.default_rng(0).dirichlet(np.ones(3), (2, 4)))
-    matrix = 0.9 * np.eye(3) + 0.1 * prior
-    one, other = TypeDynamics.hazard(0.1, prior).step(beliefs), TypeDynamics.transitions(matrix).step(beliefs)
-    assert one.shape == other.shape == (2, 4, 3)
-    assert np.exp(one) == pytest.approx(np.exp(other), rel=1e-12)
-    assert np.exp(one) == pytest.approx(np.exp(beliefs) @ matrix, rel=1e-12)
 
 
 @settings(deadline=None, max_examples=100)
@@ -78,31 +64,6 @@ def test_transitions_keep_what_lies_below_the_range_of_numbers():
     swap = TypeDynamics.transitions([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
     moved = swap.step(np.array([0.0, -5000.0, -INF]))
     assert moved.tolist() == [-5000.0, 0.0, -INF]
-
-
-def test_blocks_of_a_large_matrix_agree_with_one(monkeypatch):
-    random = np.random.default_rng(1)
-    beliefs, matrix = np.log(random.dirichlet(np.ones(4), 7)), random.dirichlet(np.ones(4), 4)
-    whole = TypeDynamics.transitions(matrix).step(beliefs)
-    monkeypatch.setattr("lifelore.interaction.beliefs.type_dynamics.ROWS_AT_ONCE", 32)
-    assert np.array_equal(TypeDynamics.transitions(matrix).step(beliefs), whole)
-
-
-def test_a_hazard_lets_a_settled_belief_turn_where_a_static_one_needs_as_long_again():
-    said = np.log([[0.9, 0.1], [0.1, 0.9]])
-    turned = {}
-    for name, dynamics in (("static", TypeDynamics.static()), ("hazard", TypeDynamics.hazard(0.02, [0.5, 0.5]))):
-        belief = log_prior([0.5, 0.5])
-        for _ in range(50):
-            belief = dynamics.step(update(belief, said[0]).log_belief)
-        turned[name] = 0
-        while belief[1] < belief[0]:
-            belief = dynamics.step(update(belief, said[1]).log_belief)
-            turned[name] += 1
-    # By hand: static, 50 signals weigh 50 the other way (the 50th levels, up to rounding); a hazard of 0.02
-    # holds the odds at 99 to 1 or so, which is two to three signals of odds 9.
-    assert turned["static"] in (50, 51)
-    assert turned["hazard"] <= 3
 
 
 def test_bad_dynamics_are_refused():

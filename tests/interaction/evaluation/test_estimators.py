@@ -4,12 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from scipy.special import stdtrit
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.evaluation.estimate_by_user import clustered_estimate
 from lifelore.interaction.evaluation.estimators import (
     doubly_robust,
     inverse_propensity,
@@ -75,23 +72,7 @@ def test_steps_are_normalised_each_on_its_own():
         self_normalised(outcomes, weights * (steps == 0), users, steps)
 
 
-@pytest.mark.parametrize("seed", range(20))
-def test_against_plain_loops(seed):
-    outcomes, users, policies, logged, target, model = case(seed)
-    rows = range(len(outcomes))
-    weights = [target[i, policies[i]] / logged[i] for i in rows]
-    total = sum(weights[i] * outcomes[i] for i in rows)
-    robust = sum(
-        sum(target[i, a] * model[i, a] for a in range(4)) + weights[i] * (outcomes[i] - model[i, policies[i]])
-        for i in rows
-    )
-    assert inverse_propensity(outcomes, weights, users).value == pytest.approx(total / len(outcomes))
-    assert self_normalised(outcomes, weights, users).value == pytest.approx(total / sum(weights))
-    found = doubly_robust(outcomes, weights, model[rows, policies], (target * model).sum(axis=1), users)
-    assert found.value == pytest.approx(robust / len(outcomes))
-
-
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(3))
 def test_against_vowpal_wabbits_estimators(seed):
     """IPS and self-normalised IPS; with users of one decision also the standard error."""
     ips = pytest.importorskip("estimators.bandits.ips")
@@ -111,7 +92,7 @@ def test_against_vowpal_wabbits_estimators(seed):
     assert error == pytest.approx((high - low) / 2 / 1.959963984540054, rel=1e-12)
 
 
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("seed", range(3))
 def test_against_the_open_bandit_pipeline(seed):
     peers = pytest.importorskip("obp.ope")
     outcomes, users, policies, logged, target, model = case(seed)
@@ -130,38 +111,6 @@ def test_against_the_open_bandit_pipeline(seed):
     )
     found = doubly_robust(outcomes, weights, model[rows, policies], (target * model).sum(axis=1), users)
     assert found.value == pytest.approx(expected, rel=1e-12)
-
-
-@settings(deadline=None, max_examples=20)
-@given(seed=st.integers(0, 2**31), shift=st.floats(-10, 10), scale=st.floats(0.1, 10))
-def test_estimates_move_with_their_outcomes(seed, shift, scale):
-    """Self-normalised and, with a model that moves along, doubly robust values are those of moved outcomes."""
-    outcomes, users, policies, logged, target, model = case(seed, n=40)
-    rows = np.arange(len(users))
-    weights = importance_weights(target[rows, policies], logged)
-
-    def values(outcomes, model):
-        expected = (target * model).sum(axis=1)
-        return [
-            self_normalised(outcomes, weights, users),
-            doubly_robust(outcomes, weights, model[rows, policies], expected, users),
-        ]
-
-    for one, moved in zip(
-        values(outcomes, model), values(outcomes * scale + shift, model * scale + shift), strict=True
-    ):
-        assert moved.value == pytest.approx(one.value * scale + shift, abs=1e-8)
-        assert moved.standard_error == pytest.approx(one.standard_error * scale, rel=1e-6, abs=1e-9)
-
-
-def test_a_perfect_model_needs_no_weights():
-    """Where the model is exact and outcomes have no noise, the doubly robust value is exact for any weights."""
-    _, users, policies, _, target, model = case(5)
-    rows = np.arange(len(users))
-    weights = importance_weights(target[rows, policies], np.full(len(users), 0.01))
-    truth = (target * model).sum(axis=1)
-    found = doubly_robust(model[rows, policies], weights, model[rows, policies], truth, users)
-    assert found.value == pytest.approx(truth.mean(), rel=1e-12)
 
 
 def test_a_difference_uses_that_the_users_are_the_same():
@@ -193,13 +142,3 @@ def test_without_users_or_spread_there_is_no_interval():
 def test_bad_arrays_are_refused(outcomes, users, words):
     with pytest.raises(InputError, match=words):
         logged_value(outcomes, users)
-
-
-def test_few_influential_users_widen_the_interval():
-    """Satterthwaite's degrees of freedom: equal contributions count all, one heavy user counts few."""
-    even = np.array([1.0, -1.0] * 20)
-    found = clustered_estimate(0.0, even / 40, np.arange(40))
-    assert found.ci95[1] == pytest.approx(stdtrit(39, 0.975) * found.standard_error)
-    heavy = np.concatenate([[30.0], np.full(39, -30 / 39)])
-    found = clustered_estimate(0.0, heavy / 40, np.arange(40))
-    assert found.ci95[1] > 4 * found.standard_error

@@ -10,7 +10,6 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals import normal_distribution, signal_bins
 from lifelore.interaction.finite_signals.normal_distribution import ndtr
 from lifelore.interaction.finite_signals.signal_bins import (
-    bin_probs,
     informative_cuts,
     joined,
     joined_ends,
@@ -59,33 +58,10 @@ def test_against_the_slow_twin(seed, n_policies, n_types, n_fine, n_bins):
         assert information(ours) == pytest.approx(information(slow_joined(own, n_bins)), abs=1e-6)
 
 
-def test_bins_nobody_fills_are_joined_first():
-    fine = np.array([[[0.5, 0.0, 0.0, 0.5], [0.9, 0.0, 0.0, 0.1]], [[0.0, 0.5, 0.5, 0.0], [0.0, 0.9, 0.1, 0.0]]])
-    np.testing.assert_allclose(joined_bins(fine, 2), [[[0.5, 0.5], [0.9, 0.1]]] * 2)
-    assert joined_ends(fine, 2)[:, -1].tolist() == [4, 4]
-    assert joined_ends(fine, 9).tolist() == [[1, 2, 3, 4]] * 2
-
-
 def test_joined_bins_of_users_by_hand():
     probs = np.array([[[[0.1, 0.2, 0.3, 0.4], [0.4, 0.3, 0.2, 0.1]]], [[[0.7, 0.1, 0.1, 0.1], [0.25] * 4]]])
     found = joined(probs, np.array([[1, 4], [3, 4]]))
     np.testing.assert_allclose(found, [[[[0.1, 0.9], [0.9, 0.1]]], [[[0.7, 0.3], [0.75, 0.25]]]])
-
-
-def test_bins_are_not_spent_on_the_noise_of_the_many():
-    """Sixty types alike and four apart: eight bins of equal mass lose what tells the four apart."""
-    mean = np.r_[np.zeros(60), [140.0, 160.0, 180.0, 200.0]][:, None]
-    deviation = np.full_like(mean, 20.0)
-
-    def kept(cuts):
-        return information(bin_probs(norm.cdf(cuts, mean, deviation)))
-
-    whole, ours = kept(np.linspace(-100, 300, 2001)), kept(informative_cuts(mean, deviation, 8)[0])
-    drawn = np.random.default_rng(0).normal(mean, 20.0, (64, 1000))
-    equal_mass = kept(np.quantile(drawn, np.arange(1, 8) / 8))
-    assert ours > 0.95 * whole
-    assert equal_mass < 0.75 * whole
-    assert ours <= whole
 
 
 def test_policies_are_cut_as_alone_and_in_blocks_as_at_once(monkeypatch):
@@ -111,24 +87,6 @@ def test_a_table_holds_the_shares_of_normal_outcomes():
     same, table = normal_table(mean[0], deviation[0], 6)
     assert np.array_equal(same, cuts)
     np.testing.assert_allclose(table.probs, users[0], atol=1e-8)
-
-
-def test_identical_types_give_a_table_all_the_same():
-    mean, deviation = np.ones((3, 1)), np.full((3, 1), 2.0)
-    _, table = normal_table(mean, deviation, 8)
-    assert (table.probs == table.probs[:1]).all()
-
-
-def test_many_types_are_cut_on_some_of_them():
-    mean = np.random.default_rng(0).normal(0, 50, (400, 1))
-
-    def kept(mean, n_bins):
-        deviation = np.full_like(mean, 20.0)
-        return information(normal_table(mean, deviation, n_bins)[1].probs[:, 0])
-
-    shares = [kept(of, 6) / kept(of, 60) for of in (mean[:100], mean)]
-    # A hundred are all looked at, of four hundred only some: hardly worse.
-    assert shares[1] > shares[0] - 0.03 > 0.8
 
 
 @pytest.mark.parametrize("n_bins", [2, 3, 300])

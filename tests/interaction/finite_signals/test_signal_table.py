@@ -21,28 +21,6 @@ def test_what_is_too_small_becomes_zero_and_rows_sum_to_one():
     assert table.probs[0, 0].tolist() == [1.0, 0.0]
 
 
-def test_the_callers_array_is_left_alone():
-    probs = np.array([[[1 - 1e-12, 1e-12]]])
-    assert SignalTable(probs).probs is not probs
-    assert probs[0, 0, 1] == 1e-12
-
-
-@pytest.mark.parametrize("entropy_first", [False, True])
-def test_a_part_is_the_table_of_these_users_and_policies(entropy_first):
-    probs = np.random.default_rng(0).dirichlet(np.ones(3), (4, 2, 5))
-    rows, policies = np.array([2, 0]), np.array([True, False, True, True, False])
-    users, shared = SignalTable(probs), SignalTable(probs[0])
-    if entropy_first:
-        assert users.conditional_entropy.size + shared.conditional_entropy.size == 50
-    for part, expected in (
-        (users.part(rows, policies), probs[rows][:, :, policies]),
-        (users.part(slice(None), policies), probs[:, :, policies]),
-        (shared.part(rows, policies), probs[0][:, policies]),
-    ):
-        np.testing.assert_allclose(part.probs, expected)
-        np.testing.assert_allclose(part.conditional_entropy, SignalTable(expected).conditional_entropy)
-
-
 @pytest.mark.parametrize(
     "probs",
     [[[[0.5, 0.6]]], [[[1.5, -0.5]]], [[[np.nan, 1.0]]], [[0.5, 0.5]], np.empty((0, 1, 1)), [[[np.inf, 0.0]]]],

@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.finite_signals.simulated_table import LETTERS, simulated_table
+from lifelore.interaction.finite_signals.simulated_table import simulated_table
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import Greedy, default_rule
 from lifelore.interaction.selection.information import mutual_information
 from lifelore.interaction.selection.information_directed import InformationDirected
-from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
 PROBS = np.random.default_rng(0).dirichlet(np.ones(4), (3, 5))
@@ -38,12 +37,6 @@ def test_a_table_is_that_of_importance_sampling():
         assert table.probs[:, policy] == pytest.approx(np.array(expected))
 
 
-def test_information_is_near_that_of_the_exact_table():
-    exact, belief = CategorySignal(PROBS).table(), np.array([0.5, 0.3, 0.2])
-    near = simulated_table(lambda policy, signal: np.log(PROBS[:, policy, signal]), drawn, 3, 5, 42)
-    assert mutual_information(belief, near) == pytest.approx(mutual_information(belief, exact), abs=0.05)
-
-
 def test_certain_and_impossible_signals():
     """A signal that names the type tells the whole entropy; one that no type can have tells nothing."""
     with np.errstate(divide="ignore"):
@@ -52,11 +45,6 @@ def test_certain_and_impossible_signals():
     assert mutual_information(np.full(3, 1 / 3), named) == pytest.approx([np.log(3)])
     never = simulated_table(lambda policy, signal: np.full(3, -np.inf), lambda *_: 0, 3, 1, 4)
     assert mutual_information(np.full(3, 1 / 3), never) == pytest.approx([0.0], abs=1e-12)
-
-
-def test_letters_are_few_where_types_are_many():
-    table = simulated_table(lambda policy, signal: np.zeros(100), lambda *_: 0, 100, 2, 8)
-    assert table.n_signals == 100 <= LETTERS
 
 
 def own_signal(sample=None):

@@ -10,7 +10,6 @@ from lifelore.core.errors import InputError, StoreError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.outcome_kinds import KINDS
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
-from lifelore.interaction.signals.transition_signal import TransitionSignal
 
 from ..reuse.families import FAMILIES
 
@@ -50,13 +49,6 @@ def test_every_signal_model_comes_back(name):
     same(library, again, signal)
     with pytest.raises(InputError):
         again.signal.log_likelihood(1, "no signal")
-
-
-def test_rows_that_sum_to_a_rounding_above_one_come_back():
-    steps = TransitionSignal([[[[1.0 + 5e-7, 0.0]], [[0.0, 1.0]]]] * 2)
-    library = PolicyLibrary.from_samples(SAMPLES, signal=steps)
-    again = PolicyLibrary.from_bytes(library.to_bytes()).signal
-    assert np.array_equal(again.log_likelihood(0, [(0, 0)]), steps.log_likelihood(0, [(0, 0)]))
 
 
 def test_an_own_signal_model_is_given_again(tmp_path):

@@ -5,11 +5,7 @@ import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
-from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
-from lifelore.interaction.outcomes.outcome_kinds import KINDS
 from lifelore.interaction.signals.category_signal import CategorySignal
-from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 from lifelore.interaction.signals.return_signal import ReturnSignal
 
 MEAN = [[10.0, 0.0], [0.0, 8.0], [4.0, 5.0]]
@@ -27,15 +23,6 @@ def test_defaults():
     np.testing.assert_allclose(made.prior, 1 / 3)
     assert isinstance(made.signal, ReturnSignal)
     assert made.signal.outcomes is made.performance
-
-
-@pytest.mark.parametrize("model", sorted(KINDS))
-def test_from_samples(model):
-    samples = np.random.default_rng(0).integers(-2, 3, (3, 2, 8)) + np.array(MEAN)[..., None]
-    made = PolicyLibrary.from_samples(samples, types=["a", "b", "c"], model=model, prior=[0.5, 0.5, 0])
-    assert made.performance.mean.argmax(axis=1).tolist()[:2] == [0, 1]
-    assert made.types == ("a", "b", "c")
-    assert made.prior.tolist() == [0.5, 0.5, 0.0]
 
 
 def test_options_reach_the_model():
@@ -64,24 +51,6 @@ def test_from_columns_by_hand():
     np.testing.assert_allclose(other.performance.mean, made.performance.mean)
 
 
-def test_a_table_equals_samples():
-    table = PolicyLibrary.from_frame(COLUMNS)
-    filled = PolicyLibrary.from_samples([[[1.0, 5.0], [3.0, np.nan]], [[2.0, np.nan], [4.0, np.nan]]])
-    np.testing.assert_allclose(table.performance.deviation, filled.performance.deviation)
-
-
-def test_a_data_frame_quacks():
-    class Frame:
-        """As much of a DataFrame as is used: names of columns, and columns by name."""
-
-        columns = tuple(COLUMNS)
-
-        def __getitem__(self, name):
-            return np.array(COLUMNS[name])
-
-    assert PolicyLibrary.from_frame(Frame()).policies == ("A", "B")
-
-
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -95,11 +64,6 @@ def test_a_data_frame_quacks():
 def test_tables_that_cannot_be_used_are_refused(change, message):
     with pytest.raises(InputError, match=message):
         PolicyLibrary.from_frame(COLUMNS | change)
-
-
-def test_a_missing_column_is_named():
-    with pytest.raises(InputError, match="no column 'reward'; its columns are"):
-        PolicyLibrary.from_frame(COLUMNS, outcome="reward")
 
 
 @pytest.mark.parametrize(
@@ -145,12 +109,6 @@ def test_tables_are_kept_until_the_model_learns():
     assert made.table() is not first
     with pytest.raises(NotFoundError, match="unknown type"):
         made.observe("nobody", 1, 0.0)
-
-
-def test_a_signal_without_an_alphabet_has_no_table():
-    own = library(signal=LikelihoodSignal(lambda policy, signal: [0, 0, 0], 3))
-    with pytest.raises(InputError, match="LikelihoodSignal has no finite alphabet"):
-        own.table()
 
 
 def test_a_type_and_a_policy_later():
@@ -205,18 +163,3 @@ def test_some_types_share_the_prior_anew():
     assert some.types == ("type 2", "type 1")
     with pytest.raises(InputError, match="no prior mass"):
         library(prior=[1.0, 0.0, 0.0]).take(types=[1, 2])
-
-
-def test_one_type_and_identical_types_make_a_library():
-    one = PolicyLibrary.from_means([[1.0, 2.0]], 1.0)
-    assert one.prior.tolist() == [1.0]
-    assert one.signal.log_likelihood(0, 0.3).shape == (1,)
-    same = PolicyLibrary.from_means([[1.0, 2.0]] * 4, 1.0)
-    likelihood = same.signal.log_likelihood(1, 0.3)
-    assert (likelihood == likelihood[0]).all()
-
-
-def test_a_library_takes_any_performance_model():
-    made = PolicyLibrary(CategoricalOutcomes([3, 10], [[[0.5, 0.5]]]))
-    assert made.performance.mean[0, 0] == 6.5
-    assert isinstance(library().performance, GaussianOutcomes)

@@ -38,14 +38,6 @@ def test_types_that_are_there_are_found_and_counted(family):
     assert (np.diff(found.weights) <= 0).all()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("family", ["gaussian", "categorical"])
-def test_a_single_type_has_all_users(family):
-    rows, _ = drawn(family=family)
-    found = user_types(rows, np.random.default_rng(1), 1, family=family)
-    assert found.probs.tolist() == [[1.0]] * 120
-
-
 @pytest.mark.parametrize("family", ["gaussian", "categorical"])
 def test_of_many_users_a_sample_gives_the_start_and_all_are_fitted(family, monkeypatch):
     rows, _ = drawn(n_users=240, each=20, family=family)
@@ -84,20 +76,6 @@ def test_the_product_is_the_log_likelihood_of_every_outcome(family):
             spread = np.sqrt(np.mean([(v - mean[t]) ** 2 for v, t in zip(overall, of_row, strict=True)]))
             expected[user, type_] += norm.logpdf(value, mean[type_], spread)
     assert logs == pytest.approx(expected)
-
-
-@pytest.mark.slow
-def test_large_outcomes_are_grouped_as_small_ones_are():
-    rows, _ = drawn()
-    shifted = rows._replace(values=1e6 + 1e3 * rows.values)
-    near, far = (user_types(each, np.random.default_rng(1), 3) for each in (rows, shifted))
-    assert np.array_equal(near.labels, far.labels)
-
-
-def test_the_same_seed_finds_the_same_types():
-    rows, _ = drawn(n_users=40, each=5)
-    first, second = (user_types(rows, np.random.default_rng(2), 4) for _ in range(2))
-    assert np.array_equal(first.probs, second.probs)
 
 
 @pytest.mark.slow

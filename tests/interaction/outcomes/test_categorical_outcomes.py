@@ -41,11 +41,6 @@ def test_fitted_values_are_those_seen_and_listed_ones_may_be_more():
         CategoricalOutcomes.from_samples([[[5.0]]], values=[10, 3])
 
 
-def test_a_table_of_few_values_is_exact():
-    table = calls().table(8)
-    np.testing.assert_allclose(table.probs, [[[0.0, 1.0], [0.4, 0.6]]])
-
-
 def test_bad_values_are_refused():
     with pytest.raises(InputError, match="values must be 2 numbers"):
         CategoricalOutcomes([1.0], [[[0.5, 0.5]]])
@@ -53,14 +48,3 @@ def test_bad_values_are_refused():
         CategoricalOutcomes([1.0, 1.0], [[[0.5, 0.5]]])
     with pytest.raises(InputError, match="count must be positive"):
         CategoricalOutcomes([1.0, 2.0], [[[0.5, 0.5]]], count=0)
-
-
-def test_a_chain_of_near_values_keeps_its_ends_apart():
-    # Each value is the same as its neighbour, but the first and the third differ: no sample is without a value.
-    model = CategoricalOutcomes.from_samples([[[0, 9e-10]], [[1.8e-9, 5]]])
-    assert model.values.tolist() == [0, 1.8e-9, 5]
-    # Far from 0 the larger of two sizes counts, on both sides of 0.
-    for sign in (1.0, -1.0):
-        model = CategoricalOutcomes.from_samples([[[sign * 1e6, sign * (1e6 + 9e-4)]], [[sign * 5, sign * 5]]])
-        near, known = model.cells.of([sign * (1e6 + 9e-4), sign * 1e6])
-        assert near == known >= 0

@@ -74,13 +74,6 @@ every_maker = pytest.mark.parametrize("make", MAKERS, ids=lambda make: make.__na
 
 
 @every_maker
-def test_columns_are_the_same_lists(make):
-    columns = FrameColumns(make(COLUMNS))
-    assert columns.names == list(COLUMNS)
-    assert {name: columns.column(name) for name in columns.names} == COLUMNS
-
-
-@every_maker
 def test_libraries_are_the_same_bit_for_bit(make):
     expected = PolicyLibrary.from_frame(COLUMNS, weight="weight")
     assert PolicyLibrary.from_frame(make(COLUMNS), weight="weight").to_bytes() == expected.to_bytes()
@@ -95,12 +88,6 @@ def test_missing_values_are_none_and_refused_by_their_row(make):
     columns = {"type": ["x", "x", "y"], "policy": ["a", "a", "a"], "outcome": [1.0, 2.0, None]}
     with pytest.raises(InputError, match="column 'outcome' must be finite, row 2 is nan"):
         PolicyLibrary.from_frame(make(columns))
-
-
-@every_maker
-def test_a_column_that_is_not_there_is_named(make):
-    with pytest.raises(InputError, match=r"no column 'pay'; its columns are \['type', 'policy'"):
-        PolicyLibrary.from_frame(make(COLUMNS), outcome="pay")
 
 
 @pytest.mark.parametrize("source", [3, "log.csv", None, [COLUMNS], np.zeros((3, 3))])
@@ -126,14 +113,3 @@ def test_a_stream_without_a_reader_says_what_to_install(monkeypatch):
         monkeypatch.setitem(sys.modules, name, None)
     with pytest.raises(NotFoundError, match="install pyarrow or polars"):
         FrameColumns(Stream())
-
-
-def test_a_stream_is_read_by_polars_where_there_is_no_pyarrow(monkeypatch):
-    stream = polars_frame(COLUMNS)
-
-    class Result:
-        def __arrow_c_stream__(self, requested_schema=None):
-            return stream.__arrow_c_stream__(requested_schema)
-
-    monkeypatch.setitem(sys.modules, "pyarrow", None)
-    assert FrameColumns(Result()).column("policy") == COLUMNS["policy"]

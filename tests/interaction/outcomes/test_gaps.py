@@ -6,7 +6,6 @@ import pytest
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 
 NAN = float("nan")
 SAMPLES = np.array(
@@ -26,13 +25,6 @@ def test_a_guess_by_hand():
     assert moments.count[2, 1] == pytest.approx(moments.variance[2, 1] / between)
     assert moments.variance[2, 1] == pytest.approx(moments.pooled)
     assert moments.count[2, 2] == 1
-
-
-def test_without_gaps_every_bit_is_the_same():
-    whole = SAMPLES[:2]
-    plain, guessing = (GaussianOutcomes.from_samples(whole, gaps=gaps).to_arrays() for gaps in (False, True))
-    for name in plain:
-        assert np.array_equal(plain[name], guessing[name])
 
 
 def test_a_gap_learns_like_another_pair():
@@ -57,15 +49,3 @@ def test_a_new_type_or_policy_with_gaps():
     counted = PolicyLibrary.from_samples([[[0.0, 1.0]]], model="categorical")
     with pytest.raises(InputError, match="gaps are guessed by"):
         counted.with_type([[NAN]], gaps=True)
-
-
-def test_an_agent_in_doubt_tries_what_a_gap_may_hold_and_settles():
-    """On the new type the untried policy pays most; models in doubt find it."""
-    library = PolicyLibrary.from_samples(SAMPLES, gaps=True)
-    agent = BayesianPolicyReuse(library, prior=[0.05, 0.05, 0.9], horizon=40, seed=1)
-    pays, random = np.array([5.0, 12.0, 2.0]), np.random.default_rng(1)
-    chosen = []
-    for _ in range(40):
-        chosen.append(agent.select())
-        agent.update(chosen[-1], float(random.normal(pays[chosen[-1]], 1)))
-    assert chosen[-10:] == [1] * 10

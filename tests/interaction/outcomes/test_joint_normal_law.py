@@ -69,18 +69,6 @@ def test_predictions_are_those_of_conditioning_on_all_outcomes():
     assert found.expected(belief) == pytest.approx(np.einsum("kt,ktp->kp", belief, found.mean))
 
 
-def test_likelihoods_of_outcomes_in_turn_are_that_of_all_together():
-    shown, total = law().shown(1), np.zeros(2)
-    for policy, value in SHOWN:
-        total += law().log_likelihoods(np.array([policy]), np.array([value]), shown, np.array([0]))[0, 0]
-        law().learn(shown, 0, policy, value)
-    assert total == pytest.approx([log_joint(SHOWN, 0), log_joint(SHOWN, 1)])
-    anew = law().log_likelihoods(np.array([3, 1]), np.array([20.0, 1.0]))
-    deviation = np.sqrt(np.diag(COVARIANCE) + DEVIATION**2)
-    for row, (policy, value) in enumerate(((3, 20.0), (1, 1.0))):
-        assert anew[row, 0] == pytest.approx(norm.logpdf(value, MEAN[:, policy], deviation[policy]))
-
-
 def test_algorithm_7_has_the_posterior_of_all_outcomes():
     library = PolicyLibrary(JointNormalOutcomes(MEAN, COVARIANCE, DEVIATION), prior=PRIOR)
     algorithm = ReuseAlgorithm(library, 1, dynamics=TypeDynamics.static())
@@ -88,14 +76,6 @@ def test_algorithm_7_has_the_posterior_of_all_outcomes():
         algorithm.update(0, policy, value)
     joint = PRIOR * np.exp([log_joint(SHOWN, type_) for type_ in range(2)])
     assert algorithm.belief(0) == pytest.approx(joint / joint.sum())
-
-
-def test_without_covariance_users_have_the_means_of_their_types():
-    sure = JointNormalOutcomes(MEAN, np.zeros((4, 4)), DEVIATION).law()
-    shown, _ = users_of(sure)
-    found = sure.prediction(shown, np.arange(3), np.zeros((3, 1)))
-    types = np.array([0, 1, 1])
-    assert found.mean_on(types) == pytest.approx(MEAN[types])
 
 
 def test_fading_counts_outcomes_by_a_share():

@@ -27,23 +27,6 @@ def test_plug_in_users_are_like_their_type_with_both_variances():
     assert agent.algorithm.known(0).performance.mean.tolist() == MEAN
 
 
-def test_one_item_tells_of_another():
-    """A single type: with hard types nothing would be learnt of an item that the user has not tried."""
-    covariance = [[1.0, -0.9], [-0.9, 1.0]]
-    library = PolicyLibrary(JointNormalOutcomes([[0.0, 0.0]], covariance, 0.1), policies=["sweet", "dry"])
-    agent = BayesianPolicyReuse(library, Greedy())
-    agent.update("sweet", -1.0)
-    assert agent.library.policies[agent.select()] == "dry"
-    assert agent.expected_utility()[1] == pytest.approx(0.9 / 1.01)
-
-
-def test_some_types_and_policies():
-    found = PolicyLibrary(model()).take(types=[1], policies=[2, 0]).performance
-    assert found.mean.tolist() == [[3.0, 2.0]]
-    assert found.covariance.tolist() == [[2.0, 0.0], [0.0, 4.0]]
-    assert found.noise.tolist() == [0.5, 1.0]
-
-
 def test_a_file_restores_every_bit(tmp_path):
     library = PolicyLibrary(model(), prior=np.array([0.25, 0.75]))
     library.save(tmp_path / "library.npz")

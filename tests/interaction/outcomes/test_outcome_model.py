@@ -7,12 +7,9 @@ from hypothesis import strategies as st
 from scipy import integrate
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.outcome_kinds import KINDS, outcome_kind
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows, checked_rows, rows_of_samples
-from lifelore.interaction.outcomes.student_t_outcomes import StudentTOutcomes
 
 SHAPE = (3, 2)
 
@@ -129,50 +126,6 @@ def test_excess_and_exceedance_agree_with_integration(name, threshold):
 
 
 @every_model
-def test_excess_of_means_that_are_taken_as_exact(name):
-    model = models()[name]
-    for threshold in (-9.0, 0.3, 4.0, 50.0):
-        by_hand = [[max(mean - threshold, 0.0) for mean in row] for row in model.mean.tolist()]
-        assert model.expected_mean_excess(threshold).tolist() == by_hand
-    # Noise can only add to it (Jensen).
-    assert (model.expected_excess(1.0) >= model.expected_mean_excess(1.0) - 1e-12).all()
-
-
-@every_model
-def test_excess_laws(name):
-    """Falls with the threshold, never below 0 or the mean's excess; its slope is minus the exceedance."""
-    model = models()[name]
-    thresholds = np.linspace(-60, 60, 241)
-    excess = model.expected_excess(thresholds)
-    assert (np.diff(excess, axis=0) <= 1e-12).all()
-    assert (excess >= 0).all()
-    assert (excess >= model.mean - thresholds[:, None, None] - 1e-9).all()
-    step = 0.5
-    slope = np.diff(excess, axis=0) / step
-    assert (slope >= -model.exceedance(thresholds)[:-1] - 1e-9).all()
-    assert (slope <= -model.exceedance(thresholds)[1:] + 1e-9).all()
-
-
-@every_model
-def test_cumulative_and_exceedance_add_up(name):
-    model = models()[name]
-    for value in (-5.0, 0.0, 2.2, 6.0):
-        together = [model.cumulative(policy, np.array([value]))[:, 0] for policy in range(2)]
-        np.testing.assert_allclose(np.stack(together, axis=1) + model.exceedance(value), 1, atol=1e-12)
-
-
-@every_model
-def test_draws_have_the_mean_and_deviation(name):
-    model = models()[name]
-    drawn = model.sample(np.random.default_rng(0), 2, 1, 40_000)
-    deviation = model.deviation[2, 1]
-    # Five standard errors of the mean; a t's fourth moment makes its deviation's error larger, 5 % covers it.
-    assert drawn.mean() == pytest.approx(model.mean[2, 1], abs=5 * deviation / 200)
-    assert drawn.std() == pytest.approx(deviation, rel=0.05)
-    assert np.isscalar(model.sample(np.random.default_rng(0), 0, 0))
-
-
-@every_model
 def test_table_rows_are_distributions_and_tell_the_types_apart(name):
     table = models()[name].table(4)
     assert table.probs.shape == (3, 2, 4)
@@ -199,34 +152,6 @@ def test_observing_is_fitting_with_one_more_but_for_what_is_pooled(name):
         np.testing.assert_allclose(model.log_density(1, value), fresh.log_density(1, value), rtol=1e-12)
         np.testing.assert_allclose(model.expected_excess(value), fresh.expected_excess(value), rtol=1e-10)
     np.testing.assert_allclose(model.deviation, fresh.deviation, rtol=1e-12)
-
-
-@every_model
-def test_a_type_and_a_policy_more(name):
-    model = models()[name]
-    grown = model.with_type([[5.0, 6.0], [1.0, np.nan]])
-    assert (grown.n_types, grown.n_policies) == (4, 2)
-    np.testing.assert_array_equal(grown.mean[:3], model.mean)
-    assert grown.mean[3, 0] > grown.mean[3, 1]
-    wider = model.with_policy([[5.0], [1.0], [0.0]])
-    assert (wider.n_types, wider.n_policies) == (3, 3)
-    np.testing.assert_array_equal(wider.log_density(1, 2.0), model.log_density(1, 2.0))
-    assert wider.log_density(2, 1.0).shape == (3,)
-    with pytest.raises(InputError, match=r"samples must be \(2, n\), one row for each of the policies"):
-        model.with_type([[5.0], [1.0], [0.0]])
-    with pytest.raises(InputError, match="every pair of type and policy needs a sample"):
-        model.with_policy([[5.0], [np.nan], [0.0]])
-
-
-@every_model
-def test_some_types_and_policies(name):
-    model = models()[name]
-    some = model.take(types=[2, 0], policies=[1])
-    np.testing.assert_allclose(some.mean, model.mean[[2, 0]][:, [1]], rtol=1e-14)
-    np.testing.assert_array_equal(some.log_density(0, 3.0), model.log_density(1, 3.0)[[2, 0]])
-    for bad in ([], [3], [-1], [[0]]):
-        with pytest.raises(InputError, match="the chosen numbers must be"):
-            model.take(types=bad)
 
 
 @every_model
@@ -283,14 +208,6 @@ def test_samples_that_cannot_be_fitted_are_refused(name):
         fit([[[1.0], [2.0]], [[3.0]]])
 
 
-@every_model
-def test_one_type_one_policy_one_sample(name):
-    model = KINDS[name].from_samples([[[5.0]]])
-    assert np.isfinite(model.log_density(0, 5.0)).all()
-    assert model.expected_excess(4.0)[0, 0] == pytest.approx(1, abs=0.05)
-    assert model.table().probs.shape[:2] == (1, 1)
-
-
 @pytest.mark.slow
 @every_model
 @settings(deadline=None, max_examples=60)
@@ -307,32 +224,3 @@ def test_whatever_finite_comes_no_number_is_lost(name, values, value):
     assert np.isfinite(excess).all()
     assert (excess >= 0).all()
     assert ((model.exceedance(value) >= 0) & (model.exceedance(value) <= 1)).all()
-
-
-@every_model
-def test_bounds_hold_nearly_all_outcomes(name):
-    model = models()[name]
-    low, high = model.bounds()
-    assert (model.exceedance(low - 1e-9) > 0.99).all()
-    assert (model.exceedance(high + 1e-9) < 0.01).all()
-
-
-def test_rows_by_hand():
-    rows = rows_of_samples([[[1.0, np.nan], [2.0, 3.0]]])
-    assert rows.shape == (1, 2)
-    assert rows.pair.tolist() == [0, 1, 1]
-    assert rows.sums().tolist() == [[1.0, 2.0]]
-    assert rows.sums(rows.values).tolist() == [[1.0, 5.0]]
-    with pytest.raises(InputError, match="2 have none"):
-        checked_rows(OutcomeRows(np.array([0]), np.array([0]), np.array([1.0]), (1, 3)))
-
-
-def test_the_four_models_agree_where_they_should():
-    """With many samples each says nearly the same mean, deviation and expected excess."""
-    data = np.random.default_rng(2).normal([[[0.0], [3.0]]], 2.0, (1, 2, 4000)).round(1)
-    fitted = [kind.from_samples(data) for kind in (GaussianOutcomes, StudentTOutcomes, CategoricalOutcomes)]
-    fitted.append(HistogramOutcomes.from_samples(data, edges=60))
-    for model in fitted:
-        np.testing.assert_allclose(model.mean, fitted[0].mean, atol=0.06)
-        np.testing.assert_allclose(model.deviation, fitted[0].deviation, rtol=0.05)
-        np.testing.assert_allclose(model.expected_excess(2.0), fitted[0].expected_excess(2.0), atol=0.08)

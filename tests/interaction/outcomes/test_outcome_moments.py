@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.outcome_model import rows_of_samples
-from lifelore.interaction.outcomes.outcome_moments import FLOOR, _moments, moments
+from lifelore.interaction.outcomes.outcome_moments import moments
 
 
 def naive(samples, shrinkage):
@@ -38,32 +38,6 @@ def test_against_the_naive_twin(seed, shrinkage):
         assert found.variance[pair] == pytest.approx(variance[pair])
         assert found.count[pair] == len(values)
     assert found.pooled == pytest.approx(pooled)
-
-
-@pytest.mark.slow
-@settings(deadline=None, max_examples=40)
-@given(st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=12))
-def test_one_at_a_time_is_all_at_once_with_the_same_pooled_variance(values):
-    first = _moments(rows_of_samples([[values[:1]]]), 5.0, pooled=2.0)
-    for value in values[1:]:
-        first.absorb(0, 0, 1, value, 0.0)
-    whole = _moments(rows_of_samples([[values]]), 5.0, pooled=2.0)
-    np.testing.assert_allclose(first.mean, whole.mean, rtol=1e-9, atol=1e-6)
-    np.testing.assert_allclose(first.variance, whole.variance, rtol=1e-7)
-    assert first.freedom == whole.freedom
-
-
-def test_single_samples_are_pooled_over_types():
-    # One run each: the variance of means across the two types, averaged over policies: (1 + 9) / 2.
-    found = moments(rows_of_samples([[[0.0], [0.0]], [[2.0], [6.0]]]))
-    assert found.pooled == pytest.approx(5)
-
-
-def test_what_never_varied_may_still_vary_a_little():
-    found = moments(rows_of_samples([[[1.0, 1.0]], [[11.0, 11.0]]]))
-    assert np.sqrt(found.pooled) == pytest.approx(FLOOR * 10)
-    alike = moments(rows_of_samples([[[7.0, 7.0]]]))
-    assert np.sqrt(alike.pooled) == pytest.approx(FLOOR * 7)
 
 
 def test_arrays_that_are_no_moments_are_refused():

@@ -49,33 +49,6 @@ def test_the_closed_form_is_that_of_each_sample_held_out(concentration):
     assert held_out_pseudo_count(counts.reshape(3, 3, 4)) == held_out_pseudo_count(counts)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("alpha", [0.05, 0.5, 5.0])
-def test_the_pseudo_count_that_made_the_rows_is_found(alpha):
-    """Of 400 rows of 20 samples from a Dirichlet of `alpha`; log α of so many rows deviates by less than 0.15."""
-    random = np.random.default_rng(1)
-    counts = np.stack([random.multinomial(20, row) for row in random.dirichlet(np.full(6, alpha), 400)])
-    assert np.log(held_out_pseudo_count(counts)) == pytest.approx(np.log(alpha), abs=0.45)
-
-
-def test_few_samples_move_it_little_and_in_the_right_direction():
-    assert held_out_pseudo_count(np.eye(5)) == held_out_pseudo_count(np.zeros((2, 3))) == USUAL
-    alike, apart = held_out_pseudo_count([[2, 0, 0]]), held_out_pseudo_count([[1, 1, 0]])
-    assert 0.05 < alike < USUAL < apart < 10
-
-
-def test_better_held_out_than_the_usual_number_where_categories_are_sharp_or_even():
-    random = np.random.default_rng(2)
-    for concentration in (0.02, 20.0):
-        probs = random.dirichlet(np.full(6, concentration), (8, 5))
-        samples = np.stack([random.choice(6, 10, p=row) for row in probs.reshape(-1, 6)]).reshape(8, 5, 10)
-        gained = []
-        for pseudo_count in (0.5, "held-out"):
-            fitted = CategorySignal.from_samples(samples, 6, pseudo_count)
-            gained.append((probs * np.log(fitted.probs)).sum(axis=2).mean())
-        assert gained[1] > gained[0] + 0.03
-
-
 def test_every_model_of_counts_takes_it():
     random = np.random.default_rng(3)
     samples = random.integers(0, 3, (2, 4, 10)).astype(float)

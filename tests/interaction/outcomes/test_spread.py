@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.spread import SHARES, Spread, spread_between, variance_analysis
+from lifelore.interaction.outcomes.spread import SHARES, Spread, spread_between
 
 
 def drawn(spread: float, n_tasks: int = 400, n_runs: int = 5, seed: int = 0):
@@ -39,16 +39,3 @@ def test_spreads_come_back_from_arrays_and_wrong_arrays_are_refused():
         with pytest.raises(InputError, match="spread"):
             Spread.of_array(wrong)
     assert Spread.up_to(0.0).values.tolist() == [0.0]
-
-
-def test_a_single_pair_is_a_one_way_analysis_of_variance():
-    from scipy.stats import f_oneway
-
-    tasks, values = np.array([0, 0, 0, 1, 1, 2, 2, 2, 2]), np.array([1.0, 2.0, 4.0, 3.0, 6.0, 2.0, 8.0, 5.0, 6.0])
-    found = variance_analysis(np.zeros(9, np.int64), tasks, values)
-    other = f_oneway(*(values[tasks == task] for task in range(3)))
-    assert found is not None
-    assert (found.ratio, found.chance) == pytest.approx((other.statistic, other.pvalue))
-    assert (found.between, found.within) == (2, 6)
-    # (9 - (9 + 4 + 16) / 9) / 2 outcomes of a task.
-    assert found.spread == pytest.approx(max(0.0, (found.ratio - 1) / (26 / 9)))

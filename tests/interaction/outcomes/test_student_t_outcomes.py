@@ -5,19 +5,7 @@ import pytest
 from scipy import integrate, stats
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.student_t_outcomes import StudentTOutcomes
-
-
-def test_against_scipy():
-    model = StudentTOutcomes([[1.0, -2.0]], [[1.0, 3.0]], 6)
-    scale = np.array([[1.0, 3.0]]) * np.sqrt(7 / 6)
-    truth = stats.t(6, model.mean, scale)
-    np.testing.assert_allclose(model.density(0.3), truth.pdf(0.3), rtol=1e-10)
-    np.testing.assert_allclose(model.exceedance(0.3), truth.sf(0.3), rtol=1e-10)
-    np.testing.assert_allclose(model.deviation, truth.std(), rtol=1e-10)
-    np.testing.assert_allclose(model.log_density(1, 0.3), truth.logpdf(0.3)[:, 1], rtol=1e-10)
-    np.testing.assert_allclose(model.cumulative(0, np.array([0.3]))[:, 0], truth.cdf(0.3)[:, 0], rtol=1e-10)
 
 
 @pytest.mark.slow
@@ -35,14 +23,6 @@ def test_it_is_the_gaussian_with_its_mean_and_variance_integrated_out():
     for value in (-3.0, 1.0, 2.5, 9.0):
         expected = integrate.quad(at_variance, 0, np.inf, args=(value,), limit=200)[0]
         assert model.density(value)[0, 0] == pytest.approx(expected, rel=1e-6)
-
-
-def test_fewer_samples_are_believed_less():
-    data = np.random.default_rng(0).normal(0, 1, (1, 1, 40))
-    few, many = StudentTOutcomes.from_samples(data[..., :3]), StudentTOutcomes.from_samples(data)
-    assert few.density(8.0)[0, 0] > 1000 * many.density(8.0)[0, 0]
-    gaussian = GaussianOutcomes.from_samples(data)
-    assert many.density(0.5)[0, 0] == pytest.approx(gaussian.density(0.5)[0, 0], rel=0.05)
 
 
 def test_too_little_known_for_a_deviation_is_refused():

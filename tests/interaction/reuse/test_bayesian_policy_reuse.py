@@ -4,17 +4,13 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from scipy.stats import norm
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.beliefs.learnt_dynamics import HAZARD_WEIGHTS, HAZARDS
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, MAX_SURPRISE
-from lifelore.interaction.selection import RULES, Greedy, KnowledgeGradient, rule_named
+from lifelore.interaction.selection import RULES, Greedy
 from lifelore.interaction.signals.category_signal import CategorySignal
 
 INF = math.inf
@@ -71,12 +67,6 @@ def test_what_it_says_for_itself():
     assert len(agent.explain().policies) == MAX_EVIDENCE
 
 
-def test_a_single_policy_has_no_runner_up():
-    agent = BayesianPolicyReuse(PolicyLibrary.from_means([[1.0], [0.0]], 1.0))
-    assert agent.select() == 0
-    assert agent.explain().runner_up is None
-
-
 def test_an_unexplained_signal_keeps_the_belief_and_raises_the_surprise():
     probs = np.array([[[1.0, 0.0, 0.0]], [[0.5, 0.5, 0.0]]])
     library = PolicyLibrary.from_means([[0.0], [1.0]], 1.0, signal=CategorySignal(probs))
@@ -92,59 +82,6 @@ def test_an_unexplained_signal_keeps_the_belief_and_raises_the_surprise():
     assert agent.belief.tolist() == [0.0, 1.0]
 
 
-@settings(deadline=None, max_examples=30)
-@given(st.permutations(range(10)), st.integers(0, 2**32 - 1))
-def test_late_signals_in_any_order_lead_to_the_same_belief(order, seed):
-    random = np.random.default_rng(seed)
-    library = grid_library()
-    signals = [(int(random.integers(8)), float(random.normal(-3, 3))) for _ in range(10)]
-    at_once, late = (BayesianPolicyReuse(library, dynamics=STATIC) for _ in range(2))
-    for policy, signal in signals:
-        at_once.select()
-        at_once.update(policy, signal)
-    for _ in range(4):
-        late.select()
-    for place in order:
-        late.update(*signals[place])
-    assert late.belief == pytest.approx(at_once.belief, abs=1e-12)
-    assert late.surprise == pytest.approx(at_once.surprise, rel=1e-9)
-
-
-@pytest.mark.parametrize("name", RULES)
-def test_every_rule_finds_the_type_of_a_plain_task(name):
-    library = grid_library()
-    random, agent = np.random.default_rng(1), BayesianPolicyReuse(library, rule_named(name), horizon=30, seed=3)
-    for _ in range(30):
-        policy = agent.select()
-        agent.update(policy, library.performance.sample(random, 5, policy))
-    if name != "greedy":
-        assert agent.belief.argmax() == 5
-        assert agent.probabilities().argmax() == 5
-    assert agent.probabilities().sum() == pytest.approx(1)
-
-
-def test_the_same_seed_selects_the_same_and_another_another():
-    library = grid_library()
-
-    def run(seed):
-        agent = BayesianPolicyReuse(library, rule_named("sampling"), seed=seed)
-        return [agent.select() for _ in range(30)]
-
-    assert run(4) == run(4) == run(np.int64(4))
-    assert run(4) != run(5)
-    assert run(np.random.default_rng(4)) == run(np.random.default_rng(4))
-
-
-def test_the_horizon_counts_the_episodes_that_follow():
-    agent = BayesianPolicyReuse(coin_library(), KnowledgeGradient(), horizon=3)
-    left = []
-    for _ in range(4):
-        left.append(agent.episodes_left)
-        agent.update(0, 0)
-    assert left == [2, 1, 0, 0]
-    assert BayesianPolicyReuse(coin_library()).episodes_left is None
-
-
 def test_types_may_change_once_after_all_signals_of_an_episode():
     agent = BayesianPolicyReuse(coin_library(), dynamics=TypeDynamics.hazard(0.1, [0.5, 0.5]))
     agent.observe("left", 0)
@@ -154,46 +91,6 @@ def test_types_may_change_once_after_all_signals_of_an_episode():
     agent.end_episode()
     assert agent.belief == pytest.approx([0.9 * 16 / 17 + 0.05, 0.9 / 17 + 0.05])
     assert agent.episode == 1
-
-
-def test_types_may_change_unless_they_are_static():
-    agent = BayesianPolicyReuse(coin_library(prior=[0.6, 0.4]), prior=[1.0, 0.0])
-    assert (agent.algorithm.dynamics.kind, agent.algorithm.dynamics.by) == ("learnt", "time")
-    agent.end_episode()
-    rate = HAZARDS @ HAZARD_WEIGHTS / HAZARD_WEIGHTS.sum()
-    assert agent.belief == pytest.approx([1 - 0.4 * rate, 0.4 * rate])
-    static = BayesianPolicyReuse(coin_library(), prior=[1.0, 0.0], dynamics=TypeDynamics.static())
-    static.end_episode()
-    assert static.belief.tolist() == [1.0, 0.0]
-
-
-def test_a_user_of_the_only_type_is_not_forgotten():
-    samples = np.random.default_rng(0).normal(size=(1, 2, 10))
-    agent = BayesianPolicyReuse(PolicyLibrary.from_samples(samples))
-    for _ in range(50):
-        agent.update(0, 2.0)
-    assert agent.algorithm.state(0)["signal.shown"][0, 0] == pytest.approx(50)
-
-
-def test_what_was_learnt_of_changes_goes_on_with_the_next_task():
-    agent = BayesianPolicyReuse(coin_library(), dynamics=TypeDynamics.learnt("outcome"))
-    for number in range(40):
-        for _ in range(6):
-            agent.observe("left", int(number % 2))
-        agent.end_episode("won" if number % 2 else "lost")
-    then = BayesianPolicyReuse(coin_library(), dynamics=agent.dynamics)
-    fresh = BayesianPolicyReuse(coin_library(), dynamics=TypeDynamics.learnt("outcome"))
-    for made in (then, fresh):
-        made.end_episode("lost")
-    assert then.belief.max() > 0.7 > 0.6 > fresh.belief.max()
-
-
-def test_what_is_given_out_cannot_change_the_agent():
-    agent = BayesianPolicyReuse(coin_library())
-    agent.belief[:] = 7
-    agent.log_belief[:] = 7
-    agent.library.prior[:] = 7
-    assert agent.belief.tolist() == [0.5, 0.5]
 
 
 # ---- bad input -----------------------------------------------------------------------------------------------
@@ -208,13 +105,6 @@ def test_signals_that_are_none_leave_everything_as_it_was(bad):
         agent.update(0, bad)
     assert np.array_equal(agent.log_belief, before)
     assert agent.episode == 1
-
-
-def test_unknown_policies_are_named():
-    agent = BayesianPolicyReuse(coin_library())
-    for unknown in ("up", 2, -1):
-        with pytest.raises(NotFoundError, match="unknown policy"):
-            agent.update(unknown, 0)
 
 
 class Broken:
@@ -259,34 +149,6 @@ def test_settings_that_break_their_rule_are_refused(options, message):
         BayesianPolicyReuse(coin_library(), **options)
 
 
-def test_one_type_and_identical_types_are_valid():
-    alone = BayesianPolicyReuse(PolicyLibrary.from_means([[1.0, 2.0]], 1.0))
-    assert alone.select() == 1
-    alone.update(1, -40.0)
-    assert alone.belief.tolist() == [1.0]
-    for name in RULES:
-        twins = BayesianPolicyReuse(PolicyLibrary.from_means([[1.0, 2.0]] * 3, 1.0), rule_named(name))
-        for _ in range(5):
-            twins.update(twins.select(), 1.5)
-        assert twins.belief == pytest.approx(np.full(3, 1 / 3)), name
-
-
-@settings(deadline=None, max_examples=8)
-@given(st.integers(0, 2**32 - 1), st.sampled_from(list(RULES)))
-def test_hundreds_of_hostile_signals_leave_a_belief(seed, name):
-    random = np.random.default_rng(seed)
-    library = grid_library(5, 1e-3)
-    agent = BayesianPolicyReuse(library, rule_named(name), horizon=1000)
-    for _ in range(150):
-        policy = agent.select()
-        size = 10.0 ** random.uniform(-300, 100)
-        agent.update(policy, float(random.choice([size, -size, 0.0, -2.0, 1e99])))
-        belief = agent.belief
-        assert not np.isnan(belief).any()
-        assert belief.sum() == pytest.approx(1)
-    assert math.isfinite(agent.surprise)
-
-
 def test_evidence_is_kept_where_a_model_answers_in_one_array_each_time():
     answer = np.empty(2)
 
@@ -302,31 +164,6 @@ def test_evidence_is_kept_where_a_model_answers_in_one_array_each_time():
 
 
 # ---- the printed form --------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("rule", ["greedy", "expected-improvement", "probability-of-improvement"])
-def test_the_printed_algorithm_from_samples_step_by_step(rule):
-    # Eq. 4.1, 4.5 and the indices of §4.5.2.1 with the Gaussian of each pair's own samples.
-    random = np.random.default_rng(7)
-    runs = random.normal(random.normal(scale=3, size=(4, 3, 1)), 2.0, (4, 3, 9))
-    mean, deviation = runs.mean(axis=2), runs.std(axis=2, ddof=1)
-    agent = BayesianPolicyReuse.of_thesis(PolicyLibrary.from_samples(runs, shrinkage=0), rule, seed=1)
-    belief = np.full(4, 0.25)
-    for _ in range(10):
-        utility = belief @ mean
-        index = {
-            "greedy": utility,
-            "expected-improvement": belief @ norm.sf(utility.max(), mean, deviation),
-            # U⁺ "larger than the current best estimate", here by 2 % of the range of the means.
-            "probability-of-improvement": belief @ norm.pdf(utility.max() + 0.02 * np.ptp(mean), mean, deviation),
-        }[rule]
-        policy = agent.select()
-        assert policy == int(np.argmax(index))
-        outcome = random.normal(mean[2, policy], deviation[2, policy])
-        agent.update(policy, outcome)
-        belief = belief * norm.pdf(outcome, mean[:, policy], deviation[:, policy])
-        belief /= belief.sum()
-        assert agent.belief == pytest.approx(belief, abs=1e-12)
 
 
 def test_the_printed_algorithm_takes_a_rule_and_refuses_one_of_our_own():

@@ -1,11 +1,7 @@
 """Algorithm 7 for every family of signals: against its slow twin, many rows against one, and what rows promise."""
 
-import copy
-
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
@@ -15,7 +11,7 @@ from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.outcome_kinds import KINDS
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
-from lifelore.interaction.selection import RULES, ExpectedImprovement, Greedy, rule_named
+from lifelore.interaction.selection import RULES, rule_named
 from lifelore.interaction.signals.return_signal import ReturnSignal
 
 from .families import FAMILIES, N_POLICIES, N_TYPES, PRIOR, Family
@@ -93,33 +89,6 @@ def test_several_signals_an_episode_agree_with_the_twin(family, rate):
         twin.end_episode()
         assert made.belief(0) == pytest.approx(twin.belief, abs=1e-12)
         assert np.exp(made.signals.log_weights[0]) == pytest.approx(twin.weights, abs=1e-12)
-
-
-@learning
-def test_a_known_spread_agrees_with_the_twin(family):
-    spread, random = Spread.known(0.3), np.random.default_rng(2)
-    made, twin = algorithm(family, rate=0.05, spread=spread), family.twin(0.05, spread)
-    for _ in range(4):
-        policy, signal = int(random.integers(N_POLICIES)), family.draw(random)
-        made.update(0, policy, signal)
-        twin.update(family.place(policy), signal)
-    assert made.belief(0) == pytest.approx(twin.belief, abs=1e-12)
-
-
-@every_family
-@settings(deadline=None, max_examples=10)
-@given(st.permutations(range(6)), st.integers(0, 2**32 - 1))
-def test_signals_of_a_static_type_may_come_in_any_order(family, order, seed):
-    """Outcomes of a user are exchangeable given its type, where the spread is known."""
-    random, made = np.random.default_rng(seed), algorithm(family, 2, rate=0.0, spread=Spread.known(0.3))
-    policies, signals = drawn(family, random, 6)
-    evidence = np.zeros(2)
-    for first, second in enumerate(order):
-        both = np.array([first, second])
-        found = made.update(np.arange(2), policies[both], [signals[place] for place in both])
-        evidence += found.log_evidence
-    assert evidence[0] == pytest.approx(evidence[1], rel=1e-9, abs=1e-9)
-    assert_same(states(made, 0), states(made, 1), 1e-9)
 
 
 @pytest.mark.parametrize("family", [f for f in FAMILIES.values() if f.impossible is not None])
@@ -302,36 +271,6 @@ def test_what_was_shown_fades_with_the_probability_of_a_change(family):
         assert found == pytest.approx(twin.observe(family.place(1), signal), abs=1e-11)
 
 
-def test_an_episode_without_a_signal_is_a_step_of_the_dynamics():
-    family = FAMILIES["gaussian"]
-    made, before = taught(family, rate=0.2), taught(family, rate=0.2)
-    made.end_episode(np.array([0, 2]))
-    expected = 0.2 * np.array(PRIOR) + 0.8 * before.belief(np.array([0, 2]))
-    assert made.belief(np.array([0, 2])) == pytest.approx(expected)
-    assert np.array_equal(made.log_belief[1], before.log_belief[1])
-
-
-def test_types_that_change_by_a_matrix_move_the_belief_alone():
-    matrix = np.array([[0.9, 0.1, 0.0], [0.0, 0.8, 0.2], [0.5, 0.0, 0.5]])
-    made = ReuseAlgorithm(FAMILIES["gaussian"].library(), 2, dynamics=TypeDynamics.transitions(matrix))
-    static = ReuseAlgorithm(FAMILIES["gaussian"].library(), 2, dynamics=TypeDynamics.static())
-    for one in (made, static):
-        one.observe(np.arange(2), np.array([0, 1]), np.array([3.0, -2.0]))
-    assert_same(states(made, 0), states(static, 0))
-    made.end_episode(0)
-    assert made.belief(0) == pytest.approx(static.belief(0) @ matrix)
-    assert_same(states(made, 0)[1:], states(static, 0)[1:])
-
-
-def test_dynamics_that_learn_are_told_whose_episodes_ended_and_how():
-    made = ReuseAlgorithm(FAMILIES["own"].library(), 3, dynamics=TypeDynamics.learnt("outcome"))
-    for _ in range(2):
-        made.end_episode(np.array([2, 0]), ["won", "lost"])
-    made.update(1, 0, "few")
-    counts = made.changes.tables["by_outcome"].counts[:, :, 0].sum(axis=-1)  # pyright: ignore
-    assert counts == pytest.approx(np.array([[0, 0, 1], [0, 0, 0], [0, 1, 0]]))
-
-
 # ---- the library, and arguments ------------------------------------------------------------------------------
 
 
@@ -402,33 +341,6 @@ def test_likelihoods_of_a_callers_subclass_are_those_that_count(dtype):
         expected = np.exp(factor * normal.log_density(0, 0.5))
         assert made.belief(0) == pytest.approx(expected / expected.sum())
         assert made.belief(1) == pytest.approx([0.5, 0.5])
-
-
-def test_the_prior_is_that_of_the_library_or_the_callers():
-    library = FAMILIES["gaussian"].library()
-    assert ReuseAlgorithm(library).belief(0) == pytest.approx(PRIOR)
-    own = ReuseAlgorithm(library, 2, prior=[1.0, 0.0, 0.0])
-    assert own.belief(np.arange(2)).tolist() == [[1.0, 0.0, 0.0]] * 2
-    assert own.start([0.0, 1.0, 0.0]).tolist() == [-np.inf, 0.0, -np.inf]
-
-
-def test_an_algorithm_can_be_copied_while_it_runs():
-    made = taught(FAMILIES["gaussian"])
-    twin = copy.deepcopy(made)
-    for one in (made, twin):
-        one.update(1, 1, -4.0)
-    assert_same(states(made, 1), states(twin, 1), 0)
-
-
-@every_family
-def test_selection_takes_the_largest_score(family):
-    made, users = taught(family), np.arange(K)
-    for rule in (Greedy(), ExpectedImprovement()):
-        chosen, scores = made.select(users, rule, np.random.default_rng(0))
-        assert (chosen == scores.argmax(axis=1)).all()
-    assert made.scores(users, Greedy()) == pytest.approx(
-        made.known(users).performance.expected(made.belief(users))
-    )
 
 
 def test_arguments_that_break_their_rule_are_refused():

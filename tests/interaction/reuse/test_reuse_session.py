@@ -10,9 +10,7 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.reuse_session import load_session, save_session, session_bytes, session_from_bytes
-from lifelore.interaction.selection import RULES, ExpectedImprovement, Greedy, KnowledgeGradient, rule_named
-from lifelore.interaction.signals.category_signal import CategorySignal
-from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
+from lifelore.interaction.selection import RULES, ExpectedImprovement, Greedy, rule_named
 
 from .families import FAMILIES
 
@@ -67,31 +65,6 @@ def test_what_an_earlier_task_taught_of_changes_comes_back():
     assert np.array_equal(loaded.belief, agent.belief)
 
 
-def test_settings_zeros_and_other_generators_survive(tmp_path):
-    probs = np.array([[[1.0, 0.0]], [[0.5, 0.5]], [[0.0, 1.0]]])
-    model = PolicyLibrary.from_means([[0.0], [1.0], [2.0]], 1.0, signal=CategorySignal(probs), prior=[0, 0.5, 0.5])
-    for source in (np.random.MT19937, np.random.Philox, np.random.SFC64):
-        agent = BayesianPolicyReuse(
-            model, KnowledgeGradient(mass=0.9, lookahead=3.0), seed=np.random.Generator(source(1))
-        )
-        agent.update(0, 0)
-        agent.update(0, 1)
-        agent.update(0, 0)
-        save_session(agent, tmp_path / "agent.npz")
-        loaded = load_session(tmp_path / "agent.npz")
-        assert np.array_equal(loaded.log_belief, agent.log_belief)
-        assert loaded.rule == KnowledgeGradient(mass=0.9, lookahead=3.0)
-        assert loaded.generator.random(5).tolist() == agent.generator.random(5).tolist()
-
-
-def test_a_type_certain_after_a_change_comes_back(tmp_path):
-    one = PolicyLibrary.from_means([[1.0, 2.0]], 1.0)
-    for rate in np.linspace(0.001, 0.02, 20):
-        agent = BayesianPolicyReuse(one, dynamics=TypeDynamics.hazard(rate, [1.0]))
-        agent.update(0, 1.0)
-        assert session_from_bytes(session_bytes(agent)).log_belief.tobytes() == agent.log_belief.tobytes()
-
-
 @pytest.mark.parametrize("name", ["gaussian", "categorical", "transition", "exact outcomes"])
 def test_a_session_saved_within_an_episode_goes_on_to_the_bit(name):
     family, random = FAMILIES[name], np.random.default_rng(0)
@@ -107,19 +80,6 @@ def test_a_session_saved_within_an_episode_goes_on_to_the_bit(name):
         one.update(1, signals[2])
     assert loaded.log_belief.tobytes() == agent.log_belief.tobytes()
     assert session_bytes(loaded) == session_bytes(agent)
-
-
-def test_an_own_signal_model_is_given_again(tmp_path):
-    signal = LikelihoodSignal(lambda policy, x: [0.0, -abs(x), -1.0, -2.0, -3.0, -4.0], 6)
-    agent = BayesianPolicyReuse(library(signal=signal), Greedy())
-    agent.update(0, 3.0)
-    save_session(agent, tmp_path / "agent.npz")
-    with pytest.raises(InputError, match="give the model as signal="):
-        load_session(tmp_path / "agent.npz")
-    loaded = load_session(tmp_path / "agent.npz", signal)
-    loaded.update(1, 0.5)
-    agent.update(1, 0.5)
-    assert np.array_equal(loaded.log_belief, agent.log_belief)
 
 
 def repacked(content: bytes, change) -> bytes:
@@ -170,21 +130,6 @@ def test_the_evidence_of_an_unknown_type_goes_on_to_the_bit(models, kind):
     assert loaded.novelty is not None
     assert loaded.novelty.mass == 0.1
     assert lived(loaded) == lived(agent)
-
-
-@pytest.mark.parametrize("version", [1, 2])
-def test_sessions_of_earlier_versions_have_no_evidence_of_an_unknown_type(version):
-    agent = BayesianPolicyReuse(library(), seed=5, models="plug-in")
-    played(agent, 3)
-
-    def earlier(header, _):
-        header.update(version=version)
-        if version == 1:
-            header.pop("models")
-
-    loaded = session_from_bytes(repacked(session_bytes(agent), earlier))
-    assert loaded.novelty is None
-    assert played(loaded, 12) == played(agent, 12)
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,6 @@ import pytest
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
-from lifelore.interaction.selection import RULES, rule_named
 
 MEAN = np.random.default_rng(3).normal(scale=30, size=(7, 5))
 
@@ -74,44 +73,6 @@ def test_unknown_names_are_an_error_by_default():
     with pytest.raises(InputError, match="unknown must be"):
         UserBeliefs(exact(), 2, unknown="maybe")  # type: ignore[arg-type]
     assert users.n_users == 1
-
-
-@pytest.mark.parametrize("name", RULES)
-@pytest.mark.parametrize("make", [exact, learnt])
-def test_only_available_policies_are_selected(make, name):
-    random, n, every = np.random.default_rng(1), 30, np.arange(30)
-    users, rule = UserBeliefs(make(), n, "f8"), rule_named(name)
-    users.update(every, random.integers(0, 5, n), random.normal(scale=40, size=n))
-    mask = random.random((n, 5)) < 0.5
-    mask[:, 1] |= ~mask.any(axis=1)
-    for available in (mask, mask[0]):
-        rows = np.broadcast_to(available, (n, 5))
-        chosen = users.select(every, rule, available=available, episodes_left=3)
-        stated = users.probabilities(every, rule, available=available, episodes_left=3)
-        assert stated.sum(axis=1) == pytest.approx(np.ones(n))
-        assert (stated[~rows] == 0).all()
-        assert (stated[every, chosen] > 0).all()
-    again = users.update_and_select(every, np.zeros(n, int), np.zeros(n), rule, available=mask, episodes_left=2)
-    assert mask[every, again].all()
-
-
-@pytest.mark.parametrize("make", [exact, learnt])
-@pytest.mark.parametrize("dtype", ["f4", "f8"])
-def test_the_best_few_are_in_order_and_begin_with_the_best(make, dtype):
-    random, n = np.random.default_rng(1), 50
-    users, every = UserBeliefs(make(), n, dtype), np.arange(n)
-    users.update(every, random.integers(0, 5, n), random.normal(scale=40, size=n))
-    best = users.select_top(every, 3, "greedy")
-    assert np.array_equal(best[:, 0], users.select(every, "greedy"))
-    assert all(len(set(row)) == 3 for row in best.tolist())
-    whole = users.select_top(every, 5, "greedy")
-    assert np.array_equal(whole[:, :3], best)
-    mask = np.array([True, False, True, False, True])
-    assert set(users.select_top(every, 3, "greedy", available=mask).ravel().tolist()) == {0, 2, 4}
-    assert users.select_top(every, 2).shape == users.select_top(every, 2, "expected-improvement").shape == (n, 2)
-    for k, available in ((0, None), (6, None), (4, mask)):
-        with pytest.raises(InputError, match="k must be 1 to"):
-            users.select_top(every, k, available=available)
 
 
 def test_policies_are_available_by_name_number_or_mask():

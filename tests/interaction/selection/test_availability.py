@@ -9,11 +9,9 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection import RULES, Greedy, rule_named
-from lifelore.interaction.selection.choice import scored
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
 NAMES = ["a", "b", "c", "d"]
-INF = float("inf")
 
 
 def learnt_library(seed: int = 0, n_types: int = 5, model: str = "gaussian") -> PolicyLibrary:
@@ -39,34 +37,6 @@ def test_bad_sets_are_refused_by_all_three(available, error, words):
 
 
 @pytest.mark.parametrize("name", sorted(RULES))
-@pytest.mark.parametrize("model", ["gaussian", "student-t", "categorical", "histogram"])
-def test_a_rule_scores_as_in_a_library_without_the_others(name, model):
-    library, rule = learnt_library(model=model), rule_named(name)
-    for policies in ([0, 2], [1], [1, 2, 3]):
-        part, mask = library.take(policies=policies), np.isin(np.arange(4), policies)
-        for row in np.random.default_rng(1).dirichlet(np.ones(5), 3):
-            draws = [np.random.default_rng(3) for _ in range(2)]
-            scores = scored(rule, library, row, mask, episodes_left=9, generator=draws[0])
-            alone = rule.scores(part, row, episodes_left=9, generator=draws[1])
-            if name != "epsilon-greedy":  # Its exploring scores are random numbers.
-                assert scores[policies] == pytest.approx(alone, rel=1e-9)
-            assert (scores[~mask] == -INF).all()
-
-
-@pytest.mark.parametrize("name", sorted(RULES))
-def test_all_policies_available_is_as_no_mask_bit_for_bit(name):
-    library = learnt_library(2)
-    masked, free = (BayesianPolicyReuse(library, rule_named(name), seed=5) for _ in range(2))
-    for outcome in np.random.default_rng(0).normal(0, 5, 12):
-        assert np.array_equal(masked.probabilities(NAMES), free.probabilities())
-        policy = masked.select(NAMES)
-        assert policy == free.select()
-        masked.update(policy, outcome)
-        free.update(policy, outcome)
-    assert masked.generator.random() == free.generator.random()
-
-
-@pytest.mark.parametrize("name", sorted(RULES))
 def test_the_best_k_are_ranked_by_score_and_begin_with_the_selected(name):
     library = learnt_library(4)
     ranking, selecting = (BayesianPolicyReuse(library, rule_named(name), seed=8) for _ in range(2))
@@ -81,26 +51,10 @@ def test_the_best_k_are_ranked_by_score_and_begin_with_the_selected(name):
     assert {explained.selected, explained.runner_up} == {"a", "d"}
 
 
-def test_equal_policies_are_ranked_at_random():
-    library = PolicyLibrary.from_means([[1.0, 1.0, 0.0, 1.0]], 1.0)
-    agent = BayesianPolicyReuse(library, Greedy())
-    orders = {tuple(one.policy for one in agent.select_top(4)) for _ in range(100)}
-    # A given order of three is missing from 100 draws with probability (5/6)^100 = 1e-8.
-    assert len(orders) == 6
-    assert {order[3] for order in orders} == {2}
-
-
 @pytest.mark.parametrize(("k", "available"), [(0, None), (5, None), (3, ["a", "b"])])
 def test_a_k_that_there_is_not_is_refused(k, available):
     with pytest.raises(InputError, match="k must be 1 to"):
         BayesianPolicyReuse(learnt_library()).select_top(k, available)
-
-
-def test_the_only_available_policy_has_no_runner_up():
-    agent = BayesianPolicyReuse(learnt_library())
-    assert agent.select(["c"]) == 2
-    explained = agent.explain()
-    assert (explained.selected, explained.runner_up, explained.runner_up_score) == ("c", None, None)
 
 
 def test_a_signal_that_cannot_be_restricted_is_no_hindrance():
@@ -111,12 +65,3 @@ def test_a_signal_that_cannot_be_restricted_is_no_hindrance():
     assert agent.select([1, 2]) == 1
     with pytest.raises(InputError, match="no finite alphabet"):
         BayesianPolicyReuse(library, rule_named("belief-entropy")).select([1, 2])
-
-
-def test_what_the_library_learns_reaches_masked_scores():
-    library = PolicyLibrary.from_means([[5.0, 4.0, 3.0]], 1.0, count=1)
-    rule, belief, mask = rule_named("belief-entropy"), np.ones(1), np.array([False, True, True])
-    assert np.argmax(scored(rule, library, belief, mask)) == 1
-    for _ in range(9):
-        library.observe(0, 2, 10.0)
-    assert np.argmax(scored(rule, library, belief, mask)) == 2

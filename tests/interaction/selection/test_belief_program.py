@@ -1,4 +1,4 @@
-"""The exact program over beliefs: by hand, as plain recursion, and no rule above it."""
+"""The exact program over beliefs: by hand, and as plain recursion."""
 
 import numpy as np
 import pytest
@@ -6,16 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.selection import (
-    RULES,
-    EpsilonGreedy,
-    Greedy,
-    KnowledgeGradient,
-    belief_program,
-    choose,
-    rule_named,
-)
-from lifelore.interaction.selection.belief_program import best_plan, value_of_rule
+from lifelore.interaction.selection.belief_program import best_plan
 
 from ..twins import naive_rules as naive
 from .small_libraries import SmallLibrary, as_lists
@@ -56,54 +47,17 @@ def test_looking_once_is_worth_it_by_hand():
     assert (three.value, three.first) == (pytest.approx(17), 2)
     # Guessing first and looking then leaves one episode to know: 5 - 3 + 10; less than guessing three times.
     assert three.values == pytest.approx([15, 15, 17])
-    assert value_of_rule(library, Greedy(), 3) == pytest.approx(15)
-    # With two episodes left the gradient weighs what is learnt, 5, twice: -3 + 10 beats 5.
-    assert value_of_rule(library, KnowledgeGradient(), 3) == pytest.approx(17)
     assert best_plan(library, 3, np.array([1.0, 0.0])).value == pytest.approx(30)
 
 
 @settings(deadline=None, max_examples=15)
 @given(st.integers(0, 2**32 - 1), st.integers(1, 3))
-def test_agrees_with_plain_recursion_and_no_rule_is_better(seed, horizon):
+def test_agrees_with_plain_recursion(seed, horizon):
     library = small_library(seed)
     mean, _, laws = as_lists(library)
     plan = best_plan(library, horizon)
     assert plan.value == pytest.approx(naive_value(library.prior.tolist(), mean, laws, horizon), rel=1e-9)
     assert plan.values[plan.first] == plan.value
-    for name in RULES:
-        assert value_of_rule(library, rule_named(name), horizon) <= plan.value + 1e-9, name
-
-
-def test_a_random_rule_by_hand():
-    library = small_library(1)
-    # ε = 1 selects each policy a third of the time whatever it has seen.
-    expected = 2 * (library.prior @ library.performance.mean).mean()
-    assert value_of_rule(library, EpsilonGreedy(1.0), 2) == pytest.approx(expected)
-
-
-@pytest.mark.slow
-def test_the_value_of_a_rule_is_what_playing_it_earns():
-    library = small_library(6)
-    exact = value_of_rule(library, KnowledgeGradient(), 3)
-    random, probs, rule = np.random.default_rng(0), library.table().probs, KnowledgeGradient()
-    earned = []
-    for _ in range(1500):
-        type_, belief, total = random.choice(3, p=library.prior), library.prior, 0.0
-        for left in (2, 1, 0):
-            policy = choose(rule.scores(library, belief, episodes_left=left), random)
-            total += library.performance.mean[type_, policy]
-            belief = belief * probs[:, policy, random.choice(3, p=probs[type_, policy])]
-            belief = belief / belief.sum()
-        earned.append(total)
-    # Five standard errors of the mean.
-    assert np.mean(earned) == pytest.approx(exact, abs=5 * np.std(earned) / np.sqrt(1500))
-
-
-def test_values_are_the_same_a_few_beliefs_at_a_time(monkeypatch):
-    library = small_library(2)
-    whole = value_of_rule(library, KnowledgeGradient(), 3)
-    monkeypatch.setattr(belief_program, "NUMBERS_AT_ONCE", 30)
-    assert value_of_rule(library, KnowledgeGradient(), 3) == pytest.approx(whole, rel=1e-12)
 
 
 def test_horizons_below_one_and_trees_too_large_are_refused():
@@ -113,6 +67,5 @@ def test_horizons_below_one_and_trees_too_large_are_refused():
     with pytest.raises(InputError, match="too large"):
         best_plan(library, 12)
     for belief in ([2.0, -1.0], [1.0], [np.nan, 1.0], [0.5, 0.6]):
-        for plan in (best_plan, lambda *given, **k: value_of_rule(given[0], Greedy(), given[1], **k)):
-            with pytest.raises(InputError, match="prior must be"):
-                plan(library, 2, belief=np.array(belief))
+        with pytest.raises(InputError, match="prior must be"):
+            best_plan(library, 2, np.array(belief))

@@ -4,7 +4,6 @@ import json
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from lifelore.agent.personalise.fitting.fit import FitSettings
 from lifelore.agent.personalise.study import Study
@@ -61,10 +60,3 @@ def test_signals_without_a_table_get_a_rule_that_needs_none():
     plain = PolicyLibrary.from_means([[1.0, 0.0]], 1.0)
     assert isinstance(plain.signal, ReturnSignal)
     assert plain.has_table
-
-
-@pytest.mark.parametrize("signal", [None, LikelihoodSignal(lambda policy, seen: [0.0], 1)])
-def test_a_known_type_gets_its_best_policy_by_default(signal):
-    library = PolicyLibrary.from_means([[10.0, 6.0]], [[1.0, 30.0]], signal=signal)
-    assert BayesianPolicyReuse(library).probabilities().tolist() == [1.0, 0.0]
-    assert UserBeliefs(library, 3).select([0, 1, 2]).tolist() == [0, 0, 0]

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.stats import norm
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.finite_signals.signal_table import SignalTable
@@ -34,7 +33,6 @@ from lifelore.interaction.selection import knowledge_gradient as gradient_module
 from lifelore.interaction.selection.information import mutual_information
 from lifelore.interaction.selection.knowledge_gradient import knowledge_gain, responses
 from lifelore.interaction.selection.support import truncated
-from lifelore.interaction.selection.value_of_perfect_information import perfect_gain
 
 from ..twins import naive_rules as naive
 from .small_libraries import SmallLibrary, as_lists, problem, user_problem
@@ -116,36 +114,6 @@ def test_rules_agree_with_plain_twins(assert_like, seed):
     assert_like(lambda rule: rule.scores(library, belief, episodes_left=7), library, belief)
 
 
-@pytest.mark.parametrize("assert_like", TWINS)
-@settings(deadline=None, max_examples=10)
-@given(seed=st.integers(0, 2**32 - 1))
-def test_many_beliefs_of_a_shared_library_agree_with_plain_twins(assert_like, seed):
-    library, beliefs = problem(seed)[0], user_problem(seed, 3)[1]
-    for row, belief in enumerate(beliefs):
-        assert_like(lambda rule, row=row: rule.scores(library, beliefs, episodes_left=7)[row], library, belief)
-
-
-@pytest.mark.parametrize("assert_like", TWINS)
-@settings(deadline=None, max_examples=10)
-@given(seed=st.integers(0, 2**32 - 1))
-def test_users_with_models_of_their_own_agree_with_plain_twins(assert_like, seed):
-    users, beliefs = user_problem(seed, 3)
-    for row, belief in enumerate(beliefs):
-        score = lambda rule, row=row: rule.scores(users, beliefs, episodes_left=7)[row]  # noqa: E731
-        assert_like(score, users.row(row), belief)
-
-
-@settings(deadline=None, max_examples=40)
-@given(st.integers(0, 2**32 - 1), st.integers(2, 9), st.integers(2, 12))
-def test_information_is_the_entropy_that_a_signal_is_expected_to_take(seed, n_types, n_signals):
-    library, belief = problem(seed, n_types, 3, n_signals)
-    found, b = mutual_information(belief, library.table()), belief.tolist()
-    direct = naive.entropy(b) - np.array(naive.expected_entropy(b, as_lists(library)[2]))
-    assert found == pytest.approx(direct, abs=1e-12)
-    assert (found >= 0).all()
-    assert (found <= naive.entropy(b) + 1e-12).all()
-
-
 # ---- many users ----------------------------------------------------------------------------------------------
 
 
@@ -161,40 +129,6 @@ def test_rows_are_scored_as_one_by_one(rule, seed, n_types, n_policies):
         # Ratios to informations near 0 have the rounding of a difference of entropies.
         close = 1e-6 if rule.name == "information-directed" else 1e-12
         assert found == pytest.approx(np.array(one_by_one), rel=close, abs=1e-10)
-
-
-@pytest.mark.parametrize("rule", EVERY_RULE, ids=repr)
-def test_propensities_of_rows_are_those_of_one_by_one(rule):
-    users, beliefs = user_problem(3, 6)
-    for library, alone in ((users.row(0), [users.row(0)] * 6), (users, [users.row(row) for row in range(6)])):
-        shares = propensities(rule, library, beliefs, episodes_left=4)
-        assert shares.shape == (6, 4)
-        assert shares.sum(axis=1) == pytest.approx(np.ones(6))
-        for own, belief, share in zip(alone, beliefs, shares, strict=True):
-            assert share == pytest.approx(propensities(rule, own, belief, episodes_left=4))
-
-
-def test_the_gradient_of_rows_is_the_same_in_small_products(monkeypatch):
-    users, beliefs = user_problem(1, 5)
-    whole = KnowledgeGradient().scores(users, beliefs)
-    monkeypatch.setattr(gradient_module, "_AT_ONCE", 1)
-    assert KnowledgeGradient().scores(users, beliefs) == exact(whole, 1e3)
-
-
-@pytest.mark.parametrize("rule", [EpsilonGreedy(0.4), BeliefSampling(), Greedy()], ids=repr)
-def test_rules_select_as_often_as_they_say(rule):
-    users, beliefs = user_problem(3, 2)
-    shared, random, n = users.row(0), np.random.default_rng(0), 4000
-    stated = propensities(rule, shared, beliefs[0])
-    drawn = [choose(rule.scores(shared, beliefs[0], generator=random), random) for _ in range(n)]
-    many = choose(rule.scores(shared, np.tile(beliefs[0], (n, 1)), generator=random), random)
-    for found in (drawn, many):
-        # The deviation of a share of 4000 is at most 0.5 / √4000 = 0.0079; five of them.
-        assert np.bincount(found, minlength=4) / n == pytest.approx(stated, abs=0.04)
-    stated = propensities(rule, users, beliefs)
-    own = np.array([choose(rule.scores(users, beliefs, generator=random), random) for _ in range(n)])
-    for row in range(2):
-        assert np.bincount(own[:, row], minlength=4) / n == pytest.approx(stated[row], abs=0.04)
 
 
 # ---- by hand -------------------------------------------------------------------------------------------------
@@ -236,27 +170,6 @@ def test_perfect_information_by_hand():
     assert rule.scores(SmallLibrary([[3.0], [5.0]]), belief).tolist() == [4.0]
 
 
-def test_perfect_information_about_uncertain_means_agrees_with_an_integral():
-    random = np.random.default_rng(3)
-    mean, deviation, belief = random.normal(11, 3, (2, 3)), random.uniform(1, 4, (2, 3)), np.array([0.3, 0.7])
-
-    class UncertainMeans:
-        """Mean pays that are normal themselves."""
-
-        def expected_mean_excess(self, threshold):
-            z = (mean - threshold) / deviation
-            return deviation * (z * norm.cdf(z) + norm.pdf(z))
-
-    now = belief @ mean
-    found = perfect_gain(UncertainMeans(), belief, now)
-    for policy in range(3):
-        other = np.delete(now, policy).max()
-        means = [norm(mean[t, policy], deviation[t, policy]) for t in range(2)]
-        known = sum(b * law.expect(lambda m, o=other: max(m, o)) for b, law in zip(belief, means, strict=True))
-        assert found[policy] == pytest.approx(known - now.max(), rel=1e-4)
-        assert found[policy] > 0
-
-
 @pytest.mark.parametrize("noise", [1.0, 1e3])
 def test_without_an_improvement_of_the_pay_selection_is_greedy(noise):
     mean = np.array([[3.0, 7.0, 7.0, 1.0], [7.0, 7.0, 2.0, 0.0], [90.0, 5.0, 0.0, 90.0]])
@@ -277,17 +190,6 @@ def test_without_an_improvement_of_the_pay_selection_is_greedy(noise):
     assert rule.scores(library, some).tolist() == [0.5 * (90 - best), 0, 0, 0.5 * (90 - best)]
 
 
-@settings(deadline=None, max_examples=40)
-@given(st.integers(0, 2**32 - 1), st.integers(1, 6))
-def test_a_known_type_gets_its_best_policy_whatever_the_noise(seed, n_types):
-    random = np.random.default_rng(seed)
-    mean = random.normal(scale=10, size=(n_types, 5)) + random.choice([0.0, 1e6])
-    library = SmallLibrary(mean, np.exp(random.normal(scale=3, size=mean.shape)))
-    for type_ in range(n_types):
-        shares = propensities(ExpectedImprovement(), library, np.eye(n_types)[type_])
-        assert shares[mean[type_].argmax()] == 1
-
-
 def test_a_policy_that_is_second_best_everywhere_is_seen_with_all_candidates():
     # Three types, each with a policy of its own, and one that is good on all. The last tells type 0 from the
     # others.
@@ -306,7 +208,7 @@ def test_a_policy_that_is_second_best_everywhere_is_seen_with_all_candidates():
 def test_small_libraries_consider_all_policies_and_large_ones_the_best_responses(monkeypatch):
     # Types, policies, signals: 7 · 9² · 6 products.
     wrong = 0
-    for seed in range(60):
+    for seed in range(15):
         users, beliefs = user_problem(seed, 2, 7, 9, 6)
         library, belief = users.row(0), beliefs[0]
         mean, table = library.performance.mean, library.table()
@@ -322,14 +224,7 @@ def test_small_libraries_consider_all_policies_and_large_ones_the_best_responses
         assert rows[0] == exact(shortcut, 200)
         wrong += bool((np.abs(best - shortcut) > 1e-6).any())
     # The shortcut leaves out policies that are second best on many types: in most of these libraries some score.
-    assert wrong > 10
-
-
-def test_sampling_never_draws_what_is_ruled_out():
-    library, random = SmallLibrary(np.eye(3)), np.random.default_rng(0)
-    for belief in ([0.0, 0.5, 0.5], [0.5, 0.5, 0.0], [0.5, 0.0, 0.5]):
-        rows = BeliefSampling().scores(library, np.tile(belief, (60, 1)), generator=random)
-        assert set(choose(rows, random)) == set(np.flatnonzero(belief).tolist())
+    assert wrong > 2
 
 
 # ---- the mass of a belief ------------------------------------------------------------------------------------
@@ -344,71 +239,7 @@ def test_support_holds_its_mass_and_no_fixed_number():
     assert truncated(np.array([0.0, 1.0]), 0.999).tolist() == [0, 1]
 
 
-@settings(deadline=None, max_examples=40)
-@given(st.integers(1, 40), st.floats(0.05, 3.0), st.floats(0.5, 1.0), st.integers(0, 2**32 - 1))
-def test_support_is_as_small_as_can_be(n_types, spread, mass, seed):
-    belief = np.random.default_rng(seed).dirichlet(np.full(n_types, spread))
-    kept = np.flatnonzero(truncated(belief, mass))
-    assert belief[kept].sum() >= mass - 1e-12
-    least = belief[kept].min()
-    assert belief[belief > least].sum() < mass + 1e-12 or len(kept) == 1
-    rows = truncated(np.stack([belief, belief[::-1]]), mass)
-    assert np.flatnonzero(rows[0]).tolist() == kept.tolist()
-    assert rows.sum(axis=1) == pytest.approx([1, 1])
-
-
-def test_cutting_down_by_mass_moves_little_and_by_number_much():
-    library = problem(8, 60, 10, 8)[0]
-    belief = np.random.default_rng(0).dirichlet(np.full(60, 0.15))
-    mean, table = library.performance.mean, library.table()
-    whole, span, mass = knowledge_gain(belief, mean, table), np.ptp(mean), 1 - 1e-3
-    assert 5 < np.count_nonzero(truncated(belief, mass)) < 60
-    # What was left out holds 1/1000 of the belief, and no utility differs by more than the span.
-    assert knowledge_gain(belief, mean, table, mass) == pytest.approx(whole, abs=4e-3 * span)
-    assert mutual_information(belief, table, mass) == pytest.approx(
-        mutual_information(belief, table), abs=2e-3 * math.log(60) + 8e-3
-    )
-
-
 # ---- odd tables, means and beliefs ---------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(("n_types", "n_policies", "n_signals"), [(1, 4, 3), (4, 1, 3), (1, 1, 2), (3, 2, 1)])
-def test_one_type_one_policy_one_signal(n_types, n_policies, n_signals):
-    random = np.random.default_rng(0)
-    table = SignalTable(random.dirichlet(np.ones(n_signals), (n_types, n_policies)))
-    mean, belief = random.normal(size=(n_types, n_policies)), np.eye(n_types)[0]
-    assert mutual_information(belief, table) == pytest.approx(np.zeros(n_policies), abs=1e-12)
-    assert knowledge_gain(belief, mean, table) == pytest.approx(np.zeros(n_policies), abs=1e-12)
-
-
-@pytest.mark.parametrize("scale", [1e-80, 1.0, 1e80])
-@pytest.mark.parametrize("rule", SCORING_RULES, ids=repr)
-def test_means_of_any_size_and_beliefs_near_zero(scale, rule):
-    library = problem(4, 9, 6, 7)[0]
-    model = library.performance
-    scaled = SmallLibrary(model.mean * scale, model.deviation * scale, library.probs)
-    belief = 10.0 ** -np.array([0, 1, 30, 100, 200, 300, 307, 310, 320])
-    belief /= belief.sum()
-    with np.errstate(under="ignore"):
-        for row in (belief, np.stack([belief, belief[::-1]])):
-            assert np.isfinite(rule.scores(scaled, row, episodes_left=5)).all()
-
-
-def test_policies_that_are_alike_tie():
-    library = problem(0, 6, 3, 5)[0]
-    twice = library.take([0, 1, 2, 0, 1, 2])
-    for rule in SCORING_RULES:
-        shares = propensities(rule, twice, np.full(6, 1 / 6), episodes_left=9)
-        assert shares.max() == 0.5, rule
-        assert shares[:3] == pytest.approx(shares[3:])
-
-
-def test_a_flat_belief_over_symmetric_types_ties_all_policies():
-    library = SmallLibrary(np.eye(6) * 7.3 - 2.1, 3.0)
-    for name in RULES:
-        shares = propensities(rule_named(name), library, library.prior)
-        assert shares == pytest.approx(np.full(6, 1 / 6)), name
 
 
 WITHOUT = """

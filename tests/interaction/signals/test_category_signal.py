@@ -38,41 +38,10 @@ def test_table_keeps_few_categories_and_joins_many():
     np.testing.assert_allclose(joined, [[[0.9, 0.1]], [[0.3, 0.7]]])
 
 
-def test_draws_follow_the_probabilities():
-    drawn = CategorySignal(GOLF).sample(np.random.default_rng(0), 1, 0, 20_000)
-    # Standard error at most 0.5 / √20,000 = 0.0035; five of them.
-    np.testing.assert_allclose(np.bincount(drawn) / 20_000, GOLF[1][0], atol=0.018)
-
-
-def test_some_types():
-    some = CategorySignal(GOLF, ["a", "b", "c"]).take(types=[1])
-    np.testing.assert_allclose(some.log_likelihood(0, "c"), np.log([0.7]))
-
-
 @pytest.mark.parametrize("signal", [3, -1, "far", None, np.nan, [0], 1.5])
 def test_unknown_categories_are_refused(signal):
     with pytest.raises(InputError, match="signal must be one of"):
         CategorySignal(GOLF).log_likelihood(0, signal)
-
-
-def test_many_categories_are_found_by_name_or_number():
-    numbered, named = CategorySignal(GOLF), CategorySignal(GOLF, ["short", "near", "far"])
-    for given in ([0, 2], np.array([0, 2]), np.array([0, 2], np.uint8)):
-        assert numbered.places_of(given).tolist() == [0, 2]
-    assert (
-        named.places_of(["short", "far"]).tolist()
-        == named.places_of(np.array(["short", "far"])).tolist()
-        == [0, 2]
-    )
-    assert (numbered.places_of(2), named.places_of("far")) == (2, 2)
-    for signal, bad in (
-        (numbered, np.array([0, 3])),
-        (numbered, np.array([-1])),
-        (named, ["far", "out"]),
-        (named, [0]),
-    ):
-        with pytest.raises(InputError, match=r"category numbers 0 to 2|signal must be one of"):
-            signal.places_of(bad)
 
 
 def test_other_bad_input_is_refused():

@@ -7,13 +7,7 @@ from scipy.stats import norm
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.domains.golf.golf import EDGES, Golf, category_of
-from lifelore.interaction.library.library_file import SIGNALS
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.selection import KnowledgeGradient
 from lifelore.interaction.signals import ordered_normal_fit
-from lifelore.interaction.signals.category_signal import CategorySignal
-from lifelore.interaction.signals.ordered_normal_fit import log_probabilities
 from lifelore.interaction.signals.ordered_normal_signal import OrderedNormalSignal
 
 GOLF = Golf()
@@ -26,11 +20,6 @@ def shots(generator: np.random.Generator, n: int) -> np.ndarray:
     return category_of(GOLF.sample_errors(generator, holes, np.arange(GOLF.n_clubs)[:, None]))
 
 
-def held_out(signal) -> float:
-    """Expected log likelihood of another shot, averaged over pairs, under the true probabilities."""
-    return float((GOLF.category_probs * np.log(signal.probs)).sum(axis=2).mean())
-
-
 def test_probabilities_by_the_normal_distribution():
     signal = OrderedNormalSignal(MEAN, DEVIATION, CUTS, lapse=0.0)
     ends = np.array([-np.inf, *CUTS, np.inf])
@@ -40,15 +29,6 @@ def test_probabilities_by_the_normal_distribution():
     assert signal.log_likelihood(1, 3) == pytest.approx(norm.logsf(5.0, MEAN[:, 1], DEVIATION[:, 1]))
     assert signal.table().probs == pytest.approx(signal.probs, abs=1e-9)
     assert (signal.n_types, signal.n_policies, signal.n_categories) == (2, 2, 4)
-
-
-def test_far_tails_keep_their_digits():
-    found = log_probabilities(np.array([30.0, -30.0]), np.array([1.0, 1.0]), np.array([-10.0, 10.0]))
-    # A band of the far tail: its nearer end less the farther, log(e^a - e^b).
-    near, far = norm.logcdf(-20.0), norm.logcdf(-40.0)
-    assert found[0] == pytest.approx([far, near + np.log1p(-np.exp(far - near)), norm.logsf(-20.0)], rel=1e-12)
-    assert found[1] == pytest.approx(found[0][::-1], rel=1e-12)
-    assert np.exp(found).sum(axis=1) == pytest.approx(1.0)
 
 
 def test_a_lapse_keeps_every_category_possible():
@@ -82,69 +62,6 @@ def test_many_runs_find_the_probabilities(cuts):
         assert signal.mean[[3, 1], [0, 2]] == pytest.approx([-5.0, 0.0], abs=1.0)
         assert signal.deviation[[3, 1], [0, 2]] == pytest.approx([8.0, 6.0], abs=0.8)
         assert signal.cuts.tolist() == list(EDGES)
-
-
-@pytest.mark.slow
-def test_with_few_runs_it_predicts_golf_better_than_the_category_model():
-    """Gains a shot in nats over six libraries: 0.35 with 3 runs a pair, 0.15 with 10 (deviation below 0.03)."""
-    random = np.random.default_rng(1)
-    for n, least in ((3, 0.25), (10, 0.08)):
-        gains = []
-        for _ in range(6):
-            samples = shots(random, n)
-            categories = CategorySignal.from_samples(samples, 7)
-            gains.append(held_out(OrderedNormalSignal.from_samples(samples, 7)) - held_out(categories))
-        assert min(gains) > 0
-        assert np.mean(gains) > least
-
-
-def test_a_single_run_a_pair_and_categories_that_nobody_met():
-    signal = OrderedNormalSignal.from_samples([[[0.0], [4.0]], [[4.0], [0.0]]], 6)
-    assert (np.abs(signal.probs.sum(axis=2) - 1) < 1e-12).all()
-    assert (signal.probs > 1e-4).all()
-    # What one type shows, the other has rarely.
-    assert signal.probs[0, 0, 0] > 3 * signal.probs[1, 0, 0]
-    assert signal.probs[0, 0, 5] < signal.probs[1, 0, 5]
-    alike = OrderedNormalSignal.from_samples(np.full((2, 2, 3), 1.0), 3)
-    assert alike.probs[..., 1] == pytest.approx(alike.probs[0, 0, 1])
-    assert alike.probs[0, 0, 1] > 0.5
-
-
-def test_two_categories():
-    samples = np.array([[[0, 0, 0, 1.0]], [[1, 1, 1, 0.0]]])
-    for cuts in (None, [12.0]):
-        signal = OrderedNormalSignal.from_samples(samples, 2, cuts)
-        # Shares of 1/4 and 3/4, drawn to the middle by the prior of the means.
-        assert 0.15 < signal.probs[0, 0, 1] < 0.4
-        assert signal.probs[1, 0, 1] == pytest.approx(1 - signal.probs[0, 0, 1], abs=1e-3)
-
-
-def test_a_library_saves_it_and_rules_look_ahead_with_it(tmp_path):
-    names = ["short", "near", "far", "out"]
-    signal = OrderedNormalSignal(MEAN, DEVIATION, CUTS, names, lapse=0.01)
-    library = PolicyLibrary.from_means([[9.0, 1.0], [1.0, 8.0]], 1.0, signal=signal)
-    library.save(tmp_path / "library.npz")
-    loaded = PolicyLibrary.load(tmp_path / "library.npz")
-    assert SIGNALS["ordered-normal"] is OrderedNormalSignal
-    assert isinstance(loaded.signal, OrderedNormalSignal)
-    assert loaded.to_bytes() == library.to_bytes()
-    assert np.array_equal(loaded.signal.probs, signal.probs)
-    agents = [BayesianPolicyReuse(one, KnowledgeGradient()) for one in (library, loaded)]
-    for agent in agents:
-        agent.update(0, "short")
-    assert agents[0].select() == agents[1].select()
-    assert agents[0].belief.tolist() == agents[1].belief.tolist()
-    taken = library.take(policies=[1]).signal
-    assert isinstance(taken, OrderedNormalSignal)
-    assert taken.categories == tuple(names)
-    assert np.array_equal(taken.probs, signal.probs[:, [1]])
-
-
-def test_random_categories_have_the_probabilities():
-    signal = OrderedNormalSignal(MEAN, DEVIATION, CUTS)
-    drawn = np.bincount(signal.sample(np.random.default_rng(0), 0, 1, 4000), minlength=4) / 4000
-    # Four deviations of a share of 4000.
-    assert drawn == pytest.approx(signal.probs[0, 1], abs=0.032)
 
 
 @pytest.mark.parametrize(

@@ -41,7 +41,3 @@ def test_bad_input_is_refused():
         RewardSignal.from_sequences([(2, 0, [1.0])], 2, 1)
     with pytest.raises(InputError, match="needs a sample"):
         RewardSignal.from_sequences(EPISODES, 3, 1)
-
-
-def test_a_reward_never_listed_is_impossible_and_no_error():
-    assert RewardSignal.from_sequences(EPISODES, 2, 1).log_likelihood(0, [7.0]).tolist() == [-np.inf, -np.inf]

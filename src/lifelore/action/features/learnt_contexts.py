@@ -13,8 +13,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.atomic_write import atomic_write
-from lifelore.core.errors import InputError, StoreError
+from lifelore.core.atomic_write import read_file, write_file
+from lifelore.core.errors import InputError
 from lifelore.core.packed_arrays import PackedFormat
 from lifelore.core.streams import stream
 
@@ -115,11 +115,7 @@ class LearntContexts:
             The file cannot be written.
         """
         content = FORMAT.pack({}, {"centres": self.centres, "shift": self.shift, "scale": self.scale})
-        try:
-            with atomic_write(path) as file:
-                file.write(content)
-        except OSError as error:
-            raise StoreError(f"learnt contexts cannot be written to {path}: {error.strerror}") from None
+        write_file(path, content, "learnt contexts")
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
@@ -130,11 +126,7 @@ class LearntContexts:
         InputError
             The file is missing, damaged or of another format.
         """
-        try:
-            content = Path(path).read_bytes()
-        except OSError as error:
-            raise InputError(f"learnt contexts cannot be read from {path}: {error.strerror}") from None
-        _, arrays = FORMAT.unpack(content, str(path))
+        _, arrays = FORMAT.unpack(read_file(path, "learnt contexts"), str(path))
         try:
             parts = [np.asarray(arrays[name], np.float32) for name in ("centres", "shift", "scale")]
             if parts[0].ndim != 2 or parts[1].shape != parts[2].shape or parts[1].shape != parts[0].shape[1:]:

@@ -16,8 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.core.atomic_write import atomic_write
-from lifelore.core.errors import InputError, StoreError
+from lifelore.core.atomic_write import read_file, write_file
 from lifelore.core.packed_arrays import PackedFormat
 
 FORMAT = PackedFormat("lifelore action prior", 1, "action prior", "save_prior", 2**32)
@@ -43,12 +42,7 @@ def save_prior(prior: ActionPrior, path: str | Path, about: Mapping[str, Any] | 
     ...     load_prior(f"{folder}/prior.npz")
     <ActionPrior: 2 actions, 1 contexts, 1 counts, alpha0=0.1>
     """
-    content = prior_bytes(prior, about)
-    try:
-        with atomic_write(path) as file:
-            file.write(content)
-    except OSError as error:
-        raise StoreError(f"the prior cannot be written to {path}: {error.strerror}") from None
+    write_file(path, prior_bytes(prior, about), "the prior")
 
 
 def load_prior(path: str | Path) -> ActionPrior:
@@ -67,12 +61,12 @@ def load_prior(path: str | Path) -> ActionPrior:
     ...     load_prior(f"{folder}/prior.npz")
     <ActionPrior: 3 actions, 0 contexts, 0 counts, alpha0=0.5>
     """
-    return prior_from_bytes(_content(path), str(path))
+    return prior_from_bytes(read_file(path, "the prior"), str(path))
 
 
 def prior_about(path: str | Path) -> dict[str, Any]:
     """Description of a prior file: format, version, n_actions, alpha0, key and `about`."""
-    return FORMAT.unpack(_content(path), str(path))[0]
+    return FORMAT.unpack(read_file(path, "the prior"), str(path))[0]
 
 
 def prior_bytes(prior: ActionPrior, about: Mapping[str, Any] | None = None) -> bytes:
@@ -113,10 +107,3 @@ def _check(contexts: NDArray[Any], counts: NDArray[Any], n_actions: int) -> None
         raise ValueError(f"contexts must be of magnitude at most {largest}")
     if not ((counts >= 0).all() and counts.any(axis=1).all()):
         raise ValueError("counts must be at least 0, with a positive one in each row")
-
-
-def _content(path: str | Path) -> bytes:
-    try:
-        return Path(path).read_bytes()
-    except OSError as error:
-        raise InputError(f"the prior {path} cannot be read: {error.strerror}") from None

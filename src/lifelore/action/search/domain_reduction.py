@@ -23,7 +23,7 @@ from scipy import sparse
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.mdp import TERMINAL, Tables
-from lifelore.core.planning.planning import checked_best
+from lifelore.core.planning.planning import checked_best, states_from
 
 FORMS = ("repaired", "printed", "closed")
 
@@ -49,18 +49,12 @@ def reachable_states(tables: Tables, best: ArrayLike) -> States:
     [False, True, True]
     """
     best = _checked(tables, best)
-    visited = np.zeros(tables.n_states, bool)
-    reached = np.zeros(tables.n_states, bool)
-    frontier = np.unique(tables.starts)
-    while frontier.size:
-        visited[frontier] = True
-        place, action = np.nonzero(best[frontier])
-        entered = tables.next_state[frontier[place], action]
-        over = (tables.event[frontier[place], action] & TERMINAL) > 0
-        reached[entered] = True
-        frontier = np.unique(entered[~over])
-        frontier = frontier[~visited[frontier]]
-    return visited | reached
+    follow, going = tables.next_state, (tables.event & TERMINAL) == 0
+    acting = states_from(
+        tables.starts, tables.n_states, lambda some: follow[some][going[some] & best[some, :, None]]
+    )
+    acting[follow[best & acting[:, None]]] = True
+    return acting
 
 
 def task_futile_actions(best: ArrayLike) -> Pairs:
@@ -206,14 +200,8 @@ def minimised_transitions(tables: Tables, domain: MinimisedDomain) -> list[spars
 
 def _closure(paired: Sequence[tuple[Tables, Pairs]], kept: Pairs) -> States:
     """States on a path of `kept` pairs from the starts of any task, also beyond the end of another task."""
-    follow = paired[0][0].next_state
-    states = np.zeros(len(kept), bool)
-    frontier = np.unique(np.concatenate([tables.starts for tables, _ in paired]))
-    while frontier.size:
-        states[frontier] = True
-        entered = np.unique(follow[frontier][kept[frontier]])
-        frontier = entered[~states[entered]]
-    return states
+    follow, starts = paired[0][0].next_state, np.concatenate([tables.starts for tables, _ in paired])
+    return states_from(starts, len(kept), lambda states: follow[states][kept[states]])
 
 
 def tables_within(tables: Tables, pairs: ArrayLike, dead_ends: str = "stay") -> Tables:

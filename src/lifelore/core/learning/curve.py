@@ -27,21 +27,9 @@ class Curve(NamedTuple):
 
 def first_episodes(curve: Curve, n_episodes: int) -> Curve:
     """A copy of the first `n_episodes` of a curve."""
-    return Curve(
-        curve.returns[:n_episodes].copy(),
-        curve.rewards[:n_episodes].copy(),
-        curve.steps[:n_episodes].copy(),
-        curve.collisions[:n_episodes].copy(),
-        curve.reached[:n_episodes].copy(),
-    )
+    return Curve._make(part[:n_episodes].copy() for part in curve)
 
 
 def new_curve(shape: int | tuple[int, int]) -> Curve:
     """An empty learning curve of `shape` episodes, or a stack of curves, (n_learners, n_episodes)."""
-    return Curve(
-        np.zeros(shape),
-        np.zeros(shape),
-        np.zeros(shape, np.int64),
-        np.zeros(shape, np.int64),
-        np.zeros(shape, np.bool_),
-    )
+    return Curve._make(np.zeros(shape, kind) for kind in ("f8", "f8", "i8", "i8", "?"))

@@ -124,25 +124,17 @@ def _check_context_row(row: NDArray[np.int32], n_states: int, n_contexts: int) -
 
 def new_learner(n_q_rows: int, n_actions: int, world, own) -> QLearner:
     """A learner at the start of its first episode, Q = 0; `world` and `own` are numpy generators."""
-    return QLearner(
-        np.zeros((n_q_rows, n_actions)),
-        np.zeros((n_q_rows, n_actions), np.int64),
-        random_state(world),
-        random_state(own),
-        np.zeros(5, np.int64),
-        np.zeros(2),
-    )
+    return QLearner._make(part[0] for part in new_learners(n_q_rows, n_actions, [world], [own]))
 
 
 def new_learners(n_q_rows: int, n_actions: int, worlds, owns) -> QLearner:
     """Learners at the start of their first episodes, stacked along a first axis; a pair of generators each."""
     n = len(worlds)
-    drawn = [(random_state(world), random_state(own)) for world, own in zip(worlds, owns, strict=True)]
     return QLearner(
         np.zeros((n, n_q_rows, n_actions)),
         np.zeros((n, n_q_rows, n_actions), np.int64),
-        np.stack([world for world, _ in drawn]),
-        np.stack([own for _, own in drawn]),
+        np.stack([random_state(world) for world in worlds]),
+        np.stack([random_state(own) for own in owns]),
         np.zeros((n, 5), np.int64),
         np.zeros((n, 2)),
     )

@@ -1,5 +1,8 @@
 """Exact solutions on tables: values, all tied-optimal actions, and the value of a given policy."""
 
+from collections.abc import Callable
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -106,13 +109,21 @@ def optimal_actions(tables: Tables, discount: float) -> NDArray[np.bool_]:
     >>> optimal_actions(Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2), 0.9).tolist()
     [[False, True], [False, True], [False, False]]
     """
-    acting = np.zeros(tables.n_states, bool)
-    frontier = np.unique(tables.starts)
-    while frontier.size:
-        acting[frontier] = True
-        entered = tables.next_state[frontier][(tables.event[frontier] & TERMINAL) == 0]
-        frontier = np.unique(entered[~acting[entered]])
+    follow, going = tables.next_state, (tables.event & TERMINAL) == 0
+    acting = states_from(tables.starts, tables.n_states, lambda states: follow[states][going[states]])
     return best_actions(optimal_q(tables, discount)) & acting[:, None]
+
+
+def states_from(
+    starts: ArrayLike, n_states: int, entered: Callable[[NDArray[np.int64]], NDArray[Any]]
+) -> NDArray[np.bool_]:
+    """Which states are reached from `starts`, (n_states,); `entered` gives the next states of some states."""
+    reached, frontier = np.zeros(n_states, bool), np.unique(starts)
+    while frontier.size:
+        reached[frontier] = True
+        found = np.unique(entered(frontier))
+        frontier = found[~reached[found]]
+    return reached
 
 
 def learnt_best_actions(q: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -100,7 +100,8 @@ def _packed(part: Any, name: str, library: "PolicyLibrary", arrays: Arrays) -> d
     kind = getattr(part, "kind", None)
     if kind not in OUTCOMES and kind not in SIGNALS:
         return {"kind": "own", "class": type(part).__name__}
-    inner = part.parts() if hasattr(part, "parts") else ()
+    inner = getattr(part, part.inner) if hasattr(part, "inner") else ()
+    inner = inner if isinstance(inner, tuple) else (inner,)
     if not inner:
         arrays.update({f"{name}.{key}": value for key, value in part.to_arrays().items()})
     parts = [_packed(model, f"{name}.{i}", library, arrays) for i, model in enumerate(inner)]
@@ -120,13 +121,13 @@ def _unpacked(
     if depth > DEEPEST:
         raise ValueError("signals within signals go too deep")
     model = OUTCOMES[kind] if kind in OUTCOMES else SIGNALS[kind]
-    if not hasattr(model, "parts"):
+    if not hasattr(model, "inner"):
         return model.from_arrays(_under(name, arrays))
     parts = [
         _unpacked(inner, f"{name}.{i}", performance, arrays, where, depth + 1)
         for i, inner in enumerate(node["parts"])
     ]
-    return model.from_parts(parts)
+    return model(parts) if model is JointSignal else model(*parts)
 
 
 def _under(name: str, arrays: Arrays) -> Arrays:

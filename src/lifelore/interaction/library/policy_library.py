@@ -11,8 +11,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.atomic_write import atomic_write
-from lifelore.core.errors import InputError, StoreError
+from lifelore.core.atomic_write import read_file, write_file
+from lifelore.core.errors import InputError
 from lifelore.core.protocols import SignalModel
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.finite_signals.simulated_table import simulated_table
@@ -324,12 +324,7 @@ class PolicyLibrary:
         StoreError
             The disk refuses.
         """
-        content = self.to_bytes()
-        try:
-            with atomic_write(path) as file:
-                file.write(content)
-        except OSError as error:
-            raise StoreError(f"the library cannot be written to {path}: {error.strerror}") from None
+        write_file(path, self.to_bytes(), "the library")
 
     @classmethod
     def load(cls, path: str | Path, signal: SignalModel | None = None) -> Self:
@@ -345,11 +340,7 @@ class PolicyLibrary:
         InputError
             The file does not exist, is of another kind, newer or damaged.
         """
-        try:
-            content = Path(path).read_bytes()
-        except OSError as error:
-            raise InputError(f"the library {path} cannot be read: {error.strerror}") from None
-        return cls.from_bytes(content, str(path), signal)
+        return cls.from_bytes(read_file(path, "the library"), str(path), signal)
 
     def to_bytes(self) -> bytes:
         """The library as the bytes of an npz file; equal libraries give equal bytes."""

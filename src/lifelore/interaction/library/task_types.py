@@ -99,12 +99,6 @@ def epsilon_types(utilities: ArrayLike, epsilon: float, form: Form = "pairwise")
     return TaskTypes(float(epsilon), labels, landmarks, fits)
 
 
-def every_task(utilities: ArrayLike) -> TaskTypes:
-    """Types that are single tasks: every task is its own landmark (§4.3.3, last paragraph)."""
-    every = np.arange(len(_checked(utilities)))
-    return TaskTypes(0.0, every, every, np.eye(len(every), dtype=bool))
-
-
 def landmark_regret_bound(epsilon: float) -> float:
     """The largest regret of the landmark's best policy on a task of its type: 2 ε, a tight bound."""
     return 2 * epsilon
@@ -144,37 +138,6 @@ def landmark_library(library: PolicyLibrary, types: TaskTypes) -> PolicyLibrary:
     if len(types.labels) != library.n_types:
         raise InputError(f"types must cover the library's {library.n_types} types, covers {len(types.labels)}")
     return library.take(types=types.landmarks.tolist(), prior=types.type_prior(library.prior))
-
-
-def pooled_samples(samples: ArrayLike, types: TaskTypes, overlapping: bool = False) -> Array:
-    """Pooled outcomes of all tasks of a type (Def. 4.3.4).
-
-    Parameters
-    ----------
-    samples : (n_tasks, n_policies, n) float
-        NaN where missing.
-    overlapping : bool
-        Whether a task counts in every type that fits it (`membership`), or only in its own (`labels`).
-
-    Returns
-    -------
-    (n_types, n_policies, m) float
-        m is n times the number of tasks of the largest type; NaN fills the other types.
-
-    Raises
-    ------
-    InputError
-        Samples are for another number of tasks.
-    """
-    samples = np.asarray(samples, np.float64)
-    if samples.ndim != 3 or len(samples) != len(types.labels):
-        raise InputError(f"samples must be ({len(types.labels)}, n_policies, n), got {samples.shape}")
-    members = types.membership if overlapping else types.labels == np.arange(types.n_types)[:, None]
-    pooled = np.full((types.n_types, samples.shape[1], int(members.sum(axis=1).max()) * samples.shape[2]), np.nan)
-    for type_, of_type in enumerate(members):
-        own = samples[of_type].transpose(1, 0, 2).reshape(samples.shape[1], -1)
-        pooled[type_, :, : own.shape[1]] = own
-    return pooled
 
 
 def _checked(utilities: ArrayLike, types: TaskTypes | None = None) -> Array:

@@ -5,18 +5,17 @@ A = 1 / (1/N + ρ) signals: N counts behind p, ρ the spread of the users of a t
 is Dirichlet(A p + c); the next cell i has the probability (A pᵢ + cᵢ) / (A + Σ c). Thesis: §4.4.1.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import joined, joined_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.cells import Cells
-from lifelore.interaction.outcomes.law import Numbers, Shown
+from lifelore.interaction.outcomes.law import Numbers, PolicyLaw, filled
 from lifelore.interaction.outcomes.log_probability import log_of
 from lifelore.interaction.outcomes.prediction import CountedPrediction
 from lifelore.interaction.outcomes.special_functions import gammaln
@@ -25,7 +24,7 @@ from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likelie
 Array = NDArray[Any]
 
 
-class CountedLaw:
+class CountedLaw(PolicyLaw):
     """P(cell | type, policy) given what each user has shown.
 
     Parameters
@@ -46,8 +45,6 @@ class CountedLaw:
         A: the number of signals that the library's runs count as for a user.
     """
 
-    learns, single = True, True
-
     def __init__(
         self,
         counts: Array,
@@ -58,6 +55,7 @@ class CountedLaw:
     ) -> None:
         self.spread, self.dtype, self._place = spread, np.dtype(dtype), place
         self.n_types, self.n_policies, self.n_cells = counts.shape
+        self.shape, self.words = counts.shape[1:], f"{self.n_cells} counts"
         totals = counts.sum(axis=2)
         self.probs = counts / totals[:, :, None]
         self._log_sizes = np.zeros(self.n_cells) if log_sizes is None else log_sizes
@@ -73,35 +71,31 @@ class CountedLaw:
         """Numbers of cells (...), -1 where a signal has none."""
         return self._place(signals)
 
-    def shown(self, n_users: int) -> Shown:
-        """Counts of no signals, (n_users, n_policies, n_cells)."""
-        return Shown(counts=np.zeros((n_users, self.n_policies, self.n_cells), self.dtype))
-
     def log_likelihoods(
-        self, policies: Numbers, signals: Any, shown: Shown | None = None, users: Numbers = None
+        self, policies: Numbers, signals: Any, shown: Array | None = None, users: Numbers = None
     ) -> Array:
         """Log probabilities of cells (...) given what `users` (...) have shown, (..., n_spreads, n_types)."""
         cells, weight = np.maximum(signals, 0), self.weight[policies]
         chosen = weight * self._share[policies, cells][..., None, :]
         if shown is not None:
-            counts = shown["counts"][users, policies]
+            counts = shown[users, policies]
             own = np.take_along_axis(counts, np.asarray(cells)[..., None], axis=-1)[..., None]
             chosen, weight = chosen + own, weight + counts.sum(axis=-1)[..., None, None]
         found = log_of(chosen / weight) - self._log_sizes[cells][..., None, None].astype(self.dtype)
         return np.where(np.asarray(signals)[..., None, None] < 0, -np.inf, found)
 
-    def learn(self, shown: Shown, users: Numbers, policies: Numbers, signals: Any) -> None:
+    def learn(self, shown: Array, users: Numbers, policies: Numbers, signals: Any) -> None:
         """Add cells of distinct users."""
-        shown["counts"][users, policies, signals] += np.asarray(signals) >= 0
+        shown[users, policies, signals] += np.asarray(signals) >= 0
 
-    def fade(self, shown: Shown, users: Numbers, keep: ArrayLike) -> None:
-        """Let what distinct `users` have shown count `keep` (...) of what it did."""
-        shown["counts"][users] *= np.asarray(keep, self.dtype)[..., None, None]
+    def tried(self, shown: Array) -> Any:
+        """Whether each row of counts (..., n_cells) has one, (...)."""
+        return shown.any(axis=-1)
 
     # ---- what rules read -----------------------------------------------------------------------------------
 
     def predicted(
-        self, shown: Shown, users: Numbers, log_weights: Array
+        self, shown: Array, users: Numbers, log_weights: Array
     ) -> tuple[tuple[Array, Array], Array, Array, Array]:
         """What tried pairs of a user and a policy predict.
 
@@ -112,15 +106,15 @@ class CountedLaw:
         probs : (m, n_spreads, n_types, n_cells) float, P(next cell | type, spread)
         total : (m, n_spreads, n_types) float, signals behind the probabilities
         """
-        own = shown["counts"][np.atleast_1d(users)]
-        rows, policies = np.nonzero(own.any(axis=-1))
+        own = shown[np.atleast_1d(users)]
+        rows, policies = np.nonzero(self.tried(own))
         counts, weight = own[rows, policies], self.weight[policies]
         total = weight + counts.sum(axis=-1)[:, None, None]
         prior = weight[..., None] * self._share[policies].transpose(0, 2, 1)[:, None]
         weights = np.exp(log_weights).reshape(len(own), -1)[rows]
         return (rows, policies), weights, (prior + counts[:, None, None]) / total[..., None], total
 
-    def table(self, n_bins: int, shown: Shown, users: Numbers, log_weights: Array) -> SignalTable:
+    def table(self, n_bins: int, shown: Array, users: Numbers, log_weights: Array) -> SignalTable:
         """The cells as signals; above `n_bins` cells, neighbours are joined so that they tell the types apart."""
         if n_bins not in self._bins:
             self._bins[n_bins] = joined_table(self.probs, n_bins)
@@ -130,22 +124,6 @@ class CountedLaw:
         binned = joined(expected.transpose(1, 0, 2), ends[at[1]]).transpose(1, 0, 2)
         return table.replaced(np.shape(users), at, binned)
 
-    # ---- a single user's statistics as small arrays ----------------------------------------------------------
-
-    def state(self, shown: Shown, user: int) -> dict[str, Array]:
-        """``policies`` (m,) and ``shown`` (m, n_cells): counts of each policy's cells."""
-        policies = np.flatnonzero(shown["counts"][user].any(axis=-1))
-        return {"policies": policies, "shown": shown["counts"][user, policies].astype(np.float64)}
-
-    def restore(self, shown: Shown, user: int, state: Mapping[str, Array]) -> None:
-        """Take over a `state`; InputError where it is of another law."""
-        policies, counts = np.asarray(state["policies"], np.int64), np.asarray(state["shown"], np.float64)
-        good = counts.shape == (len(policies), self.n_cells) and (np.isfinite(counts) & (counts >= 0)).all()
-        if not good or not np.isin(policies, range(self.n_policies)).all():
-            raise InputError(f"a user's state must have policies and {self.n_cells} counts of each")
-        shown.reset(user)
-        shown["counts"][user, policies] = counts
-
 
 class CountedRows(CountedPrediction):
     """The next outcomes of users, each given what the user has shown, where outcomes are cells.
@@ -153,7 +131,7 @@ class CountedRows(CountedPrediction):
     Only pairs of a user and a policy that the user has shown an outcome of differ from the library's.
     """
 
-    def __init__(self, law: CountedLaw, cells: Cells, shown: Shown, users: Numbers, log_weights: Array) -> None:
+    def __init__(self, law: CountedLaw, cells: Cells, shown: Array, users: Numbers, log_weights: Array) -> None:
         self.cells, self._law, self._shape = cells, law, np.shape(users)
         self._spread_weights = np.exp(log_weights).reshape(-1, len(law.spread.values))
         self._at, weights, self._by_spread, self._total = law.predicted(shown, users, log_weights)
@@ -163,9 +141,7 @@ class CountedRows(CountedPrediction):
     def probs(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
         """P(next cell | type, policy), (..., n_types, n_policies, n_cells)."""
         expected = (self._tried[..., None] * self._by_spread).sum(axis=1)
-        return self._rows(
-            np.broadcast_to(self._law.probs, (len(self._spread_weights), *self._law.probs.shape)), expected
-        )
+        return self._rows(self._law.probs, expected)
 
     @cached_property
     def mean_variance(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
@@ -183,10 +159,7 @@ class CountedRows(CountedPrediction):
         return np.maximum(probs @ self.cells.means**2 - (probs @ self.cells.means) ** 2, 0.0)
 
     def _rows(self, untried: Array, tried: Array) -> Array:
-        found = np.array(untried)
-        rows, policies = self._at
-        found[rows, :, policies] = tried
-        return found.reshape(*self._shape, *found.shape[1:])
+        return filled(self._shape, self._at, untried, tried, self._law.n_policies)
 
 
 def spread_of_counts(counts: Array, pseudo_count: float) -> Spread:

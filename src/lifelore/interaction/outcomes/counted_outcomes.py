@@ -11,7 +11,7 @@ from lifelore.interaction.finite_signals.signal_bins import joined_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.cells import Cells
 from lifelore.interaction.outcomes.counted_law import CountedLaw, CountedRows, spread_of_counts
-from lifelore.interaction.outcomes.law import FixedLaw, Models, Numbers, Shown
+from lifelore.interaction.outcomes.law import FixedLaw, Models, Numbers
 from lifelore.interaction.outcomes.log_probability import log_of
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows, check_known, check_outcome, finite_outcomes
 from lifelore.interaction.outcomes.outcome_moments import chosen_of, rows_of_more
@@ -213,7 +213,7 @@ class CountedOutcomeLaw(CountedLaw):
         """The cells of finite outcomes (...), -1 where an outcome has none."""
         return super().checked(finite_outcomes(signals))
 
-    def prediction(self, shown: Shown, users: Numbers, log_weights: Array) -> CountedPrediction:
+    def prediction(self, shown: Array, users: Numbers, log_weights: Array) -> CountedPrediction:
         """The next outcome of `users`; `log_weights` (..., n_spreads) are log probabilities of their spreads."""
         return CountedRows(self, self.cells, shown, users, log_weights)
 

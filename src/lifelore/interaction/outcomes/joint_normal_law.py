@@ -11,17 +11,16 @@ depends on their number. K has no singular value below 1: Σ may be singular. Th
 process regression over policies (Rasmussen and Williams 2006, §2.2).
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import informative_cuts, normal_probs
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.outcomes.law import Numbers, Shown
+from lifelore.interaction.outcomes.law import Numbers, PolicyLaw
 from lifelore.interaction.outcomes.outcome_model import finite_outcomes
 from lifelore.interaction.outcomes.prediction import NormalPrediction
 from lifelore.interaction.outcomes.spread import Spread
@@ -64,7 +63,7 @@ class Tried(NamedTuple):
         return self.inverse @ (self.root[:, :, None] * covariance[self.places[:, :, None], policies[:, None, :]])
 
 
-class JointNormalLaw:
+class JointNormalLaw(PolicyLaw):
     """P(number | type, policy) given what each user has shown.
 
     Parameters
@@ -77,11 +76,12 @@ class JointNormalLaw:
         Precision of the statistics and of the likelihoods.
     """
 
-    learns, single = True, True
+    words, amounts = "(count, mean)", 0
 
     def __init__(self, mean: Array, covariance: Array, deviation: Array, dtype: str = "f8") -> None:
         self.spread, self.dtype = Spread.known(0.0), np.dtype(dtype)
         self.n_types, self.n_policies = mean.shape
+        self.shape = (self.n_policies, 2)  # number and sum of outcomes
         # Inside, outcomes are in deviations from the middle of the types' means: noise has the variance 1.
         self.middle, self.unit = mean.mean(axis=0), deviation.copy()
         self.mean = (mean - self.middle) / self.unit
@@ -94,12 +94,8 @@ class JointNormalLaw:
         """Finite numbers (k,)."""
         return finite_outcomes(signals)
 
-    def shown(self, n_users: int) -> Shown:
-        """Number and sum of no outcomes, (n_users, n_policies, 2)."""
-        return Shown(sums=np.zeros((n_users, self.n_policies, 2), self.dtype))
-
     def log_likelihoods(
-        self, policies: Numbers, signals: Any, shown: Shown | None = None, users: Numbers = None
+        self, policies: Numbers, signals: Any, shown: Array | None = None, users: Numbers = None
     ) -> Array:
         """Log densities of outcomes (...) given what `users` (...) have shown, (..., 1, n_types)."""
         if shown is None:
@@ -115,7 +111,7 @@ class JointNormalLaw:
         height = np.log(square) + np.log(self.unit[policies] ** 2)[..., None] + LOG_2_PI
         return (-0.5 * (height + gap * gap / square))[..., None, :].astype(self.dtype)
 
-    def posterior(self, shown: Shown, users: Array, policies: Array | None = None) -> tuple[Array, Array]:
+    def posterior(self, shown: Array, users: Array, policies: Array | None = None) -> tuple[Array, Array]:
         """Means (k, n_types, q) and variances (k, q) of `users` (k,) with `policies` (k, q), in units of noise.
 
         By default of all policies.
@@ -128,12 +124,12 @@ class JointNormalLaw:
             variance[rows] -= (gain * gain).sum(axis=1)
         return location, np.maximum(variance, 0.0)
 
-    def blocks(self, shown: Shown, users: Array, policies: Array) -> Iterator[tuple[slice, Tried, Array, Array]]:
+    def blocks(self, shown: Array, users: Array, policies: Array) -> Iterator[tuple[slice, Tried, Array, Array]]:
         """Rows of `users` (k,), what these have tried, R x̄ (rows, m), and Gᵀ of their `policies` (k, q)."""
         step = max(1, AT_ONCE // self.n_policies**2)
         for start in range(0, len(users), step):
             rows = slice(start, start + step)
-            number, total = np.moveaxis(shown["sums"][users[rows]].astype(np.float64), -1, 0)
+            number, total = np.moveaxis(shown[users[rows]].astype(np.float64), -1, 0)
             tried = Tried.of(number, self.covariance)
             scaled = np.take_along_axis(total, tried.places, axis=1) / np.where(tried.root > 0, tried.root, 1.0)
             yield rows, tried, scaled, tried.gain(self.covariance, policies[rows])
@@ -141,22 +137,18 @@ class JointNormalLaw:
     def _every(self, n_users: int) -> Array:
         return np.broadcast_to(np.arange(self.n_policies), (n_users, self.n_policies))
 
-    def learn(self, shown: Shown, users: Numbers, policies: Numbers, signals: Any) -> None:
+    def learn(self, shown: Array, users: Numbers, policies: Numbers, signals: Any) -> None:
         """Add outcomes of distinct users."""
         scaled = (signals - self.middle[policies]) / self.unit[policies]
-        shown["sums"][users, policies] += np.stack([np.ones_like(scaled), scaled], axis=-1).astype(self.dtype)
-
-    def fade(self, shown: Shown, users: Numbers, keep: ArrayLike) -> None:
-        """Let what distinct `users` have shown count `keep` (...) of what it did."""
-        shown["sums"][users] *= np.asarray(keep, self.dtype)[..., None, None]
+        shown[users, policies] += np.stack([np.ones_like(scaled), scaled], axis=-1).astype(self.dtype)
 
     # ---- what rules read -----------------------------------------------------------------------------------
 
-    def prediction(self, shown: Shown, users: Numbers, log_weights: Array) -> "JointNormalRows":
+    def prediction(self, shown: Array, users: Numbers, log_weights: Array) -> "JointNormalRows":
         """The next outcome of `users`; `log_weights` are of a single spread, and ignored."""
         return JointNormalRows(self, shown, users)
 
-    def table(self, n_bins: int, shown: Shown, users: Numbers, log_weights: Array) -> SignalTable:
+    def table(self, n_bins: int, shown: Array, users: Numbers, log_weights: Array) -> SignalTable:
         """The next outcome in bins that tell the types apart; the bins are those of users who showed nothing."""
         if n_bins not in self._bins:
             deviation = np.sqrt(1 + np.diag(self.covariance)) * self.unit
@@ -167,29 +159,21 @@ class JointNormalLaw:
 
     # ---- a single user's statistics as small arrays ----------------------------------------------------------
 
-    def state(self, shown: Shown, user: int) -> dict[str, Array]:
-        """``policies`` (m,) and ``shown`` (m, 2): number and mean of each policy's outcomes."""
-        policies = np.flatnonzero(shown["sums"][user, :, 0])
-        number, total = shown["sums"][user, policies].astype(np.float64).T
-        mean = self.middle[policies] + self.unit[policies] * total / number
-        return {"policies": policies, "shown": np.stack([number, mean], axis=-1)}
+    def told(self, policies: Array, rows: Array) -> Array:
+        """Number and mean (m, 2) in units of outcomes."""
+        number, total = rows.T
+        return np.stack([number, self.middle[policies] + self.unit[policies] * total / number], axis=-1)
 
-    def restore(self, shown: Shown, user: int, state: Mapping[str, Array]) -> None:
-        """Take over a `state`; InputError where it is of another law."""
-        policies, numbers = np.asarray(state["policies"], np.int64), np.asarray(state["shown"], np.float64)
-        good = numbers.shape == (len(policies), 2) and np.isfinite(numbers).all()
-        if not good or (numbers[:, 0] < 0).any() or not np.isin(policies, range(self.n_policies)).all():
-            raise InputError("a user's state must have policies and (count, mean) of each")
-        number, mean = numbers.T
-        total = number * (mean - self.middle[policies]) / self.unit[policies]
-        shown.reset(user)
-        shown["sums"][user, policies] = np.stack([number, total], axis=-1)
+    def kept(self, policies: Array, rows: Array) -> Array:
+        """Rows of `told` as the law keeps them."""
+        number, mean = rows.T
+        return np.stack([number, number * (mean - self.middle[policies]) / self.unit[policies]], axis=-1)
 
 
 class JointNormalRows(NormalPrediction):
     """The next outcomes of users, each given what the user has shown; computed where they are read."""
 
-    def __init__(self, law: JointNormalLaw, shown: Shown, users: Numbers) -> None:
+    def __init__(self, law: JointNormalLaw, shown: Array, users: Numbers) -> None:
         self._law, self._shown, self._shape = law, shown, np.shape(users)
         self._users = np.atleast_1d(users)
 

@@ -1,7 +1,8 @@
 """The interface of laws: log likelihoods of signals for users and all types, given what each user has shown.
 
 A library's runs leave open what a type pays. What a user shows then tells of the type and of the parameters of the
-user's own outcomes. A law has sufficient statistics of that, `Shown`, and predicts the next signal from them:
+user's own outcomes. A law has sufficient statistics of that, `shown`, an array with a leading axis of users, and
+predicts the next signal from them:
 
     log F(σ | τ, π, spread, shown)           `log_likelihoods`
     shown ← shown and σ                      `learn`
@@ -11,13 +12,12 @@ users: a single user has none, its number, policy and signal are scalars.
 """
 
 from collections.abc import Callable, Mapping
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.spread import Spread
 
 Array = NDArray[Any]
@@ -26,40 +26,18 @@ Numbers = Any
 Models = Literal["uncertain", "plug-in"]
 
 
-class Shown:
-    """What users have shown: sufficient statistics by name, arrays with a leading axis of users."""
+class Law:
+    """The law of a library's signals, or of its outcomes; base class.
 
-    def __init__(self, **arrays: Array) -> None:
-        self.arrays = arrays
-
-    def __getitem__(self, name: str) -> Array:
-        return self.arrays[name]
-
-    def reset(self, users: Numbers) -> None:
-        """Forget what `users` have shown."""
-        for array in self.arrays.values():
-            array[users] = 0
-
-    def grow(self, n_users: int) -> None:
-        """Make room for `n_users` users; new users have shown nothing."""
-        for name, array in self.arrays.items():
-            grown = np.zeros((n_users, *array.shape[1:]), array.dtype)
-            grown[: len(array)] = array
-            self.arrays[name] = grown
-
-    @property
-    def nbytes(self) -> int:
-        """Memory in bytes."""
-        return sum(array.nbytes for array in self.arrays.values())
-
-
-class Law(Protocol):
-    """The law of a library's signals, or of its outcomes.
+    Where signals can be listed, also ``table(n_bins, shown, users, log_weights)``: P(next signal | type, policy)
+    of `users` with log probabilities (..., n_spreads) of their spreads, a `SignalTable` of at most `n_bins` bins.
 
     Attributes
     ----------
     spread : Spread
         Possible spreads of the users of a type.
+    shape : tuple of int
+        Of the statistics of a user.
     learns : bool
         Whether users' signals change the law.
     single : bool
@@ -68,54 +46,103 @@ class Law(Protocol):
 
     n_types: int
     spread: Spread
-    learns: bool
-    single: bool
+    shape: tuple[int, ...]
+    dtype: Any = np.dtype("f8")
+    learns, single = True, True
 
     def checked(self, signals: Any) -> Any:
         """The signals (k,) as the other methods take them; InputError where the law cannot have made one."""
-        ...
+        return signals
 
-    def shown(self, n_users: int) -> Shown:
-        """The statistics of users who have shown nothing."""
-        ...
+    def shown(self, n_users: int) -> Array:
+        """The statistics of users who have shown nothing, (n_users, ...)."""
+        return np.zeros((n_users, *self.shape), self.dtype)
 
     def log_likelihoods(
-        self, policies: Numbers, signals: Any, shown: Shown | None = None, users: Numbers = None
+        self, policies: Numbers, signals: Any, shown: Array | None = None, users: Numbers = None
     ) -> Array:
         """log F of signals (...) given what `users` (...) have shown, (..., n_spreads, n_types).
 
         Without `shown`, of users who have shown nothing.
         """
-        ...
+        raise NotImplementedError
 
-    def learn(self, shown: Shown, users: Numbers, policies: Numbers, signals: Any) -> None:
+    def learn(self, shown: Array, users: Numbers, policies: Numbers, signals: Any) -> None:
         """Add signals of distinct users to what they have shown."""
-        ...
+        raise NotImplementedError
 
-    def fade(self, shown: Shown, users: Numbers, keep: ArrayLike) -> None:
+    def fade(self, shown: Array, users: Numbers, keep: ArrayLike) -> None:
         """Let everything that distinct `users` have shown count `keep` (...) of what it did."""
-        ...
+        shown[users] *= np.asarray(keep, self.dtype)[(..., *[None] * len(self.shape))]
 
-    def table(self, n_bins: int, shown: Shown, users: Numbers, log_weights: Array) -> SignalTable:
-        """P(next signal | type, policy) of `users` in at most `n_bins` bins; laws without one have no such method.
-
-        Parameters
-        ----------
-        log_weights : (..., n_spreads) float
-            Log probabilities of the spreads for each of `users`.
-        """
-        ...
-
-    def state(self, shown: Shown, user: int) -> dict[str, Array]:
+    def state(self, shown: Array, user: int) -> dict[str, Array]:
         """What a single user has shown, as small arrays that do not depend on the law's precision."""
-        ...
+        raise NotImplementedError
 
-    def restore(self, shown: Shown, user: int, state: Mapping[str, Array]) -> None:
+    def restore(self, shown: Array, user: int, state: Mapping[str, Array]) -> None:
         """Take over a `state`; InputError where it is of another law."""
-        ...
+        raise NotImplementedError
 
 
-class FixedLaw:
+class PolicyLaw(Law):
+    """Base of laws with a row of numbers for each policy, (n_policies, n_numbers).
+
+    Attributes
+    ----------
+    words : str
+        A row in words.
+    amounts : index
+        The numbers of a row that are at least 0.
+    """
+
+    words: str
+    amounts: Any = slice(None)
+
+    def tried(self, shown: Array) -> Any:
+        """Whether each row (..., n_numbers) has shown something, (...)."""
+        return shown[..., 0] != 0
+
+    def told(self, policies: Array, rows: Array) -> Array:
+        """Rows (m, n_numbers) of `policies` in units of signals; `kept` is the way back."""
+        return rows
+
+    def kept(self, policies: Array, rows: Array) -> Array:
+        """Rows in units of signals as the law keeps them."""
+        return rows
+
+    def state(self, shown: Array, user: int) -> dict[str, Array]:
+        """``policies`` (m,) and ``shown`` (m, n_numbers), a row of each."""
+        policies = np.flatnonzero(self.tried(shown[user]))
+        return {"policies": policies, "shown": self.told(policies, shown[user, policies].astype(np.float64))}
+
+    def restore(self, shown: Array, user: int, state: Mapping[str, Array]) -> None:
+        """Take over a `state`; InputError where it is of another law."""
+        policies, rows = np.asarray(state["policies"], np.int64), np.asarray(state["shown"], np.float64)
+        good = rows.shape == (len(policies), self.shape[1]) and np.isfinite(rows).all()
+        if not good or (rows[:, self.amounts] < 0).any() or not np.isin(policies, range(self.shape[0])).all():
+            raise InputError(f"a user's state must have policies and {self.words} of each")
+        shown[user] = 0
+        shown[user, policies] = self.kept(policies, rows)
+
+
+def filled(
+    shape: tuple[int, ...], at: tuple[Array, Array], untried: Array, tried: Array, n_policies: int
+) -> Array:
+    """Numbers of each user and pair, (*shape, n_types, n_policies, ...).
+
+    Parameters
+    ----------
+    at : rows and policies, (m,) each, of the pairs of a user and a policy that the user has tried
+    untried : ([k,] n_types, n_policies, ...)
+    tried : (m, n_types, ...)
+    """
+    n_types, *more = tried.shape[1:]
+    found = np.array(np.broadcast_to(untried, (int(np.prod(shape)), n_types, n_policies, *more)))
+    found[at[0], :, at[1]] = tried
+    return found.reshape(*shape, *found.shape[1:])
+
+
+class FixedLaw(Law):
     """The law of a model that users' signals do not change: nothing is learnt, forgotten or stored.
 
     Parameters
@@ -128,7 +155,7 @@ class FixedLaw:
         Signals (k,) to what `log_likelihoods` takes.
     """
 
-    learns = False
+    learns, shape = False, (0,)
 
     def __init__(
         self,
@@ -144,12 +171,8 @@ class FixedLaw:
         """The signals as the model takes them."""
         return signals if self._check is None else self._check(signals)
 
-    def shown(self, n_users: int) -> Shown:
-        """Nothing."""
-        return Shown()
-
     def log_likelihoods(
-        self, policies: Numbers, signals: Any, shown: Shown | None = None, users: Numbers = None
+        self, policies: Numbers, signals: Any, shown: Array | None = None, users: Numbers = None
     ) -> Array:
         """The model's own log likelihoods, (..., n_types): there are no spreads."""
         if self._many is not None:

@@ -12,7 +12,6 @@ parameters are never drawn: (k, x̄, S) of each user and policy is all that is n
 (n and ν₀ infinite, no spread) keep their normal distribution. Thesis: §4.3.4; models as in §4.4.1.
 """
 
-from collections.abc import Mapping
 from functools import cached_property, lru_cache
 from math import lgamma, log, pi
 from typing import Any, NamedTuple
@@ -20,10 +19,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import normal_probs, normal_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.outcomes.law import Numbers, Shown
+from lifelore.interaction.outcomes.law import Numbers, PolicyLaw, filled
 from lifelore.interaction.outcomes.outcome_model import finite_outcomes
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
 from lifelore.interaction.outcomes.prediction import NormalPrediction, over_pairs
@@ -59,7 +57,7 @@ class Posterior(NamedTuple):
     freedom: Array
 
 
-class NormalLaw:
+class NormalLaw(PolicyLaw):
     """P(number | type, policy) given what each user has shown, Student's t.
 
     Parameters
@@ -72,11 +70,12 @@ class NormalLaw:
         types' means, at most `FARTHEST`.
     """
 
-    learns, single = True, True
+    words, amounts = "(count, mean, squares)", [0, 2]
 
     def __init__(self, moments: OutcomeMoments, spread: Spread, dtype: str = "f8") -> None:
         self.spread, self.dtype = spread, np.dtype(dtype)
         self.n_types, self.n_policies = moments.mean.shape
+        self.shape = (self.n_policies, 3)  # number, mean and sum of squares around the mean of outcomes
         mean, variance = moments.mean.T, moments.variance.T
         single = self.dtype == np.float32
         self.middle = mean.mean(axis=1) if single else np.zeros(len(mean))
@@ -107,12 +106,8 @@ class NormalLaw:
         """Finite numbers (k,)."""
         return finite_outcomes(signals)
 
-    def shown(self, n_users: int) -> Shown:
-        """Number, mean and sum of squares around the mean of no outcomes, (n_users, n_policies, 3)."""
-        return Shown(moments=np.zeros((n_users, self.n_policies, 3), self.dtype))
-
     def log_likelihoods(
-        self, policies: Numbers, signals: Any, shown: Shown | None = None, users: Numbers = None
+        self, policies: Numbers, signals: Any, shown: Array | None = None, users: Numbers = None
     ) -> Array:
         """Log densities of outcomes (...) given what `users` (...) have shown, (..., n_spreads, n_types)."""
         value = over_pairs(self._scaled(policies, signals))
@@ -124,18 +119,18 @@ class NormalLaw:
         height = self._stored(log_t_height(freedom)) - over_pairs(self._log_unit[policies])
         return height - 0.5 * np.log(square) - 0.5 * (freedom + 1) * np.log1p(gap * gap / (square * freedom))
 
-    def posterior(self, policies: Numbers, shown: Shown, users: Numbers) -> Posterior:
+    def posterior(self, policies: Numbers, shown: Array, users: Numbers) -> Posterior:
         """The law of the pairs of `policies` (...) given what `users` (...) have shown."""
-        n, mean, squares = _parts(shown["moments"][users, policies][..., None, None, :])
+        n, mean, squares = _parts(shown[users, policies][..., None, None, :])
         location, doubt = self._location[policies], self._doubt[policies]
         grown, apart, freedom = 1 + n * doubt, mean - location, self._freedom[policies] + n
         doubt = doubt / grown
         variance = (self._weight[policies] + squares + n / grown * (apart * apart)) / freedom
         return Posterior(location + n * doubt * apart, doubt, variance, freedom)
 
-    def location(self, policies: Numbers, shown: Shown, users: Numbers) -> Array:
+    def location(self, policies: Numbers, shown: Array, users: Numbers) -> Array:
         """The location of `posterior` alone."""
-        n, mean, _ = _parts(shown["moments"][users, policies][..., None, None, :])
+        n, mean, _ = _parts(shown[users, policies][..., None, None, :])
         pull, location = n * self._doubt[policies], self._location[policies]
         return location + pull / (1 + pull) * (mean - location)
 
@@ -148,25 +143,25 @@ class NormalLaw:
             middle + unit * values if policies is None else middle[policies, None] + unit[policies, None] * values
         )
 
-    def learn(self, shown: Shown, users: Numbers, policies: Numbers, signals: Any) -> None:
+    def learn(self, shown: Array, users: Numbers, policies: Numbers, signals: Any) -> None:
         """Add outcomes of distinct users (Welford's update)."""
-        n, mean, squares = _parts(shown["moments"][users, policies])
+        n, mean, squares = _parts(shown[users, policies])
         before = self._scaled(policies, signals) - mean
         after = n + 1, mean + before / (n + 1), squares + before * before * (n / (n + 1))
-        shown["moments"][users, policies] = np.stack(after, axis=-1)
+        shown[users, policies] = np.stack(after, axis=-1)
 
-    def fade(self, shown: Shown, users: Numbers, keep: ArrayLike) -> None:
+    def fade(self, shown: Array, users: Numbers, keep: ArrayLike) -> None:
         """Let what distinct `users` have shown count `keep` (...) of what it did."""
         share = self._stored(keep)
-        shown["moments"][users] *= np.stack([share, np.ones_like(share), share], axis=-1)[..., None, :]
+        shown[users] *= np.stack([share, np.ones_like(share), share], axis=-1)[..., None, :]
 
     # ---- what rules read -----------------------------------------------------------------------------------
 
-    def prediction(self, shown: Shown, users: Numbers, log_weights: Array) -> NormalPrediction:
+    def prediction(self, shown: Array, users: Numbers, log_weights: Array) -> NormalPrediction:
         """The next outcome of `users`; `log_weights` (..., n_spreads) are log probabilities of their spreads."""
         return NormalRows(self, shown, users, log_weights)
 
-    def table(self, n_bins: int, shown: Shown, users: Numbers, log_weights: Array) -> SignalTable:
+    def table(self, n_bins: int, shown: Array, users: Numbers, log_weights: Array) -> SignalTable:
         """The next outcome in bins that tell the types apart; the bins are those of users who showed nothing."""
         if n_bins not in self._bins:
             variance = self.noise + self.of_runs + self.of_spread * self.spread.mean
@@ -178,23 +173,17 @@ class NormalLaw:
 
     # ---- a single user's statistics as small arrays ----------------------------------------------------------
 
-    def state(self, shown: Shown, user: int) -> dict[str, Array]:
-        """``policies`` (m,) and ``shown`` (m, 3): number, mean and sum of squares of each policy's outcomes."""
-        policies = np.flatnonzero(shown["moments"][user, :, 0])
-        n, mean, squares = _parts(shown["moments"][user, policies].astype(np.float64))
+    def told(self, policies: Array, rows: Array) -> Array:
+        """Number, mean and sum of squares (m, 3) in units of outcomes."""
+        n, mean, squares = _parts(rows)
         unit, middle = self.unit[policies], self.middle[policies]
-        return {"policies": policies, "shown": np.stack([n, middle + unit * mean, unit**2 * squares], axis=-1)}
+        return np.stack([n, middle + unit * mean, unit**2 * squares], axis=-1)
 
-    def restore(self, shown: Shown, user: int, state: Mapping[str, Array]) -> None:
-        """Take over a `state`; InputError where it is of another law."""
-        policies, numbers = np.asarray(state["policies"], np.int64), np.asarray(state["shown"], np.float64)
-        good = numbers.shape == (len(policies), 3) and np.isfinite(numbers).all()
-        if not good or (numbers[:, [0, 2]] < 0).any() or not np.isin(policies, range(self.n_policies)).all():
-            raise InputError("a user's state must have policies and (count, mean, squares) of each")
+    def kept(self, policies: Array, rows: Array) -> Array:
+        """Rows of `told` as the law keeps them."""
+        n, mean, squares = _parts(rows)
         unit, middle = self.unit[policies], self.middle[policies]
-        n, mean, squares = _parts(numbers)
-        shown.reset(user)
-        shown["moments"][user, policies] = np.stack([n, (mean - middle) / unit, squares / unit**2], axis=-1)
+        return np.stack([n, (mean - middle) / unit, squares / unit**2], axis=-1)
 
     def _scaled(self, policies: Numbers, signals: Any) -> Array:
         if self.dtype != np.float32:
@@ -212,7 +201,7 @@ class NormalRows(NormalPrediction):
     Only pairs of a user and a policy that the user has shown an outcome of differ from the library's.
     """
 
-    def __init__(self, law: NormalLaw, shown: Shown, users: Numbers, log_weights: Array) -> None:
+    def __init__(self, law: NormalLaw, shown: Array, users: Numbers, log_weights: Array) -> None:
         self._law, self._shown, self._shape = law, shown, np.shape(users)
         self._users = np.atleast_1d(users)
         self._weights = np.exp(log_weights).astype(law.dtype).reshape(len(self._users), -1)
@@ -250,7 +239,7 @@ class NormalRows(NormalPrediction):
         """Mean outcomes on a type for each user, (...) to (..., n_policies), without those on other types."""
         law, types = self._law, np.atleast_1d(types)
         location = law._location[:, 0].T[types]
-        n, mean, _ = _parts(self._shown["moments"][self._users])
+        n, mean, _ = _parts(self._shown[self._users])
         # (n_types, n_spreads, n_policies), or (1, ...) where types are alike.
         doubt = law._doubt.T if law._doubt.shape[2] == 1 else law._doubt.T[types]
         pull = n[:, None] * doubt
@@ -281,7 +270,7 @@ class NormalRows(NormalPrediction):
     @cached_property
     def _at(self) -> tuple[Array, Array]:
         """Row and policy, (m,) each, of the pairs of a user and a policy that the user has shown an outcome of."""
-        rows, policies = np.nonzero(self._shown["moments"][self._users, :, 0])
+        rows, policies = np.nonzero(self._shown[self._users, :, 0])
         return rows, policies
 
     @cached_property
@@ -302,10 +291,7 @@ class NormalRows(NormalPrediction):
         return square * unknown, square * (weights * noise).sum(axis=1)
 
     def _rows(self, untried: Array, tried: Array) -> Array:
-        rows, policies = self._at
-        found = np.array(np.broadcast_to(untried, (len(self._users), self.n_types, self.n_policies)))
-        found[rows, :, policies] = tried
-        return found.reshape(*self._shape, *found.shape[1:])
+        return filled(self._shape, self._at, untried, tried, self.n_policies)
 
 
 def variance_factor(freedom: Array) -> Array:

@@ -323,7 +323,7 @@ class ReuseAlgorithm:
     def _user_arrays(self) -> list[Array]:
         """Every array with a row for each user, but for whether an episode has begun."""
         learning = [model for model in self._models.values() if model.law.learns]
-        shown = [array for model in learning for array in model.shown.arrays.values()]
+        shown = [model.shown for model in learning]
         weights = [model.log_weights for model in learning]
         return [array for array in (self.log_belief, *shown, *weights, *self.changes.arrays()) if array[0].size]
 

@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.core.atomic_write import atomic_write
-from lifelore.core.errors import InputError, StoreError
+from lifelore.core.atomic_write import read_file, write_file
+from lifelore.core.errors import InputError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
 from lifelore.interaction.beliefs.learnt_dynamics import LearntDynamics
@@ -57,12 +57,7 @@ def save_session(agent: BayesianPolicyReuse, path: str | Path) -> None:
     ...     np.array_equal(load_session(f"{folder}/session.npz").belief, agent.belief)
     True
     """
-    content = session_bytes(agent)
-    try:
-        with atomic_write(path) as file:
-            file.write(content)
-    except OSError as error:
-        raise StoreError(f"the session cannot be written to {path}: {error.strerror}") from None
+    write_file(path, session_bytes(agent), "the session")
 
 
 def load_session(path: str | Path, signal: SignalModel | None = None) -> BayesianPolicyReuse:
@@ -88,11 +83,7 @@ def load_session(path: str | Path, signal: SignalModel | None = None) -> Bayesia
     ...     load_session(f"{folder}/session.npz").select() == agent.select()
     True
     """
-    try:
-        content = Path(path).read_bytes()
-    except OSError as error:
-        raise InputError(f"the session {path} cannot be read: {error.strerror}") from None
-    return session_from_bytes(content, str(path), signal)
+    return session_from_bytes(read_file(path, "the session"), str(path), signal)
 
 
 def session_bytes(agent: BayesianPolicyReuse) -> bytes:

@@ -51,7 +51,7 @@ class UserModel:
 
     Attributes
     ----------
-    shown : Shown
+    shown : (n_users, ...), the statistics of `law`
     log_weights : (n_users, n_spreads) float64
         Log probabilities of the spreads, given what the user has shown.
     """
@@ -112,14 +112,14 @@ class UserModel:
 
     def reset(self, users: Numbers) -> None:
         """Forget what `users` have shown."""
-        self.shown.reset(users)
+        self.shown[users] = 0
         self.log_weights[users] = self._log_first
 
     def grow(self, n_users: int) -> None:
         """Make room for `n_users` users; new users have shown nothing."""
-        self.shown.grow(n_users)
-        more = np.tile(self._log_first, (n_users - len(self.log_weights), 1))
-        self.log_weights = np.concatenate([self.log_weights, more])
+        more = n_users - len(self.log_weights)
+        self.shown = np.concatenate([self.shown, self.law.shown(more)])
+        self.log_weights = np.concatenate([self.log_weights, np.tile(self._log_first, (more, 1))])
 
     def state(self, user: int) -> dict[str, Array]:
         """What a single user has shown, as small arrays; empty where nothing is learnt."""

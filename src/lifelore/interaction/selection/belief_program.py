@@ -16,15 +16,11 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.library_names import checked_prior
-from lifelore.interaction.selection.choice import propensities
-from lifelore.interaction.selection.rule import RuleLibrary, SelectionRule
 
 Array = NDArray[np.float64]
 
 LARGEST = 50_000_000
 """Numbers in the tree's last layer of beliefs, above which it is refused."""
-NUMBERS_AT_ONCE = 1 << 20
-"""Number of beliefs, types and policies, multiplied, that a rule scores at once; more costs memory."""
 
 
 class Plan(NamedTuple):
@@ -68,27 +64,6 @@ def best_plan(library: Any, horizon: int, belief: Array | None = None, n_bins: i
     return Plan(float(values[0].max()), int(values[0].argmax()), values[0])
 
 
-def value_of_rule(
-    library: Any, rule: SelectionRule, horizon: int, belief: Array | None = None, n_bins: int = 8
-) -> float:
-    """Expected sum of utilities over `horizon` episodes when `rule` selects, exactly: ties and draws are averaged.
-
-    Raises
-    ------
-    InputError
-        The horizon is below 1, the tree would be too large, or the belief is no distribution over the types.
-    """
-    table, mean = library.table(n_bins), library.performance.mean
-    layers = _layers(table, library, belief, horizon)
-    value = np.zeros(0)
-    for left, weights in enumerate(reversed(layers)):
-        values = weights @ mean
-        if left:
-            values = values + _after_signals(value, table)
-        value = (_shares(library, rule, weights, left) * values).sum(axis=1)
-    return float(value[0])
-
-
 def _layers(table: SignalTable, library: Any, belief: Array | None, horizon: int) -> list[Array]:
     """Unnormalised beliefs before each episode: layer k is ((n_policies n_signals)^k, n_types)."""
     if horizon < 1:
@@ -108,15 +83,3 @@ def _layers(table: SignalTable, library: Any, belief: Array | None, horizon: int
 def _after_signals(value: Array, table: SignalTable) -> Array:
     """Values (n P S,) of the next layer summed over signals, (n, P)."""
     return value.reshape(-1, table.n_policies, table.n_signals).sum(axis=2)
-
-
-def _shares(library: RuleLibrary, rule: SelectionRule, weights: Array, left: int) -> Array:
-    """Probability that the rule selects each policy at each belief; uniform beliefs where unreachable."""
-    total = weights.sum(axis=1, keepdims=True)
-    beliefs = np.divide(weights, total, out=np.full_like(weights, 1 / weights.shape[1]), where=total > 0)
-    step = max(1, NUMBERS_AT_ONCE // (weights.shape[1] * library.n_policies))
-    parts = [
-        propensities(rule, library, beliefs[at : at + step], episodes_left=left)
-        for at in range(0, len(beliefs), step)
-    ]
-    return np.concatenate(parts)

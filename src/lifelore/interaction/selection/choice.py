@@ -264,7 +264,7 @@ class PartOfLibrary:
 
 
 class PartOfOutcomes:
-    """The outcomes of some policies; methods as in `Prediction`."""
+    """The outcomes of some policies: the mean, and the methods of `Prediction`."""
 
     def __init__(self, outcomes: "Prediction", policies: Mask) -> None:
         self._outcomes, self._policies = outcomes, policies
@@ -273,20 +273,6 @@ class PartOfOutcomes:
     def mean(self) -> Array:
         return self._outcomes.mean[..., self._policies]
 
-    def mean_on(self, types: Any) -> Array:
-        return self._outcomes.mean_on(types)[..., self._policies]
-
-    def expected(self, belief: Array) -> Array:
-        return self._outcomes.expected(belief)[..., self._policies]
-
-    def density(self, value: Any) -> Array:
-        return self._outcomes.density(value)[..., self._policies]
-
-    def exceedance(self, threshold: Any) -> Array:
-        return self._outcomes.exceedance(threshold)[..., self._policies]
-
-    def expected_excess(self, threshold: Any) -> Array:
-        return self._outcomes.expected_excess(threshold)[..., self._policies]
-
-    def expected_mean_excess(self, threshold: Any) -> Array:
-        return self._outcomes.expected_mean_excess(threshold)[..., self._policies]
+    def __getattr__(self, method: str) -> Callable[[Any], Array]:
+        of_all = getattr(self._outcomes, method)
+        return lambda given: of_all(given)[..., self._policies]

@@ -35,6 +35,8 @@ class JointSignal:
     """
 
     kind: ClassVar[str] = "joint"
+    inner: ClassVar[str] = "factors"
+    """Name of the model or models within it."""
 
     def __init__(self, factors: Sequence[SignalModel]) -> None:
         self.factors: tuple[Any, ...] = tuple(factors)
@@ -69,15 +71,6 @@ class JointSignal:
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
         """The model of some types and policies."""
         return type(self)([factor.take(types, policies) for factor in self.factors])
-
-    def parts(self) -> tuple[Any, ...]:
-        """The factors."""
-        return self.factors
-
-    @classmethod
-    def from_parts(cls, parts: Sequence[Any]) -> Self:
-        """The model of `parts`."""
-        return cls(parts)
 
 
 def _shared(factors: tuple[Any, ...], axis: str) -> int | None:

@@ -33,6 +33,8 @@ class ReturnSignal:
     """
 
     kind: ClassVar[str] = "return"
+    inner: ClassVar[str] = "outcomes"
+    """Name of the model or models within it."""
 
     def __init__(self, outcomes: OutcomeModel) -> None:
         self.outcomes, self.n_types, self.n_policies = outcomes, outcomes.n_types, outcomes.n_policies
@@ -62,12 +64,3 @@ class ReturnSignal:
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
         """The model of some types and policies."""
         return type(self)(self.outcomes.take(types, policies))
-
-    def parts(self) -> tuple[Any, ...]:
-        """The models that it uses."""
-        return (self.outcomes,)
-
-    @classmethod
-    def from_parts(cls, parts: Sequence[Any]) -> Self:
-        """The model of `parts`."""
-        return cls(*parts)

@@ -33,6 +33,8 @@ class RewardSignal:
     """
 
     kind: ClassVar[str] = "reward"
+    inner: ClassVar[str] = "rewards"
+    """Name of the model or models within it."""
 
     def __init__(self, rewards: OutcomeModel) -> None:
         self.rewards, self.n_types, self.n_policies = rewards, rewards.n_types, rewards.n_policies
@@ -88,15 +90,6 @@ class RewardSignal:
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
         """The model of some types and policies."""
         return type(self)(self.rewards.take(types, policies))
-
-    def parts(self) -> tuple[Any, ...]:
-        """The models that it uses."""
-        return (self.rewards,)
-
-    @classmethod
-    def from_parts(cls, parts: Sequence[Any]) -> Self:
-        """The model of `parts`."""
-        return cls(*parts)
 
 
 def _numbers(rewards: ArrayLike) -> Array:

@@ -9,10 +9,10 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.law import Numbers, Shown
+from lifelore.interaction.outcomes.law import Law, Numbers
 from lifelore.interaction.outcomes.special_functions import gammaln
 from lifelore.interaction.outcomes.spread import Spread
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 Array = NDArray[Any]
 
 
-class StepLaw:
+class StepLaw(Law):
     """P(outcomes | states and actions; type, policy) given the steps that each user has shown.
 
     Parameters
@@ -31,56 +31,45 @@ class StepLaw:
         The library's, from counted steps; not changed.
     """
 
-    learns, single = True, False
+    single = False
 
     def __init__(self, signal: "StepModel") -> None:
         assert signal.totals is not None
         self.signal, self.n_types, self.spread = signal, signal.n_types, Spread.known(0.0)
         self._rows = signal.log_table.shape[:3]
-
-    def checked(self, signals: Any) -> Any:
-        """The signals as they are; each is checked as steps when it is read."""
-        return signals
-
-    def shown(self, n_users: int) -> Shown:
-        """Counts of no steps, (n_users, n_tables, n_states, n_actions, n_outcomes)."""
-        return Shown(counts=np.zeros((n_users, *self._rows, self.signal.shape[2])))
+        self.shape = (*self._rows, signal.shape[2])  # counts of steps
 
     def log_likelihoods(
-        self, policies: Numbers, signals: Any, shown: Shown | None = None, users: Numbers = None
+        self, policies: Numbers, signals: Any, shown: Array | None = None, users: Numbers = None
     ) -> Array:
         """Log likelihoods of episodes (...) given what `users` (...) have shown, (..., 1, n_types)."""
         if np.ndim(policies) == 0:
-            return self._of_one(policies, signals, None if shown is None else shown["counts"][users])[None]
-        counts = [None] * len(policies) if shown is None else list(shown["counts"][users])
+            return self._of_one(policies, signals, None if shown is None else shown[users])[None]
+        counts = [None] * len(policies) if shown is None else list(shown[users])
         found = [self._of_one(*each) for each in zip(policies.tolist(), signals, counts, strict=True)]
         return np.array(found)[:, None]
 
-    def learn(self, shown: Shown, users: Numbers, policies: Numbers, signals: Any) -> None:
+    def learn(self, shown: Array, users: Numbers, policies: Numbers, signals: Any) -> None:
         """Add episodes of distinct users."""
         if np.ndim(policies) == 0:
             policies, signals, users = np.array([policies]), [signals], [users]
         for user, policy, signal in zip(users, policies, signals, strict=True):
-            np.add.at(shown["counts"][user], self.signal.places_of(policy, signal), 1.0)
+            np.add.at(shown[user], self.signal.places_of(policy, signal), 1.0)
 
-    def fade(self, shown: Shown, users: Numbers, keep: ArrayLike) -> None:
-        """Let what distinct `users` have shown count `keep` (...) of what it did."""
-        shown["counts"][users] *= np.asarray(keep)[..., None, None, None, None]
-
-    def state(self, shown: Shown, user: int) -> dict[str, Array]:
+    def state(self, shown: Array, user: int) -> dict[str, Array]:
         """``places`` (m, 3): table, state, action; ``shown`` (m, n_outcomes): counts."""
-        places = np.argwhere(shown["counts"][user].any(axis=-1))
-        return {"places": places, "shown": shown["counts"][user][tuple(places.T)]}
+        places = np.argwhere(shown[user].any(axis=-1))
+        return {"places": places, "shown": shown[user][tuple(places.T)]}
 
-    def restore(self, shown: Shown, user: int, state: Mapping[str, Array]) -> None:
+    def restore(self, shown: Array, user: int, state: Mapping[str, Array]) -> None:
         """Take over a `state`; InputError where it is of another law."""
         places, counts = np.asarray(state["places"], np.int64), np.asarray(state["shown"], np.float64)
         if places.shape != (len(counts), 3) or counts.shape != (len(places), self.signal.shape[2]):
             raise InputError(f"a user's state must have {self.signal.shape[2]} counts of each state and action")
         if not ((places >= 0) & (places < self._rows)).all() or not (np.isfinite(counts) & (counts >= 0)).all():
             raise InputError(f"a user's state must be of tables, states and actions below {self._rows}")
-        shown.reset(user)
-        shown["counts"][user][tuple(places.T)] = counts
+        shown[user] = 0
+        shown[user][tuple(places.T)] = counts
 
     def _of_one(self, policy: int, signal: Any, counts: Array | None) -> Array:
         *places, outcomes = self.signal.places_of(policy, signal)

@@ -12,7 +12,6 @@ from lifelore.interaction.reuse.novelty.broad_library import (
     WEIGHTS,
     broad_counts,
     broad_library,
-    broad_moments,
 )
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.signals.category_signal import CategorySignal
@@ -32,11 +31,6 @@ def test_the_first_outcome_is_a_t_as_wide_as_types_and_noise():
             assert found == pytest.approx(t.logpdf(value, FREEDOM, centre, variance**0.5), abs=1e-12)
 
 
-def test_types_that_agree_on_everything_still_leave_a_spread():
-    moments = broad_moments(np.ones((2, 3)), np.full((2, 3), 2.0), PRIOR)
-    assert moments.count == pytest.approx(100.0)  # a spread of a tenth of a deviation
-
-
 def test_categories_by_hand():
     # The types have nothing in common: the pooled probabilities (1/2, 1/2, 0) count as the least weight.
     probs = np.array([[[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]]])
@@ -47,14 +41,6 @@ def test_categories_by_hand():
     row = ReuseAlgorithm(library)
     assert np.exp(row.observe(0, 0, 2).log_evidence) == pytest.approx(UNIFORM / 3)
     assert np.exp(row.observe(0, 0, 2).log_evidence) == pytest.approx((0.5 * UNIFORM / 3 + 1) / 1.5)
-
-
-def test_the_weight_of_a_policy_is_at_most_that_of_all_policies():
-    probs = np.array([[[0.8, 0.2], [0.3, 0.7]], [[0.2, 0.8], [0.3, 0.7]]])
-    # Σ p (1 − p) over categories: 0.5 and 0.42; squares of the gaps: 0.18 and 0.
-    weights = broad_counts(probs, PRIOR)[0].sum(axis=1)
-    assert weights == pytest.approx([0.5 / 0.18 - 1, 0.92 / 0.18 - 1])
-    assert broad_counts(probs[:, 1:], PRIOR).sum() == pytest.approx(WEIGHTS[1])
 
 
 def test_every_kind_of_outcome_has_a_broad_library():

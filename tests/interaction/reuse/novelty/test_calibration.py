@@ -7,9 +7,9 @@ from lifelore.interaction.beliefs.belief import entropy
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.novelty.calibration import NoveltyCalibration, check_rate, known_statistic, watch
-from lifelore.interaction.reuse.novelty.known_tasks import known_tasks, normal_tasks
+from lifelore.interaction.reuse.novelty.known_tasks import normal_tasks
 from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
-from lifelore.interaction.selection import BeliefSampling, EpsilonGreedy, ExpectedImprovement, Greedy
+from lifelore.interaction.selection import BeliefSampling, ExpectedImprovement, Greedy
 
 MEAN = np.array([[10.0, 4.0, 0.0], [4.0, 10.0, 4.0], [0.0, 4.0, 10.0]])
 EXACT = PolicyLibrary.from_means(MEAN, 2.0)
@@ -24,9 +24,8 @@ def test_the_threshold_is_the_quantile_of_the_largest_value():
     assert ((found.standardised(statistic) > found.threshold).mean()) == pytest.approx(0.05, abs=1e-4)
 
 
-@pytest.mark.parametrize("rate", [0.01, 0.05])
-def test_false_alarms_of_exact_models_come_at_the_requested_rate(rate):
-    n = 20_000
+def test_false_alarms_of_exact_models_come_at_the_requested_rate():
+    n, rate = 20_000, 0.05
     found = NoveltyCalibration.of(known_statistic(EXACT, BeliefSampling(), 10, n, np.random.default_rng(0)), rate)
     others = known_statistic(EXACT, BeliefSampling(), 10, n, np.random.default_rng(1))
     alarms = (found.standardised(others) > found.threshold).any(axis=1).mean()
@@ -35,36 +34,17 @@ def test_false_alarms_of_exact_models_come_at_the_requested_rate(rate):
 
 
 def test_false_alarms_of_learnt_models_come_at_the_requested_rate():
-    """Libraries from ten runs, tasks with the true parameters; and the rate would be wrong without their doubt."""
-    random, rate, shares, trusting = np.random.default_rng(0), 0.05, [], []
-    for _ in range(12):
+    """Libraries from ten runs, tasks with the true parameters."""
+    random, rate, shares = np.random.default_rng(0), 0.05, []
+    for _ in range(8):
         library = PolicyLibrary.from_samples(random.normal(MEAN[..., None], 2.0, (3, 3, 10)))
         found = NoveltyCalibration.of(known_statistic(library, BeliefSampling(), 10, 2000, random), rate)
-        types = random.integers(0, 3, 2000)
-        model = library.performance
-        estimates = normal_tasks(model.mean[types], model.deviation[types], random)
-        blind = NoveltyCalibration.of(
-            watch(library, BeliefSampling(), estimates, 2000, 10, random).statistic, rate
-        )
         means = MEAN[random.integers(0, 3, 1000)]
         tasks = normal_tasks(means, np.full_like(means, 2.0), random)
         statistic = watch(library, BeliefSampling(), tasks, 1000, 10, random).statistic
         shares.append((found.standardised(statistic) > found.threshold).any(axis=1).mean())
-        trusting.append((blind.standardised(statistic) > blind.threshold).any(axis=1).mean())
-    error = np.std(shares, ddof=1) / 12**0.5
+    error = np.std(shares, ddof=1) / 8**0.5
     assert np.mean(shares) == pytest.approx(rate, abs=4 * error)
-    # Estimates taken for the truth miss the rate by more than a fifth.
-    assert np.mean(trusting) > 1.2 * np.mean(shares)
-
-
-@pytest.mark.parametrize("rule", [BeliefSampling(), Greedy(), ExpectedImprovement(), EpsilonGreedy(0.3)])
-def test_known_tasks_stay_known_whatever_the_rule(rule):
-    n, random = 2000, np.random.default_rng(0)
-    seen = watch(EXACT, rule, known_tasks(EXACT, n, random), n, 8, random)
-    assert (seen.log_odds[:, -1] < 0).mean() > 0.9
-    # The shortfall is a martingale; the least misfit of three types is at most that of the true type, mean 0.
-    assert seen.statistic[:, -1].mean() < 5 * (2 / n) ** 0.5
-    assert (seen.entropy[:, -1] < seen.entropy[:, 0]).mean() > 0.9
 
 
 def test_simulated_tasks_are_played_as_an_agent_plays():

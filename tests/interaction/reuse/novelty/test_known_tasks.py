@@ -1,17 +1,14 @@
 import numpy as np
 import pytest
-from scipy.special import polygamma
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.novelty.known_tasks import (
-    _inverse_trigamma,
     drawn_moments,
     drawn_probs,
     known_tasks,
-    posterior_variance,
 )
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
@@ -38,40 +35,6 @@ def test_means_of_learnt_models_differ_by_their_standard_error():
     assert (mean - model.mean[0]).std() == pytest.approx(3 * (1 / 10 + 1) ** 0.5, rel=0.05)
 
 
-def test_equal_deviations_are_recognised_as_equal_and_unequal_as_unequal():
-    random = np.random.default_rng(0)
-    equal = PolicyLibrary.from_samples(random.normal(0, 3.0, (30, 20, 10))).performance.moments
-    location, freedom = posterior_variance(equal)
-    # Chance may leave a little more or less spread than χ² explains: then the prior is very heavy.
-    assert (freedom > 100).all()
-    assert location.std() < 0.3
-    deviations = random.choice([1.0, 10.0], (30, 20, 1))
-    unequal = PolicyLibrary.from_samples(random.normal(0, deviations, (30, 20, 10))).performance.moments
-    location, freedom = posterior_variance(unequal)
-    assert (freedom < 15).all()
-    assert np.median(location[deviations[..., 0] == 1]) < 3 < 50 < np.median(location[deviations[..., 0] == 10])
-
-
-def test_the_prior_of_variances_is_recovered():
-    # Variances from a scaled inverse χ² law with 8 degrees of freedom around 4, seen through 10 samples each.
-    random = np.random.default_rng(3)
-    variance = 8 * 4 / random.chisquare(8, (60, 50, 1))
-    moments = PolicyLibrary.from_samples(random.normal(0, variance**0.5, (60, 50, 10))).performance.moments
-    _, freedom = posterior_variance(moments)
-    assert freedom.min() - 9 == pytest.approx(8, rel=0.25)
-
-
-def test_given_numbers_with_a_count_stand_for_samples():
-    moments = PolicyLibrary.from_means([[1.0, 2.0]], [[1.0, 30.0]], count=5).performance.moments
-    _, freedom = posterior_variance(moments)
-    assert ((freedom >= 5) & (freedom < 10)).all()
-
-
-def test_the_inverse_of_the_trigamma_function():
-    for value in (1e-4, 0.3, 1.0, 40.0):
-        assert float(polygamma(1, _inverse_trigamma(value))) == pytest.approx(value, rel=1e-6)
-
-
 def test_learnt_categories_vary_with_their_count_and_exact_ones_do_not():
     probs = [[[0.5, 0.5, 0.0]]]
     exact = PolicyLibrary.from_means([[1.0]], 1.0, signal=CategorySignal(probs))
@@ -81,12 +44,6 @@ def test_learnt_categories_vary_with_their_count_and_exact_ones_do_not():
     share = drawn_probs(learnt.signal, types, np.random.default_rng(0))[:, 0, 0]
     assert share.var() == pytest.approx(0.25 / 10, rel=0.1)  # Dirichlet: p (1 - p) / (count + 1)
     assert (known_tasks(learnt, 5000, np.random.default_rng(0))(types) < 2).all()
-
-
-def test_named_categories_come_by_name():
-    signal = CategorySignal([[[0.5, 0.5]]], categories=["near", "far"])
-    tasks = known_tasks(PolicyLibrary.from_means([[1.0]], 1.0, signal=signal), 50, np.random.default_rng(0))
-    assert set(tasks(np.zeros(50, np.int64))) == {"near", "far"}
 
 
 def test_outcomes_of_a_few_values_and_of_bins():

@@ -2,10 +2,8 @@
 
 import numpy as np
 import pytest
-from scipy.special import betaln
 from scipy.stats import multinomial
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.novelty.misfit import Misfit, pairs_of
@@ -60,17 +58,6 @@ def test_categories_of_exact_types_are_a_likelihood_ratio():
     assert misfit.statistic(0) == pytest.approx((misfit.by_type[0].min() - 2) / 4**0.5)
 
 
-def test_learnt_categories_have_a_dirichlet_law():
-    signal = CategorySignal([[[0.6, 0.4]]], count=5)
-    library = PolicyLibrary.from_means([[1.0]], 1.0, signal=signal)
-    misfit = misfit_of(library)
-    for category in (0, 0, 1):
-        misfit.observe(0, 0, category)
-    # Beta-binomial: two of one and one of the other from Beta(3, 2), beside 2/3 and 1/3.
-    log_p = betaln(3 + 2, 2 + 1) - betaln(3, 2)
-    assert misfit.by_type[0, 0] == pytest.approx(2 * (2 * np.log(2 / 3) + np.log(1 / 3) - log_p))
-
-
 @pytest.mark.parametrize("kind", ["gaussian", "student-t", "histogram", "categorical"])
 def test_rows_are_single_tasks_and_sums_are_those_of_all_pairs(kind):
     random = np.random.default_rng(0)
@@ -86,39 +73,6 @@ def test_rows_are_single_tasks_and_sums_are_those_of_all_pairs(kind):
     np.testing.assert_allclose(many.statistic(np.arange(20)), singles, rtol=1e-9, atol=1e-9)
     # The naive sum over all pairs of what has been shown.
     pairs = pairs_of(library.signal)
-    shown = many.evidence.broad.signals.shown[pairs.statistics]
+    shown = many.evidence.broad.signals.shown
     whole = sum(pairs.misfit(shown[:, policy], np.full(20, policy)) for policy in range(4))
     np.testing.assert_allclose(many.by_type, whole, rtol=1e-9, atol=1e-9)
-
-
-def test_the_misfit_of_known_tasks_is_a_chi_square():
-    """Every policy tried k times by design, the type known: mean d and variance 2d."""
-    n, n_policies, library = 4000, 5, PolicyLibrary.from_means([[1.0, 4.0, 2.0, 0.0, 3.0]], 2.0)
-    misfit, random, every = misfit_of(library, n), np.random.default_rng(0), np.arange(n)
-    for policy in np.tile(np.arange(n_policies), 3):
-        mean = library.performance.mean[0, policy]
-        misfit.observe(every, np.full(n, policy), mean + 2 * random.standard_normal(n))
-    # Five standard errors of the mean; the variance of χ² of 5 has a relative error of √((12/5 + 2) / n).
-    assert misfit.by_type.mean() == pytest.approx(n_policies, abs=5 * (2 * n_policies / n) ** 0.5)
-    assert misfit.by_type.var() == pytest.approx(2 * n_policies, rel=5 * (4.4 / n) ** 0.5)
-    assert misfit.shortfall.var() == pytest.approx(15, rel=5 * (2 / n) ** 0.5)
-
-
-def test_impossible_signals_leave_finite_sums():
-    library = PolicyLibrary.from_means([[1.0]], 1.0, signal=CategorySignal([[[1.0, 0.0]]]))
-    misfit = misfit_of(library)
-    misfit.observe(0, 0, 1)
-    assert np.isfinite(misfit.statistic(0))
-    assert misfit.statistic(0) > 1e3
-    misfit = misfit_of(EXACT)
-    misfit.observe(0, 0, 1e99)
-    assert np.isfinite(misfit.statistic(0))
-
-
-def test_bad_signals_change_nothing():
-    misfit = misfit_of(EXACT)
-    misfit.observe(0, 0, 9.0)
-    before = misfit.statistic(0)
-    with pytest.raises(InputError, match="finite"):
-        misfit.observe(0, 0, np.nan)
-    assert (misfit.statistic(0), misfit.n_signals[0]) == (before, 1)

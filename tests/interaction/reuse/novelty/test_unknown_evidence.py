@@ -5,10 +5,9 @@ import pytest
 from scipy.stats import norm, t
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.reuse.novelty.broad_library import FREEDOM, broad_moments
+from lifelore.interaction.reuse.novelty.broad_library import FREEDOM
 from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
 from lifelore.interaction.selection import BeliefSampling
 from lifelore.interaction.signals.category_signal import CategorySignal
@@ -54,84 +53,6 @@ def test_rows_are_single_tasks(kind, models):
             one.observe(0, int(policies[row]), signals[row].item())
             one.end_episode(0)
     np.testing.assert_allclose(many.log_odds, [one.log_odds[0] for one in alone], rtol=1e-10)
-
-
-@pytest.mark.parametrize("models", ["uncertain", "plug-in"])
-def test_the_belief_is_the_same_with_and_without(models):
-    with_it, without = (
-        BayesianPolicyReuse(learnt(), seed=3, models=models, novelty=mass) for mass in (0.05, None)
-    )
-    random = np.random.default_rng(2)
-    for _ in range(12):
-        policy = with_it.select()
-        assert without.select() == policy
-        outcome = float(random.normal(TRUE[1, policy], 20))
-        with_it.update(policy, outcome)
-        without.update(policy, outcome)
-    assert with_it.log_belief.tobytes() == without.log_belief.tobytes()
-    assert without.novelty is None
-    assert without.explain().novelty is None
-    assert with_it.novelty is not None
-    assert with_it.explain().novelty == with_it.novelty.probability
-
-
-def test_new_users_are_told_from_known_users():
-    random, library = np.random.default_rng(5), learnt()
-    found = {}
-    for name, means in (("known", TRUE[2]), ("new", np.array([150.0, 90, 160]))):
-        probabilities = []
-        for task in range(20):
-            agent = BayesianPolicyReuse(library, BeliefSampling(), seed=task, novelty=0.05)
-            for _ in range(15):
-                policy = agent.select()
-                agent.update(policy, float(random.normal(means[policy], 20)))
-            assert agent.novelty is not None
-            probabilities.append(agent.novelty.probability)
-        found[name] = float(np.median(probabilities))
-    # Outcomes deviate by 20; the new user's best outcome is 50 or 60 from those of every type.
-    assert found["known"] < 0.02
-    assert found["new"] > 0.99
-
-
-def test_ten_runs_leave_a_type_in_doubt_as_far_as_the_runs_do():
-    library = PolicyLibrary.from_samples(np.array([[[9.0, 11.0, 10.0, 8.0, 12.0, 10.0]]]))
-    evidence = UnknownEvidence(library, dynamics=TypeDynamics.static())
-    # Both laws are normal-inverse-χ², with the location, the weight, the variance and its degrees of freedom:
-    moments = library.performance.moments  # pyright: ignore[reportAttributeAccessIssue]
-    model, expected, k, x, s = library.performance, 0.0, 0, 0.0, 0.0
-    broad = broad_moments(model.mean, model.deviation, library.prior)
-    for outcome in (13.0, 12.0):
-        evidence.observe(0, 0, outcome)
-        for law, sign in ((broad, 1), (moments, -1)):
-            m, v, n, f = (float(field[0, 0]) for field in (law.mean, law.variance, law.count, law.freedom))
-            square = (f * v + s + n * k / (n + k) * (x - m) ** 2) / (f + k) * (1 + 1 / (n + k))
-            expected += sign * t.logpdf(outcome, f + k, (n * m + k * x) / (n + k), square**0.5)
-        s, k, x = s + (outcome - x) ** 2 * k / (k + 1), k + 1, (k * x + outcome) / (k + 1)
-    assert evidence.log_odds[0] == pytest.approx(expected, rel=1e-9)
-
-
-def test_the_order_of_signals_does_not_matter_where_types_are_static():
-    signals = [(0, 150.0), (1, 90.0), (0, 140.0), (2, 160.0)]
-    found = []
-    for order in (signals, signals[::-1]):
-        agent = BayesianPolicyReuse(learnt(), dynamics=TypeDynamics.static(), models="plug-in", novelty=0.05)
-        for policy, outcome in order:
-            agent.update(policy, outcome)
-        assert agent.novelty is not None
-        found.append(agent.novelty.log_odds)
-    assert found[0] == pytest.approx(found[1], rel=1e-12)
-
-
-def test_an_impossible_signal_counts_745_nats_and_stays_finite():
-    library = PolicyLibrary.from_means([[1.0]], 1.0, signal=CategorySignal([[[1.0, 0.0]]]))
-    agent = BayesianPolicyReuse(library, novelty=0.5)
-    for _ in range(3):
-        agent.update(0, 1)
-    assert agent.novelty is not None
-    assert agent.novelty.probability == 1.0
-    # The broad law has the probability 1/8, a quarter of the uniform law, and counts as half a signal.
-    broad = 1 / 8 * (1 / 16 + 1) / 1.5 * (1 / 16 + 2) / 2.5
-    assert agent.novelty.log_odds == pytest.approx(3 * 745 + np.log(broad), rel=1e-12)
 
 
 def test_mistakes_are_said():

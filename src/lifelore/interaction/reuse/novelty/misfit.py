@@ -64,7 +64,7 @@ class Misfit:
     def observe(self, tasks: Numbers, policies: Numbers, signals: Any) -> None:
         """Take in a signal of each of `tasks`; errors as for `UnknownEvidence.observe`."""
         belief = self.evidence.types.belief(tasks)
-        statistics = self.evidence.broad.signals.shown[self._pairs.statistics]
+        statistics = self.evidence.broad.signals.shown
         before = self._pairs.misfit(statistics[tasks, policies], policies)
         first = ~statistics[tasks, policies].any(axis=-1)
         self.evidence.observe(tasks, policies, signals)
@@ -94,11 +94,9 @@ class MeanPairs:
     ----------
     freedom : float
         Degrees of freedom of a policy.
-    statistics : str
-        Name of the statistics in `Shown`.
     """
 
-    freedom, statistics = 1.0, "moments"
+    freedom = 1.0
 
     def __init__(self, mean: Array, variance: Array, doubt: Any) -> None:
         self._mean, self._variance = np.ascontiguousarray(mean.T), np.ascontiguousarray(variance.T)
@@ -120,8 +118,6 @@ class CountedPairs:
     weight : (n_types, n_policies) float, optional
         Number of signals that the probabilities count as for a task; without it they are exact.
     """
-
-    statistics = "counts"
 
     def __init__(self, probs: Array, weight: Array | None) -> None:
         self.freedom = float(probs.shape[2] - 1)
