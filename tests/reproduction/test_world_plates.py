@@ -5,7 +5,6 @@ import pytest
 
 from docs.pictures.figure_world_plates import draw_world_plates
 from docs.pictures.worlds import pictures, walked
-from lifelore.core.errors import InputError
 from lifelore.domains.grids.grid_picture import AGENT_COLOUR, GOAL_COLOUR
 from lifelore.figures.style import save_figure
 
@@ -43,8 +42,3 @@ def test_the_prior_of_three_walks():
     assert probs[7].tolist() == [1, 0, 0, 0]
     assert probs[3].tolist() == [0, 0, 1, 0]
     assert np.flatnonzero(probs.any(axis=1)).tolist() == [3, 4, 7]  # at a walk's end nothing was done
-
-
-def test_nothing_is_no_picture():
-    with pytest.raises(InputError, match="plates must be at least one"):
-        draw_world_plates([])

@@ -16,7 +16,6 @@ from reproduction.chapter2.c2_11_distant_objects.run import (
     away,
     bearing_pairs,
     counts,
-    kernels,
     measure,
     parted,
     readings,
@@ -131,19 +130,6 @@ def test_pairs_that_bear_a_relation_in_the_labels_order():
     assert (left[:, 0].max(), right[:, 0].min()) == pytest.approx((0.04, 0.05))
 
 
-def test_points_are_thinned_to_three_millimetres():
-    dense = np.concatenate([plate(0, 0, 0), plate(0.0001, 0, 0), plate(0, 0.0001, 0.02)])
-    cloud = LabelledCloud(dense, np.repeat([2, 2, 3], 25))
-    a, b, _ = next(bearing_pairs(cloud, [PairLabel(3, 2, "on")]))
-    assert len(a) == 25
-    assert 25 <= len(b) < 50
-
-
-def test_the_default_kernel_is_among_the_kernels():
-    assert kernels(SETTINGS) == [(0.06, 10.0), (0.25, 10.0)]
-    assert kernels({"lengths": [0.03, 0.06], "costs": [10.0]}) == [(0.06, 10.0), (0.03, 10.0)]
-
-
 def test_measures_readings_and_rows_by_hand():
     # As seen, at 0.1 m and at 1 m: support vectors of an object, contacts of both.
     first = {
@@ -171,15 +157,6 @@ def cube(side: float, *corner: float, step: float = 0.006) -> np.ndarray:
     axis = np.arange(round(side / step) + 1) * step
     grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1).reshape(-1, 3)
     return grid[((grid == axis[0]) | (grid == axis[-1])).any(axis=1)] + np.array(corner or (0, 0, 0))
-
-
-@pytest.mark.parametrize("distance", [0.05, 1.0, 10.0])
-def test_two_points_are_two_support_vectors_however_far_apart(distance):
-    found = separate([[0, 0, 0]], [[distance, 0, 0]], length=0.06, cost=1e4)
-    # Most of 2 α - α² (1 - k): α = 1 / (1 - k), k what the kernel says of the two, which is 0 from afar.
-    alpha = 1 / (1 - np.exp(-((distance / 0.06) ** 2) / 2))
-    assert found.alpha_first == pytest.approx([alpha], rel=1e-3)
-    assert found.alpha_second == pytest.approx([alpha], rel=1e-3)
 
 
 @pytest.mark.parametrize("apart", [1.0, 2.0])
@@ -216,17 +193,3 @@ def test_no_kernel_leaves_a_side_without_support_vectors(length, cost):
     # They are what separates: every point lies on its side.
     assert (found.decision(first) > 0).all()
     assert (found.decision(second) < 0).all()
-
-
-def test_a_long_kernel_takes_few_points_far_apart_and_hundreds_near():
-    def strongest(gap: float) -> tuple[int, int]:
-        found = separate(cube(0.06, 0, 0, 0.06 + gap, step=0.003), cube(0.06, step=0.003), length=0.25, cost=10.0)
-        sizes = [
-            np.bincount(linked(side, DEFAULT_CONTACT_SETTINGS.linkage))
-            for side in (found.points_first, found.points_second)
-        ]
-        return max(map(len, (found.points_first, found.points_second))), int(max(map(max, sizes)))
-
-    near, far = strongest(0.006), strongest(1.0)
-    assert near[1] >= 7 > far[1] >= 1
-    assert 1 <= far[0] <= 8 < near[0]

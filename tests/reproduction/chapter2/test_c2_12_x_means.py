@@ -54,20 +54,6 @@ def test_the_corrected_criterion_is_the_mixtures_own_likelihood(k, dimensions):
     assert bayesian_criterion(points, centres, labels) == pytest.approx(expected)
 
 
-def test_the_printed_likelihood_is_one_in_a_single_dimension_and_cluster_only():
-    """With M = K = 1 it is the likelihood under its own variance; with M = 3 that variance is thrice too large."""
-    rng = np.random.default_rng(0)
-    for dimensions, holds in ((1, True), (3, False)):
-        points = rng.normal(size=(200, dimensions))
-        centre, labels = points.mean(axis=0, keepdims=True), np.zeros(200, np.int64)
-        variance = ((points - centre) ** 2).sum() / 199
-        # Printed to be an estimate of the variance of a coordinate, which is 1.
-        assert (abs(variance - 1) < 0.3) == holds
-        density = multivariate_normal(centre[0], variance * np.eye(dimensions)).logpdf(points).sum()
-        penalty = (dimensions + 1) / 2 * np.log(200)
-        assert (bayesian_criterion(points, centre, labels, "printed") == pytest.approx(density - penalty)) == holds
-
-
 @pytest.mark.parametrize("formula", ["corrected", "printed"])
 @pytest.mark.parametrize("k", [1, 2, 5, 8])
 def test_clusters_that_are_apart_are_found(k, formula):
@@ -88,24 +74,6 @@ def test_what_is_found_is_a_fixed_point_of_k_means(seed, n):
     assert twin.cluster_centers_ == pytest.approx(found.centres)
     assert found.criterion == pytest.approx(bayesian_criterion(points, found.centres, found.labels))
     assert set(found.labels.tolist()) == set(range(len(found.centres)))
-
-
-def test_never_more_than_asked_for_nor_fewer():
-    points, _ = blobs(8)
-    assert len(x_means(points, np.random.default_rng(0), most=3).centres) <= 3
-    assert len(x_means(points[:80], np.random.default_rng(0), least=4, most=6).centres) >= 4
-
-
-def test_the_same_generator_gives_the_same_clusters():
-    points, _ = blobs(5)
-    one, other = (x_means(points, np.random.default_rng(3)) for _ in range(2))
-    assert (one.labels == other.labels).all()
-    assert one.criterion == other.criterion
-
-
-def test_equal_points_are_one_cluster():
-    found = x_means(np.ones((20, 3)), np.random.default_rng(0))
-    assert found.centres.tolist() == [[1.0, 1.0, 1.0]]
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,5 @@
 """C2.13: nodes by hand, and what contact points and centres tell of scenes made by hand."""
 
-import numpy as np
 import pytest
 
 from lifelore.core.relations import ADJACENT, NONE, ON
@@ -8,7 +7,6 @@ from reproduction.chapter2.c2_13_contacts_and_centres.run import (
     ARRANGEMENTS,
     ON_BLOCK,
     ON_POST,
-    cells,
     measure,
     nodes,
     rows,
@@ -79,12 +77,3 @@ def test_measures_and_rows_by_hand():
         (name, arrangement) for name in ("contacts", "centres") for arrangement in ARRANGEMENTS
     ]
     assert picture == {"example": "nodes"}
-
-
-def test_cells_are_lots_of_lessons_and_of_both_arrangements():
-    found = cells({"pairs": 23, "scenes": 16})
-    assert found[:2] == [{"data_set": 0, "first": 0}, {"data_set": 0, "first": 22}]
-    assert [(cell["arrangement"], len(cell["numbers"])) for cell in found[2:]] == [
-        (name, n) for name in ARRANGEMENTS for n in (15, 1)
-    ]
-    assert np.concatenate([cell["numbers"] for cell in found[2:4]]).tolist() == list(range(16))

@@ -15,12 +15,6 @@ def labels(text: str) -> np.ndarray:
     return np.array([int(digit) for digit in text], np.int64)
 
 
-def test_a_perfect_segmentation_under_other_names():
-    score = segmentation_score([overlaps(labels("1122233"), labels("1177722"))])
-    assert (score.weighted_overlap.value, score.over.value, score.under.value) == (1, 0, 0)
-    assert score.found.value == 1
-
-
 def test_a_split_object_is_over_segmented():
     # Object 2 has 6 points, 4 and 2 of them in two segments; object 3 has 4 points in one.
     score = segmentation_score([overlaps(labels("2222223333"), labels("2222334444"))])

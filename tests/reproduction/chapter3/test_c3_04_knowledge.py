@@ -24,12 +24,6 @@ def line():
     return factory("###########\n#.1.2S+.ab#\n###########")
 
 
-def test_distances_by_hand():
-    assert distances(line(), np.arange(9) == 3).tolist() == [3, 2, 1, 0, 1, 2, 3, 4, 5]
-    world = WORLDS["modified"]
-    assert distances(world, np.ones(world.n_cells, bool)).max() == 0
-
-
 def test_the_expert_on_a_line_by_hand():
     task = line().task([0, 1])
     raw = expert_actions(task).reshape(9, 9, 6)[0]
@@ -66,12 +60,6 @@ def test_advice_leads_to_the_area_and_into_no_wall(world):
             while not area[cell]:
                 cell, walked = world.floor.neighbour[cell, here[cell].argmax()], walked + 1
             assert walked == distances(world, area)[world.start] or area[world.start]
-
-
-@EVERY
-def test_advice_is_two_directions_a_cell(world):
-    advice = expert_actions(world.task([0, 2, 4, 6])).reshape(81, -1)
-    assert len(np.unique(advice[:-1], axis=0)) == 2
 
 
 @EVERY

@@ -6,12 +6,10 @@ import pytest
 from lifelore.core.errors import LifeloreError
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import LossScale, ball_game
-from lifelore.domains.ball_game.moves import N_AFTER, N_OUTCOMES
 from lifelore.interaction.baselines.exp3 import EXP3
 from reproduction.chapter4.ball_game.games import Game, check_games, choices
 from reproduction.chapter4.ball_game.learners import BeatLearner, PrintedExp3, exp3_by_episode
 from reproduction.chapter4.ball_game.play import (
-    FixedSpeeds,
     Learner,
     Players,
     losses_by_speed,
@@ -27,33 +25,6 @@ TRAINED = train(GAME, 12, 0)
 
 def players(n=12, episodes=2, seed=3):
     return Players.drawn(np.arange(n) % 6, episodes, stream(seed, "test"))
-
-
-def test_training_counts_every_move_once():
-    assert TRAINED.steps.shape == TRAINED.hits.shape == (6, 5, 12)
-    moves = TRAINED.steps.sum(axis=2).T  # (speeds, types)
-    np.testing.assert_array_equal(TRAINED.signals.sum(axis=1), moves)
-    assert TRAINED.scale("fixed") == LossScale()
-    assert TRAINED.scale("maxima") == LossScale(TRAINED.steps.max(), TRAINED.hits.max())
-    value = TRAINED.value(SCALE)
-    assert value[2, 4] == pytest.approx(-(TRAINED.steps[2, 4] / 400 + TRAINED.hits[2, 4] / 20).mean())
-
-
-def test_learnt_transitions_are_distributions_and_tell_of_slips():
-    table = np.exp(TRAINED.move_signal().log_table).reshape(5, -1, N_OUTCOMES, 6)
-    np.testing.assert_allclose(table.sum(axis=2), 1)
-    # In mid corridor with room ahead (class 6 of both) balls of 60 slip 30 times as often as balls of 2.
-    slips = 1 - table[2, 6 * 7 + 6].reshape(4, N_AFTER, 6)[0].sum(axis=0)
-    assert slips[0] < 0.06 < 0.15 < slips[5]
-
-
-def test_everybody_meets_the_same_world_whoever_else_plays():
-    everyone = players()
-    alone = Players(everyone.kinds[4:5], everyone.sigma[4:5], everyone.random[4:5])
-    together = play_all(GAME, everyone, FixedSpeeds(np.full(12, 3)), SCALE)
-    single = play_all(GAME, alone, FixedSpeeds(np.array([3])), SCALE)
-    assert single.steps[0].tolist() == together.steps[4].tolist()
-    assert single.hits[0].tolist() == together.hits[4].tolist()
 
 
 class Kept(Learner):

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from lifelore.interaction.baselines import UCB1
 from lifelore.interaction.beliefs.belief import entropy
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -13,8 +12,6 @@ from reproduction.chapter4.reuse.many_tasks import (
     converged_after,
     grouped_mean,
     grouped_quantile,
-    late_regret,
-    play_baseline,
     play_rule,
 )
 
@@ -47,27 +44,10 @@ def test_a_first_policy_may_be_forced():
     assert (played.policies[:, 0] == 2).all()
 
 
-def test_peers_are_paid_for_what_they_chose():
-    paid = []
-
-    def pays(t, policies):
-        paid.append(policies.copy())
-        return np.where(policies == 1, 1.0, 0.0)
-
-    policies = play_baseline(UCB1(3, n_tasks=5, exploration=0.1), pays, 30)
-    assert (policies == np.array(paid).T).all()
-    assert (policies[:, 10:] == 1).mean() > 0.8
-
-
 def test_when_regret_ended_by_hand():
     regret = np.array([[0.0, 0, 0, 0], [5, 0, 0, 0], [0, 0, 3, 0], [1, 1, 1, 1], [0, 0, 0, 1e-12]])
     # From the first, after one, after three, never (one more than there are), and rounding is no regret.
     assert converged_after(regret).tolist() == [1, 2, 4, 5, 1]
-
-
-def test_late_regret_is_of_the_last_ten():
-    regret = np.concatenate([np.full((1, 5), 100.0), np.arange(10.0)[None]], axis=1)
-    assert late_regret(regret).tolist() == [4.5]
 
 
 def test_groups_make_the_interval():

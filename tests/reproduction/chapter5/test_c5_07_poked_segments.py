@@ -77,14 +77,6 @@ def test_a_motion_that_rest_explains_as_well_tells_nothing():
     assert known.corrected().merged == ()
 
 
-def test_segments_that_move_apart_stay_apart():
-    known = PokedSegments(picture(PAIR))
-    known.observe(Poke(LEFT, -PUSH), picture(moved(PAIR, 0, by=-PUSH), 1))
-    found = known.corrected()
-    assert (found.merged, found.split) == ((), ())
-    assert len(found.confidence) == 2
-
-
 def test_pictures_without_a_motion_change_nothing():
     first = picture(PAIR)
     known = PokedSegments(as_one(first, 2, 3))

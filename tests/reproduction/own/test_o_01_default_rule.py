@@ -6,12 +6,10 @@ import numpy as np
 import pytest
 
 from reproduction.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
-from reproduction.engine.registry import claim_of
 from reproduction.own.o_01_default_rule.run import (
     CANDIDATES,
     RULES,
     _largest_excess,
-    cells,
     decided_rule,
     key_of,
     measure,
@@ -19,15 +17,6 @@ from reproduction.own.o_01_default_rule.run import (
     run_cell,
 )
 from reproduction.own.o_01_default_rule.worlds import CALLS, FACTOR, GOLF, TABLES, world_of
-
-CLAIM = claim_of("O1")
-
-
-def test_there_are_22_worlds_with_each_kind_of_model():
-    found = cells(CLAIM.settings("full"))
-    assert len(found) == 44
-    assert sum(cell["model"] == EXACT for cell in found) == 22
-    assert {cell["noise"] for cell in found if cell["world"] == CALLS} == {"equal"}
 
 
 def test_deviations_are_equal_or_drawn_over_a_factor_of_30():
@@ -93,22 +82,6 @@ def test_the_largest_excess_of_stuck_tasks_by_hand():
     assert found.ci95 is not None
     assert 0.1 - 1e-9 <= found.ci95[0] < found.ci95[1] <= 0.3 + 1e-9
     assert _largest_excess([small], "KG").ci95 == (0.0, 0.0)
-
-
-def test_measures_of_uncertain_models_by_hand():
-    two, some = {name: [2.0, 4.0] for name in RULES}, dict.fromkeys(RULES, 0.1)
-    learnt = made_up(two | {"IDS": [1.0, 3.0]}, some, noise="by pair", model=LEARNT)
-    learnt[UNCERTAIN] = {
-        "EI, pay": {"regret": [2.0, 2.0], "stuck": [0.0, 0.3]},
-        "IDS": {"regret": [1.0, 1.0], "stuck": [0.1, 0.3]},
-    }
-    found = measure({}, [made_up(two, some), learnt])
-    # The best rule of the learnt world has a mean regret of 2.
-    assert found["regret_EI_pay_uncertain"].value == pytest.approx(1.0)
-    assert found["regret_IDS_uncertain"].value == pytest.approx(0.5)
-    assert found["regret_IDS_uncertain_minus_plug_in"].value == pytest.approx(-0.5)
-    assert found["stuck_above_least_IDS_uncertain"].value == pytest.approx(0.05)
-    assert found["stuck_above_least_EI_pay_uncertain"].value == 0
 
 
 def measured_of(regret, excess):
