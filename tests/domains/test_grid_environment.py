@@ -4,14 +4,11 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils import seeding
-from gymnasium.utils.env_checker import check_env
 
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL, _enumerate_with
-from lifelore.domains import ENVIRONMENTS
 from lifelore.domains.factory.contexts import features
 from lifelore.domains.grid_environment import GridEnvironment
-from lifelore.domains.worlds import domain_names
 
 CASES = {
     "lifelore/AdviceMaze-v0": {"size": 12, "seed": 2},
@@ -22,10 +19,6 @@ CASES = {
     "lifelore/NoiseMaze-v0": {"size": 13, "seed": 2},
 }
 """Arguments that keep the plain enumeration short."""
-CHOSEN_FOR = {"lifelore/Golf-v0", "lifelore/Surveillance-v0", "lifelore/Telephone-v0"}
-"""Worlds a policy is chosen for, without tables of states: test_policy_worlds.py has them."""
-HIDDEN = {"lifelore/BallGame-v0", "lifelore/Pacman-v0"}
-"""Worlds whose observation is less than the state: test_ball_game_environment.py, test_pacman_environment.py."""
 EVERY = pytest.mark.parametrize("name", sorted(CASES))
 
 
@@ -38,20 +31,6 @@ def percepts(env):
     if isinstance(env, GridEnvironment):
         return "percept", env.world.percepts.tolist()
     return "features", list(map(tuple, features(env.factory_task).tolist()))
-
-
-def test_every_registered_environment_and_domain_is_covered():
-    registered = {name for name in gymnasium.registry if name.startswith("lifelore/")}
-    assert registered == set(ENVIRONMENTS) == set(CASES) | CHOSEN_FOR | HIDDEN
-    grids = [env.world.name for env in map(plain, CASES) if isinstance(env, GridEnvironment)]
-    assert set(grids) == set(domain_names())
-
-
-@EVERY
-def test_gymnasium_finds_nothing_to_say(name):
-    check_env(plain(name))
-    check_env(plain(name, render_mode="rgb_array"))
-    check_env(gymnasium.make(name).unwrapped, skip_render_check=True)
 
 
 @EVERY
@@ -95,19 +74,6 @@ def test_the_compiled_table_equals_the_plain_enumeration(name):
 
 
 @EVERY
-def test_an_episode_is_cut_at_its_limit(name):
-    env = gymnasium.make(name, **CASES[name])
-    limit = ENVIRONMENTS[name][1]
-    env.reset(seed=0)
-    # Against one wall for ever: never to the end.
-    state, action, _ = np.argwhere(env.unwrapped.task.tables().event == COLLISION)[0].tolist()
-    env.reset(options={"state": state})
-    outcomes = [env.step(action)[2:4] for _ in range(limit)]
-    assert outcomes[-1] == (False, True)
-    assert not any(truncated for _, truncated in outcomes[:-1])
-
-
-@EVERY
 def test_pictures(name):
     env = plain(name, render_mode="rgb_array")
     here = env.task.starts[0]
@@ -131,11 +97,3 @@ def test_the_goal_may_be_a_state_or_a_cell():
     with pytest.raises(InputError, match="goal must be a state"):
         plain("lifelore/Lattice-v0", goal=10_000)
     assert len({plain("lifelore/Lattice-v0", seed=seed).task.goal for seed in range(6)}) > 1
-
-
-@EVERY
-def test_docstrings_have_gymnasiums_headings(name):
-    headings = ["Action Space", "Observation Space", "Rewards", "Starting State", "Episode End", "Arguments"]
-    documented = type(plain(name)).__doc__
-    places = [documented.index(f"## {heading}") for heading in headings]
-    assert places == sorted(places)

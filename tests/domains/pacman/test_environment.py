@@ -4,7 +4,6 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils import seeding
-from gymnasium.utils.env_checker import check_env
 
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL
@@ -17,12 +16,6 @@ EVERY = pytest.mark.parametrize("strategy", STRATEGIES)
 
 def made(**changes):
     return gymnasium.make("lifelore.domains:lifelore/Pacman-v0", **({"rows": 5, "columns": 5} | changes)).unwrapped
-
-
-@EVERY
-def test_gymnasium_finds_nothing_to_say(strategy):
-    check_env(made(strategy=strategy))
-    check_env(made(strategy=strategy, render_mode="rgb_array"))
 
 
 @pytest.mark.slow
@@ -56,14 +49,6 @@ def test_environment_tables_and_kernel_agree_bit_for_bit(strategy):
     assert min(seen.values()) > 10
 
 
-def test_an_episode_is_cut_after_200_steps():
-    env = gymnasium.make("lifelore/Pacman-v0", strategy="top row")
-    env.reset(seed=0)
-    # North is a wall above the centre, and this ghost never comes there.
-    outcomes = [env.step(0)[2:4] for _ in range(200)]
-    assert outcomes == [(False, False)] * 199 + [(False, True)]
-
-
 def test_strategy_and_foods_are_drawn_from_the_seed():
     drawn = [made(seed=seed).task for seed in range(12)]
     assert {task.strategy for task in drawn} == set(STRATEGIES)
@@ -85,13 +70,6 @@ def test_a_ghost_out_of_sight_is_pale():
     assert made().render() is None
 
 
-def test_eaten_food_is_not_drawn():
-    task = made(strategy="clockwise", foods=(0, 4, 14, 18)).task
-    everything = int(task.starts[0])
-    one_gone = everything - task.n_phases * task.maze.n_cells
-    assert (draw_pacman(task, everything) != draw_pacman(task, one_gone)).any()
-
-
 def test_what_is_refused():
     env = made()
     with pytest.raises(InputError, match="reset"):
@@ -106,9 +84,3 @@ def test_what_is_refused():
             env.reset(options={"state": state})
     with pytest.raises(InputError, match="render_mode"):
         PacmanEnvironment(render_mode="human")
-
-
-def test_docstring_has_gymnasiums_headings():
-    headings = ["Action Space", "Observation Space", "Rewards", "Starting State", "Episode End", "Arguments"]
-    places = [PacmanEnvironment.__doc__.index(f"## {heading}") for heading in headings]
-    assert places == sorted(places)

@@ -77,13 +77,13 @@ def test_a_type_a_life_and_a_seed_fix_an_episode(family):
 
 @pytest.mark.parametrize("family", EVERY)
 def test_types_differ_in_what_follows_on_the_same_actions(family):
-    """Every two types of a life differ in some of 400 episodes of random actions."""
+    """Every two types of a life differ in some of 150 episodes of random actions."""
 
     def episodes(hidden):
         env = family.make(hidden, 0)
-        return [played(env, family, actions[n], n) for n in range(400)]
+        return [played(env, family, actions[n], n) for n in range(150)]
 
-    actions = [drawn_actions(family, family.max_steps, n) for n in range(400)]
+    actions = [drawn_actions(family, family.max_steps, n) for n in range(150)]
     found = {hidden: episodes(hidden) for hidden in family.types}
     for one, other in itertools.combinations(family.types, 2):
         assert found[one] != found[other]
@@ -91,11 +91,11 @@ def test_types_differ_in_what_follows_on_the_same_actions(family):
 
 @pytest.mark.parametrize("family", EVERY)
 def test_contexts_show_their_usual_type_four_times_of_five(family):
-    """Of 4,000 tasks; the bound is four standard errors of a share of 0.8."""
+    """Of 1,000 tasks; the bound is four standard errors of a share of 0.8."""
     tasks = family.stream(7)
-    draws = [tasks.draw(number) for number in range(4000)]
+    draws = [tasks.draw(number) for number in range(1000)]
     usual = [one.hidden_type == tasks.usual_type(one.context, one.number) for one in draws]
-    assert np.mean(usual) == pytest.approx(0.8, abs=4 * (0.8 * 0.2 / 4000) ** 0.5)
+    assert np.mean(usual) == pytest.approx(0.8, abs=4 * (0.8 * 0.2 / 1000) ** 0.5)
     of_context = {one.context: tasks.usual_type(one.context, 0) for one in draws}
     assert sorted(of_context.values()) == sorted(family.types)
 
