@@ -125,7 +125,7 @@ def poke_scene(
                 if table.poke(poke.place, poke.push):
                     known.observe(poke, seen(table, scene, rng))
                     break
-    return first.labels, known.corrected().labels
+    return first.labels, known.corrected()
 
 
 def seen(table: PokedTabletop, scene: TabletopScene, rng: np.random.Generator) -> LabelledCloud:

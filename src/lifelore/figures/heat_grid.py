@@ -81,67 +81,6 @@ def frame_cells(axes: "Axes", first: tuple[int, int], shape: tuple[int, int] = (
     axes.add_patch(frame)
 
 
-def name_groups(axes: "Axes", groups: Sequence[tuple[str, int]], offset: float, *, side: str = "left") -> None:
-    """Write the name of each group of neighbouring rows or columns, with a line between groups.
-
-    Parameters
-    ----------
-    axes : matplotlib axes
-        With a table of `draw_heat_grid`.
-    groups : sequence of (name, number of rows or columns)
-        In the order of the table.
-    offset : float
-        Points from the table to the names, which leaves room for the labels of the rows.
-    side : {"left", "top"}
-        Left of the rows, or above the columns.
-    """
-    left, first = side == "left", 0
-    transform = axes.get_yaxis_transform() if left else axes.get_xaxis_transform()
-    for name, n in groups:
-        middle = first + (n - 1) / 2
-        look: dict[str, Any] = {"ha": "center", "va": "baseline"}
-        if left:
-            look = {"rotation": 90, "ha": "right", "va": "center"}
-        axes.annotate(
-            name, (0, middle) if left else (middle, 1), (-offset, 0) if left else (0, offset),
-            xycoords=transform, textcoords="offset points", fontsize=8, fontweight="bold", linespacing=1.1,
-            multialignment="center", **look,
-        )  # fmt: skip
-        if first:
-            (axes.axhline if left else axes.axvline)(first - 0.5, color=INK, linewidth=1.0, zorder=2)
-        first += n
-
-
-def draw_estimate_grid(
-    axes: "Axes",
-    numbers: Sequence[Sequence[Mapping[str, Any] | None]],
-    rows: Sequence[str],
-    columns: Sequence[str],
-    *,
-    neutral: float,
-    scale: float = 1.0,
-    **look: Any,
-) -> None:
-    """Draw a table of estimates; bold are those whose 95 % interval excludes `neutral`.
-
-    Parameters
-    ----------
-    axes : matplotlib axes
-    numbers : n_rows of n_columns
-        ``{"value", "ci95"}`` each, or None; a number without an interval is not bold.
-    rows, columns : sequence of str
-    neutral : float
-        In the units of what is written.
-    scale : float
-        Factor from the numbers to what is written, such as 100 for percent.
-    look : mapping
-        Passed on to `draw_heat_grid`.
-    """
-    values = [[np.nan if n is None or n["value"] is None else scale * n["value"] for n in row] for row in numbers]
-    certain = [[_excludes(n, neutral / scale) for n in row] for row in numbers]
-    draw_heat_grid(axes, values, certain, rows, columns, neutral=neutral, **look)
-
-
 def _excludes(number: Mapping[str, Any] | None, value: float) -> bool:
     interval = number["ci95"] if number else None
     return bool(interval) and not interval[0] <= value <= interval[1]

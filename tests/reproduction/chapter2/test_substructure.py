@@ -7,7 +7,6 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from networkx.algorithms.isomorphism import GraphMatcher
 
-from lifelore.core.errors import InputError
 from reproduction.chapter2.scenes.substructure import find_substructure, skeleton
 
 POINT = np.zeros((1, 3))
@@ -38,7 +37,7 @@ def test_a_stack_is_part_of_one_with_two_contacts_and_not_the_other_way(make_sce
     found = find_substructure(single, double)
     assert found.found
     check_witness(single, double, found)
-    assert find_substructure(double, single) == type(found)(False, True, {}, {})
+    assert find_substructure(double, single) == type(found)(False, {}, {})
 
 
 def test_a_row_on_the_table_is_not_a_stack(make_scene, meet):
@@ -90,16 +89,7 @@ def test_networkx_agrees(scene_with, small, large, seed):
     same_edge = nx.algorithms.isomorphism.categorical_edge_match("kind", None)
     matcher = GraphMatcher(skeleton(whole), skeleton(part), same_kind, same_edge)
     found = find_substructure(part, whole)
-    assert found.decided
     assert found.found == matcher.subgraph_is_monomorphic()
     if found.found:
         check_witness(part, whole, found)
         assert find_substructure(part, whole, networks="connected").found
-
-
-def test_wrong_settings_are_refused(make_scene):
-    scene = make_scene({})
-    with pytest.raises(InputError, match="networks"):
-        find_substructure(scene, scene, networks="loose")
-    with pytest.raises(InputError, match="most_conflicts"):
-        find_substructure(scene, scene, most_conflicts=0)
