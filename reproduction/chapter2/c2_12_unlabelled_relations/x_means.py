@@ -63,7 +63,7 @@ def bayesian_criterion(
     """log likelihood - p/2 · log R of spherical Gaussians of one variance, p = (K - 1) + M·K + 1.
 
     R points in M dimensions, R_n of them in cluster n, S the sum of squared distances to the centres: the maximum
-    likelihood is Σ R_n log(R_n / R) - R·M/2 · (log 2πσ² + 1), σ² = S / (M·R). The paper prints another, see errata.
+    likelihood is Σ R_n log(R_n / R) - R·M/2 · (log 2πσ² + 1), σ² = S / (M·R).
     """
     n, dimensions = points.shape
     k = len(centres)

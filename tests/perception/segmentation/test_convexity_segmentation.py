@@ -220,7 +220,7 @@ def test_real_scenes_are_cut_as_well_as_measured():
         assert cloud.labels is not None
         objects += overlaps(cloud.labels[cloud.measured], scene.labels)
     points, iou, right, wrong = np.array(objects).T
-    # Weighted overlap, over- and under-segmentation (Richtsfeld et al. 2012), and objects found. Over shifts of the
+    # Weighted overlap, over- and under-segmentation (Richtsfeld et al. 2012), objects found. Over shifts of the
     # voxels: 0.955 to 0.97, 0.02 to 0.03, 0.01 to 0.05, and 0.97 to 0.99.
     assert (points * iou).sum() / points.sum() >= 0.94
     assert (points - right).sum() / points.sum() <= 0.04

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from reproduction.own.o_07_unseen_scenes.peers import orientation_histogram as orientation
+from reproduction.own.o_07_unseen_scenes.peers import orientation_trees as orientation
 from reproduction.own.o_07_unseen_scenes.peers.bounding_box_rule import BoundingBoxRule, boxes
-from reproduction.own.o_07_unseen_scenes.peers.orientation_histogram import orientation_histogram
-from reproduction.own.o_07_unseen_scenes.peers.peer import DescribedPair
+from reproduction.own.o_07_unseen_scenes.peers.described_pairs import DescribedPair
+from reproduction.own.o_07_unseen_scenes.peers.orientation_trees import orientation_histogram
 
 from .conftest import box
 
