@@ -30,24 +30,9 @@ def test_colour_is_full_at_the_spread_and_beyond():
     assert shown.tolist() == [[-1, 0, 1, 1]]
 
 
-def test_half_is_as_far_as_double_in_ratios():
-    shown = drawn([[0.5, 1.0, 2.0, 8.0]], neutral=1.0, spread=4.0, ratio=True).images[0].get_array()
-    np.testing.assert_allclose(shown, [[-0.5, 0, 0.5, 1]])
-
-
-def test_good_low_turns_the_colours_round():
-    high, low = (drawn([[0.0, 2.0]], neutral=1.0, spread=1.0, good=g).images[0] for g in ("high", "low"))
-    assert high.cmap(0.0) == low.cmap(1.0) != high.cmap(1.0)
-
-
 def test_frame():
     (frame,) = drawn([[1.0, 1.0], [1.0, 1.0]], neutral=1.0, spread=1.0, outlined=(1, 0)).patches
     assert (frame.get_xy(), frame.get_width(), frame.get_height()) == ((-0.5, 0.5), 1, 1)
-
-
-def test_a_frame_without_a_row_is_the_whole_column():
-    (frame,) = drawn([[1.0, 1.0], [1.0, 1.0]], neutral=1.0, spread=1.0, outlined=(None, 1)).patches
-    assert (frame.get_xy(), frame.get_width(), frame.get_height()) == ((0.5, -0.5), 1, 2)
 
 
 def test_a_frame_around_a_block_of_cells():

@@ -1,6 +1,5 @@
 """Stacked bars show the parts of each name as counts or shares."""
 
-import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
@@ -22,15 +21,6 @@ def test_parts_lie_end_to_end():
     assert [(bar.get_x(), bar.get_width()) for bar in axes.patches] == [(0, 3), (0, 0), (3, 1), (0, 5)]
     assert [label.get_text() for label in axes.get_yticklabels()] == ["a", "b"]
     assert axes.get_legend_handles_labels()[1] == ["right", "wrong"]
-
-
-def test_shares_fill_each_bar_and_totals_are_counts():
-    axes = bars(shares=True, totals=True)
-    np.testing.assert_allclose(
-        [(bar.get_x(), bar.get_width()) for bar in axes.patches], [(0, 75), (0, 0), (75, 25), (0, 100)]
-    )
-    assert [text.get_text() for text in axes.texts] == ["4", "5"]
-    assert axes.get_xlim() == (0, 100)
 
 
 def test_each_part_needs_a_count_for_each_name():

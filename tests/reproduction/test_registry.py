@@ -29,6 +29,7 @@ THESIS = {"2": 13, "3": 19, "4": 16, "5": 10}
 """Claims of the thesis by chapter."""
 ERRATA = set(re.findall(r"^## (E\d+) ", (ROOT.parent / "docs" / "errata.md").read_text(encoding="utf-8"), re.M))
 
+
 @pytest.fixture(scope="session")
 def quick(tmp_path_factory):
     """The quick run of a claim, run once a session, and the folder it was written to."""

@@ -4,22 +4,10 @@ import shutil
 
 import pytest
 
-from reproduction.engine import source_key as module
 from reproduction.engine.source_key import ROOTS, source_key
 
 LATTICE = "reproduction.chapter3.c3_02_lattice_prior.run"
 SUBSTRUCTURE = "reproduction.chapter2.c2_09_substructure.run"
-
-
-def test_closure_reaches_through_imports_and_leaves_figures_out():
-    found = module._closure(LATTICE)
-    assert {
-        "lifelore.core.learning.q_learning",
-        "lifelore.core.compiled.random_state",
-        "lifelore.core.compiled.jit",
-    } <= found
-    assert "reproduction.chapter3.learning.grid_tasks" in found
-    assert not any(name.startswith("lifelore.figures") for name in found)
 
 
 @pytest.fixture

@@ -73,22 +73,6 @@ def test_hardest_margin_by_hand():
     assert found.ci95[0] < 0.25 < found.ci95[1]
 
 
-def test_hardest_margin_is_negative_where_another_is_harder():
-    assert hardest_margin(pairs(ON, NONE, 2) + pairs(BOTH, BOTH, 3)).value == -1
-    certain = hardest_margin(pairs(ON, ON, 4) + pairs(NONE, NONE, 4) + pairs(BOTH, ON, 2))
-    assert (certain.value, certain.ci95) == (1.0, (1.0, 1.0))
-    # The interval, too, is against the hardest of the others.
-    certain = hardest_margin(pairs(ON, ON, 4) + pairs(ADJACENT, ON, 4) + pairs(BOTH, ON, 2))
-    assert (certain.value, certain.ci95) == (0.0, (0.0, 0.0))
-
-
-@pytest.mark.parametrize("given", [pairs(ON, ON, 3), pairs(BOTH, BOTH, 3), pairs(ON, ON) + pairs(ADJACENT, ON)])
-def test_hardest_margin_needs_both_and_another(given):
-    found = hardest_margin(given)
-    assert np.isnan(found.value)
-    assert (found.ci95, found.n) == (None, 0)
-
-
 def test_measures_by_hand():
     found = measure(SETTINGS, RESULTS)
     value = {name: number.value for name, number in found.items()}

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON
-from reproduction.chapter2.c2_02_label_components import run as c2_2
 from reproduction.chapter2.c2_02_label_components.figure import PRINTED
 from reproduction.chapter2.c2_02_label_components.run import (
     COMPONENTS,
@@ -74,27 +73,6 @@ def test_clear_clusters_are_right_in_every_split():
         assert (found[f"{name}_right"], found[f"{name}_agreement"]) == (1, 1)
         # Of three told the more frequent value holds two or three.
         assert 0 < found[f"{name}_less_majority"] <= 1 / 3
-
-
-def test_no_scene_is_on_both_sides(monkeypatch):
-    # Ten scenes of three pairs, the last pair of two contacts.
-    table = [at(f"s{n}", ON, *([n] if k < 2 else [n, n + 50])) for n in range(10) for k in range(3)]
-    seen, vote = [], c2_2.votes_on
-
-    def watched(moved, owner, rows, reading, train):
-        seen.append(train)
-        answer = vote(moved, owner, rows, reading, train)
-        assert not train[answer.row].any()
-        return answer
-
-    monkeypatch.setattr(c2_2, "votes_on", watched)
-    split_answers({**SETTINGS, "pairs": 132, "test": 33}, table, Reading(), 8, "0")
-    for train in seen:
-        sides = train.reshape(10, 3)
-        assert (sides.all(axis=1) | ~sides.any(axis=1)).all()
-        # A quarter of ten scenes, to the even of 2 and 3.
-        assert (~sides[:, 0]).sum() == 2
-    assert len({train.tobytes() for train in seen}) > 1
 
 
 def test_agreement_is_asked_of_the_exact_intervals_of_28_and_18_of_49():

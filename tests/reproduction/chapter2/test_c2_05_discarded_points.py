@@ -1,24 +1,17 @@
 """C2.5: what is lost is a paired difference over scenes; displacements by method, on clouds made by hand."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
-from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import PairLabel
 from lifelore.perception.relations.relation import Relation
 from reproduction.chapter2.c2_05_discarded_points.run import (
-    FIXED,
     METHODS,
-    SCALED,
     THINNED,
     judged,
-    levels_of,
     measures,
-    raw_rows,
     rows,
-    seen,
     strong_places,
     view,
 )
@@ -71,30 +64,6 @@ def test_displacements_of_two_plates_lead_from_one_to_the_other():
         assert moved[:, 2] == pytest.approx(-0.006, abs=1e-5)
         # One pair of contact points faces one another, whatever the number of contacts.
         assert np.hypot(*moved[:, :2].T).min() < 0.003
-
-
-def test_a_fixed_threshold_has_nothing_to_say_of_few_points():
-    # Four points a plate cannot be seven support vectors; of a tenth of the points 0.7 are enough.
-    found = raw_rows(plates(2, 0.004), {SCALED: 0.7, FIXED: 7.0})
-    assert (len(found[SCALED]), len(found[FIXED])) == (1, 0)
-
-
-def test_a_scene_is_seen_at_each_share_discarded():
-    cloud = plates(20, 0.003)
-    points = np.concatenate([plate(30, -0.02, -0.02, -0.01), cloud.points])
-    labels = np.concatenate([np.full(900, TABLE), cloud.labels])
-    truth = (PairLabel(3, 2, "on", 2), PairLabel(2, TABLE, "on"))
-    whole = LabelledCloud(points, labels, None, np.array([0.0, -1, 1]))
-    scene = SimpleNamespace(
-        name="made", cloud=whole, truth=truth, gaps=(SimpleNamespace(a=2, b=3, visible=0.006),)
-    )
-    found = seen(scene, levels_of({"discarded": [0.999]}))  # type: ignore[arg-type]
-    # The table takes no part.
-    assert (found["truth"], found["gaps"]) == ([[3, 2, "on", 2]], [[2, 3, 0.006]])
-    first, last = found["views"]
-    assert [row[:2] for row in first[THINNED]] == [[2, 3]]
-    # Of 800 points one or two are left.
-    assert last[FIXED] == []
 
 
 UP, ASIDE = [[0.0, 0.0, 0.01]] * 4, [[0.03, 0.0, 0.0]] * 4

@@ -1,7 +1,5 @@
 """C2.11: pairs carried apart and counted, by hand; and what a separator of objects far apart must have (E20)."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from scipy.spatial import KDTree
@@ -15,9 +13,7 @@ from reproduction.chapter2.c2_11_distant_objects import run as c2_11
 from reproduction.chapter2.c2_11_distant_objects.run import (
     away,
     bearing_pairs,
-    counts,
     measure,
-    parted,
     readings,
     rows,
     shift_to,
@@ -70,38 +66,6 @@ def test_whether_a_cloud_is_nearer_than_a_gap_as_by_all_distances(seed):
         distance = np.linalg.norm(moved[:, None] - second[None], axis=2).min()
         for gap in (0.5 * distance, 0.999 * distance, 1.001 * distance, 3 * distance):
             assert c2_11._is_nearer(moved, tree, gap) is bool(distance < gap)
-
-
-def test_one_object_alone_is_moved_and_no_gap_is_too_wide_to_be_asked(monkeypatch):
-    asked = []
-
-    def watched(a, b, length, cost):
-        asked.append((a, b, length))
-        every = np.arange(len(a))
-        return SimpleNamespace(support_first=every, support_second=every)
-
-    monkeypatch.setattr(c2_11, "separate", watched)
-    a, b = plate(0, 0, 0.02), plate(0, 0, 0)
-    found = parted(SETTINGS, a, b, "on")
-    assert found["gap"] == 0.02
-    assert [length for _, _, length in asked] == [0.06] * 3 + [0.25] * 3
-    for (one, other, _), gap in zip(asked, [0.02, 0.1, 1.0] * 2, strict=True):
-        assert (other == b).all()
-        # Every point of a went straight up by the same: its own 20 mm to the gap.
-        assert one - a == pytest.approx(np.tile([0, 0, gap - 0.02], (25, 1)), abs=2e-4)
-    # Points 10 mm apart are one contact of 25 (linked within 25 mm), on both sides, at every gap.
-    assert found["found"] == dict.fromkeys((STANDARD, "250 mm, C 10"), [[25, 2]] * 3)
-
-
-def test_counts_by_hand(monkeypatch):
-    # Of a: seven in a row 5 mm apart, and three 100 mm off. Of b: six.
-    a = np.array(
-        [[0.005 * k, 0, 0] for k in range(7)] + [[0.13 + 0.005 * k, 0, 0] for k in range(3)] + [[9, 9, 9]]
-    )
-    b = np.array([[0.005 * k, 1, 0] for k in range(6)])
-    found = SimpleNamespace(support_first=np.arange(10), support_second=np.arange(6))
-    monkeypatch.setattr(c2_11, "separate", lambda *clouds, **kernel: found)
-    assert counts(a, b, 0.06, 10.0) == [8, 1]
 
 
 def made() -> tuple[LabelledCloud, list[PairLabel]]:

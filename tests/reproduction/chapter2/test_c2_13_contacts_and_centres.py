@@ -8,10 +8,8 @@ from reproduction.chapter2.c2_13_contacts_and_centres.run import (
     ON_BLOCK,
     ON_POST,
     measure,
-    nodes,
     rows,
     told_right,
-    topmost_alone_remains,
 )
 from reproduction.chapter2.scenes.tabletop_pairs import STANDARD
 
@@ -23,20 +21,6 @@ def row(block, ball=((0, 0, 0.21, 9),), *, scene="s", relation=ON, centres=(0.0,
     """A pair as a cell keeps it: A the ball, B the block; `centres` from the block's to the ball's."""
     contacts = {STANDARD: {"a": list(ball), "b": block}}
     return {"scene": scene, "relation": relation, "gap": 0.001, "contacts": contacts, "centres": list(centres)}
-
-
-@pytest.mark.parametrize(
-    ("block", "remains"),
-    [
-        (FIGURE, True),
-        (FIGURE[:1], True),
-        (FIGURE[1:], False),  # none is strong
-        ([*FIGURE, [0.1, 0, 0.01, 7]], False),  # two are
-        ([[0, 0, 0.2, 6], [0, 0, 0.1, 7]], False),  # the strong one is not topmost
-    ],
-)
-def test_the_topmost_alone_remains(block, remains):
-    assert topmost_alone_remains(nodes(row(block))) is remains
 
 
 LESSONS = [

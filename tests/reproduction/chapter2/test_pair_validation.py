@@ -43,10 +43,6 @@ def test_every_contact_of_one_meets_every_contact_of_the_other():
     assert displacements(row).tolist() == expected
 
 
-def test_a_pair_that_is_not_near_has_no_displacement():
-    assert displacements(pair("s", NONE, gap=None)).shape == (0, 3)
-
-
 @pytest.mark.parametrize(
     ("supports", "scaled", "fixed"),
     [
@@ -59,12 +55,6 @@ def test_weak_contacts_are_dropped(supports, scaled, fixed):
     row = pair("s", ON, a=[(x, 0, 0, n) for x, n in enumerate(supports)])
     assert displacements(row, threshold=SCALED)[:, 0].tolist() == scaled
     assert displacements(row, threshold=FIXED)[:, 0].tolist() == fixed
-
-
-def test_weak_contacts_are_dropped_on_either_side():
-    row = pair("s", ON, b=[(3, 0, 0, 2), (4, 0, 0, 2)])
-    assert displacements(row, threshold=SCALED).tolist() == [[-3, 0, 0]]
-    assert displacements(row, threshold=FIXED).shape == (0, 3)
 
 
 # --- votes ------------------------------------------------------------------------------------------------
@@ -92,16 +82,6 @@ def test_ties_go_to_the_first_by_name():
     told = votes_of_neighbours(rows, Reading(votes="inverse distance"))
     assert told.shares[0].tolist() == [0, 0.5, 0, 0.5]
     assert told.labels[0] == ADJACENT
-
-
-def test_fewer_than_four_and_nobody_to_ask():
-    told = votes_of_neighbours([at("s", ON, 0), at("t", ADJACENT, 1)])
-    assert told.shares.tolist() == [[0, 1, 0, 0], [1, 0, 0, 0]]
-    alone = votes_of_neighbours([at("s", ON, 0, 1)])
-    assert alone.labels.tolist() == [NONE, NONE]
-    assert not alone.shares.any()
-    far = votes_of_neighbours([pair("s", NONE, gap=None), pair("t", ON, gap=None)])
-    assert (len(far.row), far.relations(2)) == (0, [NONE, NONE])
 
 
 def naive(rows, reading, train=None) -> list[tuple[int, dict[str, float]]]:
@@ -191,14 +171,3 @@ def test_the_union_has_a_component_if_any_has(said, whole):
 def test_each_rows_displacements_are_united():
     told = Votes(np.array([0, 2, 0, 2, 3]), np.array([ON, ON, ADJACENT, NONE, NONE]), np.zeros((5, 4)))
     assert told.relations(4) == [BOTH, NONE, ON, NONE]
-
-
-def test_a_pair_with_two_contacts_is_both():
-    rows = [at(f"on {n}", ON, 0.01 * n) for n in range(4)]
-    rows += [at(f"beside {n}", ADJACENT, 9 + 0.01 * n) for n in range(4)]
-    rows += [at("two", ON, 0.1, 9.1)]
-    told = votes_of_neighbours(rows)
-    assert told.row.tolist() == [0, 1, 2, 3, 4, 5, 6, 7, 8, 8]
-    assert told.relations(9)[8] == BOTH
-    # Of the others each has three or more of its own kind beside it.
-    assert told.relations(9)[:8] == [ON] * 4 + [ADJACENT] * 4

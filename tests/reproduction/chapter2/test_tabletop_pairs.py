@@ -9,7 +9,6 @@ from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ADJACENT, NONE, ON, PairLabel
 from lifelore.perception.separation.separator import separate
 from reproduction.chapter2.scenes import tabletop_pairs
-from reproduction.chapter2.scenes.arranged_scenes import place_ball_on_post
 from reproduction.chapter2.scenes.tabletop_pairs import (
     KERNELS,
     LOT,
@@ -114,20 +113,6 @@ def test_the_truths_order_turns_contacts_and_centres(rows, blocks):
     assert turned["centres"] == [-x for x in row["centres"]]
     for kernel, sides in turned["contacts"].items():
         assert [sides["a"], sides["b"]] == [row["contacts"][kernel][side] for side in "ba"]
-
-
-def test_a_ball_on_a_post_is_as_far_from_the_centre_as_one_on_the_upright():
-    for seed in range(5):
-        ell, guest, post = place_ball_on_post(np.random.default_rng(seed))
-        foot, upright = ell.shape.parts
-        volumes = [np.prod(part.size) for part in (foot, upright)]
-        places = [np.array(part.position) for part in (foot, upright)]
-        centre = ell.pose.apply(np.average(places, axis=0, weights=volumes)[None])[0]
-        above_upright = ell.pose.apply(places[1][None])[0]
-        # Turned half round about the block's centre of mass, the ball stands over the upright.
-        np.testing.assert_allclose((guest.pose.position - centre)[:2], (centre - above_upright)[:2], atol=1e-6)
-        assert guest.outline()[:, 2].min() == pytest.approx(ell.outline()[:, 2].max(), abs=0.003)
-        assert post.outline()[:, 2].max() < guest.outline()[:, 2].min()
 
 
 # --- lots -------------------------------------------------------------------------------------------------

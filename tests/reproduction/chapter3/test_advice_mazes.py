@@ -5,15 +5,11 @@ import pytest
 
 from lifelore.action.advice.goal_model import GoalModel
 from reproduction.chapter3.advice.mazes import (
-    AGENTS,
-    errands_of,
     expert_walk,
     goal_models_of,
     maze_estimate,
     maze_of,
-    policy_of,
     thesis_advisor,
-    walk,
 )
 from reproduction.engine.registry import claim_of
 
@@ -58,28 +54,6 @@ def test_experts_leave_a_purpose_for_every_goal(maze, experts):
         # What is advised is best there, and the steps left are those of the shortest way.
         assert not ((purpose.theta > 0) & ~errand.best).any()
         assert (purpose.steps[shown] == errand.steps[shown]).all()
-
-
-def test_agents_have_policies_and_the_optimal_one_takes_no_step_too_many(maze):
-    errand = errands_of(maze, 1)[0]
-    advisor = thesis_advisor(goal_models_of(maze, "walks", 0.1))
-    for agent in AGENTS:
-        np.testing.assert_allclose(policy_of(maze.world, agent, errand).sum(axis=-1), 1)
-    found = walk(maze, errand, policy_of(maze.world, "optimal", errand), advisor, 0, 500, heeds=False)
-    assert found.reached
-    assert len(found.states) == errand.steps[found.states[0]]
-
-
-def test_told_or_not_a_walk_starts_alike(maze):
-    errand = errands_of(maze, 1)[0]
-    advisor = thesis_advisor(goal_models_of(maze, "walks", 0.1))
-    alone, told = (
-        walk(maze, errand, policy_of(maze.world, "random", errand), advisor, 0, 200, heeds)
-        for heeds in (False, True)
-    )
-    first = int(np.argmax(told.advised))
-    assert not alone.advised.any()
-    assert (alone.states[: first + 1] == told.states[: first + 1]).all()
 
 
 def test_mazes_that_agree_leave_no_doubt():

@@ -8,7 +8,6 @@ from lifelore.core.mdp import TERMINAL
 from lifelore.core.streams import stream
 from reproduction.chapter3.advice.learning import (
     errand_tables,
-    final_reward,
     learner_schedule,
     reached_by_learner,
 )
@@ -62,10 +61,3 @@ def test_advised_learning_by_a_naive_twin(maze, kappa):
         reached.append(over)
     assert advised_steps > 0
     assert reached_by_learner(maze, tables, number, schedule, advisor).tolist() == reached
-
-
-def test_the_final_reward_is_of_the_last_tenth():
-    reached = np.zeros(40, bool)
-    reached[[3, 37]] = True
-    assert final_reward(reached) == 250.0
-    assert final_reward(np.ones(3, bool)) == 1000.0

@@ -5,10 +5,9 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
-from lifelore.domains.grids.lattice import lattice
 from lifelore.domains.grids.noise_maze import noise_maze
 from reproduction.chapter3.c3_03_noise_maze_prior.run import measure, run_of
-from reproduction.chapter3.learning.grid_tasks import PERCEPT, PLACE, exact_prior, rows_of
+from reproduction.chapter3.learning.grid_tasks import PERCEPT, PLACE, exact_prior
 from reproduction.engine.registry import claim_of
 
 CLAIM = claim_of("C3.3")
@@ -51,19 +50,6 @@ def test_counts_by_a_slow_tally(run, kind):
     prior = exact_prior(run.noise, 0.1, kind)
     assert prior.contexts.tolist() == sorted(tally)
     np.testing.assert_array_equal(prior.counts(sorted(tally)), [tally[code] for code in sorted(tally)])
-
-
-def test_the_lattices_places_are_read_in_a_maze_and_others_are_unknown(run):
-    grid = lattice(11)
-    prior = exact_prior(run.lattice, 0.1, PLACE)
-    assert prior.contexts.tolist() == sorted((11 * row + column) for row, column in grid.cells.tolist())
-    task = run.testing[0]
-    places = task.contexts[PLACE]
-    in_lattice = ((places // 11) % 2 == 1) | ((places % 11) % 2 == 1)
-    assert (prior.unseen(places) == ~in_lattice).all()
-    explore = np.diff(rows_of(task, prior, "proportion", "uniform", PLACE).explore_cum, axis=1, prepend=0)
-    strange = np.flatnonzero(~in_lattice[np.argsort(places)])
-    np.testing.assert_allclose(explore[strange], 0.25)
 
 
 def test_pairs_by_hand():

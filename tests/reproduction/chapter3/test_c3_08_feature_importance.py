@@ -6,11 +6,9 @@ import pytest
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.domains.factory.contexts import PHI
 from reproduction.chapter3.c3_08_feature_importance.run import (
-    counted_actions,
     grid_of,
     importance,
     measure,
-    readings,
     rows,
 )
 from reproduction.chapter3.factory.modified_tasks import FULL_SET
@@ -48,11 +46,6 @@ def test_gaps_by_hand():
     assert south["value"] == pytest.approx(0.1315)
 
 
-def test_a_reading_in_which_another_feature_comes_first():
-    every = {cell["over"]: found for cell, found in readings(SETTINGS, made_up({**OTHERS, "Items": 0.3}))}
-    assert every["all"]["gap_phi3"].value > 0 > every["way"]["gap_phi3"].value
-
-
 def test_importance_of_counts_by_hand():
     # Only N tells: where it is free (0) go north, where it is a wall (1) south, six states each.
     values = np.zeros((12, 10), np.int64)
@@ -66,9 +59,3 @@ def test_importance_of_counts_by_hand():
     # Without N both actions are as likely: one bit. φ1 has no N.
     assert found["phi4"] == {name: float(name == "PosUM") for name in FULL_SET.names}
     assert found["phi1"] == {"PosMM": 0.0, "Items": 0.0}
-
-
-def test_first_best_actions_by_hand():
-    best = np.array([[0, 1, 1], [0, 0, 0], [1, 0, 1]], bool)
-    assert counted_actions(best, "first").tolist() == [[False, True, False], [False] * 3, [True, False, False]]
-    assert counted_actions(best, "tied") is best

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from lifelore.action.search.domain_reduction import minimised_domain, tables_within
-from lifelore.core.learning.q_learning import Schedule
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 from lifelore.core.planning.planning import best_actions, optimal_q
 from reproduction.chapter3.c3_14_minimised_domains.minimised_worlds import (
@@ -17,7 +16,6 @@ from reproduction.chapter3.c3_14_minimised_domains.run import (
     domain_of,
     exact,
     kept,
-    learn_within,
     measure,
     readings,
     rows,
@@ -116,23 +114,6 @@ def test_values_where_nothing_leads_out_are_those_of_the_exact_planner():
             q = optimal_q(within, tasks.discount)
             q[~domain.pairs] = -np.inf
             np.testing.assert_allclose(values_within(task.tables, domain, tasks.discount), q, atol=1e-6)
-
-
-def test_learners_within_take_kept_actions_alone():
-    task = corridor(0)
-    pairs = np.zeros((5, 2), bool)
-    pairs[1:, 0] = True  # left, and nothing in the goal
-    once = Schedule(np.ones(4), np.full(4, 0.5), 10, DISCOUNT)
-    curve = learn_within(task, pairs, once, "test")
-    assert curve.steps.tolist() == [2, 2, 2, 2]
-    assert curve.reached.all()
-    assert curve.collisions.sum() == 0
-    greedy = Schedule(np.zeros(4), np.full(4, 0.5), 10, DISCOUNT)
-    assert learn_within(task, pairs, greedy, "test").steps.tolist() == [2, 2, 2, 2]
-    # Right only: stuck at the other end, where it stays for nothing.
-    pairs = np.zeros((5, 2), bool)
-    pairs[:4, 1] = True
-    assert learn_within(task, pairs, once, "test").rewards.tolist() == [0.0] * 4
 
 
 def test_numbers_by_hand():

@@ -16,7 +16,6 @@ from reproduction.chapter3.factory.learning import (
     problem_of,
     rows_of,
     solved,
-    with_pseudo_count,
 )
 from reproduction.engine.registry import claim_of
 
@@ -56,17 +55,6 @@ def test_what_has_learnt_the_exact_values_earns_the_optimal_return(corridor):
     shuttles = np.zeros_like(q)
     shuttles[0, 2] = shuttles[1, 3] = 1.0
     assert greedy_return(problem, shuttles) == pytest.approx((-2 - 0.9) / (1 - 0.81))
-
-
-def test_advice_counts_like_so_many_policies():
-    advice = np.array([[True, True, False, False, False, False], [False] * 6])
-    prior = hand_made_prior(advice, 35, 0.5)
-    # 35 each for two of six actions, 0.5 for all; without advice even.
-    np.testing.assert_allclose(prior.probs([0])[0], [35.5 / 73] * 2 + [0.5 / 73] * 4)
-    np.testing.assert_allclose(prior.probs([1])[0], 1 / 6)
-    firmer = with_pseudo_count(prior, 1.0)
-    np.testing.assert_allclose(firmer.probs([0])[0], [36 / 76] * 2 + [1 / 76] * 4)
-    assert prior.alpha0 == 0.5
 
 
 @pytest.mark.parametrize("encoding", ["global", "left", "listed", "phase"])

@@ -6,15 +6,14 @@ import numpy as np
 import pytest
 
 from reproduction.chapter3.c3_09_online_features.run import mask_of, run_cell
-from reproduction.chapter3.c3_10_selection_over_tasks.run import GOAL, numbers, settled_after
-from reproduction.chapter3.factory.modified_tasks import learn_problem, problem_of
+from reproduction.chapter3.c3_10_selection_over_tasks.run import GOAL, numbers
+from reproduction.chapter3.factory.modified_tasks import problem_of
 from reproduction.chapter3.factory.online_selection import OnlineAgent, counted
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.registry import claim_of
 
 QUICK = claim_of("C3.10").settings("quick")
 SETTINGS = {**QUICK, "source": ["learnt", "exact"], "schedule": ["printed"]}
-SCHEDULE = schedule_of({**QUICK, "max_steps": 400}, "printed")
 ALL = (1 << 10) - 1
 WITH_ITEMS = GOAL | 1 << 9
 
@@ -42,19 +41,6 @@ def test_what_of_a_learnt_policy_counts_by_hand(problem):
     assert every[0].tolist() == [False, False, False, True, True, True]  # never tried, worth 0
     assert every[2].all()
     assert not every[problem.task.completed].any()
-
-
-def test_exact_policies_count_everywhere_or_on_the_way(problem):
-    _, learner = learn_problem(problem, None, SCHEDULE)
-    assert counted(problem, learner, "exact") is problem.best
-    on_the_way = counted(problem, learner, "exact, on the way")
-    assert np.flatnonzero(on_the_way.any(axis=1)).tolist() == sorted(set(problem.way.tolist()))
-    assert (on_the_way[problem.way] == problem.best[problem.way]).all()
-
-
-def test_when_a_run_has_settled_by_hand():
-    masks = np.array([[ALL, GOAL, GOAL, GOAL], [GOAL] * 4, [GOAL, ALL, GOAL, GOAL], [GOAL, GOAL, GOAL, ALL]])
-    assert settled_after(masks) == [2, 1, 3, 5]
 
 
 def test_shares_of_runs_by_hand():

@@ -8,7 +8,7 @@ from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import LossScale, ball_game
 from lifelore.interaction.baselines.exp3 import EXP3
 from reproduction.chapter4.ball_game.games import Game, check_games, choices
-from reproduction.chapter4.ball_game.learners import BeatLearner, PrintedExp3, exp3_by_episode
+from reproduction.chapter4.ball_game.learners import BeatLearner, exp3_by_episode
 from reproduction.chapter4.ball_game.play import (
     Learner,
     Players,
@@ -16,7 +16,6 @@ from reproduction.chapter4.ball_game.play import (
     play_all,
     train,
 )
-from reproduction.chapter4.c4_16_beat_is_reuse.run import library_of, transition_of
 
 GAME = ball_game()
 SCALE = LossScale()
@@ -60,17 +59,6 @@ def test_exp3_by_episode_is_exp3_on_the_table():
         arms.update(chosen, -losses[np.arange(7), episode, chosen])
 
 
-def test_steps_that_pay_nothing_leave_exp3_as_it_is():
-    """As printed, k = 1: the weights after an episode are those of its last step alone."""
-    learner = PrintedExp3(2, 3, worst=2.0, horizon=50, seed=np.random.default_rng(0))
-    plain = EXP3(3, horizon=50, n_tasks=2, seed=np.random.default_rng(0))
-    for speed in ([0, 1], [2, 2], [1, 0]):
-        plain.update(np.array(speed), np.zeros(2))  # payoff 0 in [0, 1] at every step before the goal
-    learner.end_episode(np.array([2, 0]), np.array([0.5, 3.0]))
-    plain.update(np.array([2, 0]), np.array([0.75, 0.0]))
-    np.testing.assert_allclose(learner._arms.probabilities, plain.probabilities)
-
-
 def test_beat_learner_knows_types_that_it_is_told():
     everyone = players(60, 1)
     told = np.eye(6)[everyone.kinds]
@@ -79,17 +67,6 @@ def test_beat_learner_knows_types_that_it_is_told():
     lost = SCALE.loss(*play_all(GAME, everyone, learner, SCALE))
     best = losses_by_speed(GAME, everyone, SCALE)[np.arange(60), :, value.argmax(axis=1)[everyone.kinds]]
     np.testing.assert_array_equal(lost, best)
-
-
-def test_the_library_says_what_the_tables_say():
-    library = library_of(GAME, TRAINED, SCALE)
-    assert library.types[3] == "b = 20"
-    assert library.policies[1] == "speed 40"
-    np.testing.assert_allclose(library.performance.mean, TRAINED.value(SCALE))
-    table = TRAINED.move_signal().log_table
-    for signal in (0, 77, 1234, table.shape[1] - 1):
-        found = library.signal.log_likelihood(2, transition_of(signal))
-        np.testing.assert_allclose(found, table[2, signal], atol=1e-12)
 
 
 def test_the_type_named_halfway_through_the_first_episode():

@@ -16,7 +16,6 @@ from reproduction.chapter4.ball_game.trials import (
     by_size,
     cells,
     confusion,
-    players_of,
     readings_of,
     run_cell,
 )
@@ -25,14 +24,6 @@ from reproduction.engine.registry import claim_of
 CLAIM = claim_of("C4.12")
 SETTINGS = CLAIM.settings("quick", {"runs": 2, "games": ["s-maze 160"]})
 RESULT = run_cell(SETTINGS, cells(SETTINGS)[0], 0)
-
-
-def test_every_type_of_a_population_plays_as_often():
-    kinds = players_of(12, np.random.default_rng(0)).kinds.reshape(63, 12)
-    for population, own in zip(POPULATIONS, kinds, strict=True):
-        counts = np.bincount(own, minlength=6)[list(population)]
-        assert counts.sum() == 12
-        assert np.ptp(counts) <= (12 % len(population) > 0)
 
 
 def test_means_by_size_against_a_loop():

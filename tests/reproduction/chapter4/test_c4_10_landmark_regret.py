@@ -28,12 +28,6 @@ def test_the_example_reaches_two_epsilon():
     assert found["counts"] == [1, *[0] * (BINS - 2), 1]
 
 
-def test_tasks_alone_in_their_type_are_not_counted():
-    found = parted(np.array([[0.0, 1.0], [0.1, 1.0], [9.0, 0.0]]), 0.02)
-    assert (found["shared"], found["past"]) == (2, 0)
-    assert parted(np.array([[0.0], [9.0]]), 0.1)["largest"] == 0
-
-
 def test_measures_by_hand():
     def found(past, largest):
         return {"shared": 4, "past": past, "largest": largest, "counts": [1] * BINS}

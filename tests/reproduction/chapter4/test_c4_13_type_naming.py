@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reproduction.chapter4.ball_game.trials import BEAT
-from reproduction.chapter4.c4_13_type_naming.run import numbers, size_ratio
+from reproduction.chapter4.c4_13_type_naming.run import numbers
 
 
 def made():
@@ -27,8 +27,3 @@ def test_measures_by_hand():
     changed = numbers({"half": {BEAT: half.tolist()}}, {})
     assert changed["pairs_confused_more_often"].value == 1
     assert changed["worst_ratio_10_to_60"].value == pytest.approx(0.4 + 0.6 * 2)
-
-
-def test_a_ratio_has_the_interval_of_its_players():
-    assert size_ratio([0, 20, 0, 0, 0, 0], 5).ci95 == (1.0, 1.0)
-    assert size_ratio([5, 15, 0, 0, 0, 0], 5).ci95[0] > 0.4

@@ -11,33 +11,12 @@ from reproduction.chapter4.surveillance.runs import (
     LEARNT,
     WORLD,
     by_method,
-    draw_tasks,
     library_of,
     run_method,
 )
 
 SETTINGS = {"tasks": 5, "episodes": 12, "samples": 4}
 RESERVE = Surveillance()
-
-
-def test_noise_is_shared_by_reserves_and_not_by_groups():
-    first = draw_tasks(RESERVE, 4, 6, 1, 0)
-    other = draw_tasks(Surveillance("ring", "euclidean"), 4, 6, 1, 0)
-    assert (first.noise == other.noise).all()
-    assert (first.noise != draw_tasks(RESERVE, 4, 6, 1, 1).noise).all()
-    # At its own target one policy pays 210.
-    assert (first.mean.max(axis=1) == 210).all()
-
-
-def test_libraries():
-    exact = library_of(RESERVE, EXACT, 4, 1, 0)
-    assert (exact.performance.mean == RESERVE.mean).all()
-    learnt = library_of(RESERVE, LEARNT, 4, 1, 0)
-    assert np.abs(learnt.performance.mean - RESERVE.mean).mean() == pytest.approx(
-        20 / 2 * (2 / np.pi) ** 0.5, rel=0.1
-    )
-    assert (library_of(RESERVE, LEARNT, 4, 1, 0).performance.mean == learnt.performance.mean).all()
-    assert (library_of(RESERVE, LEARNT, 4, 1, 1).performance.mean != learnt.performance.mean).all()
 
 
 @pytest.mark.parametrize("name", ["EI", "sampling", "UCB1, tuned", "GP-UCB"])

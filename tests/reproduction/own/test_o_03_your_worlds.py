@@ -2,7 +2,7 @@
 
 import pytest
 
-from reproduction.own.o_03_your_worlds.grids import NineByNine, whole_grid
+from reproduction.own.o_03_your_worlds.grids import whole_grid
 from reproduction.own.o_03_your_worlds.run import measure, numbers, readings
 from reproduction.own.o_03_your_worlds.toy_texts import MOVES, cliff, taxi_context
 from reproduction.own.o_03_your_worlds.worlds import WORLDS
@@ -27,17 +27,6 @@ def test_a_cliff_is_where_the_context_says():
         assert (there, reward, terminated) == {
             0: (moved, -1, False), 1: (place, -100, False), 2: (place, -1, False), 3: (moved, -1, True),
         }[kind]  # fmt: skip
-
-
-def test_a_grid_of_nine_by_nine_by_hand():
-    env = NineByNine(0)
-    (cell, beside), _ = env.reset(seed=0)
-    assert cell == env.start
-    for action, wall in enumerate(beside):
-        env.reset(seed=0)
-        (there, _), reward, terminated, _, _ = env.step(action)
-        assert (there == cell) == bool(wall)
-        assert (reward, terminated) == ((10.0, True) if there == env.goal else (-0.1, False))
 
 
 def test_state_and_context_of_a_grid():

@@ -7,15 +7,15 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.domains.checked_environment import CheckedEnvironment
 from lifelore.domains.golf.golf import CATEGORIES, Golf, category_of
 from lifelore.domains.golf.picture import draw_hole
-from lifelore.domains.policy_world import PolicyWorldEnvironment
 
 LONGEST = 1000.0
 """Longest hole that may be asked for, yards."""
 
 
-class GolfEnvironment(PolicyWorldEnvironment):
+class GolfEnvironment(CheckedEnvironment):
     """The thesis's golf club selection (§4.6.1): shots from one tee at a hole of unknown distance.
 
     ## Action Space

@@ -7,7 +7,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.domains.policy_world import PolicyWorldEnvironment
+from lifelore.domains.checked_environment import CheckedEnvironment
 from lifelore.domains.surveillance.picture import draw_reserve
 from lifelore.domains.surveillance.surveillance import SIDE, Surveillance
 
@@ -15,7 +15,7 @@ LARGEST = 10_000.0
 """Bound of what is observed, far beyond any pay."""
 
 
-class SurveillanceEnvironment(PolicyWorldEnvironment):
+class SurveillanceEnvironment(CheckedEnvironment):
     """The thesis's surveillance domain (§4.6.4): deployments of a drone until the poachers' place is known.
 
     ## Action Space

@@ -6,12 +6,12 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from lifelore.domains.policy_world import PolicyWorldEnvironment, chosen_number
+from lifelore.domains.checked_environment import CheckedEnvironment, chosen_number
 from lifelore.domains.telephone.picture import draw_call
 from lifelore.domains.telephone.telephone import OPEN, START, STATES, Telephone, reward
 
 
-class TelephoneEnvironment(PolicyWorldEnvironment):
+class TelephoneEnvironment(CheckedEnvironment):
     """A call in the thesis's online personalisation (§4.6.2): a step is one transition of the call.
 
     ## Action Space
