@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.figures.heat_grid import draw_heat_grid, frame_cells
+from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.style import new_figure
 
 
@@ -28,18 +28,6 @@ def test_texts_and_bold():
 def test_colour_is_full_at_the_spread_and_beyond():
     shown = drawn([[0.0, 1.0, 2.0, 9.0]], neutral=1.0, spread=1.0).images[0].get_array()
     assert shown.tolist() == [[-1, 0, 1, 1]]
-
-
-def test_frame():
-    (frame,) = drawn([[1.0, 1.0], [1.0, 1.0]], neutral=1.0, spread=1.0, outlined=(1, 0)).patches
-    assert (frame.get_xy(), frame.get_width(), frame.get_height()) == ((-0.5, 0.5), 1, 1)
-
-
-def test_a_frame_around_a_block_of_cells():
-    axes = drawn([[1.0, 1.0, 1.0], [1.0, 1.0, 1.0]], neutral=1.0, spread=1.0)
-    frame_cells(axes, (0, 1), (2, 2))
-    (frame,) = axes.patches
-    assert (frame.get_xy(), frame.get_width(), frame.get_height()) == ((0.5, -0.5), 2, 2)
 
 
 def test_shapes_must_agree():

@@ -66,9 +66,8 @@ def judged_scene(
     truth: Sequence[PairLabel],
     predicted: Sequence[Relation],
     gaps: Mapping[frozenset[int], float] | None = None,
-    least_confidence: int = 2,
 ) -> list[JudgedPair]:
-    """Each labelled pair of a scene beside its predicted relation; labels below a confidence are left out.
+    """Each labelled pair of a scene beside its predicted relation; labels of confidence 1 are left out.
 
     `gaps` are the visible gaps of ``{a, b}``, metres, where better known than by `predicted`.
     """
@@ -76,7 +75,7 @@ def judged_scene(
     judged = []
     for label in truth:
         pair = frozenset((label.a, label.b))
-        if label.confidence >= least_confidence:
+        if label.confidence >= 2:
             relation = by_pair.get(pair)
             gap = (gaps or {}).get(pair, relation.gap if relation else np.inf)
             judged.append(JudgedPair(scene, label, relation, gap))

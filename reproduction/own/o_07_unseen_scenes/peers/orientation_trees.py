@@ -48,8 +48,7 @@ class OrientationTrees:
 
     describe = staticmethod(orientation_histogram)
 
-    def __init__(self, seed: int = 0) -> None:
-        self._seed = seed
+    def __init__(self) -> None:
         self._trees: dict[bool, Any] = {}
 
     def fit_pairs(self, scenes: Sequence[Sequence[DescribedPair]], truths: Sequence[Sequence[PairLabel]]) -> Self:
@@ -62,7 +61,7 @@ class OrientationTrees:
             rows[pair.with_table] += list(pair.rows)
             names[pair.with_table] += [name, mirrored(name, SYMMETRIC)]
         self._trees = {
-            kind: ExtraTreesClassifier(TREES, random_state=self._seed).fit(np.array(own), np.array(names[kind]))
+            kind: ExtraTreesClassifier(TREES, random_state=0).fit(np.array(own), np.array(names[kind]))
             for kind, own in rows.items()
             if own
         }
