@@ -11,7 +11,7 @@ UP, SIDE = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 SLANT = (np.sin(np.radians(60)), 0.0, np.cos(np.radians(60)))
 
 
-def told(contacts, gaps, bottoms, **limits):
+def told(contacts, gaps, bottoms):
     """The labels of things 2, 3, …, 100 mm tall, that weigh 10 N.
 
     A contact is (first, second, normal, force, height).
@@ -22,7 +22,7 @@ def told(contacts, gaps, bottoms, **limits):
     borne = bearing(found, np.full(len(bottoms), 10.0))
     near = {(gap.a, gap.b): gap for gap in gaps}
     heights = np.array([(bottom, bottom + 0.1) for bottom in bottoms])
-    return true_relations(borne, near, heights, range(2, 2 + len(bottoms)), **limits)
+    return true_relations(borne, near, heights, range(2, 2 + len(bottoms)))
 
 
 def standing(thing, weight=10.0):
