@@ -1,9 +1,11 @@
-"""Conformance of every registered environment: Gymnasium's checker, the limit of an episode, and its docstring."""
+"""Conformance of every registered environment: Gymnasium's checker, pictures, refusals, limits and docstrings."""
 
 import gymnasium
+import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+from lifelore.core.errors import InputError
 from lifelore.domains import ENVIRONMENTS
 
 EVERY = pytest.mark.parametrize("name", sorted(ENVIRONMENTS))
@@ -23,6 +25,35 @@ def test_gymnasium_finds_nothing_to_say(name):
 
 def test_the_interface_of_the_ball_game_is_an_environment_too():
     check_env(gymnasium.make("lifelore/BallGame-v0", role="interface").unwrapped, skip_render_check=True)
+
+
+@EVERY
+def test_pictures_follow_what_happens(name):
+    env = gymnasium.make(name, render_mode="rgb_array").unwrapped
+    env.reset(seed=3)
+    first = env.render()
+    assert first.dtype == np.uint8
+    assert first.shape[2] == 3
+    seen = {first.tobytes()}
+    for action in range(env.action_space.n):
+        env.reset(seed=3)
+        env.step(action)
+        seen.add(env.render().tobytes())
+    assert len(seen) > 1
+    assert gymnasium.make(name).unwrapped.render() is None
+
+
+@EVERY
+def test_steps_out_of_order_or_out_of_range(name):
+    env = gymnasium.make(name).unwrapped
+    with pytest.raises(InputError, match=r"reset\(\) must be called"):
+        env.step(0)
+    env.reset(seed=0)
+    for wrong in (env.action_space.n, -1):
+        with pytest.raises(InputError, match="action must lie in"):
+            env.step(wrong)
+    with pytest.raises(InputError, match="render_mode must be None or one of: rgb_array; got 'human'"):
+        type(env)(render_mode="human")
 
 
 @pytest.mark.parametrize("name", sorted(set(ENVIRONMENTS) - ENDS_EARLIER))

@@ -1,4 +1,6 @@
-"""Conformance of every registered environment: one definition, three ways to run it."""
+"""Environments of grids, factories and Pacman: one definition, three ways to run it."""
+
+from typing import Any
 
 import gymnasium
 import numpy as np
@@ -9,6 +11,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL, _enumerate_with
 from lifelore.domains.factory.contexts import features
 from lifelore.domains.grid_environment import GridEnvironment
+from lifelore.domains.pacman.pacman import STRATEGIES, step
 
 CASES = {
     "lifelore/AdviceMaze-v0": {"size": 12, "seed": 2},
@@ -34,32 +37,49 @@ def percepts(env):
 
 
 @EVERY
-def test_environment_tables_and_step_agree_bit_for_bit(name):
+def test_a_grid_or_a_factory_is_its_tables_bit_for_bit(name):
     env = plain(name)
+    entry, percept_of = percepts(env)
+    check_rollout(
+        env, env.task.domain.step, lambda state, shown, info: shown == state and info[entry] == percept_of[state]
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("strategy", STRATEGIES)
+def test_pacman_is_its_tables_bit_for_bit(strategy):
+    env: Any = gymnasium.make(
+        "lifelore.domains:lifelore/Pacman-v0", rows=5, columns=5, seed=2, strategy=strategy
+    ).unwrapped
+    shown_in = env.task.observation_of.tolist()
+    check_rollout(env, step, lambda state, shown, info: shown == shown_in[state] and info["state"] == state)
+
+
+def check_rollout(env, step, shows):
+    """2,000 steps of the environment, its tables and its step agree, and each observation `shows` the state."""
     task, tables = env.task, env.task.tables()
     ends = (tables.event & TERMINAL > 0).mean(axis=(1, 2))
     near_the_end = np.flatnonzero((ends > 0) & (ends < 1))
-    entry, percept_of = percepts(env)
     uniforms, _ = seeding.np_random(11)
     actions = np.random.default_rng(5)
     seen = {"terminal": 0, "collision": 0}
-    state, info = env.reset(seed=11)
-    assert state == tables.starts[int(uniforms.random() * len(tables.starts))]
+    observation, info = env.reset(seed=11)
+    state = tables.starts[int(uniforms.random() * len(tables.starts))]
     for _ in range(2000):
-        assert info[entry] == percept_of[state]
-        action, u = int(actions.integers(task.domain.n_actions)), uniforms.random()
+        assert shows(state, observation, info)
+        action, u = int(actions.integers(env.action_space.n)), uniforms.random()
         outcome = int(np.searchsorted(tables.outcome_cum, u, side="right"))
         index = (state, action, outcome)
-        row = (int(tables.next_state[index]), float(tables.reward[index]), int(tables.event[index]))
-        assert task.domain.step(task.params, state, action, u) == row
-        state, reward, terminated, truncated, info = env.step(action)
-        event = TERMINAL * terminated | COLLISION * info["collision"]
-        assert (state, reward, event) == row
-        assert (type(state), type(reward), truncated) == (int, float, False)
+        state, *row = int(tables.next_state[index]), float(tables.reward[index]), int(tables.event[index])
+        assert step(task.params, index[0], action, u) == (state, *row)
+        observation, reward, terminated, truncated, info = env.step(action)
+        assert [reward, TERMINAL * terminated | COLLISION * info["collision"]] == row
+        assert (type(observation), type(reward), truncated) == (int, float, False)
         seen["terminal"] += terminated
         seen["collision"] += info["collision"]
         if terminated or actions.random() < 0.05:
-            state, info = env.reset(options={"state": actions.choice(near_the_end)})
+            state = int(actions.choice(near_the_end))
+            observation, info = env.reset(options={"state": state})
             uniforms.random()
     assert min(seen.values()) > 10
 
@@ -71,20 +91,6 @@ def test_the_compiled_table_equals_the_plain_enumeration(name):
     for fast, slow in zip(compiled[:3], _enumerate_with(task.domain)(task.params, [0.5]), strict=True):
         assert fast.dtype == slow.dtype
         assert np.array_equal(fast, slow)
-
-
-@EVERY
-def test_pictures(name):
-    env = plain(name, render_mode="rgb_array")
-    here = env.task.starts[0]
-    there = next(s for s in env.task.tables().next_state[here, :, 0] if s != here)
-    env.reset(options={"state": here})
-    first = env.render()
-    assert first.dtype == np.uint8
-    assert first.shape[2] == 3
-    env.reset(options={"state": there})
-    assert (env.render() != first).any()
-    assert plain(name).render() is None
 
 
 def test_the_goal_may_be_a_state_or_a_cell():

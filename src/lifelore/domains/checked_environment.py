@@ -4,6 +4,7 @@ from typing import Any
 
 import gymnasium
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 
@@ -11,8 +12,9 @@ from lifelore.core.errors import InputError
 class CheckedEnvironment(gymnasium.Env):
     """An environment with numbered actions.
 
-    Subclasses set `action_space` and `observation_space`, and write `_begin` and `_advance`; randomness is
-    `np_random`'s, drawn by the world's own sampling, so that a rollout equals that sampling bit for bit.
+    Subclasses set `action_space` and `observation_space`, and write `_begin`, `_advance` and `_picture`;
+    randomness is `np_random`'s, drawn by the world's own sampling, so that a rollout equals that sampling bit for
+    bit.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 2}  # noqa: RUF012
@@ -41,10 +43,17 @@ class CheckedEnvironment(gymnasium.Env):
         observation, reward, terminated, info = self._advance(int(action))
         return observation, float(reward), terminated, False, info
 
+    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+        """The picture of the world as it is, (height, width, 3) uint8; None without a render mode."""
+        return None if self.render_mode is None else self._picture()
+
     def _begin(self, options: dict[str, Any]) -> tuple[Any, dict[str, Any]]:
         raise NotImplementedError
 
     def _advance(self, action: int) -> tuple[Any, float, bool, dict[str, Any]]:
+        raise NotImplementedError
+
+    def _picture(self) -> NDArray[np.uint8]:
         raise NotImplementedError
 
 

@@ -48,10 +48,8 @@ class GridEnvironment(TaskEnvironment):
         self.world = world
         super().__init__(world.task(_goal_state(world, goal, seed)), render_mode)
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
-        """The picture of the world, (height, width, 3) uint8; None without a render mode."""
-        if self.render_mode is None:
-            return None
+    def _picture(self) -> NDArray[np.uint8]:
+        """The picture of the world, (height, width, 3) uint8."""
         return draw_grid(self.world, self._state, self.task.goal)
 
     def _info(self, event: int) -> dict[str, Any]:

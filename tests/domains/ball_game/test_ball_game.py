@@ -1,11 +1,11 @@
 """The ball game by hand, against naive twins, and its simulated player."""
 
-import heapq
 import os
 import subprocess
 import sys
 from functools import cache
 
+import networkx as nx
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -164,38 +164,25 @@ def test_no_step_ends_in_an_obstacle_and_a_free_one_is_no_collision(data):
 
 
 def naive_costs(clearance, radius, goal, care):
-    """Dijkstra over cells with a heap."""
-    n = SIDE // CELL + 1
-    half = CELL // 2
+    """Dijkstra over a graph of cells, from the cells of the goal."""
+    n, half = SIDE // CELL + 1, CELL // 2
     room = np.full((n, n), -1.0)
-    for i in range(n):
-        for j in range(n):
-            block = clearance[
-                max(0, CELL * i - half) : CELL * i + half + 1, max(0, CELL * j - half) : CELL * j + half + 1
-            ]
-            room[i, j] = block.max() - radius
+    for i, j in np.ndindex(n, n):
+        y, x = CELL * i, CELL * j
+        room[i, j] = clearance[max(0, y - half) : y + half + 1, max(0, x - half) : x + half + 1].max() - radius
     weight = 1 + care * np.clip(1 - room / MARGIN, 0, 1)
-    cost = np.full((n, n), np.inf)
+    graph = nx.Graph()
+    for a in map(tuple, np.argwhere(room > 0)):
+        for b in ((a[0] + di, a[1] + dj) for di, dj in ((0, 1), (1, 0), (1, 1), (1, -1))):
+            if 0 <= b[0] < n and 0 <= b[1] < n and room[b] > 0:
+                graph.add_edge(
+                    a, b, weight=CELL * np.hypot(a[0] - b[0], a[1] - b[1]) * (weight[a] + weight[b]) / 2
+                )
     left, top, right, bottom = goal
-    queue = []
-    for i in range(n):
-        for j in range(n):
-            if room[i, j] > 0 and left <= CELL * j <= right and top <= CELL * i <= bottom:
-                cost[i, j] = 0
-                queue.append((0.0, i, j))
-    heapq.heapify(queue)
-    while queue:
-        done, i, j = heapq.heappop(queue)
-        if done > cost[i, j]:
-            continue
-        for di in (-1, 0, 1):
-            for dj in (-1, 0, 1):
-                a, b = i + di, j + dj
-                if (di or dj) and 0 <= a < n and 0 <= b < n and room[a, b] > 0:
-                    through = done + CELL * np.hypot(di, dj) * (weight[i, j] + weight[a, b]) / 2
-                    if through < cost[a, b] - 1e-9:
-                        cost[a, b] = through
-                        heapq.heappush(queue, (through, a, b))
+    goals = {(i, j) for i, j in graph if left <= CELL * j <= right and top <= CELL * i <= bottom}
+    cost = np.full((n, n), np.inf)
+    for cell, length in nx.multi_source_dijkstra_path_length(graph, goals).items():
+        cost[cell] = length
     return cost
 
 

@@ -1,10 +1,10 @@
 """Buildings from maps: small floors worked by hand, and a twin that follows the definition pixel by pixel."""
 
 import os
-from collections import deque
 from math import floor
 from pathlib import Path
 
+import networkx as nx
 import numpy as np
 import pytest
 
@@ -108,17 +108,10 @@ def test_what_makes_the_world_is_in_its_fingerprint():
 
 def unknown_specks(state, resolution: float) -> set:
     """Unknown pixels whose island, corners included, covers at most 0.01 m²."""
-    left = {tuple(at) for at in np.argwhere(state == UNKNOWN).tolist()}
-    specks = set()
-    while left:
-        island = [left.pop()]
-        for r, c in island:
-            near = {(r + i, c + j) for i in (-1, 0, 1) for j in (-1, 0, 1)} & left
-            left -= near
-            island += near
-        if len(island) * resolution**2 <= 0.01 + 1e-9:
-            specks |= set(island)
-    return specks
+    unknown = {tuple(at) for at in np.argwhere(state == UNKNOWN).tolist()}
+    around = [(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+    islands = regions(unknown, lambda at: {(at[0] + i, at[1] + j) for i, j in around} & unknown)
+    return {at for island in islands if len(island) * resolution**2 <= 0.01 + 1e-9 for at in island}
 
 
 def build_slowly(occupancy: OccupancyMap, cell: float, radius: float):
@@ -166,20 +159,8 @@ def build_slowly(occupancy: OccupancyMap, cell: float, radius: float):
 
 def regions(places, beside):
     """Connected regions in reading order of their first place."""
-    seen = set()
-    for start in sorted(places):
-        if start in seen:
-            continue
-        region, queue = [], deque([start])
-        seen.add(start)
-        while queue:
-            place = queue.popleft()
-            region.append(place)
-            for other in beside(place):
-                if other not in seen:
-                    seen.add(other)
-                    queue.append(other)
-        yield sorted(region)
+    graph = nx.Graph({place: list(beside(place)) for place in places})
+    return sorted(sorted(region) for region in nx.connected_components(graph))
 
 
 @pytest.mark.parametrize("seed", range(60))

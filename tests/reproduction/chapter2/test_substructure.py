@@ -81,7 +81,7 @@ def scene_with(make_scene, meet):
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(small=contacts(3), large=contacts(3), seed=st.integers(0, 9))
 def test_networkx_agrees(scene_with, small, large, seed):
     part, whole = scene_with(small, seed), scene_with(large, seed + 1)

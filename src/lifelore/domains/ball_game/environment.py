@@ -117,10 +117,8 @@ class BallGameEnvironment(CheckedEnvironment):
         reward = -float(self.scale.loss(self._steps, self._hits)) if reached else 0.0
         return self._observation(), reward, bool(reached), self._info(bool(hit), HEADINGS[heading])
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
-        """The field, the ball and where it has been, (501, 501, 3) uint8; None without a render mode."""
-        if self.render_mode is None:
-            return None
+    def _picture(self) -> NDArray[np.uint8]:
+        """The field, the ball and where it has been, (501, 501, 3) uint8."""
         return draw_ball_game(self.game, self.kind, self._place, self._trail)
 
     def _observation(self) -> NDArray[np.int64]:

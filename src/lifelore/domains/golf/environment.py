@@ -49,9 +49,9 @@ class GolfEnvironment(CheckedEnvironment):
         self.distance = 0.0
         self.landed: list[float] = []
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
-        """The course, (200, 720, 3) uint8; None without a render mode."""
-        return None if self.render_mode is None else draw_hole(self.distance, self.landed)
+    def _picture(self) -> NDArray[np.uint8]:
+        """The course, (200, 720, 3) uint8."""
+        return draw_hole(self.distance, self.landed)
 
     def _begin(self, options: dict[str, Any]) -> tuple[int, dict[str, Any]]:
         drawn = float(self.world.draw_holes(self.np_random, 1)[0])

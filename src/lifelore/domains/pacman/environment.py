@@ -69,10 +69,8 @@ class PacmanEnvironment(TaskEnvironment):
         self._step = getattr(step, "py_func", step)
         self._state: int | None = None
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
-        """The picture of the maze, (height, width, 3) uint8; None without a render mode."""
-        if self.render_mode is None:
-            return None
+    def _picture(self) -> NDArray[np.uint8]:
+        """The picture of the maze, (height, width, 3) uint8."""
         if self._state is None:
             raise InputError("reset() must be called before render(), got no episode in progress")
         return draw_pacman(self.task, self._state)

@@ -58,9 +58,9 @@ class SurveillanceEnvironment(CheckedEnvironment):
         self.poachers = (0, 0)
         self._drone: int | None = None
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
-        """The reserve, (624, 624, 3) uint8; None without a render mode."""
-        return None if self.render_mode is None else draw_reserve(self.world, self._drone, self.poachers)
+    def _picture(self) -> NDArray[np.uint8]:
+        """The reserve, (624, 624, 3) uint8."""
+        return draw_reserve(self.world, self._drone, self.poachers)
 
     def _begin(self, options: dict[str, Any]) -> tuple[NDArray[np.float64], dict[str, Any]]:
         row, column = self.world.draw_cells(self.np_random, 1, seen=not self.unseen)[0].tolist()

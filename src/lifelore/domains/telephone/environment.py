@@ -52,9 +52,9 @@ class TelephoneEnvironment(CheckedEnvironment):
         self.caller = 0
         self._state = START
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
-        """The states of the call, (320, 610, 3) uint8; None without a render mode."""
-        return None if self.render_mode is None else draw_call(self._state)
+    def _picture(self) -> NDArray[np.uint8]:
+        """The states of the call, (320, 610, 3) uint8."""
+        return draw_call(self._state)
 
     def _begin(self, options: dict[str, Any]) -> tuple[int, dict[str, Any]]:
         self._state = START

@@ -15,15 +15,13 @@ LEAST_RIGHT = {
 }
 
 
-@pytest.fixture(scope="module")
-def seen(lesson):
-    """What each peer saw of the lesson."""
-    clouds, _ = lesson
-    return {name: [described_pairs(cloud, new.describe) for cloud in clouds] for name, new in PEERS.items()}
-
-
-def fitted(name, seen, truths, kept=slice(None)):
-    return PEERS[name]().fit_pairs(seen[name][kept], truths[kept])
+@pytest.fixture(scope="module", params=PEERS)
+def peer(request, lesson):
+    """A peer's name, the peer that learnt the first 27 scenes of the lesson, and what it saw of the others."""
+    clouds, truths = lesson
+    new = PEERS[request.param]
+    seen = [described_pairs(cloud, new.describe) for cloud in clouds]
+    return request.param, new().fit_pairs(seen[:27], truths[:27]), seen[27:]
 
 
 def of_pair(relations, a, b) -> Relation:
@@ -37,27 +35,23 @@ def same(label: PairLabel, relation: Relation) -> bool:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", PEERS)
-def test_what_it_learns_holds_on_scenes_it_has_not_seen(name, seen, lesson):
-    _, truths = lesson
-    model = fitted(name, seen, truths, slice(0, 27))
+def test_what_it_learns_holds_on_scenes_it_has_not_seen(peer, lesson):
+    name, model, others = peer
     right = [
         same(truth[0], of_pair(model.predict_pairs(scene), 2, 3))
-        for scene, truth in zip(seen[name][27:], truths[27:], strict=True)
+        for scene, truth in zip(others, lesson[1][27:], strict=True)
     ]
     assert np.mean(right) >= LEAST_RIGHT[name]
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", PEERS)
-def test_names_of_the_objects_carry_nothing(name, seen, lesson):
-    clouds, truths = lesson
-    model = fitted(name, seen, truths)
+def test_names_of_the_objects_carry_nothing(peer, lesson):
+    _, model, _ = peer
 
     def answers(cloud):
         return model.predict_pairs(described_pairs(cloud, model.describe))
 
-    for cloud in clouds[:6]:
+    for cloud in lesson[0][:6]:
         turned = np.where(cloud.labels > TABLE, 5 - cloud.labels, cloud.labels)
         said = of_pair(answers(cloud), 2, 3)
         again = of_pair(answers(LabelledCloud(cloud.points, turned, None, cloud.camera)), 2, 3)
