@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.stats import beta, binom
 
-from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 
 UNMEASURED = Estimate(float("nan"), float("nan"), None, 0)
 """What a run that lacks its scenes says of them."""
@@ -27,6 +27,13 @@ def mean_or_unmeasured(values: Iterable[float]) -> Estimate:
     """Mean with its bootstrap interval; `UNMEASURED` of no values."""
     given = list(values)
     return mean_estimate(given) if given else UNMEASURED
+
+
+def ratio_or_unmeasured(parts: ArrayLike, wholes: ArrayLike) -> Estimate:
+    """Ratio of sums over the scenes that have something to divide by; `UNMEASURED` where none has."""
+    parts, wholes = np.asarray(parts, float), np.asarray(wholes, float)
+    some = wholes > 0
+    return ratio_estimate(parts[some], wholes[some]) if some.any() else UNMEASURED
 
 
 def quantile_estimate(values: NDArray[np.float64], q: float) -> Estimate:

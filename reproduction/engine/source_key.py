@@ -59,9 +59,13 @@ def _path(module: str) -> Path | None:
 
 
 def _imports(module: str) -> list[str]:
+    return _imported_by(_path(module).read_text(encoding="utf-8"))  # type: ignore[union-attr]
+
+
+@cache
+def _imported_by(source: str) -> list[str]:
     names = []
-    path = _path(module)
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):  # type: ignore[union-attr]
+    for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
             names += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module and not node.level:

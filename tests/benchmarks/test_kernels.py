@@ -5,9 +5,9 @@ import pytest
 
 from benchmarks import kernels
 from benchmarks.kernels import alone_rate, bench_kernels, many_rate
-from benchmarks.lattice import lattice_task, new_case, run_kernel
+from benchmarks.lattice import new_case, run_kernel
 from benchmarks.peers import c_loop
-from benchmarks.peers.gymnasium_loop import TextbookLattice, short_textbook_rate, textbook_rate
+from benchmarks.peers.gymnasium_loop import short_textbook_rate, textbook_rate
 from benchmarks.peers.list_loop import short_tuned_rate, tuned_rate
 from lifelore.core.errors import InputError
 from tests.benchmarks.contract import checked
@@ -69,16 +69,3 @@ def test_a_twin_that_does_other_work_is_refused(tmp_path, monkeypatch):
     other.write_text("not C")
     with pytest.raises(InputError, match=r"gcc must build q_learning\.c, got '.*error"):
         c_loop.built_c_loop()
-
-
-def test_the_textbook_world_is_the_lattice():
-    env, tables = TextbookLattice(), lattice_task().tables()
-    assert len(env.cells) == tables.n_states == 341
-    for s, cell in enumerate(env.cells):
-        for a in range(4):
-            env.cell = cell
-            following, reward, terminated, truncated, _ = env.step(a)
-            assert following == tables.next_state[s, a, 0]
-            assert reward == tables.reward[s, a, 0]
-            assert terminated == (tables.event[s, a, 0] == 1)
-            assert not truncated

@@ -22,8 +22,3 @@ def test_the_answer_keeps_its_contract(monkeypatch):
     assert asked[0] > 1000
     assert rows[lives.LORE]["ratio"] == pytest.approx(rows[lives.LORE]["value"] / rows[lives.SCRATCH]["value"])
     assert result["goals"][0]["measured"] == rows[f"{lives.EVERY}: wall time"]["value"] > 0
-
-
-def test_plain_python_takes_longer_for_more_steps(monkeypatch):
-    monkeypatch.setattr(lives, "tuned_rate", lambda tables, clock: 0.5 if tables.n_states > 1000 else 1e9)
-    assert lives.plain_seconds(1e6) == 2.0

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from benchmarks import memory as case
-from benchmarks.memory import ACTIONS, COUNTED, KEY, STEP, bench_memory, bytes_of, fill, learners, prior_of, probe
+from benchmarks.memory import ACTIONS, COUNTED, KEY, STEP, bench_memory, fill, probe
 from lifelore.action.priors.action_prior import KIND, VERSION, ActionPrior
 from lifelore.core.errors import LifeloreError
-from lifelore.memory import open_memory, sqlite_file
+from lifelore.memory import open_memory
 from tests.benchmarks.contract import checked
 
 
@@ -36,22 +36,6 @@ def test_slopes_by_hand():
     assert case.slope_of({1: 100, 10: 7, 20: 27}) == 2.0
 
 
-def test_bytes_are_those_that_stay():
-    bytes_of(lambda: np.zeros(1))
-    made, size = bytes_of(lambda: np.zeros(10**6) + np.ones(10**6))
-    assert made.sum() == 10**6
-    assert 8e6 <= size < 8.1e6
-
-
-def test_learners_and_contexts_are_as_many_as_asked_for():
-    made, curve = learners(3)
-    assert len(made.q) == len(curve.steps) == 3
-    prior_of(1)
-    prior, size = bytes_of(lambda: prior_of(2000))
-    assert len(prior) == 2000
-    assert size == pytest.approx(2000 * (8 + 8 * ACTIONS), rel=0.1)
-
-
 def test_every_context_of_a_file_has_its_counts(tmp_path):
     fill(tmp_path / "large.db", 100)
     with open_memory(tmp_path / "large.db") as memory:
@@ -71,21 +55,6 @@ def test_probed_writes_are_stored(tmp_path):
     assert found["read_bytes"] >= size
     with open_memory(path) as memory:
         assert memory.tasks("robot") == case.READS
-        assert memory.check() == []
-
-
-def test_opening_a_large_memory_does_not_read_it(tmp_path, monkeypatch):
-    path = tmp_path / "large.db"
-    fill(path, 20_000)
-    size = path.stat().st_size
-    monkeypatch.setattr(sqlite_file, "CHECKED_BYTES", size - 1)
-    assert probe(path, 20_000, whole=False)["read_bytes"] < size / 5
-
-
-def test_a_robot_meets_every_transition_once(small, tmp_path):
-    with open_memory(case.robot_memory(tmp_path / "r.db", 0)) as memory:
-        assert memory.tasks("robot 0") == 4
-        assert memory.recall("transitions", "building", 1).slots.tolist() == list(range(40))
         assert memory.check() == []
 
 

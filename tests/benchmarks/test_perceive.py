@@ -10,11 +10,7 @@ from benchmarks.perceive import AGAIN, PARTS, bench_perceive, process_parts
 from benchmarks.process import Cost, installed_environment, process_cost
 from lifelore.core.errors import LifeloreError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.perception.relations.relation_classifier import shipped_model
-from lifelore.perception.scene_json import scene_document
-from lifelore.perception.scene_perception import perceived_scene
-from reproduction.chapter2.scoring import perception_stages
-from reproduction.chapter2.scoring.perception_stages import STAGES, timed_stages
+from reproduction.chapter2.scoring.perception_stages import STAGES
 from tests.benchmarks.contract import checked
 
 
@@ -55,30 +51,6 @@ def test_the_answer_keeps_its_contract(small):
     assert next(line["ratio"] for line in result["rows"] if line["name"].endswith(": imports")) == pytest.approx(
         1 / 9
     )
-
-
-def test_stages_together_are_the_whole_way(cloud, monkeypatch):
-    documents = []
-    monkeypatch.setattr(
-        perception_stages, "scene_document", lambda scene, seconds: documents.append(scene_document(scene))
-    )
-    model = shipped_model()
-    assert set(timed_stages(cloud, model)) == set(STAGES)
-    assert documents == [scene_document(perceived_scene(cloud, model).without_unrelated_contacts)]
-
-
-@pytest.mark.parametrize("n", [500, 5000])
-def test_points_are_made_up_to_the_number(cloud, monkeypatch, n):
-    monkeypatch.setattr(perceive, "POINTS", n)
-    whole = perceive._with_points(cloud, of_things=False)
-    assert len(whole.points) == n
-    things = perceive._with_points(cloud, of_things=True)
-    assert (things.labels > TABLE).sum() == n
-    assert (things.of(TABLE) == cloud.of(TABLE)).all()
-    # No point is farther from one of the same label than a few deviations of the jitter.
-    for label in (2, 3, 4):
-        apart = np.linalg.norm(things.of(label)[:, None] - cloud.of(label)[None], axis=-1).min(axis=1)
-        assert apart.max() < 6 * perceive.JITTER
 
 
 def test_parts_are_those_of_a_real_process(cloud, tmp_path):

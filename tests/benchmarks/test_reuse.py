@@ -5,9 +5,7 @@ import pytest
 
 from benchmarks import reuse, reuse_users
 from benchmarks.peers.bandits import PEERS, installed
-from benchmarks.reuse import bench_reuse, readme_example
-from benchmarks.reuse_users import learnt_library, reserve_means
-from lifelore.domains.surveillance.surveillance import Surveillance
+from benchmarks.reuse import bench_reuse
 from tests.benchmarks.contract import checked
 
 
@@ -58,20 +56,6 @@ def test_all_players_meet_the_same_tasks():
     for _, paid in first:
         mean_paid = np.mean([payoff for policy, payoff in paid if policy == 3])
         assert np.abs(mean[:, 3] - mean_paid).min() < 5 / np.sqrt(reuse.EPISODES)
-
-
-def test_reserves_are_as_they_say():
-    assert np.array_equal(reserve_means(), Surveillance().mean)
-    mean = reserve_means(200)
-    assert mean.shape == (200, 200)
-    assert (mean.argmax(axis=1) == np.arange(200)).all()
-    # 200² means of ten samples of deviation 20: the deviation of a mean is 6.3, of their average 0.03.
-    assert (learnt_library(mean).performance.mean - mean).mean() == pytest.approx(0, abs=0.16)
-
-
-def test_the_program_of_the_readme_runs(capsys):
-    exec(readme_example(), {})
-    assert capsys.readouterr().out.startswith("C [")
 
 
 @pytest.mark.parametrize("name", PEERS)

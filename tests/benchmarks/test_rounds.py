@@ -1,6 +1,6 @@
 """Rounds: the order of contenders, paired ratios, and lines by hand."""
 
-from benchmarks.rounds import at_least, at_most, counted, interleaved, joined, paired_ratio, row, row_beside
+from benchmarks.rounds import counted, interleaved, joined, paired_ratio
 
 
 def test_rounds_are_interleaved_and_turn_round():
@@ -13,17 +13,6 @@ def test_rounds_are_interleaved_and_turn_round():
 def test_ratios_are_paired():
     # 1/2, 4/4, 9/3: the median of pairs is 1, of medians it were 4/3.
     assert paired_ratio([1.0, 4.0, 9.0], [2.0, 4.0, 3.0]) == 1.0
-
-
-def test_lines_by_hand():
-    assert at_least("x", 2.0, 2.0) == {"name": "x", "goal": ">= 2.0", "measured": 2.0, "met": True}
-    assert at_most("x", 2.0, 2.1)["met"] is False
-    assert at_least("x", 2.0, None)["met"] is None
-    assert row("x", 1.0, "s") == {"name": "x", "value": 1.0, "unit": "s", "ratio_to": None, "ratio": None}
-    # Medians 2 and 3; pairs 1/2, 2/2, 9/3 have the median 1.
-    rates = {"a": [1.0, 2.0, 9.0], "b": [2.0, 2.0, 3.0]}
-    assert row_beside("a", rates, "s", "b") == row("a", 2.0, "s", "b", 1.0)
-    assert row_beside("b", rates, "s") == row("b", 2.0, "s")
 
 
 def test_parts_are_joined_and_pieces_counted():

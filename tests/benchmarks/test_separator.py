@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from scipy.spatial import cKDTree
 
 from benchmarks import cloud_pairs, separator
-from benchmarks.cloud_pairs import DRAWN, cloud_pair, voxels
+from benchmarks.cloud_pairs import DRAWN, cloud_pair
 from benchmarks.separator import FINE, WIDE, bench_separator
 from tests.benchmarks.contract import checked
 
@@ -31,29 +30,6 @@ def test_the_answer_keeps_its_contract(small):
     assert met["greatest difference of f at tolerance 1e-5"]
     assert not met["first separator in a fresh process, cold, s"]
     assert met["first separator in a fresh process, warm, s"]
-
-
-def test_pairs_have_the_size_asked_for_and_touch():
-    for n in (500, 3001):
-        first, second = cloud_pair(DRAWN, n)
-        assert len(first) + len(second) == n
-        assert cKDTree(first).query(second)[0].min() < 0.01
-        assert np.array_equal(cloud_pair(DRAWN, n)[0], first)
-
-
-def test_more_points_lie_between_those_there_are():
-    random = np.random.default_rng(0)
-    grid = np.stack(np.meshgrid(np.arange(30), np.arange(30), 0), axis=-1).reshape(-1, 3) * 0.002
-    more = cloud_pairs._resampled(grid, 5000, random)
-    assert more.shape == (5000, 3)
-    assert np.array_equal(more[:900], grid)
-    assert np.abs(more[:, 2]).max() == 0
-    assert len(np.unique(cloud_pairs._resampled(grid, 100, random), axis=0)) == 100
-
-
-def test_voxels_are_centroids():
-    found = voxels(np.array([[0.0001, 0, 0], [0.0003, 0, 0], [0.004, 0, 0]]))
-    assert found == pytest.approx(np.array([[0.0002, 0, 0], [0.004, 0, 0]]))
 
 
 @pytest.mark.skipif(len(cloud_pairs.names()) == 1, reason="LIFELORE_DATA is not set")

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from benchmarks import start
-from benchmarks.process import Cost, cold_and_warm, installed_environment, measured_inside, process_cost
+from benchmarks.process import Cost, installed_environment, process_cost
 from benchmarks.start import bench_start, clouds_to_perceive, fitted_study, open_decisions
 from lifelore.core.errors import LifeloreError
 from tests.benchmarks.contract import checked
@@ -87,20 +87,3 @@ def test_what_the_verbs_are_given_can_be_used(monkeypatch, tmp_path):
 def test_a_process_that_fails_is_no_measurement(tmp_path):
     with pytest.raises(LifeloreError, match="no such file"):
         process_cost(["perceive", tmp_path / "none.pcd"], installed_environment(tmp_path))
-
-
-def test_the_second_process_finds_what_the_first_has_left():
-    source = """
-import os, pathlib
-kernels = pathlib.Path(os.environ["NUMBA_CACHE_DIR"])
-print(len(list(kernels.iterdir())))
-(kernels / "one").touch()
-"""
-    assert cold_and_warm(source) == (0, 1)
-
-
-@pytest.mark.parametrize("learner", start.LEARNERS)
-def test_a_first_result_in_a_process_of_its_own(learner):
-    assert measured_inside(start.LEARNERS[learner]) > 0
-    with pytest.raises(LifeloreError, match="a timed process must end well, got 'NameError"):
-        measured_inside("nothing")

@@ -27,14 +27,6 @@ def test_the_law_is_the_priors(form, code):
     assert np.abs(shares - expected).max() < 0.0145  # four deviations
 
 
-def test_what_has_no_mass_is_never_drawn():
-    prior, random = ActionPrior(3), np.random.default_rng(2)
-    prior.update([0, 1], [[True, False, False], [False, False, True]])
-    draws = CachedPriorSampler(prior, "support", {"escape": 0.0})
-    assert {draws.draw(0, random) for _ in range(2000)} == {0}
-    assert {draws.draw(1, random) for _ in range(2000)} == {2}
-
-
 def test_counts_are_heeded_after_forgetting():
     prior, random = ActionPrior(2), np.random.default_rng(3)
     draws = CachedPriorSampler(prior, "support", {"escape": 0.0})

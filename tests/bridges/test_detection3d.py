@@ -32,13 +32,6 @@ def test_a_quaternion_is_that_of_scipy(seed):
     assert list(found.values()) == pytest.approx(same * np.sign(same @ list(found.values())))
 
 
-@pytest.mark.parametrize("axis", range(3))
-def test_half_turns_too(axis):
-    signs = np.where(np.arange(3) == axis, 1.0, -1.0)
-    found = list(quaternion(np.diag(signs).tolist()).values())
-    assert np.abs(found) == pytest.approx(np.eye(4)[axis])
-
-
 def test_a_motion_becomes_a_transform():
     motion = np.eye(4)
     turn = Rotation.from_euler("zyx", [0.3, -0.2, 0.9])
@@ -68,8 +61,3 @@ def test_relations_have_the_names_of_the_detections():
     assert upper == {"a": "3", "b": "2", "relation": "on", "confidence": 0.9, "gap": 0.01, "stated": True}
     assert (lower["b"], lower["stated"]) == ("table", False)
     assert math.isnan(lower["gap"])
-
-
-def test_a_cloud_without_a_name_and_a_time_is_the_cameras_at_time_0():
-    bare = {**DOCUMENT, "frame": {"name": None, "stamp": None}}
-    assert relation_array(bare)["header"] == {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "camera"}

@@ -9,10 +9,8 @@ from hypothesis import strategies as st
 
 from lifelore.bridges.minigrid_view import (
     BLOCKED,
-    FORWARD,
     FREE,
     GOAL,
-    LEFT,
     RIGHT,
     UNSEEN,
     SymbolicView,
@@ -91,28 +89,6 @@ def test_what_walls_hide_is_unseen():
     assert cells(env.step(RIGHT)[0])[1] == 1  # it looks down
 
 
-def test_the_goal_is_an_open_way():
-    env = SymbolicView(gymnasium.make("MiniGrid-Empty-5x5-v0"))
-    env.reset(seed=0)
-    for move in (FORWARD, FORWARD, RIGHT, FORWARD):
-        observation, reward, *_ = env.step(move)
-    assert reward == 0
-    assert open_directions(observation[None]).tolist() == [0b110]  # the goal before it, free cells to its right
-    assert env.step(FORWARD)[1] > 0
-
-
-def test_an_empty_room_solved_by_hand():
-    env = gymnasium.make("MiniGrid-Empty-5x5-v0")
-    env.reset(seed=0)
-    layout = solved_layout(env)
-    assert len(layout.steps) == 8 * 4
-    # Two forward, one turn, two forward; and no other way is as short.
-    assert layout.steps[layout.passed].tolist() == [5, 4, 3, 2, 1]
-    moves = [np.flatnonzero(best).tolist() for best in layout.best[layout.passed]]
-    assert moves == [[FORWARD], [FORWARD], [RIGHT], [FORWARD], [FORWARD]]
-    assert layout.open_directions[layout.passed].tolist() == [0b110, 0b110, 0b100, 0b110, 0b110]
-
-
 @pytest.mark.slow
 @settings(deadline=None, max_examples=4)
 @given(st.integers(0, 10_000))
@@ -137,15 +113,6 @@ def test_poses_are_solved_as_by_walking(seed):
     for pose, ways in zip(poses, layout.open_directions, strict=True):
         inner.agent_pos, inner.agent_dir = (pose[0], pose[1]), pose[2]
         assert open_directions(env.observation(inner.gen_obs())[None]).tolist() == [ways]
-
-
-def test_turning_left_and_right_are_not_confused():
-    env = gymnasium.make("MiniGrid-Empty-5x5-v0")
-    env.reset(seed=0)
-    env.step(LEFT)
-    layout = solved_layout(env)
-    first = layout.best[layout.passed & (layout.steps == layout.steps[layout.passed].max())]
-    assert np.flatnonzero(first[0]).tolist() == [RIGHT]
 
 
 def test_what_cannot_be_solved():

@@ -7,7 +7,7 @@ from gymnasium.spaces import Discrete
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.bridges.counted_episodes import count_episodes
-from lifelore.bridges.observations import as_batch, batch_size, check_actions
+from lifelore.bridges.observations import check_actions
 from lifelore.bridges.prior_mask import PriorMask
 from lifelore.core.errors import InputError
 
@@ -98,20 +98,6 @@ def test_only_episodes_that_pay_are_counted(at_eight, counted):
     actions = prior.counts(prior.contexts)
     assert (actions.sum(axis=1) == counted).all()
     assert actions.argmax(axis=1).tolist() == ([DOWN, DOWN, RIGHT, DOWN, RIGHT, RIGHT] if counted else [])
-
-
-def test_an_episode_must_earn_more_than_the_least():
-    prior = ActionPrior(4)
-    assert count_episodes(prior, Straight(RIGHT), lake(), places, episodes=2, least=1.0) == 0
-    assert len(prior) == 0
-
-
-def test_batches_of_one_and_their_size():
-    assert as_batch(3).tolist() == [3]
-    batch = as_batch({"a": np.zeros(2), "b": 1})
-    assert {key: value.shape for key, value in batch.items()} == {"a": (1, 2), "b": (1,)}
-    assert batch_size(batch) == batch_size(np.zeros((1, 5))) == 1
-    assert batch_size(np.zeros((4, 5))) == batch_size({"a": np.zeros((4, 5))}) == 4
 
 
 def test_what_is_refused():

@@ -84,12 +84,6 @@ def test_a_bag_of_ros_1_is_read_too(tmp_path):
     assert log.points.tolist() == [[0, 3], [2, 3], [4, 3]]
 
 
-def test_poses_faster_than_ten_a_second_are_thinned(bag):
-    for time in START + np.arange(0, 2, 0.02):
-        bag.pose(time, "/p", "map", (0.0, 0.0, 0.0))
-    assert np.diff(read_bag_log(bag.write()).time).min() > 0.099
-
-
 @pytest.mark.parametrize("frame", ["odom", "", "world"])
 def test_a_frame_that_no_transform_joins_to_the_map_is_refused(bag, frame):
     bag.transform(START, "odom", "base_link", (0.0, 0.0, 0.0))
@@ -133,20 +127,6 @@ def test_bumps_count_once_while_pressed(bag):
     assert np.allclose(log.time[[word == "bump" for word in log.outcome]] - START, [4, 7], atol=0.06)
     other = read_bag_log(bag.path, bumps="/left/contact")
     assert np.allclose(other.time[[word == "bump" for word in other.outcome]] - START, [5, 8], atol=0.06)
-
-
-def test_a_bump_at_the_last_pose_of_a_goal_is_not_lost(bag):
-    for number, status in enumerate((ABORTED, SUCCEEDED)):
-        begin = START + 100 * number
-        bag.goals(begin, {number: EXECUTING})
-        for time in (1.0, 2.0, 3.0):
-            bag.pose(begin + time, "/p", "map", (time, 0.0, 0.0))
-        bag.pressed(begin + 3.2, True)
-        bag.pressed(begin + 3.3, False)
-        bag.goals(begin + 3.4, {number: status})
-    log = read_bag_log(bag.write())
-    assert log.outcome == ["", "", "bump", "", "bump", "goal"]
-    assert log.ends.tolist() == [False, False, True, False, False, True]
 
 
 def test_a_topic_that_holds_no_bumps_is_refused(bag):

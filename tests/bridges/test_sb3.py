@@ -115,15 +115,6 @@ def test_warm_up_and_exploration_are_both_the_priors(starts):
     assert (actions == seen % N).all()
 
 
-def test_without_epsilon_the_warm_up_alone_is_the_priors():
-    model = always(strictly(learning_starts=40, exploration_initial_eps=0.0, exploration_final_eps=0.0), 1)
-    model.learning_rate, model.lr_schedule = 0.0, lambda progress: 0.0
-    seen, actions = lived(model.learn(90))
-    assert (actions[:40] == seen[:40] % N).all()
-    assert (actions[40:] == 1).all()
-    assert (seen[:40] % N != 1).any()
-
-
 def test_each_environment_explores_for_itself():
     prior = ActionPrior(N)
     prior.update([0], [[False, False, True]])
@@ -135,25 +126,6 @@ def test_each_environment_explores_for_itself():
     # The base class takes one decision for all of them.
     assert len({np.mean(DQN.predict(model, np.zeros((50, 1), np.float32))[0] == 1) for _ in range(40)}) >= 2
     assert (model.predict(np.zeros((500, 1), np.float32), deterministic=True)[0] == 1).all()
-
-
-def test_many_environments_learn_together():
-    env = DummyVecEnv([Ring] * 4)
-    model = strictly(env=env, learning_starts=40, exploration_initial_eps=1.0, exploration_final_eps=1.0)
-    model.exploration_rate = 1.0
-    seen, actions = lived(model.learn(192))
-    assert len(seen) == 192
-    assert (actions == seen % N).all()
-
-
-def test_one_observation_has_one_action_as_the_base_class_says_it():
-    model = strictly()
-    for rate in (0.0, 0.5, 1.0):
-        model.exploration_rate = rate
-        for place in range(5):
-            ours, theirs = (one.predict(np.array([place], np.float32))[0] for one in (model, model.policy))
-            assert ours.shape == theirs.shape == ()
-    assert [int(model.predict(np.array([place], np.float32))[0]) for place in range(5)] == [0, 1, 2, 0, 1]
 
 
 def test_observations_may_be_dicts():
@@ -187,16 +159,6 @@ def test_contexts_are_of_what_was_before_normalising():
     assert len(set(np.round(told))) > 1
 
 
-def test_counts_added_while_learning_are_heeded():
-    prior = ActionPrior(N)
-    model = strictly(prior=prior)
-    model.exploration_rate = 1.0
-    seen = np.zeros((300, 1), np.float32)
-    assert set(model.predict(seen)[0].tolist()) == {0, 1, 2}
-    prior.update([0], [[False, True, False]])
-    assert set(model.predict(seen)[0].tolist()) == {1}
-
-
 def test_the_same_seed_learns_the_same_and_another_not():
     def learnt(seed):
         model = new_model(seed=seed, exploration_fraction=1.0, learning_starts=50)
@@ -205,15 +167,6 @@ def test_the_same_seed_learns_the_same_and_another_not():
 
     assert learnt(5) == learnt(5)
     assert learnt(5)[0] != learnt(6)[0]
-
-
-def test_without_a_seed_no_two_explore_alike():
-    prior = ActionPrior(N)
-    models = [new_model(prior=prior, seed=None) for _ in range(2)]
-    for model in models:
-        model.exploration_rate = 1.0
-    first, second = (model.predict(np.zeros((200, 1), np.float32))[0].tolist() for model in models)
-    assert first != second
 
 
 def test_what_was_saved_goes_on(tmp_path):

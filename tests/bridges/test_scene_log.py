@@ -120,10 +120,3 @@ def test_without_its_library_the_extra_is_named(monkeypatch, library, file, extr
     monkeypatch.setitem(sys.modules, library, None)
     with pytest.raises(MissingExtraError, match=rf"lifelore\[{extra}\]"):
         check_log(file)
-
-
-def test_an_empty_scene_is_logged_too(tmp_path):
-    pytest.importorskip("rosbags", reason="needs the extra ros")
-    empty = Scene(LabelledCloud(np.zeros((1, 3)), np.array([1])))
-    write_scene_log(str(tmp_path / "empty.mcap"), empty, scene_document(empty))
-    assert messages(tmp_path / "empty.mcap")["/lifelore/detections"][1].detections == []

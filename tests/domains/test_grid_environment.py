@@ -1,17 +1,17 @@
-"""Conformance of every registered environment: one definition, three ways to run it."""
+"""Environments of grids, factories and Pacman: one definition, three ways to run it."""
+
+from typing import Any
 
 import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils import seeding
-from gymnasium.utils.env_checker import check_env
 
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL, _enumerate_with
-from lifelore.domains import ENVIRONMENTS
 from lifelore.domains.factory.contexts import features
 from lifelore.domains.grid_environment import GridEnvironment
-from lifelore.domains.worlds import domain_names
+from lifelore.domains.pacman.pacman import STRATEGIES, step
 
 CASES = {
     "lifelore/AdviceMaze-v0": {"size": 12, "seed": 2},
@@ -22,10 +22,6 @@ CASES = {
     "lifelore/NoiseMaze-v0": {"size": 13, "seed": 2},
 }
 """Arguments that keep the plain enumeration short."""
-CHOSEN_FOR = {"lifelore/Golf-v0", "lifelore/Surveillance-v0", "lifelore/Telephone-v0"}
-"""Worlds a policy is chosen for, without tables of states: test_policy_worlds.py has them."""
-HIDDEN = {"lifelore/BallGame-v0", "lifelore/Pacman-v0"}
-"""Worlds whose observation is less than the state: test_ball_game_environment.py, test_pacman_environment.py."""
 EVERY = pytest.mark.parametrize("name", sorted(CASES))
 
 
@@ -40,47 +36,50 @@ def percepts(env):
     return "features", list(map(tuple, features(env.factory_task).tolist()))
 
 
-def test_every_registered_environment_and_domain_is_covered():
-    registered = {name for name in gymnasium.registry if name.startswith("lifelore/")}
-    assert registered == set(ENVIRONMENTS) == set(CASES) | CHOSEN_FOR | HIDDEN
-    grids = [env.world.name for env in map(plain, CASES) if isinstance(env, GridEnvironment)]
-    assert set(grids) == set(domain_names())
-
-
 @EVERY
-def test_gymnasium_finds_nothing_to_say(name):
-    check_env(plain(name))
-    check_env(plain(name, render_mode="rgb_array"))
-    check_env(gymnasium.make(name).unwrapped, skip_render_check=True)
-
-
-@EVERY
-def test_environment_tables_and_step_agree_bit_for_bit(name):
+def test_a_grid_or_a_factory_is_its_tables_bit_for_bit(name):
     env = plain(name)
+    entry, percept_of = percepts(env)
+    check_rollout(
+        env, env.task.domain.step, lambda state, shown, info: shown == state and info[entry] == percept_of[state]
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("strategy", STRATEGIES)
+def test_pacman_is_its_tables_bit_for_bit(strategy):
+    env: Any = gymnasium.make(
+        "lifelore.domains:lifelore/Pacman-v0", rows=5, columns=5, seed=2, strategy=strategy
+    ).unwrapped
+    shown_in = env.task.observation_of.tolist()
+    check_rollout(env, step, lambda state, shown, info: shown == shown_in[state] and info["state"] == state)
+
+
+def check_rollout(env, step, shows):
+    """2,000 steps of the environment, its tables and its step agree, and each observation `shows` the state."""
     task, tables = env.task, env.task.tables()
     ends = (tables.event & TERMINAL > 0).mean(axis=(1, 2))
     near_the_end = np.flatnonzero((ends > 0) & (ends < 1))
-    entry, percept_of = percepts(env)
     uniforms, _ = seeding.np_random(11)
     actions = np.random.default_rng(5)
     seen = {"terminal": 0, "collision": 0}
-    state, info = env.reset(seed=11)
-    assert state == tables.starts[int(uniforms.random() * len(tables.starts))]
+    observation, info = env.reset(seed=11)
+    state = tables.starts[int(uniforms.random() * len(tables.starts))]
     for _ in range(2000):
-        assert info[entry] == percept_of[state]
-        action, u = int(actions.integers(task.domain.n_actions)), uniforms.random()
+        assert shows(state, observation, info)
+        action, u = int(actions.integers(env.action_space.n)), uniforms.random()
         outcome = int(np.searchsorted(tables.outcome_cum, u, side="right"))
         index = (state, action, outcome)
-        row = (int(tables.next_state[index]), float(tables.reward[index]), int(tables.event[index]))
-        assert task.domain.step(task.params, state, action, u) == row
-        state, reward, terminated, truncated, info = env.step(action)
-        event = TERMINAL * terminated | COLLISION * info["collision"]
-        assert (state, reward, event) == row
-        assert (type(state), type(reward), truncated) == (int, float, False)
+        state, *row = int(tables.next_state[index]), float(tables.reward[index]), int(tables.event[index])
+        assert step(task.params, index[0], action, u) == (state, *row)
+        observation, reward, terminated, truncated, info = env.step(action)
+        assert [reward, TERMINAL * terminated | COLLISION * info["collision"]] == row
+        assert (type(observation), type(reward), truncated) == (int, float, False)
         seen["terminal"] += terminated
         seen["collision"] += info["collision"]
         if terminated or actions.random() < 0.05:
-            state, info = env.reset(options={"state": actions.choice(near_the_end)})
+            state = int(actions.choice(near_the_end))
+            observation, info = env.reset(options={"state": state})
             uniforms.random()
     assert min(seen.values()) > 10
 
@@ -94,33 +93,6 @@ def test_the_compiled_table_equals_the_plain_enumeration(name):
         assert np.array_equal(fast, slow)
 
 
-@EVERY
-def test_an_episode_is_cut_at_its_limit(name):
-    env = gymnasium.make(name, **CASES[name])
-    limit = ENVIRONMENTS[name][1]
-    env.reset(seed=0)
-    # Against one wall for ever: never to the end.
-    state, action, _ = np.argwhere(env.unwrapped.task.tables().event == COLLISION)[0].tolist()
-    env.reset(options={"state": state})
-    outcomes = [env.step(action)[2:4] for _ in range(limit)]
-    assert outcomes[-1] == (False, True)
-    assert not any(truncated for _, truncated in outcomes[:-1])
-
-
-@EVERY
-def test_pictures(name):
-    env = plain(name, render_mode="rgb_array")
-    here = env.task.starts[0]
-    there = next(s for s in env.task.tables().next_state[here, :, 0] if s != here)
-    env.reset(options={"state": here})
-    first = env.render()
-    assert first.dtype == np.uint8
-    assert first.shape[2] == 3
-    env.reset(options={"state": there})
-    assert (env.render() != first).any()
-    assert plain(name).render() is None
-
-
 def test_the_goal_may_be_a_state_or_a_cell():
     env = plain("lifelore/Lattice-v0", goal=7)
     cell = tuple(env.world.cells[7].tolist())
@@ -131,11 +103,3 @@ def test_the_goal_may_be_a_state_or_a_cell():
     with pytest.raises(InputError, match="goal must be a state"):
         plain("lifelore/Lattice-v0", goal=10_000)
     assert len({plain("lifelore/Lattice-v0", seed=seed).task.goal for seed in range(6)}) > 1
-
-
-@EVERY
-def test_docstrings_have_gymnasiums_headings(name):
-    headings = ["Action Space", "Observation Space", "Rewards", "Starting State", "Episode End", "Arguments"]
-    documented = type(plain(name)).__doc__
-    places = [documented.index(f"## {heading}") for heading in headings]
-    assert places == sorted(places)

@@ -36,13 +36,6 @@ def test_a_late_type_arrives_on_time_and_no_sooner():
     assert "c" in drawn[21:]
 
 
-def test_usual_types_change_on_time():
-    jobs = TaskStream(TYPES, n_contexts=4, changes=(50,))
-    before, after = ([jobs.usual_type(c, k) for c in range(4)] for k in (49, 50))
-    assert [jobs.usual_type(c, 0) for c in range(4)] == before
-    assert before != after
-
-
 @pytest.mark.parametrize(
     "wrong",
     [
@@ -61,12 +54,12 @@ def test_wrong_settings_are_refused(wrong):
 
 def test_the_type_changes_between_episodes_as_often_as_stated():
     jobs, still = TaskStream(TYPES, seed=3, loyalty=0.5, change=0.2), TaskStream(TYPES, seed=3, loyalty=0.5)
-    rows = [[jobs.draw(k, episode=e).hidden_type for e in range(6)] for k in range(1000)]
-    assert [row[0] for row in rows] == [still.draw(k).hidden_type for k in range(1000)]
+    rows = [[jobs.draw(k, episode=e).hidden_type for e in range(6)] for k in range(300)]
+    assert [row[0] for row in rows] == [still.draw(k).hidden_type for k in range(300)]
     assert len({still.draw(7, episode=e) for e in range(6)}) == 1
     changed = [a != b for row in rows for a, b in itertools.pairwise(row)]
-    # Four standard errors of 5000 draws are 4 * sqrt(0.2 * 0.8 / 5000) = 0.023.
-    assert np.mean(changed) == pytest.approx(0.2, abs=0.023)
+    # Four standard errors of 1500 draws are 4 * sqrt(0.2 * 0.8 / 1500) = 0.041.
+    assert np.mean(changed) == pytest.approx(0.2, abs=0.041)
     # From a type that is not usual: 0.5 + 0.125 usual, 0.125 each of two others.
     following = [
         (jobs.usual_type(jobs.draw(k).context, k), b)
@@ -76,11 +69,3 @@ def test_the_type_changes_between_episodes_as_often_as_stated():
     ]
     usual = np.mean([b == name for name, b in following])
     assert usual == pytest.approx(0.625 / 0.875, abs=4 * 0.5 / len(following) ** 0.5)
-
-
-def test_a_wholly_loyal_context_goes_to_any_other_type():
-    jobs = TaskStream(TYPES, loyalty=1.0, change=1.0, n_contexts=1)
-    found = [[jobs.draw(k, episode=e).hidden_type for e in range(4)] for k in range(60)]
-    usual = jobs.usual_type(0, 0)
-    assert {row[0] for row in found} == {row[2] for row in found} == {usual}
-    assert {row[1] for row in found} == set(TYPES) - {usual}

@@ -1,10 +1,8 @@
 """Worlds by name."""
 
-import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.domains.worlds import WorldSettings, domain_names, make_world, world_from_settings
 
 
@@ -28,25 +26,6 @@ def test_rewards_discount_and_seed_are_options_everywhere(name):
     world = world_from_settings(settings)
     assert (world.discount, world.goal_reward, world.wall_reward) == (0.5, 1.0, -2.0)
     assert world.fingerprint == world_from_settings(settings).fingerprint
-
-
-@pytest.mark.parametrize("name", ["building", "noise", "advice"])
-def test_seeds_draw_different_worlds(name):
-    assert make_world(name, seed=1).fingerprint != make_world(name, seed=2).fingerprint
-
-
-def test_a_building_from_a_map(tmp_path):
-    write_occupancy_map(tmp_path / "m.yaml", OccupancyMap(np.zeros((20, 30), np.uint8), 0.1, (1.0, 2.0, 0.0)))
-    world = make_world("building", map=tmp_path / "m.yaml", cell=1.0, robot_radius=0.05)
-    assert (world.n_states, world.frame.cell, world.frame.origin) == (6, 1.0, (1.0, 2.0, 0.0))
-    thinned = make_world("building", map=tmp_path / "m.yaml", cell=0.8, robot_radius=0.05, min_free=0.6)
-    # 2 m by 3 m in cells of 0.8 m: the upper and right strips of 0.4 m and 0.6 m cover 1/2 and 3/4 of a cell.
-    assert thinned.n_states == 2 * 4
-
-
-def test_size_and_density():
-    assert make_world("lattice", size=7).n_states == 21
-    assert make_world("noise", size=7, density=0.24).n_states == 19
 
 
 def test_an_unknown_domain_lists_the_known():

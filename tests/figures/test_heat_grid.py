@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.figures.heat_grid import draw_estimate_grid, draw_heat_grid, frame_cells, name_groups
+from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.style import new_figure
 
 
@@ -28,57 +28,6 @@ def test_texts_and_bold():
 def test_colour_is_full_at_the_spread_and_beyond():
     shown = drawn([[0.0, 1.0, 2.0, 9.0]], neutral=1.0, spread=1.0).images[0].get_array()
     assert shown.tolist() == [[-1, 0, 1, 1]]
-
-
-def test_half_is_as_far_as_double_in_ratios():
-    shown = drawn([[0.5, 1.0, 2.0, 8.0]], neutral=1.0, spread=4.0, ratio=True).images[0].get_array()
-    np.testing.assert_allclose(shown, [[-0.5, 0, 0.5, 1]])
-
-
-def test_good_low_turns_the_colours_round():
-    high, low = (drawn([[0.0, 2.0]], neutral=1.0, spread=1.0, good=g).images[0] for g in ("high", "low"))
-    assert high.cmap(0.0) == low.cmap(1.0) != high.cmap(1.0)
-
-
-def test_frame():
-    (frame,) = drawn([[1.0, 1.0], [1.0, 1.0]], neutral=1.0, spread=1.0, outlined=(1, 0)).patches
-    assert (frame.get_xy(), frame.get_width(), frame.get_height()) == ((-0.5, 0.5), 1, 1)
-
-
-def test_a_frame_without_a_row_is_the_whole_column():
-    (frame,) = drawn([[1.0, 1.0], [1.0, 1.0]], neutral=1.0, spread=1.0, outlined=(None, 1)).patches
-    assert (frame.get_xy(), frame.get_width(), frame.get_height()) == ((0.5, -0.5), 1, 2)
-
-
-def test_a_frame_around_a_block_of_cells():
-    axes = drawn([[1.0, 1.0, 1.0], [1.0, 1.0, 1.0]], neutral=1.0, spread=1.0)
-    frame_cells(axes, (0, 1), (2, 2))
-    (frame,) = axes.patches
-    assert (frame.get_xy(), frame.get_width(), frame.get_height()) == ((0.5, -0.5), 2, 2)
-
-
-def test_groups_are_named_at_their_middle_and_a_line_stands_between_them():
-    axes = drawn([[np.nan] * 3] * 4, neutral=1.0, spread=1.0)
-    name_groups(axes, [("first", 3), ("last", 1)], 20)
-    name_groups(axes, [("a", 1), ("b", 2)], 5, side="top")
-    assert [(t.get_text(), t.xy) for t in axes.texts] == [
-        ("first", (0, 1.0)), ("last", (0, 3.0)), ("a", (0.0, 1)), ("b", (1.5, 1)),
-    ]  # fmt: skip
-    assert [(list(line.get_xdata()), list(line.get_ydata())) for line in axes.lines] == [
-        ([0, 1], [2.5, 2.5]), ([0.5, 0.5], [0, 1]),
-    ]  # fmt: skip
-
-
-def test_estimates_are_scaled_and_bold_where_their_interval_excludes_the_neutral_value():
-    numbers = [[{"value": -0.2, "ci95": [-0.3, -0.1]}, {"value": 0.1, "ci95": [-0.1, 0.3]}]]
-    numbers += [
-        [{"value": 0.4, "ci95": None}, None],
-        [{"value": None, "ci95": None}, {"value": 1, "ci95": [1, 1]}],
-    ]
-    axes = new_figure(3, 2).subplots()
-    draw_estimate_grid(axes, numbers, ["a", "b", "c"], ["d", "e"], neutral=0.0, scale=100.0, spread=50.0)
-    found = [(text.get_text(), text.get_fontweight()) for text in axes.texts]
-    assert found == [("−20.0", "bold"), ("10.0", "normal"), ("40.0", "normal"), ("100.0", "bold")]
 
 
 def test_shapes_must_agree():

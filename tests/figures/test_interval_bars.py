@@ -19,8 +19,3 @@ def test_groups_stand_side_by_side_and_none_leaves_its_place_empty():
     middles = [bar.get_x() + bar.get_width() / 2 for bar in axes.patches]
     assert middles == pytest.approx([-0.2, 0.8, 0.2])
     assert [list(line.get_ydata()) for line in axes.lines] == [[0.5, 2.0]]
-
-
-def test_words_are_those_of_the_number_or_of_the_function():
-    axes = drawn({"a": [{"value": 0.25, "words": "a quarter"}, {"value": 0.5}]}, words="{:.0%}".format)
-    assert [text.get_text() for text in axes.texts] == ["a quarter", "50%"]

@@ -20,18 +20,8 @@ def test_labels_are_apart_and_inside(n, seed):
     assert (at <= [400, 300] - sizes / 2).all()
 
 
-def test_a_lone_label_stays_at_its_anchor_unless_a_mark_is_there():
-    assert place_labels([[50, 50]], [[10, 10]], (100, 100)).tolist() == [[50, 50]]
-    moved = place_labels([[50, 50]], [[10, 10]], (100, 100), marks=[[50, 50]])[0]
-    assert 5 < np.linalg.norm(moved - 50) < 25
-
-
 def test_a_label_is_put_on_its_own_object():
     grounds = np.full((100, 100), -1)
     grounds[80:95, 80:95] = 7
     x, y = place_labels([[30, 30]], [[10, 10]], (100, 100), grounds=grounds, owners=[7])[0].astype(int)
     assert grounds[y, x] == 7
-
-
-def test_no_labels():
-    assert place_labels([], [], (10, 10)).shape == (0, 2)

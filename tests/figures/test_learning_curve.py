@@ -25,12 +25,6 @@ def test_curve_and_interval(axes):
     assert (edge[:, 1].min(), edge[:, 1].max()) == (-1, 6)
 
 
-def test_curve_without_interval(axes):
-    draw_curve(axes, [0, 1], [0, 1], None, "scratch")
-    assert not axes.collections
-    assert axes.lines[0].get_label() == "scratch"
-
-
 def test_shapes_must_agree(axes):
     with pytest.raises(InputError, match="x and mean must agree in shape"):
         draw_curve(axes, [0, 1], [0, 1, 2], None, "lore")

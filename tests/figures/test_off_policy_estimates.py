@@ -1,6 +1,6 @@
 """The picture of `reuse evaluate`: targets in order, the log's mean, and documents without an estimate."""
 
-from lifelore.figures.off_policy_estimates import MOST_TARGETS, draw_off_policy_estimates
+from lifelore.figures.off_policy_estimates import draw_off_policy_estimates
 
 
 def document(values):
@@ -22,12 +22,6 @@ def test_the_best_target_is_on_top_and_none_without_an_estimate_is_drawn():
     low, high = axes.get_ylim()
     assert low > high
     assert axes.get_legend_handles_labels()[1] == ["the log", "ips", "doubly-robust"]
-
-
-def test_of_many_targets_the_best_are_drawn():
-    (axes,) = draw_off_policy_estimates(document([number / 100 for number in range(80)])).axes
-    assert len(axes.get_yticks()) == MOST_TARGETS
-    assert axes.get_yticklabels()[0].get_text() == "policy 79"
 
 
 def test_without_any_estimate_the_mean_of_the_log_is_drawn():

@@ -3,21 +3,15 @@
 import numpy as np
 import pytest
 
-from docs.pictures.figure_graph_models import draw_type_model
 from docs.pictures.figure_performance_curves import draw_performance_curves
 from docs.pictures.figure_reserve_map import draw_reserve_maps
-from lifelore.core.errors import NotFoundError
 from lifelore.domains.golf.golf import CLUBS, EDGES, HOLES, Golf
 from lifelore.domains.surveillance.surveillance import BASE, SIDE, Surveillance
 from lifelore.domains.telephone.telephone import ANGRY, HUNG_UP, OPEN, STATES, SUCCESS, reward
 from lifelore.figures.style import new_figure
 from reproduction.chapter4.c4_03_telephone_signals.call_graph import EDGES as CALL_EDGES
 from reproduction.chapter4.c4_03_telephone_signals.call_graph import PLACES, draw_call_graph
-from reproduction.chapter4.c4_03_telephone_signals.run import SIGNAL_OF_PATH
 from reproduction.chapter4.golf.category_bars import draw_category_bars
-from reproduction.chapter4.reuse.looks import look_of
-from reproduction.chapter4.reuse.rules import RULES
-from reproduction.chapter4.surveillance.peers import PEERS
 
 
 def test_category_bars_show_the_tables():
@@ -61,17 +55,3 @@ def test_performance_curves_mark_what_is_known_and_what_is_asked():
     assert np.concatenate(known).tolist() == pytest.approx([2, 8, 8, 2])
     asked = [float(line.get_ydata()[0]) for line in points if len(line.get_xdata()) == 1]
     assert asked == pytest.approx([5, 5])
-
-
-def test_type_model_has_five_nodes():
-    figure = draw_type_model()
-    labels = [text.get_text() for axes in figure.axes for text in axes.texts]
-    assert labels.count("$G_0$") == 2
-    assert "$\\mu_{\\tau}$" in labels
-
-
-def test_every_method_has_a_look_of_its_own():
-    for methods in (RULES, PEERS, SIGNAL_OF_PATH):
-        assert len({str(look_of(name)) for name in methods}) == len(methods)
-    with pytest.raises(NotFoundError, match="no look for 'magic'"):
-        look_of("magic")

@@ -23,19 +23,6 @@ def test_points_lie_where_they_are_given_and_the_legend_names_the_groups():
     assert len(axes.lines) == 2
 
 
-def test_each_point_may_have_a_marker_of_its_own():
-    axes = scatter({"a": [[0, 1], [2, 3], [4, 5]]}, markers={"a": ["o", "x", "o"]}, through_zero=False)
-    clouds = [np.asarray(dots.get_offsets()).tolist() for dots in axes.collections]
-    assert [at for at in clouds if at] == [[[0, 1], [4, 5]], [[2, 3]]]
-    assert axes.get_legend() is None
-    assert not axes.lines
-
-
-def test_many_points_fade():
-    few, many = (scatter({"a": np.zeros((n, 2))}).collections[0].get_alpha() for n in (4, 900))
-    assert (few, many) == (0.85, pytest.approx(0.4))
-
-
 @pytest.mark.parametrize(("places", "markers"), [(np.zeros((2, 3)), "o"), (np.zeros((2, 2)), ["o"])])
 def test_places_and_markers_must_correspond(places, markers):
     with pytest.raises(InputError, match=r"places of 'a' must be \(n, 2\) and its markers n"):

@@ -9,7 +9,7 @@ from PIL import Image
 
 from lifelore.core.errors import NotFoundError, StoreError
 from lifelore.figures import style
-from lifelore.figures.style import COLOURS, colour_of, house_style, new_figure, save_figure
+from lifelore.figures.style import colour_of, house_style, new_figure, save_figure
 
 
 def test_style_is_put_back():
@@ -17,14 +17,6 @@ def test_style_is_put_back():
     with house_style():
         assert matplotlib.rcParams["axes.spines.top"] is False
     assert dict(matplotlib.rcParams) == before
-
-
-def test_colours_that_stand_together_differ():
-    agents = ("lore", "prior", "model", "scratch", "undirected", "rmax", "frontier")
-    learners = ("q-learning", "eps-QSAP", "eps-QSAP, ties by prior", "eps-QPAP")
-    for group in (agents, learners):
-        assert len({colour_of(name) for name in group}) == len(group)
-    assert all(colour.startswith("#") and len(colour) == 7 for colour in COLOURS.values())
 
 
 def test_a_name_without_a_colour_says_where_to_give_it_one():

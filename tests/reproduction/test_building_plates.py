@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from docs.pictures.buildings import plates, walk, ward
+from docs.pictures.buildings import plates, walk
 from docs.pictures.figure_advice_system import BLOCKS
 
 ROOT = Path(__file__).parents[2]
@@ -22,15 +22,6 @@ def test_every_picture_is_drawn_and_shown():
         assert (ROOT / "docs" / "pictures" / f"{name}.png").stat().st_size < 300_000
     words = [text.get_text() for text in drawn["advice_system"].axes[0].texts]
     assert {name for _, _, name, _, _ in BLOCKS.values()} < set(words)
-
-
-def test_the_robots_way_is_one_of_single_steps_and_people_stand_on_the_floor():
-    plan = ward()
-    assert np.abs(np.diff(plan["way"], axis=0)).sum(axis=1).tolist() == [1] * (len(plan["way"]) - 1)
-    floor = {tuple(cell) for cell in plan["cells"].tolist()}
-    stand = [tuple(place) for places in plan["people"].values() for place in places.tolist()]
-    assert set(stand) <= floor
-    assert len(set(stand)) == len(stand)
 
 
 def test_the_walk_is_advised_and_reaches_its_goal():

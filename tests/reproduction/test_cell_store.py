@@ -48,9 +48,3 @@ def test_a_disk_that_refuses_is_one_line(tmp_path):
         store(tmp_path / "cells").put(CELL, {}, 0.0)
     with pytest.raises(StoreError, match="cannot write"):
         write_atomically(tmp_path / "cells" / "x.json", "{}")
-
-
-def test_write_atomically_replaces(tmp_path):
-    write_atomically(tmp_path / "a" / "x", "one")
-    write_atomically(tmp_path / "a" / "x", "two")
-    assert [(p.name, p.read_text(encoding="utf-8")) for p in (tmp_path / "a").iterdir()] == [("x", "two")]

@@ -5,7 +5,7 @@ import math
 import pytest
 from scipy.stats import binomtest
 
-from reproduction.engine.estimates import UNMEASURED, exact_share, exact_value, mean_or_unmeasured
+from reproduction.engine.estimates import UNMEASURED, exact_share, mean_or_unmeasured
 
 
 def test_all_and_none_have_closed_forms():
@@ -22,18 +22,9 @@ def test_interval_is_scipys(right, n):
     assert (found.value, found.n) == (right / n, n)
 
 
-def test_median_is_that_of_the_answers():
-    assert [exact_share([True] * k + [False] * (4 - k)).median for k in (1, 2, 3)] == [0.0, 0.5, 1.0]
-
-
 def test_nothing_measured_says_so():
     assert exact_share([]) is UNMEASURED
     assert mean_or_unmeasured(iter(())) is UNMEASURED
     assert math.isnan(UNMEASURED.value)
     assert UNMEASURED.n == 0
     assert mean_or_unmeasured([1.0, 2.0, 6.0]).value == 3.0
-
-
-def test_an_exact_value_has_no_interval():
-    found = exact_value(3, 5)
-    assert found.to_dict() == {"value": 3.0, "median": 3.0, "ci95": None, "n": 5}

@@ -1,24 +1,12 @@
 """What a result says it was made on."""
 
-import re
-
 import pytest
 
 from reproduction.engine.provenance import provenance, versions
 from reproduction.engine.registry import claim_of
-from reproduction.engine.source_key import foreign_modules, source_key
+from reproduction.engine.source_key import foreign_modules
 
 MODULE = claim_of("C3.1").run_cell.__module__
-
-
-def test_code_and_machine():
-    made = provenance(MODULE)
-    assert re.fullmatch(r"\d{4}-\d\d-\d\d", made["date"])
-    assert made["source"] == source_key(MODULE)
-    assert made["commit"] is None or re.fullmatch(r"[0-9a-f]{40}", made["commit"])
-    assert made["cores"] >= 1
-    assert made["processor"]
-    assert made["data"] == {}
 
 
 def test_every_library_that_the_code_imports_has_a_version():

@@ -10,7 +10,7 @@ from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.metrics import mean_estimate
 from reproduction.engine import reproduce as module
 from reproduction.engine.provenance import versions
-from reproduction.engine.reproduce import reproduce, rounded
+from reproduction.engine.reproduce import reproduce
 from tests.reproduction.toy_claim import toy_claim
 
 RAN = []
@@ -85,15 +85,6 @@ def test_a_cell_that_fails_stops_the_run_with_its_own_error(toy, tmp_path):
     assert not (tmp_path / "C3.1" / "result.json").exists()
 
 
-def test_progress_counts_up_to_all(toy, tmp_path):
-    calls = []
-    reproduce(["C3.1"], out=tmp_path, progress=lambda *call: calls.append(call))
-    assert calls == [(done, 6, "C3.1") for done in range(7)]
-    calls.clear()
-    reproduce(["C3.1"], out=tmp_path, progress=lambda *call: calls.append(call))
-    assert calls == [(6, 6, "C3.1")]
-
-
 def test_result_by_hand(toy, tmp_path):
     result = reproduce(["C3.1"], out=tmp_path, overrides={"n": 3})[0]
     assert result["measured"]["x"]["value"] == 1.33333  # mean of 0, 1, 2 and a third, to six digits
@@ -126,12 +117,6 @@ def test_what_is_refused_before_anything_runs(tmp_path):
     with pytest.raises(InputError, match="has no setting 'runs'"):
         reproduce(["C3.1"], out=tmp_path, overrides={"runs": 1})
     assert not list(Path(tmp_path).iterdir())
-
-
-def test_rounded():
-    data = {"a": [1 / 3, float("nan"), float("inf")], "b": (True, 7, "x", None), "c": 123456789.0}
-    assert rounded(data) == {"a": [0.333333, None, None], "b": [True, 7, "x", None], "c": 123457000.0}
-    json.dumps(rounded(data), allow_nan=False)
 
 
 def test_a_quick_run_never_takes_the_place_of_evidence(toy, tmp_path):

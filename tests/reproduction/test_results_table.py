@@ -33,13 +33,6 @@ def test_estimates_are_those_of_the_values():
     assert TABLE.ratio("first", one, other) == ratio_estimate(first, second)
 
 
-def test_nested_records_take_the_keys_of_their_result():
-    results = [{"run": r, "found": [{"method": "a", "x": r}, {"method": "b", "x": -r}]} for r in range(3)]
-    table = ResultsTable.nested(results, "found", keys=("method",), outer=("run",))
-    assert table.values("x", method="b").tolist() == [0, -1, -2]
-    assert table.values("x", run=2).tolist() == [2, -2]
-
-
 def test_curve_has_a_t_interval_worked_by_hand():
     found = curve_of([[0.0, 1.0], [2.0, 1.0]])
     assert found["mean"] == [1.0, 1.0]

@@ -49,18 +49,6 @@ def test_a_process_that_dies_is_one_line_and_what_is_finished_is_kept(tmp_path):
     assert first[0] == ended[-1] >= 1
 
 
-def test_a_run_that_is_stopped_goes_on(tmp_path):
-    def stop(done: int, total: int, label: str) -> None:
-        if done == 2:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        reproduce(["C3.1"], "full", SMALL, jobs=2, out=tmp_path, progress=stop)
-    calls = []
-    reproduce(["C3.1"], "full", SMALL, jobs=2, out=tmp_path, progress=lambda *call: calls.append(call[0]))
-    assert calls[0] == 2
-
-
 def test_a_worker_with_other_code_refuses():
     claim = claim_of("C3.1")
     settings = claim.settings("quick", SMALL)

@@ -4,53 +4,37 @@ import shutil
 
 import pytest
 
-from reproduction.engine import source_key as module
 from reproduction.engine.source_key import ROOTS, source_key
 
 LATTICE = "reproduction.chapter3.c3_02_lattice_prior.run"
 SUBSTRUCTURE = "reproduction.chapter2.c2_09_substructure.run"
 
 
-def test_closure_reaches_through_imports_and_leaves_figures_out():
-    found = module._closure(LATTICE)
-    assert {
-        "lifelore.core.learning.q_learning",
-        "lifelore.core.compiled.random_state",
-        "lifelore.core.compiled.jit",
-    } <= found
-    assert "reproduction.chapter3.learning.grid_tasks" in found
-    assert not any(name.startswith("lifelore.figures") for name in found)
+MODEL = "perception/relations/models/tabletop.npz"
 
 
-@pytest.fixture
-def copy(tmp_path, monkeypatch):
-    shutil.copytree(ROOTS["lifelore"], tmp_path / "lifelore", ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setitem(ROOTS, "lifelore", tmp_path / "lifelore")
-    return tmp_path / "lifelore"
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("copy") / "lifelore"
+    return shutil.copytree(ROOTS["lifelore"], folder, ignore=shutil.ignore_patterns("__pycache__"))
 
 
 @pytest.mark.parametrize(
-    ("changed", "matters"),
+    ("name", "changed", "matters"),
     [
-        ("core/compiled/random_state.py", True),
-        ("domains/grids/grid_world.py", True),
-        ("figures/style.py", False),
-        ("core/errors.py", True),
+        (LATTICE, "core/compiled/random_state.py", True),
+        (LATTICE, "domains/grids/grid_world.py", True),
+        (LATTICE, "figures/style.py", False),
+        (LATTICE, "core/errors.py", True),
+        (LATTICE, MODEL, False),
+        (SUBSTRUCTURE, MODEL, True),
     ],
 )
-def test_the_key_changes_with_the_code_it_rests_on(copy, changed, matters):
-    fresh = source_key.__wrapped__
-    before = fresh(LATTICE)
-    assert before == source_key(LATTICE)
-    with (copy / changed).open("a", encoding="utf-8") as file:
-        file.write("# changed\n")
-    assert (fresh(LATTICE) != before) is matters
-
-
-@pytest.mark.parametrize(("name", "matters"), [(LATTICE, False), (SUBSTRUCTURE, True)])
-def test_the_key_changes_with_the_trained_model_it_rests_on(copy, name, matters):
-    fresh = source_key.__wrapped__
-    before = fresh(name)
-    with (copy / "perception" / "relations" / "models" / "tabletop.npz").open("ab") as file:
-        file.write(b"more")
+def test_the_key_changes_with_the_code_and_the_models_it_rests_on(copy, monkeypatch, name, changed, matters):
+    before = source_key(name)
+    fresh, content = source_key.__wrapped__, (copy / changed).read_bytes()
+    monkeypatch.setitem(ROOTS, "lifelore", copy)
+    assert fresh(name) == before
+    (copy / changed).write_bytes(content + b"# changed\n")
     assert (fresh(name) != before) is matters
+    (copy / changed).write_bytes(content)

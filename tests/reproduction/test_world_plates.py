@@ -1,11 +1,9 @@
 """The worlds as the thesis draws them: what is on each plate, and the committed picture's titles."""
 
 import numpy as np
-import pytest
 
 from docs.pictures.figure_world_plates import draw_world_plates
 from docs.pictures.worlds import pictures, walked
-from lifelore.core.errors import InputError
 from lifelore.domains.grids.grid_picture import AGENT_COLOUR, GOAL_COLOUR
 from lifelore.figures.style import save_figure
 
@@ -35,16 +33,3 @@ def test_every_world_of_the_thesis_has_its_plate(tmp_path):
         *(title for title, _ in plates), "a prior from three walks (3.18)"
     ]  # fmt: skip
     assert save_figure(figure, tmp_path / "worlds.png").stat().st_size > 10_000
-
-
-def test_the_prior_of_three_walks():
-    probs = walked()["probs"]
-    assert probs[4] == pytest.approx([2 / 3, 0, 1 / 3, 0])
-    assert probs[7].tolist() == [1, 0, 0, 0]
-    assert probs[3].tolist() == [0, 0, 1, 0]
-    assert np.flatnonzero(probs.any(axis=1)).tolist() == [3, 4, 7]  # at a walk's end nothing was done
-
-
-def test_nothing_is_no_picture():
-    with pytest.raises(InputError, match="plates must be at least one"):
-        draw_world_plates([])

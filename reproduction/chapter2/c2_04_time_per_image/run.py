@@ -14,14 +14,14 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scenes.tabletop_pairs import MIX
 from reproduction.chapter2.scoring.perception_stages import timed_stages
-from reproduction.engine.estimates import UNMEASURED, quantile_estimate
+from reproduction.engine.estimates import mean_or_unmeasured, quantile_estimate
 from reproduction.engine.results_table import ResultsTable
 
 KINDS = {"stereo": "stereo", "dense": "stereo, made dense"}
@@ -80,7 +80,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     for kind in KINDS:
         own = table.select(kind=kind).records
         for key in ("seconds", "points"):
-            found[f"{key}_{kind}"] = mean_estimate([image[key] for image in own]) if own else UNMEASURED
+            found[f"{key}_{kind}"] = mean_or_unmeasured(image[key] for image in own)
     return found | {"seconds_stereo_95_percent": quantile_estimate(table.values("seconds", kind="stereo"), 0.95)}
 
 

@@ -17,7 +17,6 @@ from lifelore.perception.scene_perception import perceived_scene
 from reproduction.chapter2.scenes.perturbation import only
 from reproduction.chapter2.scenes.real_scenes import real_scenes
 
-NEAR = (ON, BOTH, ADJACENT, NONE)
 RELATED = (ON, BOTH, ADJACENT)
 _model = cache(shipped_model)
 

@@ -13,24 +13,23 @@ correspond. Two readings of "the same network":
 Contact points between unrelated neighbours (*none*) count like others; `Scene.without_unrelated_contacts` leaves
 them out.
 
-Searched by clingo with a bound on conflicts: the problem is NP-complete.
+Searched by clingo with a bound on conflicts.
 
 Thesis: §2.5, Fig. 2.10.
 """
 
-from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
 import networkx as nx
 
-from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.holes import Node, contact_graph
 
 MOST_CONFLICTS = 20_000
+"""Bound on the solver's work: the problem is NP-complete."""
 Reading = Literal["edges", "connected"]
 
 RULES = """
@@ -48,8 +47,7 @@ class Substructure:
     Parameters
     ----------
     found : bool
-    decided : bool
-        False when the solver's bound ran out before an answer; `found` is then False.
+        False too where the solver meets its bound before an answer.
     objects : dict of int to int
         The first scene's objects and those of the second that play their parts; empty if not found.
     nodes : dict of (object, node) to (object, node)
@@ -57,14 +55,11 @@ class Substructure:
     """
 
     found: bool
-    decided: bool
     objects: dict[int, int]
     nodes: dict[Node, Node]
 
 
-def find_substructure(
-    part: Scene, whole: Scene, *, networks: Reading = "edges", most_conflicts: int = MOST_CONFLICTS
-) -> Substructure:
+def find_substructure(part: Scene, whole: Scene, *, networks: Reading = "edges") -> Substructure:
     """A place in `whole` where the skeleton of `part` is found; the first in a fixed order of search.
 
     Parameters
@@ -72,25 +67,12 @@ def find_substructure(
     part, whole : Scene
     networks : {"edges", "connected"}
         How an object's network must agree; see the head of this module.
-    most_conflicts : int
-        Bound on the solver's work, ≥ 1.
-
-    Raises
-    ------
-    InputError
-        `networks` is not one of the two, or the bound is below 1.
     """
-    if networks not in ("edges", "connected") or most_conflicts < 1:
-        raise InputError(
-            f"networks must be edges or connected and most_conflicts ≥ 1, got {networks!r}, {most_conflicts}"
-        )
     small, large = (skeleton(scene, with_edges=networks == "edges") for scene in (part, whole))
-    if not _may_fit(small, large):
-        return Substructure(False, True, {}, {})
-    matched, decided = _match(small, large, most_conflicts)
+    matched = _match(small, large)
     objects = {x[0]: y[0] for x, y in matched.items() if len(x) == 1}
     nodes = {x: y for x, y in matched.items() if len(x) == 2}
-    return Substructure(bool(matched) or not len(small), decided, objects, nodes)
+    return Substructure(bool(matched) or not len(small), objects, nodes)
 
 
 def skeleton(scene: Scene, *, with_edges: bool = True) -> nx.Graph:
@@ -111,39 +93,23 @@ def skeleton(scene: Scene, *, with_edges: bool = True) -> nx.Graph:
     return graph
 
 
-def _may_fit(small: nx.Graph, large: nx.Graph) -> bool:
-    """Whether there are enough nodes and edges of every kind: cheap, and spares the solver counting arguments."""
-    for view in (_node_kinds, _edge_kinds):
-        need, have = view(small), view(large)
-        if any(have[kind] < number for kind, number in need.items()):
-            return False
-    return True
-
-
-def _node_kinds(graph: nx.Graph) -> Counter:
-    return Counter(kind for _, kind in graph.nodes(data="kind"))
-
-
-def _edge_kinds(graph: nx.Graph) -> Counter:
-    return Counter(kind for *_, kind in graph.edges(data="kind"))
-
-
-def _match(small: nx.Graph, large: nx.Graph, most_conflicts: int) -> tuple[dict[tuple, tuple], bool]:
+def _match(small: nx.Graph, large: nx.Graph) -> dict[tuple, tuple]:
+    """The nodes of the second that play the parts of the first; empty without an answer."""
     import clingo
 
     parts, hosts = sorted(small), sorted(large)
     program = (
         "\n".join(_facts(small, parts, "part", "join")) + "\n" + "\n".join(_facts(large, hosts, "host", "link"))
     )
-    control = clingo.Control(["--warn=none", f"--solve-limit={most_conflicts}"])
+    control = clingo.Control(["--warn=none", f"--solve-limit={MOST_CONFLICTS}"])
     control.add("base", [], RULES + program)
     control.ground([("base", [])])
     with control.solve(yield_=True) as handle:
         model = handle.model()
         if model is None:
-            return {}, handle.get().unsatisfiable is True
+            return {}
         pairs = sorted(tuple(end.number for end in symbol.arguments) for symbol in model.symbols(shown=True))
-        return {parts[x]: hosts[y] for x, y in pairs}, True
+        return {parts[x]: hosts[y] for x, y in pairs}
 
 
 def _facts(graph: nx.Graph, order: list, node_name: str, edge_name: str) -> Iterable[str]:

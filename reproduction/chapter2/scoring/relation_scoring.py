@@ -1,7 +1,7 @@
-"""Accuracy of perceived relations: exact with direction, by component and by class, each with an interval.
+"""Accuracy of perceived relations, exact with direction, with an interval.
 
 The thesis's label of a pair is a vector (on, adjacent); *both* has both components, *none* has neither (§2.4.1).
-Here the direction counts as well: ``on(a, b)`` predicted for ``on(b, a)`` is wrong, also in its `on` component.
+Here the direction counts as well: ``on(a, b)`` predicted for ``on(b, a)`` is wrong.
 Pairs of one scene share its camera, its noise and its neighbours, so intervals resample scenes, not pairs.
 """
 
@@ -10,19 +10,18 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.stats import binomtest
 
 from lifelore.core.intervals import percentile_interval
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.metrics import Estimate, ratio_estimate
-from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, CORE_RELATIONS, NONE, ON, SYMMETRIC, PairLabel
+from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, NONE, ON, SYMMETRIC, PairLabel
 from lifelore.core.streams import stream
 from lifelore.perception.relations.relation import Relation
 from reproduction.engine.estimates import UNMEASURED
 
 BORDER = 0.005
 """Metres. A noisy camera may see a gap so near `ADJACENT_GAP` on either side of it."""
-HIDDEN = 0.03
-"""Metres. A contact whose visible gap is larger lies on hidden faces."""
 RESAMPLES = 1000
 CARRIED, BESIDE = frozenset({ON, BOTH}), frozenset({ADJACENT, BOTH})
 
@@ -52,17 +51,6 @@ class JudgedPair:
         return self.relation == self.truth.relation and self.same_way
 
     @property
-    def on_right(self) -> bool:
-        """The component `on` is right, direction included."""
-        carried = self.truth.relation in CARRIED
-        return carried == (self.relation in CARRIED) and (not carried or self.same_way)
-
-    @property
-    def adjacent_right(self) -> bool:
-        """The component `adjacent` is right."""
-        return (self.truth.relation in BESIDE) == (self.relation in BESIDE)
-
-    @property
     def with_table(self) -> bool:
         """Whether one of the two is the table."""
         return TABLE in (self.truth.a, self.truth.b)
@@ -72,36 +60,14 @@ class JudgedPair:
         """Whether a gap near the limit alone decides between *adjacent* and *none*."""
         return self.truth.relation in SYMMETRIC and abs(self.gap - ADJACENT_GAP) <= BORDER
 
-    @property
-    def hidden(self) -> bool:
-        """Whether the pair is near or in contact although its visible gap is large."""
-        return self.truth.relation != NONE and HIDDEN < self.gap < np.inf
-
-
-@dataclass(frozen=True)
-class RelationScore:
-    """Shares in [0, 1] with 95 % intervals; `recall` by class, `n` of each Estimate counts pairs.
-
-    `macro_f1` is the mean over the classes that occur in the truth.
-    """
-
-    pairs: int
-    scenes: int
-    exact: Estimate
-    on: Estimate
-    adjacent: Estimate
-    macro_f1: Estimate
-    recall: dict[str, Estimate]
-
 
 def judged_scene(
     scene: str,
     truth: Sequence[PairLabel],
     predicted: Sequence[Relation],
     gaps: Mapping[frozenset[int], float] | None = None,
-    least_confidence: int = 2,
 ) -> list[JudgedPair]:
-    """Each labelled pair of a scene beside its predicted relation; labels below a confidence are left out.
+    """Each labelled pair of a scene beside its predicted relation; labels of confidence 1 are left out.
 
     `gaps` are the visible gaps of ``{a, b}``, metres, where better known than by `predicted`.
     """
@@ -109,29 +75,11 @@ def judged_scene(
     judged = []
     for label in truth:
         pair = frozenset((label.a, label.b))
-        if label.confidence >= least_confidence:
+        if label.confidence >= 2:
             relation = by_pair.get(pair)
             gap = (gaps or {}).get(pair, relation.gap if relation else np.inf)
             judged.append(JudgedPair(scene, label, relation, gap))
     return judged
-
-
-def score(judged: Sequence[JudgedPair]) -> RelationScore | None:
-    """The score of some pairs; None of none."""
-    if not judged:
-        return None
-    true = {pair.truth.relation for pair in judged}
-    classes = [name for name in CORE_RELATIONS if name in true] + sorted(true - set(CORE_RELATIONS))
-    of_class = {name: [pair for pair in judged if pair.truth.relation == name] for name in classes}
-    return RelationScore(
-        pairs=len(judged),
-        scenes=len({pair.scene for pair in judged}),
-        exact=share(judged, lambda pair: pair.exact),
-        on=share(judged, lambda pair: pair.on_right),
-        adjacent=share(judged, lambda pair: pair.adjacent_right),
-        macro_f1=_macro_f1(judged, classes),
-        recall={name: share(own, lambda pair: pair.exact) for name, own in of_class.items()},
-    )
 
 
 def share(judged: Sequence[JudgedPair], right: Callable[[JudgedPair], bool]) -> Estimate:
@@ -168,12 +116,10 @@ def less_rate(share: Estimate, rate: float) -> Estimate:
     return Estimate(share.value - rate, share.median - rate, ends, share.n)
 
 
-def wilson(right: int, n: int, z: float = 1.959964) -> tuple[float, float]:
+def wilson(right: int, n: int) -> tuple[float, float]:
     """Wilson's 95 % score interval of a share, within [0, 1]; n ≥ 1."""
-    p = right / n
-    middle = (p + z * z / (2 * n)) / (1 + z * z / n)
-    half = z / (1 + z * z / n) * np.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-    return float(max(middle - half, 0.0)), float(min(middle + half, 1.0))
+    interval = binomtest(right, n).proportion_ci(0.95, method="wilson")
+    return float(interval.low), float(interval.high)
 
 
 def difference(
@@ -190,27 +136,6 @@ def difference(
     drawn = _draws(len(sums)) @ sums
     value = float(sums[:, 0].sum() / sums[:, 1].sum())
     return Estimate(value, value, percentile_interval(drawn[:, 0] / drawn[:, 1]), len(first))
-
-
-def _macro_f1(judged: Sequence[JudgedPair], classes: Sequence[str]) -> Estimate:
-    # Of each scene and class: right, predicted, true.
-    answers = [
-        [
-            ((pair.truth.relation == name) and pair.exact, pair.relation == name, pair.truth.relation == name)
-            for name in classes
-        ]
-        for pair in judged
-    ]
-    counts = _sums_by_scene(judged, answers)
-    value = float(_mean_f1(counts.sum(axis=0)[None])[0])
-    resampled = _mean_f1(np.tensordot(_draws(len(counts)), counts, axes=1))
-    return Estimate(value, value, percentile_interval(resampled), len(judged))
-
-
-def _mean_f1(counts: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Mean over classes of 2 right / (predicted + true), from counts (n, classes, 3); 0 for an absent class."""
-    right, predicted, true = np.moveaxis(counts, -1, 0)
-    return (2 * right / np.maximum(predicted + true, 1)).mean(axis=1)
 
 
 def _sums_by_scene(judged: Sequence[JudgedPair], numbers: ArrayLike) -> NDArray[np.float64]:

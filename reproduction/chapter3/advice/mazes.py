@@ -25,8 +25,6 @@ from lifelore.domains.advice.advice_maze import advice_maze, errand, maze_goals
 from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
 from lifelore.domains.grids.grid_world import GridWorld
 
-EXPERTS = ("walks", "trips")
-"""Walks to each goal from anywhere, or from other goals."""
 NO_PSEUDO_COUNT = 1e-9
 """α⁰ of M₁ where θ has none: an action that no expert took is next to impossible, not impossible."""
 EXPERT_WALKS = 20

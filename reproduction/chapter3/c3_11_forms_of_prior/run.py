@@ -24,7 +24,6 @@ from reproduction.engine.grid import Cell, Grid, run_grid
 
 PROPORTION, DIRICHLET, SOFTMAX = FORMS = ("proportion", "dirichlet", "softmax")
 METHODS = (UNIFORM, *FORMS)
-SOFTMAX_OF = ("counts", "counts a policy", "proportions")
 PAIRS = {
     "dirichlet_minus_proportion": (DIRICHLET, PROPORTION),
     "proportion_minus_softmax": (PROPORTION, SOFTMAX),

@@ -6,6 +6,7 @@ rewards, as §4.7.6 counts), of (s, a, r) and of (s, a, s′), each with a table
 
 from collections.abc import Mapping, Sequence
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -15,7 +16,6 @@ from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.outcome_model import rows_of_samples
 from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
 from lifelore.interaction.signals.transition_signal import TransitionSignal
-from reproduction.chapter4.c4_09_model_storage.storage_cost import StorageSizes, storage_cost
 from reproduction.engine.estimates import UNMEASURED, share_of
 
 SIGNALS = ("performance", "reward", "state_action_state")
@@ -29,16 +29,37 @@ def cells(settings: Mapping) -> list[dict]:
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """Entries of the learnt tables, and what the formulas give, put right and as printed."""
     sizes = StorageSizes(
-        settings["policies"], settings["types"], cell["states"], settings["actions"], cell["rewards"], bits=1
+        settings["policies"], settings["types"], cell["states"], settings["actions"], cell["rewards"]
     )
     generator = stream(seed, "C4.9", cell["states"], cell["rewards"])
-    right, printed = storage_cost(sizes), storage_cost(sizes, "thesis")
     return {
         **cell,
         "table": table_sizes(sizes, settings["episodes"], settings["horizon"], generator),
-        "right": {name: getattr(right, name) for name in SIGNALS},
-        "printed": {name: getattr(printed, name) for name in SIGNALS},
+        "right": entries_of(sizes),
+        "printed": entries_of(sizes, printed=True),
     }
+
+
+class StorageSizes(NamedTuple):
+    """Sizes of a problem, in the thesis's letters: |Π|, N, |S|, |A|, |R|."""
+
+    n_policies: int
+    n_types: int
+    n_states: int
+    n_actions: int
+    n_rewards: int
+
+
+def entries_of(sizes: StorageSizes, printed: bool = False) -> dict[str, int]:
+    """Entries of each observation model's table, by `SIGNALS`.
+
+    The distribution over next states of every state and action has |S|² |A| entries, the distribution over rewards
+    |S| |A| |R|; `printed` swaps the two, as the thesis does. Its order, performance < reward < state-action-state
+    for |R| > |S|, holds where |R| < |S|.
+    """
+    each, pairs = sizes.n_policies * sizes.n_types, sizes.n_states * sizes.n_actions
+    models = [each * pairs * sizes.n_rewards, each * pairs * sizes.n_states]
+    return dict(zip(SIGNALS, [each * sizes.n_rewards, *(reversed(models) if printed else models)], strict=True))
 
 
 def table_sizes(

@@ -30,8 +30,6 @@ EXACT, LEARNT, UNCERTAIN = "exact", "learnt", "uncertain"
 """Kinds of models that rules know: true, learnt and taken for the truth, learnt and known to be uncertain."""
 SETTLED = 1e-9
 """Regret below this is none."""
-STUCK = 5.0
-"""Mean regret over the last episodes above which a task counts as stuck."""
 LAST = 10
 """Number of episodes that count as the last."""
 

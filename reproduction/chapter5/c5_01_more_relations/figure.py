@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from lifelore.figures.interval_bars import draw_interval_bars
-from lifelore.figures.stacked_bars import draw_stacked_bars
 from lifelore.figures.style import BLUE, GREEN, GREY, LIGHT, VERMILION, Figure, house_style, new_figure
 from reproduction.chapter5.c5_01_more_relations.run import COMPOUNDS, KINDS
 
@@ -28,7 +29,13 @@ def draw(result: Mapping) -> Figure:
             "wrong": [own[kind]["said"] - own[kind]["right"] for kind in KINDS],
             "missed": [own[kind]["true"] - own[kind]["right"] for kind in KINDS],
         }
-        draw_stacked_bars(axes, KINDS, parts, PARTS, title=f"{compound}, by the thesis's rule", label="facts")
+        left_end = np.zeros(len(KINDS))
+        for name, counts in parts.items():
+            axes.barh(KINDS, counts, left=left_end, height=0.74, color=PARTS[name], label=name)
+            left_end += counts
+        axes.set(title=f"{compound}, by the thesis's rule", xlabel="facts", ylim=(len(KINDS) - 0.5, -0.5))
+        axes.tick_params(axis="y", length=0)
+        axes.spines["left"].set_visible(False)
     for axes in (left, *panels):
         axes.grid(axis="x", color=LIGHT)
     panels[-1].legend(loc="upper right")

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE
-from lifelore.core.metrics import Estimate, ratio_estimate
+from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ADJACENT, BOTH, PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.layout import Group, put_beside, stand
@@ -37,7 +37,7 @@ from reproduction.chapter5.c5_01_more_relations.view_words import (
     is_in,
     words_of_pair,
 )
-from reproduction.engine.estimates import UNMEASURED
+from reproduction.engine.estimates import ratio_or_unmeasured
 
 LOT = 10
 HELD_OUT = "held-out"
@@ -189,13 +189,7 @@ def compound_counts(results: Sequence[Mapping], word: str, kinds: Sequence[str] 
 
 def f1(counts: NDArray[np.float64]) -> Estimate:
     """2 right / (predicted + true)."""
-    return share(2 * counts[:, 0], counts[:, 1] + counts[:, 2])
-
-
-def share(parts: NDArray[np.float64], wholes: NDArray[np.float64]) -> Estimate:
-    """Ratio of sums over scenes; `UNMEASURED` where there is nothing to divide by."""
-    some = wholes > 0
-    return ratio_estimate(parts[some], wholes[some]) if some.any() else UNMEASURED
+    return ratio_or_unmeasured(2 * counts[:, 0], counts[:, 1] + counts[:, 2])
 
 
 def learnt(results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -211,7 +205,10 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     found["least_f1_of_the_five"] = min(words.values(), key=lambda score: score.value if score.n else 2.0)
     for word in COMPOUNDS:
         right, said, true = compound_counts(results, word).T
-        found |= {f"precision_{word}": share(right, said), f"recall_{word}": share(right, true)}
+        found |= {
+            f"precision_{word}": ratio_or_unmeasured(right, said),
+            f"recall_{word}": ratio_or_unmeasured(right, true),
+        }
     return found
 
 

@@ -9,11 +9,10 @@ Thesis: §2.4.3 (objects may be glued together; "only the incorporation of actio
 poking and prodding would lead to a guaranteed correct object segmentation"), §2.5.
 """
 
-from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
@@ -23,60 +22,25 @@ SMALLEST = 100
 """Voxels of the smallest part that is split off: 25 cm²."""
 
 
-@dataclass(frozen=True, eq=False)
-class PokedLabels:
-    """A corrected segmentation.
-
-    Parameters
-    ----------
-    labels : (n,) int64
-        Of the first cloud; objects are 2 … by size.
-    confidence : mapping of int to float
-        By object: (k + 1) / (k + 2) after k pushes that bear on its merges or splits; 0.5 without any.
-    merged, split : tuple
-        Sets of first labels that are one object now; first labels that are several objects now.
-    """
-
-    labels: NDArray[np.int64]
-    confidence: dict[int, float]
-    merged: tuple[tuple[int, ...], ...]
-    split: tuple[int, ...]
-
-
 class PokedSegments(PokedPatches):
     """Segments of a first cloud, followed through pushes and corrected by them."""
 
-    def corrected(self) -> PokedLabels:
-        """The segmentation of the first cloud after all pushes so far."""
+    def corrected(self) -> NDArray[np.int64]:
+        """(n,) labels of the first cloud after all pushes so far; objects are 2 … by size."""
         labels = self.first.labels.copy()
         if self._surface is None:
-            return PokedLabels(labels, {}, (), ())
-        parts, votes = self._parts()
-        group, together = self._groups(parts)
-        of_patch = group[parts]
-        sizes = np.bincount(of_patch, self._counts)
-        order = np.argsort(-sizes, kind="stable")
+            return labels
+        parts = self._parts()
+        of_patch = self._groups(parts)[parts]
+        order = np.argsort(-np.bincount(of_patch, self._counts), kind="stable")
         label = np.empty(len(order), np.int64)
         label[order] = np.arange(2, 2 + len(order))
         labels[self._rows] = label[of_patch][self._patch][self._surface.inverse]
-        confidence = {}
-        for number in range(len(order)):
-            k = int(max([votes[p] for p in np.unique(parts[of_patch == number])] + [together.get(number, 0)]))
-            confidence[int(label[number])] = (k + 1) / (k + 2)
-        merged = [np.unique(self._segment[of_patch == n]) for n in range(len(order))]
-        pieces = {s: np.unique(of_patch[self._segment == s]) for s in self.segments}
-        return PokedLabels(
-            labels,
-            confidence,
-            tuple(tuple(m.tolist()) for m in merged if len(m) > 1),
-            tuple(s for s, found in pieces.items() if len(found) > 1),
-        )
+        return labels
 
-    def _parts(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """The part of each patch, segments being cut where pushes moved them apart; and by part the number of such
-        pushes."""
+    def _parts(self) -> NDArray[np.int64]:
+        """The part of each patch, segments being cut where pushes moved them apart."""
         part = np.unique(self._segment, return_inverse=True)[1].reshape(-1)
-        votes = np.zeros(part.max() + 1, np.int64)
         for motion in self._motions:
             for old in range(part.max() + 1):
                 rows = np.flatnonzero(part == old)
@@ -91,9 +55,7 @@ class PokedSegments(PokedPatches):
                     apart, together = self._moved(piece, rest)
                     if apart > together:
                         part[piece] = part.max() + 1
-                        votes[old] = max(votes[old], apart)
-                        votes = np.append(votes, apart)
-        return part, votes
+        return part
 
     def _nearest_kind(self, rows: NDArray, motion: NDArray, kinds: NDArray) -> NDArray:
         """For each patch its own motion among `kinds`, or that of the nearest patch that has one of them."""
@@ -106,33 +68,22 @@ class PokedSegments(PokedPatches):
         nearest = KDTree(middles[rows[clear]]).query(middles[rows])[1]
         return np.where(clear, own, own[clear][nearest])
 
-    def _groups(self, parts: NDArray[np.int64]) -> tuple[NDArray[np.int64], dict[int, int]]:
-        """The object of each part, and by object the largest number of pushes that moved two parts of it alike."""
+    def _groups(self, parts: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The object of each part."""
         rows = [np.flatnonzero(parts == part) for part in range(int(parts.max()) + 1)]
         segment = [int(self._segment[own[0]]) for own in rows]
-        alike = {
-            (a, b): self._alike(rows[a], rows[b])
-            for a in range(len(rows))
-            for b in range(a + 1, len(rows))
-            if segment[a] != segment[b]
-        }
-        joined = np.array([pair for pair, pushes in alike.items() if pushes], np.int64).reshape(-1, 2)
-        links = coo_array((np.ones(len(joined)), (joined[:, 0], joined[:, 1])), shape=(len(rows), len(rows)))
-        group = connected_components(links, directed=False)[1]
-        together: dict[int, int] = {}
-        for (a, _), pushes in alike.items():
-            if pushes:
-                together[int(group[a])] = max(together.get(int(group[a]), 0), pushes)
-        return group, together
+        pairs = combinations(range(len(rows)), 2)
+        joined = [(a, b) for a, b in pairs if segment[a] != segment[b] and self._alike(rows[a], rows[b])]
+        links = np.zeros((len(rows), len(rows)), bool)
+        links[tuple(np.array(joined, np.int64).reshape(-1, 2).T)] = True
+        return connected_components(links, directed=False)[1]
 
-    def _alike(self, first: NDArray, second: NDArray) -> int:
-        """Number of pushes that moved two parts alike; 0 if as many moved them apart, or if a part was never
-        pushed so that both moved."""
-        pushed = [{int(self._segment[rows[0]])} for rows in (first, second)]
+    def _alike(self, first: NDArray, second: NDArray) -> bool:
+        """Whether more pushes moved two parts alike than apart, and a push on each of them moved both."""
         alike = [n for n in range(len(self._motions)) if self._comparison(n, first, second) > 0]
-        if any(not own & {self._touched[n] for n in alike} for own in pushed):
-            return 0
-        return len(alike) if len(alike) > self._moved(first, second)[0] else 0
+        touched = {self._touched[n] for n in alike}
+        pushed = all(int(self._segment[rows[0]]) in touched for rows in (first, second))
+        return pushed and len(alike) > self._moved(first, second)[0]
 
     def _moved(self, first: NDArray, second: NDArray) -> tuple[int, int]:
         """Pushes that moved two sets of patches apart, and that moved them alike."""

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.core.metrics import Estimate, ratio_estimate
+from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.layout import Group, Placed, put_beside, stand, top
 from lifelore.domains.tabletop.poke import PokedTabletop
@@ -26,7 +26,7 @@ from reproduction.chapter2.scenes.arranged_scenes import Placement, arranged, se
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scoring.segmentation_scoring import FOUND, overlaps
 from reproduction.chapter5.c5_07_poking.poked_segments import PokedSegments
-from reproduction.engine.estimates import UNMEASURED
+from reproduction.engine.estimates import ratio_or_unmeasured
 
 LOT = 2
 KINDS = ("varied", "flush", "occluded")
@@ -125,7 +125,7 @@ def poke_scene(
                 if table.poke(poke.place, poke.push):
                     known.observe(poke, seen(table, scene, rng))
                     break
-    return first.labels, known.corrected().labels
+    return first.labels, known.corrected()
 
 
 def seen(table: PokedTabletop, scene: TabletopScene, rng: np.random.Generator) -> LabelledCloud:
@@ -158,18 +158,14 @@ def measures_of(scenes: Sequence[Sequence]) -> dict[str, Estimate]:
     hit = [o[:, 1:] >= FOUND for o in objects]
     n = [len(h) for h in hit]
     return {
-        "overlap_gain": _share(
+        "overlap_gain": ratio_or_unmeasured(
             [(o[:, 0] * (o[:, 2] - o[:, 1])).sum() for o in objects], [o[:, 0].sum() for o in objects]
         ),
-        "found_before": _share([h[:, 0].sum() for h in hit], n),
-        "found_after": _share([h[:, 1].sum() for h in hit], n),
-        "found_gain": _share([h[:, 1].sum() - float(h[:, 0].sum()) for h in hit], n),
-        "corrected": _share([(~h[:, 0] & h[:, 1]).sum() for h in hit], [(~h[:, 0]).sum() for h in hit]),
-        "spoiled": _share([(h[:, 0] & ~h[:, 1]).sum() for h in hit], [h[:, 0].sum() for h in hit]),
+        "found_before": ratio_or_unmeasured([h[:, 0].sum() for h in hit], n),
+        "found_after": ratio_or_unmeasured([h[:, 1].sum() for h in hit], n),
+        "found_gain": ratio_or_unmeasured([h[:, 1].sum() - float(h[:, 0].sum()) for h in hit], n),
+        "corrected": ratio_or_unmeasured(
+            [(~h[:, 0] & h[:, 1]).sum() for h in hit], [(~h[:, 0]).sum() for h in hit]
+        ),
+        "spoiled": ratio_or_unmeasured([(h[:, 0] & ~h[:, 1]).sum() for h in hit], [h[:, 0].sum() for h in hit]),
     }
-
-
-def _share(parts: Sequence, wholes: Sequence) -> Estimate:
-    """Ratio of sums over scenes; `UNMEASURED` where there is nothing to divide by."""
-    whole = np.asarray(wholes, float)
-    return ratio_estimate(np.asarray(parts, float)[whole > 0], whole[whole > 0]) if whole.sum() > 0 else UNMEASURED

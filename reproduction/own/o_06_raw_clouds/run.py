@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate, ratio_estimate
+from lifelore.core.metrics import Estimate
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.point_cloud import PointCloud
@@ -19,7 +19,7 @@ from lifelore.perception.segmentation.table_frame import Up, segmented_scene
 from reproduction.chapter2.scenes.real_scenes import real_scenes_folder
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of, real_lots
 from reproduction.chapter2.scoring.segmentation_scoring import FOUND, overlaps
-from reproduction.engine.estimates import UNMEASURED
+from reproduction.engine.estimates import ratio_or_unmeasured
 
 LOT = 5
 SEED = 7021
@@ -94,15 +94,13 @@ def measures_of(results: Sequence[Mapping], where: str) -> dict[str, Estimate]:
     hit = {name: np.array([(o[:, 1] >= FOUND).sum() for o in own], float) for name, own in objects.items()}
     points = np.array([o[:, 0].sum() for o in objects[CONVEXITY]])
     return {
-        **{f"found_{name}": _share(hit[name], n) for name in METHODS},
-        "more_than_clusters": _share(hit[CONVEXITY] - hit[CLUSTERS], n),
-        "more_than_colour": _share(hit[CONVEXITY] - hit[COLOUR], n),
-        "weighted_overlap": _share(np.array([o.prod(axis=1).sum() for o in objects[CONVEXITY]]), points),
+        **{f"found_{name}": ratio_or_unmeasured(hit[name], n) for name in METHODS},
+        "more_than_clusters": ratio_or_unmeasured(hit[CONVEXITY] - hit[CLUSTERS], n),
+        "more_than_colour": ratio_or_unmeasured(hit[CONVEXITY] - hit[COLOUR], n),
+        "weighted_overlap": ratio_or_unmeasured(
+            np.array([o.prod(axis=1).sum() for o in objects[CONVEXITY]]), points
+        ),
     }
-
-
-def _share(parts: NDArray[np.float64], wholes: NDArray[np.float64]) -> Estimate:
-    return ratio_estimate(parts, wholes) if len(wholes) else UNMEASURED
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

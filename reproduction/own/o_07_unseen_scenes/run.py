@@ -20,6 +20,7 @@ from lifelore.perception.relations.relation import Relation
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from reproduction.chapter2.scoring.relation_scoring import judged_scene
 from reproduction.own.o_07_unseen_scenes.peers import PEERS
+from reproduction.own.o_07_unseen_scenes.peers.described_pairs import described_pairs
 
 OURS, SHIPPED, THESIS, HISTOGRAM, RULE = METHODS = ("contacts", "shipped", "thesis", "histogram", "rule")
 PEER = {HISTOGRAM: "orientation histogram", RULE: "bounding-box rule"}
@@ -63,7 +64,7 @@ def _drawn(seed: int, number: int, shapes: str, n: int) -> list[TabletopScene]:
 def seen(scene: TabletopScene) -> tuple[TabletopScene, dict[str, Any]]:
     """A scene, and what each method sees of it."""
     contacts = scene_pairs(scene.cloud)
-    peers = {name: PEERS[peer]().describe_pairs(scene.cloud) for name, peer in PEER.items()}
+    peers = {name: described_pairs(scene.cloud, PEERS[peer].describe) for name, peer in PEER.items()}
     return scene, {OURS: contacts, SHIPPED: contacts, THESIS: contacts, **peers}
 
 

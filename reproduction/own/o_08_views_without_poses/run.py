@@ -13,7 +13,7 @@ from scipy.optimize import nnls
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
+from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.depth_camera import CAMERAS
 from lifelore.domains.tabletop.photograph import Photograph
@@ -26,7 +26,7 @@ from lifelore.perception.registration.tabletop_view import tabletop_view
 from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene_perception import perceived_scene
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
-from reproduction.engine.estimates import UNMEASURED, exact_share
+from reproduction.engine.estimates import exact_share, ratio_or_unmeasured
 
 LOT = 5
 SEED = 7012
@@ -141,7 +141,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     n = [len(scene[ALONE]) for scene in scenes]
     for name, how in (("true_poses", TRUE), ("registered", REGISTERED)):
         more = [sum(scene[how]) - sum(scene[ALONE]) for scene in scenes]
-        found[f"contacts_gained_{name}"] = ratio_estimate(more, n) if scenes else UNMEASURED
+        found[f"contacts_gained_{name}"] = ratio_or_unmeasured(more, n)
     return found
 
 

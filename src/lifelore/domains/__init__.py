@@ -69,7 +69,7 @@ __all__ = ["ENVIRONMENTS", *_HOME]  # pyright: ignore[reportUnsupportedDunderAll
 __getattr__, __dir__ = lazy_exports(__name__, _HOME)
 
 ENVIRONMENTS = {
-    "lifelore/AdviceMaze-v0": ("advice_environment:AdviceMazeEnvironment", 5000),
+    "lifelore/AdviceMaze-v0": ("grid_environment:AdviceMazeEnvironment", 5000),
     "lifelore/BallGame-v0": ("ball_game.environment:BallGameEnvironment", 400),
     "lifelore/Building-v0": ("grid_environment:BuildingEnvironment", 2000),
     "lifelore/Factory-v0": ("factory.environment:FactoryEnvironment", 2000),

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
+from lifelore.domains.advice.advice_maze import maze_goals
 from lifelore.domains.grids.grid_picture import draw_grid
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.task_environment import TaskEnvironment
@@ -55,10 +56,8 @@ class GridEnvironment(TaskEnvironment):
         self.world = world
         super().__init__(world.task(_goal_state(world, goal, seed)), render_mode)
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
-        """The picture of the world, (height, width, 3) uint8; None without a render mode."""
-        if self.render_mode is None:
-            return None
+    def _picture(self) -> NDArray[np.uint8]:
+        """The picture of the world, (height, width, 3) uint8."""
         return draw_grid(self.world, self._state, self.task.goal)
 
     def _info(self, event: int) -> dict[str, Any]:
@@ -164,6 +163,44 @@ class NoiseMazeEnvironment(GridEnvironment):
         render_mode: str | None = None,
     ) -> None:
         super().__init__(make_world("noise", size=size, density=density, seed=seed), goal, seed, render_mode)
+
+
+class AdviceMazeEnvironment(GridEnvironment):
+    """The thesis's advice maze (§3.7.2.1): 30 × 30 cells of corridors with some loops, and eight goals.
+
+    ## Action Space
+    ``Discrete(4)``: north, south, east, west.
+
+    ## Observation Space
+    ``Discrete(n_states)``: the number of the cell the agent is in.
+
+    ## Rewards
+    1000 for entering the goal, else 0.
+
+    ## Starting State
+    Any cell but the goal, each as likely; ``reset(options={"state": s})`` starts in state s.
+
+    ## Episode End
+    The goal is entered; truncated after 5,000 steps. The other goals are cells like any other.
+
+    ## Arguments
+    `size`: cells a side, 30. `loops`: share of the walls between two corridors that are opened, 0.1. `goal`: a
+    state, a cell (row, column), or None, which draws one of the maze's eight from `seed`. `seed`: of the maze and
+    the goal. `render_mode`: None or ``"rgb_array"``.
+    """
+
+    def __init__(
+        self,
+        size: int | None = None,
+        loops: float | None = None,
+        goal: Goal = None,
+        seed: int = 0,
+        render_mode: str | None = None,
+    ) -> None:
+        world = make_world("advice", size=size, loops=loops, seed=seed)
+        if goal is None:
+            goal = int(stream(seed, "goal").choice(maze_goals(world)))
+        super().__init__(world, goal, seed, render_mode)
 
 
 def _goal_state(world: GridWorld, goal: Goal, seed: int) -> int:

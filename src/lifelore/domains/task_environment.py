@@ -2,15 +2,15 @@
 
 from typing import Any
 
-import gymnasium
 import numpy as np
 from gymnasium import spaces
 
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL, Task
+from lifelore.domains.checked_environment import CheckedEnvironment
 
 
-class TaskEnvironment(gymnasium.Env):
+class TaskEnvironment(CheckedEnvironment):
     """A `Task` to be acted in.
 
     One uniform number is drawn for each reset and each step, so a rollout equals one through the task's
@@ -45,37 +45,32 @@ class TaskEnvironment(gymnasium.Env):
     Discrete(4)
     """
 
+    metadata = {"render_modes": []}  # noqa: RUF012
+
     def __init__(self, task: Task, render_mode: str | None = None) -> None:
-        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
-            known = ", ".join(self.metadata["render_modes"]) or "none"
-            raise InputError(f"render_mode must be None or one of: {known}; got {render_mode!r}")
-        self.render_mode = render_mode
+        super().__init__(render_mode)
         self.task = task
         self.action_space = spaces.Discrete(task.domain.n_actions)
         self.observation_space = spaces.Discrete(task.domain.n_states)
         # The plain function: one call from Python costs less than entering compiled code.
-        self._step = getattr(task.domain.step, "py_func", task.domain.step)
+        self._step: Any = getattr(task.domain.step, "py_func", task.domain.step)
         self._state: int | None = None
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None):
-        """Start an episode; see the class for ``options``."""
-        super().reset(seed=seed)
-        chosen = (options or {}).get("state")
-        starts = self.task.starts
+    def _begin(self, options: dict[str, Any]) -> tuple[int, dict[str, Any]]:
+        chosen, starts = options.get("state"), self.task.starts
         drawn = int(starts[int(self.np_random.random() * len(starts))])
         self._state = drawn if chosen is None else self._check_state(chosen)
-        return self._state, self._info(0)
+        return self._observed(), self._info(0)
 
-    def step(self, action: Any):
-        """One move; gymnasium's five values."""
-        if self._state is None:
-            raise InputError("reset() must be called before step(), got no episode in progress")
-        if not self.action_space.contains(action):
-            raise InputError(f"action must lie in [0, {self.task.domain.n_actions}), got {action!r}")
-        uniform = self.np_random.random()
-        state, reward, event = self._step(self.task.params, self._state, int(action), uniform)
+    def _advance(self, action: int) -> tuple[int, float, bool, dict[str, Any]]:
+        state, reward, event = self._step(self.task.params, self._state, action, self.np_random.random())
         self._state = int(state)
-        return self._state, float(reward), bool(event & TERMINAL), False, self._info(event)
+        return self._observed(), reward, bool(event & TERMINAL), self._info(event)
+
+    def _observed(self) -> int:
+        """The observation of the present state."""
+        assert self._state is not None
+        return self._state
 
     def _check_state(self, state: Any) -> int:
         if isinstance(state, bool) or not isinstance(state, (int, np.integer)):

@@ -22,7 +22,6 @@ def draw_curves(
     title: str = "",
     xlabel: str = "",
     ylabel: str = "",
-    logarithmic: str = "",
     level: tuple[float, str] | None = None,
     legend: bool = True,
 ) -> None:
@@ -39,8 +38,6 @@ def draw_curves(
     looks : mapping, optional
         Label → matplotlib's line properties (``color``, ``linewidth``, ``linestyle``, ``marker``, …).
     title, xlabel, ylabel : str
-    logarithmic : {"", "x", "y", "xy"}
-        Axes with a logarithmic scale.
     level : (value, label), optional
         A dotted horizontal line, such as the optimum.
     legend : bool
@@ -57,10 +54,6 @@ def draw_curves(
         axes.plot(places, mean, label=label, **look)
     if level is not None:
         axes.axhline(level[0], color=INK, linestyle=(0, (1, 2)), linewidth=1.2, label=level[1], zorder=1)
-    if "x" in logarithmic:
-        axes.set_xscale("log")
-    if "y" in logarithmic:
-        axes.set_yscale("log")
     axes.set(title=title, xlabel=xlabel, ylabel=ylabel)
     if legend and series:
         axes.legend()

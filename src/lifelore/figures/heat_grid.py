@@ -1,7 +1,7 @@
 """A table of numbers as colours around a neutral value; what differs from it for certain is set in bold."""
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,10 +22,7 @@ def draw_heat_grid(
     *,
     neutral: float,
     spread: float,
-    good: str = "high",
-    ratio: bool = False,
     words: Callable[[float], str] = "{:.1f}".format,
-    outlined: tuple[int | None, int] | None = None,
 ) -> None:
     """Draw the table.
 
@@ -38,15 +35,9 @@ def draw_heat_grid(
         Whose 95 % interval excludes `neutral`.
     rows, columns : sequence of str
     neutral, spread : float
-        The value drawn white, and the distance from it at which colour is full.
-    good : {"high", "low"}
-        Which side of `neutral` is good: blue; the other is vermilion.
-    ratio : bool
-        Values are ratios: `spread` is a factor, so that half is as far from 1 as double.
+        The value drawn white, and the distance from it at which colour is full: blue above, vermilion below.
     words : callable
         A value's text; its minus signs are set as such.
-    outlined : (row, column), optional
-        The cell to frame; a row of None frames the whole column.
     """
     from matplotlib.colors import LinearSegmentedColormap
 
@@ -54,10 +45,9 @@ def draw_heat_grid(
     if values.shape != (len(rows), len(columns)) or certain.shape != values.shape:
         shape = (len(rows), len(columns))
         raise InputError(f"values and certain must have shape {shape}, got {values.shape} and {certain.shape}")
-    ends = [VERMILION, PAPER, BLUE] if good == "high" else [BLUE, PAPER, VERMILION]
-    away = np.log(values / neutral) / np.log(spread) if ratio else (values - neutral) / spread
-    scaled = np.clip(away, -1, 1)
-    axes.imshow(scaled, cmap=LinearSegmentedColormap.from_list("about", ends), vmin=-1, vmax=1, aspect="auto")
+    scaled = np.clip((values - neutral) / spread, -1, 1)
+    colours = LinearSegmentedColormap.from_list("about", [VERMILION, PAPER, BLUE])
+    axes.imshow(scaled, cmap=colours, vmin=-1, vmax=1, aspect="auto")
     for (row, column), value in np.ndenumerate(values):
         if np.isfinite(value):
             axes.text(
@@ -66,85 +56,6 @@ def draw_heat_grid(
                 fontweight="bold" if certain[row, column] else "normal",
             )  # fmt: skip
     _label(axes, rows, columns)
-    if outlined is not None:
-        first, height = (0, len(rows)) if outlined[0] is None else (outlined[0], 1)
-        frame_cells(axes, (first, outlined[1]), (height, 1))
-
-
-def frame_cells(axes: "Axes", first: tuple[int, int], shape: tuple[int, int] = (1, 1)) -> None:
-    """Frame the block of cells of a `shape` whose upper left cell is `first`, both as (rows, columns)."""
-    from matplotlib.patches import Rectangle
-
-    corner = first[1] - 0.5, first[0] - 0.5
-    frame = Rectangle(corner, shape[1], shape[0], fill=False, edgecolor=INK, linewidth=1.6)
-    frame.set(clip_on=False, zorder=3)
-    axes.add_patch(frame)
-
-
-def name_groups(axes: "Axes", groups: Sequence[tuple[str, int]], offset: float, *, side: str = "left") -> None:
-    """Write the name of each group of neighbouring rows or columns, with a line between groups.
-
-    Parameters
-    ----------
-    axes : matplotlib axes
-        With a table of `draw_heat_grid`.
-    groups : sequence of (name, number of rows or columns)
-        In the order of the table.
-    offset : float
-        Points from the table to the names, which leaves room for the labels of the rows.
-    side : {"left", "top"}
-        Left of the rows, or above the columns.
-    """
-    left, first = side == "left", 0
-    transform = axes.get_yaxis_transform() if left else axes.get_xaxis_transform()
-    for name, n in groups:
-        middle = first + (n - 1) / 2
-        look: dict[str, Any] = {"ha": "center", "va": "baseline"}
-        if left:
-            look = {"rotation": 90, "ha": "right", "va": "center"}
-        axes.annotate(
-            name, (0, middle) if left else (middle, 1), (-offset, 0) if left else (0, offset),
-            xycoords=transform, textcoords="offset points", fontsize=8, fontweight="bold", linespacing=1.1,
-            multialignment="center", **look,
-        )  # fmt: skip
-        if first:
-            (axes.axhline if left else axes.axvline)(first - 0.5, color=INK, linewidth=1.0, zorder=2)
-        first += n
-
-
-def draw_estimate_grid(
-    axes: "Axes",
-    numbers: Sequence[Sequence[Mapping[str, Any] | None]],
-    rows: Sequence[str],
-    columns: Sequence[str],
-    *,
-    neutral: float,
-    scale: float = 1.0,
-    **look: Any,
-) -> None:
-    """Draw a table of estimates; bold are those whose 95 % interval excludes `neutral`.
-
-    Parameters
-    ----------
-    axes : matplotlib axes
-    numbers : n_rows of n_columns
-        ``{"value", "ci95"}`` each, or None; a number without an interval is not bold.
-    rows, columns : sequence of str
-    neutral : float
-        In the units of what is written.
-    scale : float
-        Factor from the numbers to what is written, such as 100 for percent.
-    look : mapping
-        Passed on to `draw_heat_grid`.
-    """
-    values = [[np.nan if n is None or n["value"] is None else scale * n["value"] for n in row] for row in numbers]
-    certain = [[_excludes(n, neutral / scale) for n in row] for row in numbers]
-    draw_heat_grid(axes, values, certain, rows, columns, neutral=neutral, **look)
-
-
-def _excludes(number: Mapping[str, Any] | None, value: float) -> bool:
-    interval = number["ci95"] if number else None
-    return bool(interval) and not interval[0] <= value <= interval[1]
 
 
 def _label(axes: "Axes", rows: Sequence[str], columns: Sequence[str]) -> None:

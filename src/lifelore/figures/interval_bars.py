@@ -20,7 +20,6 @@ def draw_interval_bars(
     colours: Mapping[str, Any] | Sequence[str] = (),
     horizontal: bool = True,
     words: Callable[[float], str] | None = "{:.3g}".format,
-    level: float | None = None,
     title: str = "",
     label: str = "",
     legend: bool | None = None,
@@ -39,8 +38,6 @@ def draw_interval_bars(
     horizontal : bool
     words : callable, optional
         Text of a value, written at the end of its bar; None writes none.
-    level : float, optional
-        A dotted line, such as a rate to compare with.
     title, label : str
         Title of the panel and label of the axis of values.
     legend : bool, optional
@@ -69,8 +66,6 @@ def draw_interval_bars(
                 end = max(number["value"], interval[1] if interval else number["value"])
                 _write(axes, number.get("words") or words(number["value"]), end, at, horizontal)
     _ticks(axes, names, horizontal)
-    if level is not None:
-        (axes.axvline if horizontal else axes.axhline)(level, color=INK, linestyle=(0, (1, 2)), linewidth=1.1)
     axes.set(title=title, **{"xlabel" if horizontal else "ylabel": label})
     if len(groups) > 1 if legend is None else legend:
         axes.legend()

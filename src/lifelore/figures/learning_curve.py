@@ -18,7 +18,6 @@ def draw_curve(
     mean: ArrayLike,
     interval: tuple[ArrayLike, ArrayLike] | None,
     name: str,
-    label: str | None = None,
 ) -> None:
     """One method's curve in its colour.
 
@@ -31,8 +30,6 @@ def draw_curve(
         Ends of the shaded interval; the caption says which interval it is.
     name : str
         Method or agent, a key of `style.COLOURS`.
-    label : str, optional
-        Its name in the legend; default `name`.
     """
     if np.shape(x) != np.shape(mean):
         raise InputError(f"x and mean must agree in shape, got {np.shape(x)} and {np.shape(mean)}")
@@ -40,4 +37,4 @@ def draw_curve(
     if interval is not None:
         axes.fill_between(x, *interval, color=colour, alpha=0.18, linewidth=0)
     width = width_of(name)
-    axes.plot(x, mean, color=colour, label=label or name, linewidth=width, zorder=10 - width)
+    axes.plot(x, mean, color=colour, label=name, linewidth=width, zorder=10 - width)

@@ -21,7 +21,6 @@ def draw_scatter(
     colours: Mapping[str, str] | None = None,
     markers: Mapping[str, str | Sequence[str]] | None = None,
     size: float = 18,
-    through_zero: bool = True,
     legend: Mapping[str, Any] | None = None,
     title: str = "",
     xlabel: str = "",
@@ -40,8 +39,6 @@ def draw_scatter(
         Label → matplotlib's marker of the group, or a marker for each of its points.
     size : float
         Of a marker, points squared.
-    through_zero : bool
-        Draw light lines through zero.
     legend : mapping, optional
         Arguments of the legend; None draws no legend.
     title, xlabel, ylabel : str
@@ -51,9 +48,8 @@ def draw_scatter(
     InputError
         A group's places are not (n, 2), or its markers are not n.
     """
-    if through_zero:
-        axes.axhline(0, color=LIGHT, lw=1, zorder=0)
-        axes.axvline(0, color=LIGHT, lw=1, zorder=0)
+    axes.axhline(0, color=LIGHT, lw=1, zorder=0)
+    axes.axvline(0, color=LIGHT, lw=1, zorder=0)
     for label, places in groups.items():
         at, colour = np.asarray(places, float).reshape(-1, 2), (colours or {}).get(label, GREY)
         own = (markers or {}).get(label, "o")

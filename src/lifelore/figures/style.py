@@ -146,12 +146,6 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
-def two_rows(figure: Figure, heights: tuple[float, float]) -> tuple[SubFigure, SubFigure]:
-    """An upper and a lower part of these relative heights, each with a legend and a caption of its own."""
-    upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=heights, hspace=0.02)[:, 0]
-    return upper, lower
-
-
 def save_figure(figure: Figure, path: str | Path) -> Path:
     """Write a PNG of at most `MAX_BYTES` in one step, in fewer colours or coarser if need be; returns its path.
 

@@ -23,13 +23,6 @@ def test_rows_are_probabilities_and_only_the_random_and_the_bug_bump(explorer):
     assert (bumps > 0) == (explorer in ("random", "bug"))
 
 
-def test_random_and_avoiding_by_hand():
-    assert (explorer_probs(CROSS, "random") == 0.25).all()
-    avoid = explorer_probs(CROSS, "avoid")
-    assert avoid[0, 0].tolist() == [0, 1, 0, 0]
-    assert avoid[2, 3].tolist() == [0.25] * 4
-
-
 @pytest.mark.parametrize(
     ("heading", "order"),
     [(NORTH, "WNES"), (SOUTH, "ESWN"), (EAST, "NESW"), (WEST, "SWNE")],
@@ -60,16 +53,6 @@ def test_always_left_walks_round_a_tree():
         seen.add(state)
     assert seen == set(range(world.n_states))
     assert state == world.state_of[3, 1]
-
-
-def test_the_bug_goes_where_it_gets_nearest():
-    open_floor = GridWorld.from_free("floor", np.ones((5, 5), bool))
-    goal = int(open_floor.state_of[0, 4])
-    bug = explorer_probs(open_floor, "bug", goal)[:, 0]
-    # From (2, 0), two rows and four columns away: east gains 16 - 9 = 7 of the square, north 4 - 1 = 3.
-    assert bug[open_floor.state_of[2, 0]].tolist() == [0, 0, 1, 0]
-    assert bug[open_floor.state_of[3, 1]].tolist() == [0.5, 0, 0.5, 0]  # as far in rows as in columns
-    assert bug[open_floor.state_of[0, 0]].tolist() == [0, 0, 1, 0]
 
 
 def test_the_bug_takes_the_second_best_way_where_the_best_is_blocked_and_else_pushes_at_the_wall():

@@ -10,14 +10,13 @@ from lifelore.domains.buildings.building_days import (
     DAYS,
     MOVE,
     REFUSED,
-    BuildingDays,
     BuildingWay,
     Day,
     day_in,
 )
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.grids.grid_world import GridWorld
-from lifelore.domains.task_stream import LivedTask, TaskStream
+from lifelore.domains.task_stream import LivedTask
 
 OFFICE = building_from_map(office_map(0))
 
@@ -70,18 +69,6 @@ def test_a_day_keeps_the_building_in_one_piece(name):
         other = int(np.flatnonzero(day.open)[0])
         if cell != other:
             assert np.isfinite(BuildingWay(OFFICE, day, other, int(cell)).best_return)
-
-
-def test_the_types_of_day_matter_and_the_map_does_not_show_them():
-    days = BuildingDays(OFFICE, TaskStream(tuple(DAYS), loyalty=0.0))
-    ways = [days.task(k) for k in range(30)]
-    assert len({task.destination for _, task in ways}) <= days.n_destinations
-    quiet = [BuildingWay(OFFICE, day_in(OFFICE, "quiet"), t.start, t.destination).best_return for _, t in ways]
-    costs = np.array(quiet) - [task.best_return for _, task in ways]
-    assert (costs >= 0).all()
-    assert costs.max() > 5
-    drawn, task = days.task(4)
-    assert (drawn, task.start, task.destination) == (ways[4][0], ways[4][1].start, ways[4][1].destination)
 
 
 def test_mistakes_are_refused():

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.sparse import csgraph
 
-from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
 from lifelore.domains.buildings.busy_building import DAY, HOUR, MONDAY, N_DOORS, REFUSED_SECONDS, BusyBuilding
 from lifelore.domains.buildings.busy_places import move_graph
@@ -24,13 +23,6 @@ def way_in(building: BusyBuilding, start: int, end: int) -> np.ndarray:
     while way[-1] != start:
         way.append(before[way[-1]])
     return np.array(way[::-1])
-
-
-def test_the_same_seed_is_the_same_building_and_another_is_not(building):
-    again, other = BusyBuilding(building.world, 5), BusyBuilding(building.world, 6)
-    clock = MONDAY + 20 * DAY + 10 * HOUR
-    assert np.array_equal(building.seconds(clock), again.seconds(clock))
-    assert not np.array_equal(building.seconds(clock), other.seconds(clock))
 
 
 def test_rush_hours_are_on_weekdays_and_drift_takes_weeks(building):
@@ -76,8 +68,3 @@ def test_moves_take_their_median_seconds(building):
     taken = [building.drive(np.array([a, b]), clock, rng).seconds[0] for _ in range(2000)]
     # The standard error of a median of 2,000 is 1.25 · 0.26 / √2000 = 0.7 %.
     assert np.median(taken) == pytest.approx(building.seconds(clock)[b], rel=0.03)
-
-
-def test_a_way_with_a_jump_is_refused(building):
-    with pytest.raises(InputError, match="one move apart"):
-        building.drive(np.array([0, 900]), MONDAY, stream(0, "drive"))

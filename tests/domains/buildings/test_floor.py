@@ -20,25 +20,6 @@ def room(origin=(0.0, 0.0, 0.0)) -> OccupancyMap:
     return OccupancyMap(state, 0.1, origin)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_moves_are_where_the_pieces_touch(seed):
-    """The world's moves, found again from the pixels alone."""
-    occupancy = office_map(seed)
-    world = building_from_map(occupancy)
-    floor = floor_of(occupancy, world)
-    assert np.array_equal(floor.neighbour, world.neighbour)
-    state = floor.state
-    for near, far, there, back in (
-        (state[:-1], state[1:], 1, 0),
-        (state[:, :-1], state[:, 1:], 2, 3),
-    ):
-        touching = (near >= 0) & (far >= 0) & (near != far)
-        pairs = {(int(a), int(b)) for a, b in zip(near[touching], far[touching], strict=True)}
-        assert pairs == {(s, int(t)) for s, t in enumerate(world.neighbour[:, there]) if t >= 0}
-        assert pairs == {(int(t), s) for s, t in enumerate(world.neighbour[:, back]) if t >= 0}
-    assert np.array_equal(np.unique(state[state >= 0]), np.arange(world.n_states))
-
-
 def test_metres_and_pixels_are_inverse_and_agree_with_the_world():
     occupancy = room((10.0, 20.0, math.pi / 2))
     world = building_from_map(occupancy, 0.1, 0.0)
@@ -81,24 +62,6 @@ def test_a_point_that_is_no_free_place_is_told_the_nearest(point, why, nearest):
     assert message.endswith(f"the nearest free place is {nearest}")
     x, y = (float(part) for part in nearest.split(","))
     assert floor.state_at("goal", (x, y)) >= 0
-
-
-def test_a_point_between_pixels_is_measured_itself():
-    """0.25 m from the wall's pixel centres is clear of 0.2 m; a point of the same pixel at 0.19 m is not."""
-    occupancy = room()
-    floor = floor_of(occupancy, building_from_map(occupancy, 0.5, 0.2))
-    assert floor.state_at("goal", (0.31, 1.05)) >= 0
-    with pytest.raises(InputError, match="nearer to an obstacle"):
-        floor.state_at("goal", (0.24, 1.05))
-
-
-def test_free_space_that_is_cut_off_is_no_place():
-    state = np.zeros((12, 42), np.uint8)
-    state[:, 30] = OCCUPIED
-    occupancy = OccupancyMap(state, 0.1)
-    floor = floor_of(occupancy, building_from_map(occupancy, 0.5, 0.0))
-    with pytest.raises(InputError, match="belongs to no place that the robot can reach"):
-        floor.state_at("goal", (3.55, 0.55))
 
 
 def test_a_refusal_names_the_nearest_free_place_near_and_far():

@@ -57,17 +57,6 @@ def test_the_cost_is_that_of_dense_samples(seed):
         assert line_cost(on, *a, *b) == pytest.approx(expected, rel=1e-9)
 
 
-def test_a_price_counts_once_at_any_angle_and_by_direction():
-    state = np.repeat(np.array([[0, 1]], np.int32), 5, axis=1).repeat(10, axis=0)  # columns 0 to 4, 5 to 9
-    price = np.full((2, 4), np.inf)
-    price[0, 2], price[1, 3] = 4.0, 9.0
-    on = ground(np.zeros((10, 10), bool), state, price)
-    assert line_cost(on, 3, 3, 3, 6) == pytest.approx(3 + 4)
-    assert line_cost(on, 3, 6, 3, 3) == pytest.approx(3 + 9)
-    assert line_cost(on, 1, 2, 5, 5) == pytest.approx(5 + 4)
-    assert line_cost(on, 1, 1, 8, 1) == pytest.approx(7)
-
-
 def test_a_line_through_the_corner_of_four_pixels_takes_the_cheaper_side():
     state = np.array([[0, 1], [2, 3]], np.int32)
     price = np.full((4, 4), np.inf)

@@ -61,22 +61,6 @@ def test_negate_reads_bright_as_occupied(tmp_path):
     assert read_pixels(tmp_path, grey_row(0, 120, 255), negate="true") == [[FREE, UNKNOWN, OCCUPIED]]
 
 
-def test_row_zero_is_the_top_of_the_picture(tmp_path):
-    assert read_pixels(tmp_path, np.array([[0], [255], [205]], np.uint8)) == [[OCCUPIED], [FREE], [UNKNOWN]]
-
-
-def test_colours_are_averaged(tmp_path):
-    # Means 255, 170 (p = 1/3) and 51 (p = 0.8).
-    pixels = np.array([[[255, 255, 255], [255, 255, 0], [153, 0, 0]]], np.uint8)
-    assert read_pixels(tmp_path, pixels) == [[FREE, UNKNOWN, OCCUPIED]]
-
-
-def test_trinary_averages_alpha_in(tmp_path):
-    # Opaque black: mean 63.75, p = 0.75. Transparent white: 191.25, p = 0.25. Opaque white is free.
-    pixels = np.array([[[0, 0, 0, 255], [255, 255, 255, 0], [255, 255, 255, 255]]], np.uint8)
-    assert read_pixels(tmp_path, pixels) == [[OCCUPIED, UNKNOWN, FREE]]
-
-
 def test_grey_with_alpha_is_averaged_as_four_channels(tmp_path):
     # Three times 128 and 255: 159.75, p = 0.37. As two channels it would be 191.5, p = 0.249.
     image = Image.fromarray(np.array([[[128, 255]]], np.uint8))
@@ -90,20 +74,9 @@ def test_scale_takes_what_is_not_opaque_as_unknown(tmp_path):
     assert read_pixels(tmp_path, pixels, mode="scale") == [[OCCUPIED, UNKNOWN, FREE]]
 
 
-def test_scale_leaves_alpha_out_of_the_average(tmp_path):
-    # Opaque mid grey 80: p = 0.686 without alpha, 0.515 with it.
-    assert read_pixels(tmp_path, np.array([[[80, 80, 80, 255]]], np.uint8), mode="scale") == [[OCCUPIED]]
-
-
 def test_raw_pixels_are_percentages(tmp_path):
     states = [[FREE, FREE, UNKNOWN, UNKNOWN, OCCUPIED, OCCUPIED, UNKNOWN, UNKNOWN]]
     assert read_pixels(tmp_path, grey_row(0, 19, 20, 65, 66, 100, 101, 255), mode="raw") == states
-
-
-def test_raw_negate_mirrors_the_pixel(tmp_path):
-    assert read_pixels(tmp_path, grey_row(255, 155, 154, 0), mode="raw", negate=1) == [
-        [FREE, OCCUPIED, UNKNOWN, UNKNOWN]
-    ]
 
 
 def test_sixteen_bits(tmp_path):
@@ -138,21 +111,6 @@ def test_settings_come_along(tmp_path):
     path = write_yaml(tmp_path, resolution="5e-2", origin="[-1.5, 2, 0.5]")
     read = read_occupancy_map(path)
     assert (read.resolution, read.origin, read.source) == (0.05, (-1.5, 2.0, 0.5), str(path))
-
-
-def test_the_image_is_looked_for_beside_the_yaml(tmp_path, monkeypatch):
-    folder = tmp_path / "maps"
-    folder.mkdir()
-    (folder / "map.pgm").write_bytes(b"P5 1 1 255\n\xff")
-    write_yaml(folder)
-    monkeypatch.chdir(tmp_path)
-    assert read_occupancy_map("maps/map.yaml").state.tolist() == [[FREE]]
-
-
-@pytest.mark.parametrize("missing", sorted(SETTINGS))
-def test_a_missing_key_is_named(tmp_path, missing):
-    (tmp_path / "map.pgm").write_bytes(b"P5 1 1 255\n\xff")
-    assert f"lacks {missing};" in error_of(write_yaml(tmp_path, **{missing: None}))
 
 
 @pytest.mark.parametrize(
@@ -204,12 +162,6 @@ def test_each_broken_rule_is_one_clear_line(tmp_path, changes, words):
 def test_not_a_map_yaml(tmp_path, content, words):
     (tmp_path / "map.yaml").write_bytes(content)
     assert words in error_of(tmp_path / "map.yaml")
-
-
-def test_no_such_file_and_a_folder(tmp_path):
-    assert "no such file" in error_of(tmp_path / "nowhere.yaml")
-    assert "no such file" in error_of(tmp_path)
-    assert "no such file" in error_of("\0")
 
 
 @pytest.mark.parametrize(

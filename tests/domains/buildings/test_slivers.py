@@ -32,13 +32,6 @@ def test_corridors(share, kept):
     assert without_slivers(corridor(len(share)), np.array(share, float), 0.5).tolist() == [bool(k) for k in kept]
 
 
-def test_the_shorter_of_two_ways_stays():
-    # Two rooms, joined by one small cell above and by three below.
-    world = GridWorld.from_free("two ways", np.ones((2, 3), dtype=bool))
-    share = np.array([1, 0.1, 1, 0.1, 0.1, 0.1])
-    assert without_slivers(world.neighbour, share, 0.5).tolist() == [True, True, True, False, False, False]
-
-
 @pytest.mark.parametrize("seed", range(40))
 def test_large_cells_stay_and_stay_joined(seed):
     rng = np.random.default_rng(seed)

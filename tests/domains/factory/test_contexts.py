@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import NotFoundError
 from lifelore.domains.factory.contexts import (
     ENCODINGS,
     FEATURE_NAMES,
@@ -13,12 +13,10 @@ from lifelore.domains.factory.contexts import (
     TO_ASSEMBLE,
     TO_PROCURE,
     configuration_codes,
-    context_key,
     feature_codes,
     features,
     items_flag,
     state_contexts,
-    terrain,
 )
 from lifelore.domains.factory.layout import factory
 from lifelore.domains.factory.modified_factory import modified_factory
@@ -29,15 +27,6 @@ SMALL = """
 #a#.2#
 ######
 """
-
-
-def test_terrain_by_hand():
-    assert terrain(factory(SMALL)).tolist() == [
-        [1, 1, 1, 1, 1, 1],
-        [1, 2, 0, 0, 3, 1],
-        [1, 3, 1, 0, 2, 1],
-        [1, 1, 1, 1, 1, 1],
-    ]
 
 
 def test_features_by_hand():
@@ -59,16 +48,6 @@ def test_the_flag_by_hand():
     flags = items_flag(factory().task([3, 6])).reshape(3, 3)  # second item by first
     assert flags.tolist() == [[0, 0, 0], [0, 1, 1], [0, 1, 2]]
     assert set(items_flag(factory().task([3, 6]), [4, 8]).tolist()) == {TO_ASSEMBLE, NOTHING_LEFT}
-
-
-def test_the_four_sets():
-    assert set(PHI["phi3"]) == set(PHI["phi1"]) | set(PHI["phi2"])
-    assert {name: len(columns) for name, columns in PHI.items()} == {"phi1": 2, "phi2": 4, "phi3": 6, "phi4": 10}
-    sizes = {
-        name: np.prod([FEATURE_SIZES[FEATURE_NAMES.index(c)] for c in chosen]) for name, chosen in PHI.items()
-    }
-    assert sizes == {"phi1": 12, "phi2": 256, "phi3": 4**5 * 3, "phi4": 4**9 * 3}
-    assert 1 - sizes["phi2"] / sizes["phi4"] == pytest.approx(0.99967, abs=5e-6)  # the thesis prints 99.71 %
 
 
 @pytest.mark.parametrize("names", [*PHI, ("Items",), ("PosMR", "PosML")])
@@ -104,30 +83,6 @@ def test_encodings_by_hand():
     assert configuration_codes(task, "global", [five]).tolist() == codes["global"][2:]
 
 
-def test_what_tasks_share():
-    world = factory()
-    one, other = world.task([2, 5]), world.task([2, 7])
-    # Component 2 procured and nothing else: the same state to the factory, not the same thing left to do.
-    assert np.array_equal(state_contexts(one, "global", [1]), state_contexts(other, "global", [1]))
-    assert not np.intersect1d(state_contexts(one, "left", [1]), state_contexts(other, "left", [1])).size
-    # Configurations of a longer list hold those of a shorter one.
-    longer = world.task([2, 5, 7])
-    assert set(state_contexts(one, "global")) <= set(state_contexts(longer, "global"))
-    nine = world.task(range(9))
-    codes = state_contexts(nine, "global", [3**9 - 1, 0])
-    assert codes.max() == (3**9 - 1) * 400 + 18 * 20 + 18
-    assert codes.max() < 2**24
-    for wrong in (-1, 3**9):
-        with pytest.raises(InputError, match="configurations must lie in"):
-            state_contexts(nine, "global", [wrong])
-
-
-@pytest.mark.parametrize("encoding", ["global", "left", "listed"])
-def test_codes_are_one_to_one(encoding):
-    codes = state_contexts(factory().task([0, 3, 8]), encoding)
-    assert len(np.unique(codes)) == len(codes) == 27 * 275
-
-
 def test_places_of_two_layouts_agree():
     one, other = (modified_factory(np.random.default_rng(seed)) for seed in (0, 1))
     at = {
@@ -140,5 +95,3 @@ def test_places_of_two_layouts_agree():
     for world in (one, other):
         codes = state_contexts(world.task([0]), "global", [0]).tolist()
         assert codes == [at[tuple(cell)] for cell in world.floor.cells.tolist()]
-    assert context_key(one) == context_key(other) != context_key(factory())
-    assert context_key(one, "left") != context_key(one)

@@ -1,15 +1,13 @@
 """Orders of hidden customers: what is shown, what pays, and the best return."""
 
-import pickle
-
 import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
-from lifelore.domains.factory.customer_orders import CUSTOMERS, CustomerOrder, FactoryCustomers
+from lifelore.domains.factory.customer_orders import CUSTOMERS, CustomerOrder
 from lifelore.domains.factory.modified_factory import modified_factory
-from lifelore.domains.task_stream import LivedTask, TaskStream
+from lifelore.domains.task_stream import LivedTask
 
 LAYOUT = modified_factory(stream(0, "test"))
 
@@ -34,15 +32,6 @@ def test_the_list_shows_in_what_succeeds_alone():
         seen.append((order.step(4)[1], order.copy_state()[0] // LAYOUT.n_cells > 0))
     assert seen == [(-10.0, False), (10.0, True)]
     assert CustomerOrder(LAYOUT, "bicycles").reset() == CustomerOrder(LAYOUT, "chairs").reset()
-
-
-def test_orders_depend_on_their_number_alone():
-    orders = FactoryCustomers(TaskStream(tuple(CUSTOMERS)), 3)
-    (drawn, one), (again, other) = orders.task(5), orders.task(5)
-    assert drawn == again
-    assert one.factory.fingerprint == other.factory.fingerprint
-    assert one.factory.fingerprint != orders.task(6)[1].factory.fingerprint
-    assert pickle.loads(pickle.dumps(one.copy_state())) == other.copy_state()
 
 
 def test_mistakes_are_refused():

@@ -44,11 +44,6 @@ def test_components_by_number_or_drawn():
         plain(NAMES[0], components=10)
 
 
-def test_each_seed_has_a_layout_of_its_own():
-    one, same, other = (plain(NAMES[1], seed=seed).factory for seed in (0, 0, 1))
-    assert one.fingerprint == same.fingerprint != other.fingerprint
-
-
 def test_a_factory_of_ones_own():
     world = factory("#######\n#S1.a.#\n#######")
     env = AnyFactoryEnvironment(world, [0], render_mode="rgb_array")

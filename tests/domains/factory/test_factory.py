@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL
 from lifelore.core.planning.planning import best_actions, optimal_q
-from lifelore.domains.factory.factory import ASSEMBLE, ASSEMBLED, PROCURE, PROCURED, RAW, FactoryRewards
+from lifelore.domains.factory.factory import ASSEMBLE, ASSEMBLED, PROCURE
 from lifelore.domains.factory.layout import factory
 from lifelore.domains.factory.modified_factory import modified_factory
 from lifelore.domains.grids.grid_world import MOVES
@@ -116,17 +116,6 @@ def test_the_printed_rewards_one_by_one():
     assert [task.domain.step(task.params, state, a, 0.0) for a in range(6)] == [(state, 0.0, TERMINAL)] * 6
 
 
-@pytest.mark.parametrize("discount", [0.5, 0.99])
-def test_one_component_on_a_line_by_hand(discount):
-    task = factory(LINE, discount=discount).task([0])
-    rewards = [-1.0, -2.0, 10.0, -2.0, -2.0, -2.0, 110.0]
-    worth = sum(r * discount**t for t, r in enumerate(rewards))
-    q = task.optimal_q()
-    assert q[task.starts[0], EAST] == pytest.approx(worth, rel=1e-12)
-    assert best_actions(q)[task.starts[0]].tolist() == [a == EAST for a in range(6)]
-    assert not q[task.completed].any()
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("components", [[4], [0, 8], [1, 3, 5]])
 def test_layer_by_layer_same_as_sweeps_over_everything(components):
@@ -140,28 +129,6 @@ def test_layer_by_layer_same_as_sweeps_over_everything(components):
         here = slice(configuration * task.factory.n_cells, (configuration + 1) * task.factory.n_cells)
         assert np.array_equal(plan.q(configuration), found[here])
         assert np.array_equal(plan.best_actions(configuration), best[here])
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_modified_factories_are_solved_the_same_way(seed):
-    world = modified_factory(np.random.default_rng(seed), discount=0.95)
-    task = world.task([0, 4])
-    tables = task.tables()
-    found, swept = task.optimal_q(tables), optimal_q(tables, 0.95)
-    assert found == pytest.approx(swept, abs=1e-9)
-    assert np.array_equal(best_actions(found), best_actions(swept))
-
-
-def test_rows_of_one_configuration_are_those_of_the_whole():
-    task = factory().task([2, 7, 8])
-    whole = task.tables()
-    for configuration in (0, 13, 26):
-        here = slice(configuration * task.factory.n_cells, (configuration + 1) * task.factory.n_cells)
-        part = task.configuration_tables(configuration)
-        for name in ("next_state", "reward", "event"):
-            assert np.array_equal(getattr(part, name), getattr(whole, name)[here])
-        assert np.array_equal(part.outcome_cum, whole.outcome_cum)
-    assert whole.outcome_cum.tolist() == [1.0]
 
 
 def test_nine_components_on_demand():
@@ -196,26 +163,6 @@ def test_leaving_out_what_is_not_on_the_list_changes_no_value():
         assert full[other].max(axis=-1) == pytest.approx(local.max(axis=-1), abs=1e-9)
 
 
-def test_stages_and_numbers():
-    task = factory().task([5, 2])
-    assert task.components == (2, 5)
-    assert task.stages.tolist()[:5] == [[RAW, RAW], [PROCURED, RAW], [ASSEMBLED, RAW], [RAW, PROCURED], [1, 1]]
-    assert (task.n_configurations, task.domain.n_states) == (9, 9 * 275)
-    assert task.completed.sum() == 275
-    assert task.completed[-275:].all()
-
-
-def test_random_tasks():
-    world, random = factory(), np.random.default_rng(0)
-    drawn = {world.draw_components(random, 2) for _ in range(1500)}
-    assert len(drawn) == 36  # 9 · 8 / 2; one is missed with probability 36 · (35/36)^1500 < 1e-16
-    assert all(first < second for first, second in drawn)
-    assert world.draw_components(random, 9) == tuple(range(9))
-    for wrong in (0, 10):
-        with pytest.raises(InputError, match=r"k must lie in \[1, 9\]"):
-            world.draw_components(random, wrong)
-
-
 def test_misuse_is_told():
     world = factory()
     for wrong in ([], [1, 1], [9], [-1]):
@@ -225,11 +172,3 @@ def test_misuse_is_told():
         with pytest.raises(InputError, match=r"starts must be cells in \[0, 275\)"):
             world.task([0], starts=wrong)
     assert world.task([0], starts=[3, 4]).starts.tolist() == [3, 4]
-
-
-def test_rewards_and_layout_are_part_of_the_fingerprint():
-    assert factory().fingerprint == factory().fingerprint
-    others = [factory(rewards=FactoryRewards(completion=90.0)), factory(LINE), factory(discount=0.9)]
-    assert len({world.fingerprint for world in (factory(), *others[:2])}) == 3
-    paid = others[0].task([0])
-    assert paid.tables().reward.max() == 100.0

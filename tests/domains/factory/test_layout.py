@@ -5,7 +5,6 @@ import pytest
 from scipy import ndimage
 
 from lifelore.core.errors import InputError
-from lifelore.domains.factory.factory import Factory
 from lifelore.domains.factory.layout import PLAN, factory
 
 
@@ -48,18 +47,3 @@ def test_signs_are_read_where_they_stand():
 def test_drawings_refused(plan, message):
     with pytest.raises(InputError, match=message):
         factory(plan)
-
-
-def test_factories_check_their_parts():
-    world = factory()
-    parts = {
-        name: getattr(world, name)
-        for name in ("floor", "procure_at", "assemble_at", "express", "start", "procure_area", "assemble_area")
-    }
-    for changed, message in (
-        ({"start": 275}, "start must be a cell"),
-        ({"procure_at": np.array([1, 1, *range(2, 9)])}, "procure_at must name distinct cells"),
-        ({"assemble_at": np.arange(9) + 270}, "assemble_at must name distinct cells"),
-    ):
-        with pytest.raises(InputError, match=message):
-            Factory(**(parts | changed))

@@ -67,39 +67,3 @@ def test_every_layout(seed):
     assert len({*world.procure_at.tolist(), *world.assemble_at.tolist()}) == 18
     assert world.start not in {*world.procure_at.tolist(), *world.assemble_at.tolist()}
     assert not world.express.any()
-
-
-def test_zones_have_inner_walls_and_layouts_differ():
-    worlds = [modified_factory(np.random.default_rng(seed)) for seed in range(30)]
-    assert len({world.fingerprint for world in worlds}) == 30
-    walled = []
-    for world in worlds:
-        wall = world.floor.state_of < 0
-        for row in range(3):
-            for column in range(3):
-                zone = wall[row * 7 + 1 : row * 7 + 7, column * 7 + 1 : column * 7 + 7]
-                walled.append(int(zone.sum()))
-    # At least two walls of two cells, at most four of four, as far as they find room.
-    assert max(walled) <= INNER_WALLS[1] * 4
-    assert np.mean(np.array(walled) >= 4) > 0.99
-    # Every component is somewhere else each time.
-    places = np.array([world.floor.cells[world.procure_at[0]] for world in worlds])
-    assert len(np.unique(places, axis=0)) > 20
-
-
-def test_the_same_stream_gives_the_same_layout():
-    one, other = (modified_factory(np.random.default_rng(5)) for _ in range(2))
-    assert one.fingerprint == other.fingerprint
-    assert one.floor.discount == 0.99
-    assert modified_factory(np.random.default_rng(5), discount=0.5).floor.discount == 0.5
-
-
-@pytest.mark.parametrize("seed", range(4))
-def test_some_wall_between_zones_stays_whole(seed):
-    free = modified_factory(np.random.default_rng(seed)).floor.state_of >= 0
-    whole = 0
-    for line in (7, 14):
-        for start in (1, 8, 15):
-            whole += not free[line, start : start + 6].any()
-            whole += not free[start : start + 6, line].any()
-    assert 1 <= whole <= 4

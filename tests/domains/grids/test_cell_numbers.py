@@ -8,10 +8,6 @@ from lifelore.domains.grids.grid_world import GridWorld
 WORLD = GridWorld.from_free("building", np.array([[1, 1, 0], [0, 1, 1]], np.bool_))
 
 
-def test_numbers_by_hand():
-    assert cells_of(WORLD).tolist() == [1 << 20, (1 << 20) + 1, 1, 2]  # rows count from the bottom
-
-
 def test_states_and_cells_are_inverse_and_strange_cells_have_no_state():
     assert states_in(WORLD, cells_of(WORLD)).tolist() == [0, 1, 2, 3]
     assert states_in(WORLD, np.array([0, 5, 7 << 20])).tolist() == [-1, -1, -1]

@@ -1,6 +1,5 @@
 """The lattice counted by hand."""
 
-import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
@@ -22,15 +21,6 @@ def test_seven_by_hand():
     assert picture == ["#######", "#.....#", "#.#.#.#", "#.....#", "#.#.#.#", "#.....#", "#######"]
     # Of the 21 cells, 4 corners and 12 corridor pieces have 2 moves, 4 edges 3, the centre 4: 48 of 84.
     assert (world.neighbour >= 0).mean() == pytest.approx(48 / 84)
-
-
-def test_percepts_of_the_lattice():
-    # A crossing: all four moves, diagonals all occupied. A corridor piece: two moves, no diagonal free.
-    world = lattice(7)
-    assert world.percepts[world.state_of[3, 3]] == 0b1111_1111
-    corner = world.percepts[world.state_of[1, 1]]
-    assert corner & 0b1111 == 0b0110  # south and east
-    assert np.unique(lattice(23).percepts).size == np.unique(lattice(11).percepts).size
 
 
 @pytest.mark.parametrize("size", [3, 4, 22, -7, 1003])

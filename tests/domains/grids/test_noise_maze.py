@@ -38,13 +38,6 @@ def test_a_cell_is_spared_exactly_when_the_rest_stays_connected(seed):
         assert _can_spare(free.ravel(), row * 9 + column, 9, stack, seen, 1) == connected
 
 
-def test_the_maze_of_figure_3_1():
-    # Walled 7 × 7 with 6 obstacles: 19 free cells, 76 state-action pairs.
-    world = noise_maze(np.random.default_rng(0), size=7, obstacles=6)
-    assert world.n_states == 19
-    assert world.neighbour.size == 76
-
-
 @pytest.mark.slow
 def test_the_thesis_range_and_defaults():
     worlds = [noise_maze(np.random.default_rng(seed)) for seed in range(20)]
@@ -53,17 +46,6 @@ def test_the_thesis_range_and_defaults():
     # Uniform on [.5, .8]: the mean of 20 has a standard error of .0194; 4 of them.
     assert abs(shares.mean() - 0.65) < 0.078
     assert (worlds[0].discount, worlds[0].goal_reward, worlds[0].wall_reward) == (0.95, 100.0, -10.0)
-
-
-def test_obstacles_fall_anywhere():
-    # 200 mazes with one obstacle among 25 cells: each cell is hit 8 times on average, P(never) = 0.04 %.
-    hits = sum(noise_maze(np.random.default_rng(s), 7, obstacles=1).state_of < 0 for s in range(200))
-    assert (hits[1:-1, 1:-1] > 0).all()
-
-
-def test_the_same_generator_state_is_the_same_maze():
-    a, b, c = (noise_maze(np.random.default_rng(seed), 11, 0.6).fingerprint for seed in (1, 1, 2))
-    assert a == b != c
 
 
 @pytest.mark.parametrize(

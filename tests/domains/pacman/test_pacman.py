@@ -66,14 +66,6 @@ def test_ghosts_move_as_their_strategies_say():
     assert paths["anticlockwise"] == [5, 7, 12, 14, 15, 16, 17, 18, 13]
 
 
-def test_a_random_ghost_goes_to_each_neighbour_alike():
-    _, _, cells, following, outcome_cum = PacmanTask(SMALL, FOODS, "random").params
-    assert cells.tolist() == list(range(19))
-    assert np.allclose(outcome_cum, np.arange(1, 7) / 6)
-    assert sorted(following[7].tolist()) == [5, 5, 8, 8, 12, 12]
-    assert sorted(following[0].tolist()) == [1, 1, 1, 5, 5, 5]
-
-
 def test_moves_foods_and_ends_by_hand():
     task = PacmanTask(SMALL, FOODS, "clockwise")  # phases 0.. at cells 0 1 2 3 4 6 11 13 18 ...
     assert moved(task, 9, 0, EAST) == (10, 1, 0b1111, 0.0, 0)
@@ -83,18 +75,6 @@ def test_moves_foods_and_ends_by_hand():
     assert moved(task, 9, 0, WEST, left=0b0100) == (8, 1, 0, 110.0, TERMINAL)
     # Food that is gone brings nothing.
     assert moved(task, 9, 0, WEST, left=0b1011) == (8, 1, 0b1011, 0.0, 0)
-
-
-def test_meeting_the_ghost():
-    task = PacmanTask(SMALL, FOODS, "clockwise")
-    # Into the cell where the ghost arrives, from 10 and from 6's other side.
-    assert moved(task, 10, 5, EAST)[3:] == (-100.0, TERMINAL)
-    # Changing places: Pacman north from 6 to 4, the ghost from 4 to 6; the food at 4 is not eaten.
-    assert moved(task, 6, 4, NORTH) == (4, 5, 0b1111, -100.0, TERMINAL)
-    # Following close behind is safe, and so is the cell that the ghost leaves.
-    assert moved(task, 3, 4, EAST) == (4, 5, 0b1101, 10.0, 0)
-    # Waiting at a wall while the ghost comes.
-    assert moved(task, 6, 4, EAST) == (6, 5, 0b1111, -100.0, TERMINAL | COLLISION)
 
 
 @EVERY
@@ -116,15 +96,6 @@ def test_an_observation_tells_own_cell_foods_and_a_ghost_in_sight_and_nothing_el
     # One number for each triple, and one triple for each number.
     assert len(np.unique(told[:, 0])) == len(told) == len(np.unique(told[:, 1:], axis=0))
     assert task.observation_of.max() < task.n_observations == 16 * 19 * 20
-
-
-def test_the_same_is_observed_by_the_same_number_whatever_the_type():
-    names = []
-    for strategy in STRATEGIES:
-        task = PacmanTask(SMALL, FOODS, strategy)
-        phase = int(np.flatnonzero(task.params[2] == 1)[0])
-        names.append(task.observation_of[state_of(task, 3, phase)])
-    assert len(set(names)) == 1
 
 
 @EVERY
@@ -168,19 +139,6 @@ def test_a_walk_known_by_hand():
     assert return_moments(task.tables(), task.observation_of, east, 2)[0] == pytest.approx((-90 + 15 * 20) / 16)
 
 
-def test_discounted_value_by_hand():
-    task = PacmanTask(SMALL, (10, 11, 0, 14), "top row")
-    east = np.tile([0.0, 0.0, 1.0, 0.0], (task.n_observations, 1))
-    mean, deviation = return_moments(task.tables(), task.observation_of, east, 200, 0.5)
-    assert (mean, deviation) == (pytest.approx(10 + 0.5 * 10), pytest.approx(0.0, abs=1e-6))
-
-
-def test_drawn_foods_are_four_cells_without_the_centre():
-    drawn = [SMALL.draw_foods(stream(0, "foods", i)) for i in range(50)]
-    assert all(len(set(foods)) == 4 and SMALL.centre not in foods for foods in drawn)
-    assert len(set().union(*drawn)) == 18
-
-
 @pytest.mark.parametrize(("rows", "columns", "name"), [(4, 5, "rows"), (3, 5, "rows"), (5, 2, "columns")])
 def test_mazes_that_are_no_figure_eight(rows, columns, name):
     with pytest.raises(InputError, match=f"{name} must be odd"):
@@ -191,8 +149,3 @@ def test_mazes_that_are_no_figure_eight(rows, columns, name):
 def test_foods_that_cannot_be(foods):
     with pytest.raises(InputError, match="foods must be 4 different cells"):
         PacmanTask(SMALL, foods, "random")
-
-
-def test_unknown_strategy():
-    with pytest.raises(InputError, match="strategy must be one of top row, clockwise"):
-        PacmanTask(SMALL, FOODS, "asleep")

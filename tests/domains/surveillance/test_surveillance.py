@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.domains.surveillance.surveillance import BASE, HILLS, LAYOUTS, METRICS, NOISES, SIDE, Surveillance
+from lifelore.domains.surveillance.surveillance import BASE, HILLS, LAYOUTS, METRICS, SIDE, Surveillance
 
 EVERY = pytest.mark.parametrize(("layout", "metric"), [(la, m) for la in LAYOUTS for m in METRICS])
 
@@ -71,25 +71,6 @@ def test_pays_of_the_first_hill_by_hand():
     assert world.mean[top, far] == 10
     # The next hill's top is 13 away: it pays less than nothing.
     assert world.mean[17, top] == 200 - 390 + 10
-
-
-def test_a_diagonal_neighbour_is_at_one_or_at_the_root_of_two():
-    assert Surveillance().distance([7, 7])[0] == 1
-    assert Surveillance(metric="euclidean").distance([7, 7])[0] == pytest.approx(2**0.5)
-
-
-def test_deployments_have_the_mean_and_the_noise_asked_for():
-    world, n = Surveillance(deviation=NOISES["variance 20"]), 20_000
-    pays = world.sample(np.random.default_rng(5), np.array([6, 6]), np.arange(68)[:, None] * np.ones(n, int))
-    assert pays.shape == (68, n)
-    # Five standard errors of a mean and of a deviation.
-    assert pays.mean(axis=1) == pytest.approx(world.mean[0], abs=5 * 20**0.5 / n**0.5)
-    assert pays.std(axis=1) == pytest.approx(np.full(68, 20**0.5), abs=5 * 20**0.5 / (2 * n) ** 0.5)
-
-
-def test_training_samples_are_of_every_pair():
-    samples = Surveillance(deviation=0.0).training_samples(np.random.default_rng(0), 3)
-    assert (samples == Surveillance().mean[..., None]).all()
 
 
 def test_unseen_tasks_lie_near_hills_and_are_mostly_no_targets():

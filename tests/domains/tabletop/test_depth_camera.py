@@ -3,23 +3,13 @@
 import numpy as np
 import pytest
 
-from lifelore.domains.tabletop.depth_camera import KINECT, STEREO, looking_down, measure, shadowed
+from lifelore.domains.tabletop.depth_camera import KINECT, STEREO, measure, shadowed
 
 
 def test_rays_and_projection_are_inverse():
     columns, rows = np.array([0, 320, 639]), np.array([479, 100, 3])
     rays = KINECT.rays(columns, rows)
     assert KINECT.project(rays * 0.7) == pytest.approx(np.stack([columns, rows], axis=1))
-
-
-def test_a_camera_looks_down_at_the_origin_at_the_asked_depth():
-    view = looking_down(0.6, np.radians(40), 0.0, 0.8)
-    local = (np.zeros(3) - view.position) @ view.rotation
-    assert view.position[2] == pytest.approx(0.6)
-    assert local[0] == pytest.approx(0)
-    assert local[2] == pytest.approx(0.8)
-    # x right, y down, z forward and 40° down.
-    assert pytest.approx([0, -np.cos(np.radians(40)), -np.sin(np.radians(40))]) == view.rotation.T @ [0, 0, 1]
 
 
 @pytest.mark.slow
@@ -32,12 +22,6 @@ def test_noise_is_as_stated(camera, depth, stated):
     # The slow error has some 350 independent places in four pictures: 4 % a standard deviation, three allowed.
     assert np.nanstd(errors) == pytest.approx(stated, rel=0.12)
     assert camera.sigma(depth) == pytest.approx(stated, rel=0.06)
-
-
-def test_a_kinect_counts_in_eighths_of_a_pixel():
-    noisy = measure(np.full((50, 50), 0.8), KINECT, np.random.default_rng(0))
-    eighths = KINECT.focal * KINECT.baseline / noisy * 8
-    assert np.abs(eighths - eighths.round()).max() < 1e-6
 
 
 def test_a_plane_is_whole_and_what_is_infinite_stays_unseen():

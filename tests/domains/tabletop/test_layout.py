@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.domains.tabletop.layout import CLEARANCE, put_beside, separation, stand, top
 from lifelore.domains.tabletop.pose import about
-from lifelore.domains.tabletop.shapes import box, cylinder
+from lifelore.domains.tabletop.shapes import box
 
 
 def test_standing_things_are_just_above_their_height():
@@ -32,9 +32,3 @@ def _dense(thing):
     return np.concatenate(
         [np.linspace(a, b, 300) for a, b in zip(corners, np.roll(corners, 1, axis=0), strict=True)]
     )
-
-
-def test_two_cylinders_in_a_row():
-    first, second = [stand(cylinder(0.03, 0.1))], [stand(cylinder(0.05, 0.1))]
-    moved = put_beside(first, second, 0.0, 0.01)
-    assert moved[0].pose.position[:2] == pytest.approx((0.09, 0), abs=1e-6)

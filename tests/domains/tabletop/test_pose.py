@@ -11,19 +11,6 @@ def test_a_pose_turns_then_moves():
     assert pose.apply(np.array([[1.0, 0.0, 0.5]])) == pytest.approx(np.array([[1.0, 1.0, 2.5]]))
 
 
-def test_a_turned_pose_is_carried_about_the_origin():
-    pose = Pose(np.array([1.0, 0.0, 0.0]), np.eye(3)).turned(np.pi)
-    assert pose.apply(np.array([[0.5, 0.0, 0.0]])) == pytest.approx(np.array([[-1.5, 0.0, 0.0]]))
-
-
-@pytest.mark.parametrize("axis", [0, 1, 2])
-def test_about_keeps_its_axis_and_is_right_handed(axis):
-    turn = about(axis, np.pi / 2)
-    following = np.eye(3)[(axis + 1) % 3]
-    assert turn @ np.eye(3)[axis] == pytest.approx(np.eye(3)[axis])
-    assert turn @ following == pytest.approx(np.eye(3)[(axis + 2) % 3])
-
-
 def test_random_and_aligned_rotations_are_rotations():
     rng = np.random.default_rng(0)
     for _ in range(50):

@@ -9,7 +9,7 @@ import pytest
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.domains.tabletop.arrangements import ARRANGEMENTS
-from lifelore.domains.tabletop.depth_camera import KINECT, Camera, looking_down
+from lifelore.domains.tabletop.depth_camera import Camera, looking_down
 from lifelore.domains.tabletop.layout import stand
 from lifelore.domains.tabletop.meshes import shape_from_mesh
 from lifelore.domains.tabletop.photograph import photograph
@@ -58,19 +58,8 @@ def test_the_table_carries_what_stands_on_it():
     assert -lift[-1] == pytest.approx(table.weights.sum(), rel=1e-3)
 
 
-def test_weights_are_density_times_volume():
-    assert Tabletop([BLOCK], [stand(BLOCK).pose]).weights == pytest.approx([0.1 * 0.1 * 0.06 * 400 * 9.81])
-
-
 def test_one_box_on_another():
     assert told(stand(BLOCK), stand(BLOCK, height=0.06)) == {(2, 1): "on", (3, 1): "none", (3, 2): "on"}
-
-
-@pytest.mark.parametrize(("gap", "relation"), [(0.01, "adjacent"), (0.035, "none"), (0.2, None)])
-def test_boxes_side_by_side(gap, relation):
-    truth = told(stand(BLOCK), stand(BLOCK).moved(0.1 + gap, 0.0))
-    assert truth.pop((2, 1)) == truth.pop((3, 1)) == "on"
-    assert truth == ({(2, 3): relation} if relation else {})
 
 
 @pytest.mark.parametrize(("slope", "height"), [(20, 0.06), (50, 0.1)])
@@ -89,11 +78,6 @@ def test_jammed_things_are_refused(width, accepted):
     block = stand(box(width, 0.06, 0.06), height=0.02)
     found = settle_scene([trough, block], np.random.default_rng(0), TabletopSettings())
     assert (found is not None) == accepted
-
-
-def test_what_does_not_come_to_rest_is_refused():
-    table = Tabletop([ball(0.05)], [Pose(np.array([0, 0, 3.0]), np.eye(3))])
-    assert not table.settle(longest=0.5)
 
 
 def test_a_hinge_bends_and_its_shape_says_so():
@@ -126,15 +110,6 @@ def test_the_camera_measures_a_plane_and_a_ball_exactly():
     assert photo.clean == pytest.approx(cloud.points)
 
 
-def test_the_camera_sees_no_hidden_side():
-    table = Tabletop([BLOCK], [stand(BLOCK).pose])
-    photo = photograph(table, [stand(BLOCK).outline()], view_down(), KINECT, np.random.default_rng(0))
-    assert photo is not None
-    seen = photo.clean[photo.cloud.labels == 2]
-    assert (seen[:, 1] < 0.05 - 1e-6).all()
-    assert seen[:, 2].min() < 0.004
-
-
 def test_distances_between_shapes_are_those_of_their_surfaces():
     table = Tabletop([BLOCK, ball(0.02), BLOCK], [Pose(np.array([x, 0, 0.2]), np.eye(3)) for x in (0, 0.1, 1.0)])
     found, way = table.distance(0, 1, 0.5)
@@ -156,16 +131,9 @@ def same(first, second):
 def test_serial_and_parallel_scenes_are_the_same():
     settings = TabletopSettings(n_objects=(2, 4), mix={"on": 1, "both": 1, "adjacent": 1, "none": 1})
     for first, second in zip(
-        tabletop_scenes(6, 5, settings), tabletop_scenes(6, 5, settings, jobs=2), strict=True
+        tabletop_scenes(4, 5, settings), tabletop_scenes(4, 5, settings, jobs=2), strict=True
     ):
         same(first, second)
-
-
-@pytest.mark.slow
-def test_a_scene_depends_on_its_seed_and_number_alone():
-    same(sample_scene(3, 7), sample_scene(3, 7))
-    other = sample_scene(4, 7)
-    assert other.cloud.points.shape != sample_scene(3, 7).cloud.points.shape
 
 
 @pytest.mark.slow

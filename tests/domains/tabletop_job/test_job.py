@@ -5,7 +5,7 @@ import pickle
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import UNLABELLED
 from lifelore.domains.tabletop.layout import stand
 from lifelore.domains.tabletop.shapes import box
@@ -69,12 +69,6 @@ def test_users_differ_as_documented():
     assert points["clearing"] == pytest.approx((8.5, 8.5, -7.5, -4.5, -1.5))
 
 
-def test_types_have_names():
-    assert len({job_type.name for job_type in JOB_TYPES}) == 16
-    with pytest.raises(NotFoundError, match="patient/firm"):
-        job_type_named("patient")
-
-
 def test_actions_follow_the_hand():
     task = stack()
     assert isinstance(task, LivedTask)
@@ -106,15 +100,6 @@ def trace(task, actions):
         _, reward, _ = task.step(action)
         out.append((reward, [pose.position.tolist() for pose in task.poses]))
     return out
-
-
-def test_the_same_actions_do_the_same_bit_for_bit():
-    actions = (1, 3, 0, 8)
-    assert trace(stack(), actions) == trace(stack(), actions)
-    task = stack()
-    first = trace(task, actions)
-    task.reset()
-    assert trace(task, actions) == first
 
 
 def test_a_copied_state_goes_on_as_the_original_even_pickled():

@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.domains.tabletop.layout import stand
 from lifelore.domains.tabletop.pose import about
-from lifelore.domains.tabletop.shapes import ball, box, cup
+from lifelore.domains.tabletop.shapes import box
 from lifelore.domains.tabletop_job.job import (
     HAND_OVER_BRISKLY,
     HAND_OVER_GENTLY,
@@ -48,15 +48,6 @@ def test_the_bottom_of_a_stack_spills_its_top():
     assert events.spilled == (1,)
 
 
-def test_the_top_of_a_stack_spills_nothing():
-    task = job(stack(), 1)
-    events = do(task, PICK, 1)
-    assert events.reached
-    assert (events.spilled, events.knocked) == ((), ())
-    assert task.observation.held == 1
-    assert task.poses[0].position == pytest.approx([0, 0, 0.03], abs=1e-3)
-
-
 def test_the_bottom_is_free_once_its_top_is_put_aside():
     task = job(stack(), 0)
     do(task, PICK, 1)
@@ -66,12 +57,6 @@ def test_the_bottom_is_free_once_its_top_is_put_aside():
     assert place[2] == pytest.approx(0.025, abs=2e-3)
     assert np.hypot(*place[:2]) > 0.1
     assert do(task, PICK, 0).spilled == ()
-
-
-def test_a_bowl_spills_what_lies_in_it():
-    bowl = stand(cup(0.05, 0.08, 0.06, 0.005, False, "bowl"))
-    task = job([bowl, stand(ball(0.02), height=0.006)], 0)
-    assert do(task, PICK, 0).spilled == (1,)
 
 
 def test_the_pillar_of_a_bridge_is_out_of_reach():
@@ -134,12 +119,3 @@ def test_a_slippery_gripper_drops_what_it_moves_briskly(verb, slipped):
     assert events.slipped == slipped
     assert (events.handed == 0) == (not slipped)
     assert events.spilled == ((0,) if slipped else ())
-
-
-def test_what_stands_far_off_stays_where_it_is():
-    far = stand(cup(0.04, 0.05, 0.08, 0.005, True), about(2, 0.3)).moved(0.35, 0.1)
-    task = job([*stack(), far], 0)
-    before = task.poses[2].position
-    for verb, number in ((PICK, 0), (HAND_OVER_GENTLY, 0)):
-        do(task, verb, number)
-    assert task.poses[2].position == pytest.approx(before, abs=2e-3)

@@ -13,7 +13,6 @@ from lifelore.domains.telephone.telephone import (
     REWARD_SEQUENCES,
     START,
     SUCCESS,
-    UTILITIES,
     Telephone,
     rewards_of,
 )
@@ -59,16 +58,6 @@ def test_the_preferred_model_never_fails_and_is_alone_the_best(reading):
     assert (np.diff(phone.mean[0]) < 0).all()
 
 
-@pytest.mark.parametrize("reading", ["A", "B"])
-@pytest.mark.parametrize("matched_eta", [0.0, 0.3])
-def test_every_table_is_a_distribution(reading, matched_eta):
-    phone = Telephone(5, 0.4, reading, matched_eta)
-    for table in (phone.transition_probs, phone.path_probs, phone.reward_probs, phone.utility_probs):
-        assert (table >= 0).all()
-        assert table.sum(axis=-1) == pytest.approx(1)
-    assert phone.mean == pytest.approx(phone.utility_probs @ [3, 10])
-
-
 def _information(probs):
     """Mutual information of the type with a signal under each policy, nats, types uniform."""
     mixture = probs.mean(axis=0)
@@ -95,25 +84,6 @@ def test_one_failure_rules_a_preference_out_for_ever():
     assert probs.tolist() == [1, 0, 0, 0, 0, 0, 0]
 
 
-def test_calls_follow_the_tables():
-    phone, n = Telephone(6), 40_000
-    calls = phone.sample(np.random.default_rng(4), np.full((n, 1), 2), [2, 5])
-    for column, policy in enumerate([2, 5]):
-        shares = np.bincount(calls[:, column], minlength=len(PATHS)) / n
-        assert shares == pytest.approx(phone.path_probs[2, policy], abs=0.0125)  # five standard errors at most
-
-
-def test_a_uniform_number_below_one_is_a_call():
-    phone = Telephone(10)
-    assert phone.path_of(np.nextafter(1, 0), 0, 0) == 0
-    assert phone.path_of(np.nextafter(1, 0), 0, 5) == len(PATHS) - 1
-    assert phone.path_of([0.0, 0.999], [0, 1], 3).shape == (2,)
-
-
-def test_one_model_alone():
-    assert Telephone(1).mean.tolist() == [[10.0]]
-
-
 @pytest.mark.parametrize(
     ("changes", "error", "rule"),
     [
@@ -125,7 +95,3 @@ def test_one_model_alone():
 def test_services_that_cannot_be(changes, error, rule):
     with pytest.raises(error, match=rule):
         Telephone(**changes)
-
-
-def test_utilities_are_the_two_of_the_text():
-    assert UTILITIES == (3.0, 10.0)

@@ -13,9 +13,7 @@ from reproduction.chapter2.c2_01_nearest_displacements.run import (
     confusion,
     hardest_margin,
     measure,
-    measures,
     readings,
-    rows,
 )
 from reproduction.chapter2.c2_02_label_components import figure as c2_2
 from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES, MIX, STANDARD
@@ -61,12 +59,6 @@ def pairs(truth, said, n=1) -> list[tuple[str, str]]:
     return [(truth, said)] * n
 
 
-def test_each_data_set_is_told_by_itself():
-    sets = [[at("0-0", ON, 0), at("0-1", ON, 9)], [at("1-0", BOTH, 0), at("1-1", BOTH, 9)]]
-    assert answers(sets, Reading()) == [(ON, ON), (ON, ON), (BOTH, BOTH), (BOTH, BOTH)]
-    assert answers([REAL], Reading()) == [(NONE, NONE), (ON, NONE)]
-
-
 def test_confusion_is_predicted_by_actual():
     given = pairs(ON, ON, 3) + pairs(BOTH, ON, 2) + pairs(ADJACENT, NONE) + pairs(NONE, BOTH)
     assert confusion(given) == [[3, 0, 2, 0], [0, 0, 0, 0], [0, 0, 0, 1], [0, 1, 0, 0]]
@@ -81,30 +73,6 @@ def test_hardest_margin_by_hand():
     assert found.ci95[0] < 0.25 < found.ci95[1]
 
 
-def test_hardest_margin_is_negative_where_another_is_harder():
-    assert hardest_margin(pairs(ON, NONE, 2) + pairs(BOTH, BOTH, 3)).value == -1
-    certain = hardest_margin(pairs(ON, ON, 4) + pairs(NONE, NONE, 4) + pairs(BOTH, ON, 2))
-    assert (certain.value, certain.ci95) == (1.0, (1.0, 1.0))
-    # The interval, too, is against the hardest of the others.
-    certain = hardest_margin(pairs(ON, ON, 4) + pairs(ADJACENT, ON, 4) + pairs(BOTH, ON, 2))
-    assert (certain.value, certain.ci95) == (0.0, (0.0, 0.0))
-
-
-def test_hardest_margin_resamples_within_each_relation():
-    given = pairs(ON, ON, 200) + pairs(ON, BOTH, 200) + pairs(BOTH, BOTH, 100) + pairs(BOTH, ON, 300)
-    low, high = hardest_margin(given).ci95 or (0, 0)
-    # Variances 0.5 * 0.5 / 400 and 0.25 * 0.75 / 400: a standard error of 0.0331 about 0.25.
-    half = 1.96 * np.sqrt(0.4375 / 400)
-    assert (low, high) == pytest.approx((0.25 - half, 0.25 + half), abs=0.012)
-
-
-@pytest.mark.parametrize("given", [pairs(ON, ON, 3), pairs(BOTH, BOTH, 3), pairs(ON, ON) + pairs(ADJACENT, ON)])
-def test_hardest_margin_needs_both_and_another(given):
-    found = hardest_margin(given)
-    assert np.isnan(found.value)
-    assert (found.ci95, found.n) == (None, 0)
-
-
 def test_measures_by_hand():
     found = measure(SETTINGS, RESULTS)
     value = {name: number.value for name, number in found.items()}
@@ -115,12 +83,6 @@ def test_measures_by_hand():
     assert value["next_hardest_recall_less_both"] == 1
     assert (value["misread_both_as_on"], found["misread_both_as_on"].n) == (1, 2)
     assert (value["right_of_real"], found["right_of_real"].n) == (0.5, 2)
-
-
-def test_of_both_only_the_misread_are_asked_what_they_were_said_to_be():
-    given = pairs(BOTH, BOTH, 5) + pairs(BOTH, ON) + pairs(BOTH, ADJACENT) + pairs(ON, ON, 3)
-    found = measures(given)["misread_both_as_on"]
-    assert (found.value, found.n) == (0.5, 2)
 
 
 def test_readings_cross_what_is_not_stated():
@@ -134,12 +96,6 @@ def test_readings_cross_what_is_not_stated():
         # Where all contacts of A are weak its strongest stays, or none, and then nothing is said.
         assert right[WEAK, SCALED, votes, None] == 15 / 17
         assert right[WEAK, FIXED, votes, None] == 0
-
-
-def test_rows_are_confusion_matrices():
-    simulated, real = rows(SETTINGS, RESULTS)
-    assert simulated["predicted_by_actual"] == [[10, 0, 2, 0], [0, 5, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0]]
-    assert real["predicted_by_actual"] == [[0, 0, 0, 0], [0, 0, 0, 0], [0, 0, 0, 0], [1, 0, 0, 1]]
 
 
 # --- what is printed --------------------------------------------------------------------------------------

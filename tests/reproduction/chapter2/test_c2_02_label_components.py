@@ -4,18 +4,14 @@ import numpy as np
 import pytest
 
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON
-from lifelore.core.streams import stream
-from reproduction.chapter2.c2_02_label_components import run as c2_2
 from reproduction.chapter2.c2_02_label_components.figure import PRINTED
 from reproduction.chapter2.c2_02_label_components.run import (
     COMPONENTS,
     component_answers,
-    measure,
-    readings,
     split_answers,
 )
-from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES, STANDARD
-from reproduction.chapter2.scoring.pair_validation import FIXED, SCALED, Reading
+from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES
+from reproduction.chapter2.scoring.pair_validation import Reading
 from reproduction.engine.estimates import exact_share
 from reproduction.engine.registry import claim_of
 
@@ -77,51 +73,6 @@ def test_clear_clusters_are_right_in_every_split():
         assert (found[f"{name}_right"], found[f"{name}_agreement"]) == (1, 1)
         # Of three told the more frequent value holds two or three.
         assert 0 < found[f"{name}_less_majority"] <= 1 / 3
-
-
-def test_no_scene_is_on_both_sides(monkeypatch):
-    # Ten scenes of three pairs, the last pair of two contacts.
-    table = [at(f"s{n}", ON, *([n] if k < 2 else [n, n + 50])) for n in range(10) for k in range(3)]
-    seen, vote = [], c2_2.votes_on
-
-    def watched(moved, owner, rows, reading, train):
-        seen.append(train)
-        answer = vote(moved, owner, rows, reading, train)
-        assert not train[answer.row].any()
-        return answer
-
-    monkeypatch.setattr(c2_2, "votes_on", watched)
-    split_answers({**SETTINGS, "pairs": 132, "test": 33}, table, Reading(), 8, "0")
-    for train in seen:
-        sides = train.reshape(10, 3)
-        assert (sides.all(axis=1) | ~sides.any(axis=1)).all()
-        # A quarter of ten scenes, to the even of 2 and 3.
-        assert (~sides[:, 0]).sum() == 2
-    assert len({train.tobytes() for train in seen}) > 1
-
-
-def test_means_are_over_data_sets_and_readings_over_kernels_and_thresholds():
-    results = [{"set": number, "rows": apart(f"{number}-")} for number in (0, 1)]
-    found = measure(SETTINGS, results)
-    assert (found["on_right"].value, found["on_right"].n) == (1, 2)
-    own = [split_answers(SETTINGS, one["rows"], Reading(), 20, str(one["set"])) for one in results]
-    assert found["on_less_majority"].value == pytest.approx(np.mean([one["on_less_majority"] for one in own]))
-    cells = [tuple(cell.values()) for cell, _ in readings(SETTINGS, results)]
-    assert cells == [(kernel, threshold) for kernel in KERNEL_NAMES for threshold in (SCALED, FIXED)]
-
-
-def test_a_fixed_threshold_loses_pairs():
-    # Six *on* without a strong contact, six *adjacent* of two contacts each: told, and right, are the latter.
-    rows = [at(f"a{n}", ON, n, support=6) for n in range(6)]
-    rows += [at(f"b{n}", ADJACENT, 100 + n, 110 + n) for n in range(6)]
-    found = split_answers(SETTINGS, rows, Reading(STANDARD, FIXED), 20, "0")
-    scenes = sorted(row["scene"] for row in rows)
-    tested = [stream(k, "C2.2", "0").choice(scenes, 3, replace=False) for k in range(20)]
-    told = [sum(scene.startswith("b") for scene in one) for one in tested]
-    # Of three pairs k are told: 2 k relationships of 2 k + (3 - k).
-    by_hand = np.mean([2 * k / (3 + k) for k in told])
-    assert [found[f"{name}_right"] for name in COMPONENTS] == pytest.approx([by_hand, by_hand])
-    assert split_answers(SETTINGS, rows, Reading(), 20, "0")["on_right"] == 1
 
 
 def test_agreement_is_asked_of_the_exact_intervals_of_28_and_18_of_49():

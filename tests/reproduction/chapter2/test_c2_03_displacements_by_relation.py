@@ -9,8 +9,6 @@ from reproduction.chapter2.c2_03_displacements_by_relation.run import (
     CHOICES,
     measure,
     plotted,
-    readings,
-    rows,
 )
 from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES, STANDARD, pair_rows
 from reproduction.chapter2.scoring.pair_validation import FIXED, Reading, displacements
@@ -65,18 +63,6 @@ def test_the_band_is_on_the_other_side_of_the_on_cluster_wherever_that_lies():
 def test_which_displacements_of_a_pair_are_looked_at(choice, heights):
     plot = plotted([ROWS[1]], Reading(STANDARD, FIXED), choice, 0.05)
     assert (-1000 * plot.at[:, 1]).tolist() == pytest.approx(heights)
-
-
-def test_rows_hold_every_point_of_the_first_data_set_with_y_down():
-    second = {"set": 1, "rows": [row("1-0", ON, [[7, 0, 7]], [[0, 0, 0]])]}
-    points = {line["relation"]: line for line in rows(SETTINGS, [*RESULTS, second])}
-    assert points[ON]["mm"] == [[0, -10], [1, -10], [1, -60], [-1, -8]]
-    assert points[ADJACENT]["middle_of_on"] == [0.5, -10]
-    assert len(list(readings(SETTINGS, RESULTS))) == len(KERNEL_NAMES) * 2 * len(CHOICES)
-
-
-def test_without_on_there_is_no_cluster():
-    assert measure(SETTINGS, [{"set": 0, "rows": ROWS[3:]}])["on_sideways_of_its_rise"].n == 0
 
 
 def block(middle, size=0.04, step=0.003):

@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from reproduction.chapter2.c2_04_time_per_image import run as image_timing
-from reproduction.chapter2.c2_04_time_per_image.run import made_dense, measure, rows, run_cell, timed_image
+from reproduction.chapter2.c2_04_time_per_image.run import made_dense, measure, rows, timed_image
 from reproduction.chapter2.scoring.perception_stages import STAGES
 
 
@@ -34,18 +34,3 @@ def test_a_dense_cloud_has_more_points_of_things_and_the_same_table():
     assert np.bincount(dense.labels).tolist() == [0, 10, 60, 20]
     np.testing.assert_array_equal(dense.of(TABLE), points[:10])
     assert 0 < np.abs(dense.of(2) - np.repeat(points[10:25], 4, axis=0)).max() < 0.005
-
-
-def test_a_cell_times_every_picture_after_a_warm_up(monkeypatch):
-    pytest.importorskip("mujoco")
-    seen = []
-
-    def stages(cloud, model, clock=None):
-        seen.append(len(cloud.points))
-        return dict.fromkeys(STAGES, 0.01)
-
-    monkeypatch.setattr(image_timing, "timed_stages", stages)
-    settings = {"images": 1, "repeats": 1, "dense_points": 50_000, "dense_every": 2}
-    found = run_cell(settings, {"first": 0}, 0)
-    assert [one["kind"] for one in found["images"]] == ["stereo", "dense"]
-    assert seen == [found["images"][0]["points"], *(one["points"] for one in found["images"])]

@@ -1,77 +1,26 @@
 """C2.5: what is lost is a paired difference over scenes; displacements by method, on clouds made by hand."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 
-from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import PairLabel
 from lifelore.perception.relations.relation import Relation
 from reproduction.chapter2.c2_05_discarded_points.run import (
-    FIXED,
     METHODS,
-    SCALED,
     THINNED,
     judged,
-    levels_of,
     measures,
-    raw_rows,
     rows,
-    seen,
     strong_places,
     view,
 )
-from reproduction.chapter2.scoring.relation_scoring import JudgedPair, difference
+from reproduction.chapter2.scoring.relation_scoring import JudgedPair
 
 
 def answer(right: bool, scene: str, truth: str = "on") -> JudgedPair:
     said = truth if right else "both"
     return JudgedPair(scene, PairLabel(2, 3, truth), Relation(2, 3, said, 1.0, 0.0), 0.0)
-
-
-def test_what_is_lost_is_paired():
-    # Three of four right in both, but another one wrong: nothing is lost, and scenes say how sure that is.
-    names = [str(number) for number in range(8)]
-    whole = [answer(name != "0", name) for name in names]
-    spoilt = [answer(name != "1", name) for name in names]
-    found = difference(whole, spoilt)
-    assert (found.value, found.n) == (0.0, 8)
-    assert found.ci95 is not None
-    assert found.ci95[0] < 0 < found.ci95[1]
-    # The very same ones wrong: nothing is lost for sure.
-    assert difference(whole, whole).ci95 == (0.0, 0.0)
-
-
-def test_a_loss_by_hand_and_its_interval():
-    # Twenty scenes of two pairs; five of the forty pairs, one a scene, are wrong after and right before.
-    names = [str(number) for number in range(20) for _ in range(2)]
-    whole = [answer(True, name) for name in names]
-    spoilt = [answer(number % 8 != 0, name) for number, name in enumerate(names)]
-    found = difference(whole, spoilt)
-    assert found.value == pytest.approx(5 / 40)
-    assert found.n == 40
-    assert found.ci95 is not None
-    # The standard error of 5 in 20 scenes that lose half: √(0.25 · 0.75 / 20) / 2 = 0.048.
-    assert found.ci95[0] == pytest.approx(0.125 - 1.96 * 0.048, abs=0.03)
-    assert found.ci95[1] == pytest.approx(0.125 + 1.96 * 0.048, abs=0.03)
-    assert found.ci95[0] <= found.value <= found.ci95[1]
-
-
-def test_scenes_are_resampled_and_not_pairs():
-    # Ten scenes of ten pairs, five of them wholly lost; and a hundred scenes of one pair, fifty lost.
-    def width(names: list[str], gone: list[bool]) -> float:
-        whole = [answer(True, name) for name in names]
-        spoilt = [answer(not one, name) for name, one in zip(names, gone, strict=True)]
-        found = difference(whole, spoilt)
-        assert found.value == 0.5
-        assert found.ci95 is not None
-        return found.ci95[1] - found.ci95[0]
-
-    together = width([str(k // 10) for k in range(100)], [k // 10 % 2 == 0 for k in range(100)])
-    apart = width([str(k) for k in range(100)], [k % 2 == 0 for k in range(100)])
-    # Standard errors of 10 and of 100 fair answers are 0.158 and 0.05.
-    assert together > 2 * apart
 
 
 def test_measures_by_hand():
@@ -115,30 +64,6 @@ def test_displacements_of_two_plates_lead_from_one_to_the_other():
         assert moved[:, 2] == pytest.approx(-0.006, abs=1e-5)
         # One pair of contact points faces one another, whatever the number of contacts.
         assert np.hypot(*moved[:, :2].T).min() < 0.003
-
-
-def test_a_fixed_threshold_has_nothing_to_say_of_few_points():
-    # Four points a plate cannot be seven support vectors; of a tenth of the points 0.7 are enough.
-    found = raw_rows(plates(2, 0.004), {SCALED: 0.7, FIXED: 7.0})
-    assert (len(found[SCALED]), len(found[FIXED])) == (1, 0)
-
-
-def test_a_scene_is_seen_at_each_share_discarded():
-    cloud = plates(20, 0.003)
-    points = np.concatenate([plate(30, -0.02, -0.02, -0.01), cloud.points])
-    labels = np.concatenate([np.full(900, TABLE), cloud.labels])
-    truth = (PairLabel(3, 2, "on", 2), PairLabel(2, TABLE, "on"))
-    whole = LabelledCloud(points, labels, None, np.array([0.0, -1, 1]))
-    scene = SimpleNamespace(
-        name="made", cloud=whole, truth=truth, gaps=(SimpleNamespace(a=2, b=3, visible=0.006),)
-    )
-    found = seen(scene, levels_of({"discarded": [0.999]}))  # type: ignore[arg-type]
-    # The table takes no part.
-    assert (found["truth"], found["gaps"]) == ([[3, 2, "on", 2]], [[2, 3, 0.006]])
-    first, last = found["views"]
-    assert [row[:2] for row in first[THINNED]] == [[2, 3]]
-    # Of 800 points one or two are left.
-    assert last[FIXED] == []
 
 
 UP, ASIDE = [[0.0, 0.0, 0.01]] * 4, [[0.03, 0.0, 0.0]] * 4

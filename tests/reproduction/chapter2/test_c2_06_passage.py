@@ -37,10 +37,6 @@ def test_a_block_on_a_slab_has_none():
     assert passages(*on_a_slab(box(0.12, 0.06, 0.08), 0.08), (0, 1, 0)) == []
 
 
-def test_an_arch_in_the_air_is_open_below():
-    assert passages([arch(0.12, 0.06, 0.08, 0.02, 0.03)], [STILL], (0, 1, 0)) == []
-
-
 def test_other_shapes_are_refused():
     with pytest.raises(InputError, match="boxes and balls"):
         passages([cylinder(0.02, 0.1)], [STILL], (0, 1, 0))

@@ -38,12 +38,6 @@ def test_a_split_contact_has_a_cycle_and_no_passage():
     assert ways(world) == []
 
 
-def test_a_corner_touches_two_sides_without_a_passage():
-    world = arranged("corner", 0, 0)
-    assert any(label.relation == "both" for label in world.truth)
-    assert ways(world) == []
-
-
 def test_measures_by_hand():
     right = {"hole": True, "form": [2, 2], "true": True}
     odd = {"hole": True, "form": [1, 2], "true": False}

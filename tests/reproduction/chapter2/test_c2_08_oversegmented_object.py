@@ -11,7 +11,6 @@ from reproduction.chapter2.c2_08_oversegmented_object.run import (
     measure,
     relation_in_words,
     share_by_scene,
-    simulated_cuts,
 )
 
 pytest.importorskip("mujoco")
@@ -42,16 +41,6 @@ def test_things_that_stand_by_themselves():
 )
 def test_what_is_said_has_a_direction(relation, said):
     assert relation_in_words((relation,), 7, 2) == said
-
-
-def test_parts_of_a_level_cut_lie_above_one_another():
-    cuts = simulated_cuts(0, 0)
-    assert {row["kind"] for row, _ in cuts} <= {"level", "upright"}
-    level = next(scene for row, scene in cuts if row["kind"] == "level")
-    part = max(level.cloud.objects)
-    others = [thing for thing in level.cloud.objects if thing != part]
-    top = level.cloud.of(part)[:, 2].min()
-    assert any(abs(level.cloud.of(thing)[:, 2].max() - top) < 0.01 for thing in others)
 
 
 def row(scene, kind, said):

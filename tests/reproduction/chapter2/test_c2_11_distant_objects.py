@@ -1,7 +1,5 @@
 """C2.11: pairs carried apart and counted, by hand; and what a separator of objects far apart must have (E20)."""
 
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
 from scipy.spatial import KDTree
@@ -15,10 +13,7 @@ from reproduction.chapter2.c2_11_distant_objects import run as c2_11
 from reproduction.chapter2.c2_11_distant_objects.run import (
     away,
     bearing_pairs,
-    counts,
-    kernels,
     measure,
-    parted,
     readings,
     rows,
     shift_to,
@@ -73,38 +68,6 @@ def test_whether_a_cloud_is_nearer_than_a_gap_as_by_all_distances(seed):
             assert c2_11._is_nearer(moved, tree, gap) is bool(distance < gap)
 
 
-def test_one_object_alone_is_moved_and_no_gap_is_too_wide_to_be_asked(monkeypatch):
-    asked = []
-
-    def watched(a, b, length, cost):
-        asked.append((a, b, length))
-        every = np.arange(len(a))
-        return SimpleNamespace(support_first=every, support_second=every)
-
-    monkeypatch.setattr(c2_11, "separate", watched)
-    a, b = plate(0, 0, 0.02), plate(0, 0, 0)
-    found = parted(SETTINGS, a, b, "on")
-    assert found["gap"] == 0.02
-    assert [length for _, _, length in asked] == [0.06] * 3 + [0.25] * 3
-    for (one, other, _), gap in zip(asked, [0.02, 0.1, 1.0] * 2, strict=True):
-        assert (other == b).all()
-        # Every point of a went straight up by the same: its own 20 mm to the gap.
-        assert one - a == pytest.approx(np.tile([0, 0, gap - 0.02], (25, 1)), abs=2e-4)
-    # Points 10 mm apart are one contact of 25 (linked within 25 mm), on both sides, at every gap.
-    assert found["found"] == dict.fromkeys((STANDARD, "250 mm, C 10"), [[25, 2]] * 3)
-
-
-def test_counts_by_hand(monkeypatch):
-    # Of a: seven in a row 5 mm apart, and three 100 mm off. Of b: six.
-    a = np.array(
-        [[0.005 * k, 0, 0] for k in range(7)] + [[0.13 + 0.005 * k, 0, 0] for k in range(3)] + [[9, 9, 9]]
-    )
-    b = np.array([[0.005 * k, 1, 0] for k in range(6)])
-    found = SimpleNamespace(support_first=np.arange(10), support_second=np.arange(6))
-    monkeypatch.setattr(c2_11, "separate", lambda *clouds, **kernel: found)
-    assert counts(a, b, 0.06, 10.0) == [8, 1]
-
-
 def made() -> tuple[LabelledCloud, list[PairLabel]]:
     """Three plates on a table; of six labels two are of things that bear a relation which nobody doubts."""
     parts = {TABLE: plate(0, 0, -0.01), 2: plate(0, 0, 0), 3: plate(0, 0, 0.01), 4: plate(0.05, 0, 0)}
@@ -129,19 +92,6 @@ def test_pairs_that_bear_a_relation_in_the_labels_order():
     assert upper[:, 2] == pytest.approx(0.01)
     assert lower[:, 2] == pytest.approx(0)
     assert (left[:, 0].max(), right[:, 0].min()) == pytest.approx((0.04, 0.05))
-
-
-def test_points_are_thinned_to_three_millimetres():
-    dense = np.concatenate([plate(0, 0, 0), plate(0.0001, 0, 0), plate(0, 0.0001, 0.02)])
-    cloud = LabelledCloud(dense, np.repeat([2, 2, 3], 25))
-    a, b, _ = next(bearing_pairs(cloud, [PairLabel(3, 2, "on")]))
-    assert len(a) == 25
-    assert 25 <= len(b) < 50
-
-
-def test_the_default_kernel_is_among_the_kernels():
-    assert kernels(SETTINGS) == [(0.06, 10.0), (0.25, 10.0)]
-    assert kernels({"lengths": [0.03, 0.06], "costs": [10.0]}) == [(0.06, 10.0), (0.03, 10.0)]
 
 
 def test_measures_readings_and_rows_by_hand():
@@ -171,15 +121,6 @@ def cube(side: float, *corner: float, step: float = 0.006) -> np.ndarray:
     axis = np.arange(round(side / step) + 1) * step
     grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1).reshape(-1, 3)
     return grid[((grid == axis[0]) | (grid == axis[-1])).any(axis=1)] + np.array(corner or (0, 0, 0))
-
-
-@pytest.mark.parametrize("distance", [0.05, 1.0, 10.0])
-def test_two_points_are_two_support_vectors_however_far_apart(distance):
-    found = separate([[0, 0, 0]], [[distance, 0, 0]], length=0.06, cost=1e4)
-    # Most of 2 α - α² (1 - k): α = 1 / (1 - k), k what the kernel says of the two, which is 0 from afar.
-    alpha = 1 / (1 - np.exp(-((distance / 0.06) ** 2) / 2))
-    assert found.alpha_first == pytest.approx([alpha], rel=1e-3)
-    assert found.alpha_second == pytest.approx([alpha], rel=1e-3)
 
 
 @pytest.mark.parametrize("apart", [1.0, 2.0])
@@ -216,17 +157,3 @@ def test_no_kernel_leaves_a_side_without_support_vectors(length, cost):
     # They are what separates: every point lies on its side.
     assert (found.decision(first) > 0).all()
     assert (found.decision(second) < 0).all()
-
-
-def test_a_long_kernel_takes_few_points_far_apart_and_hundreds_near():
-    def strongest(gap: float) -> tuple[int, int]:
-        found = separate(cube(0.06, 0, 0, 0.06 + gap, step=0.003), cube(0.06, step=0.003), length=0.25, cost=10.0)
-        sizes = [
-            np.bincount(linked(side, DEFAULT_CONTACT_SETTINGS.linkage))
-            for side in (found.points_first, found.points_second)
-        ]
-        return max(map(len, (found.points_first, found.points_second))), int(max(map(max, sizes)))
-
-    near, far = strongest(0.006), strongest(1.0)
-    assert near[1] >= 7 > far[1] >= 1
-    assert 1 <= far[0] <= 8 < near[0]

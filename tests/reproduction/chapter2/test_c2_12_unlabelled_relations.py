@@ -6,15 +6,11 @@ import pytest
 from lifelore.core.relations import ADJACENT, BOTH, ON
 from reproduction.chapter2.c2_12_unlabelled_relations.run import (
     MOST,
-    SPACES,
     blurred,
     joined,
-    k_means,
     measure,
     mostly,
     rand_index,
-    readings,
-    rows,
 )
 from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES
 from reproduction.chapter2.scoring.pair_validation import Reading
@@ -54,10 +50,6 @@ def test_clusters_take_the_commonest_relation_the_first_of_equals():
     assert np.isnan(blurred(np.array([ON]), np.array([0])))
 
 
-def test_k_means_of_fewer_places_than_clusters():
-    assert len(set(k_means(np.array([[0.0, 0], [0, 0], [1, 1]]), 3, np.random.default_rng(0)))) == 2
-
-
 def test_all_displacements_of_near_pairs_take_part(results):
     moved, relations = joined(results[0]["rows"], Reading(), "plane of Figure 2.4")
     assert moved.shape == (28, 2)
@@ -73,9 +65,3 @@ def test_measures_are_means_over_starts_and_then_over_data_sets(results):
     assert found["blurred"].value == 1
     few = [{"set": 0, "rows": results[0]["rows"][: MOST - 1]}]
     assert measure(SETTINGS, few)["agreement"].n == 0
-
-
-def test_readings_are_kernels_thresholds_and_spaces(results):
-    assert len(list(readings({"starts": 1}, results[:1]))) == len(KERNEL_NAMES) * 2 * len(SPACES)
-    (line,) = rows(SETTINGS, results)
-    assert len(line["mm"]) == len(line["relations"]) == len(line["clusters"]) == 28

@@ -1,6 +1,5 @@
 """C2.13: nodes by hand, and what contact points and centres tell of scenes made by hand."""
 
-import numpy as np
 import pytest
 
 from lifelore.core.relations import ADJACENT, NONE, ON
@@ -8,12 +7,9 @@ from reproduction.chapter2.c2_13_contacts_and_centres.run import (
     ARRANGEMENTS,
     ON_BLOCK,
     ON_POST,
-    cells,
     measure,
-    nodes,
     rows,
     told_right,
-    topmost_alone_remains,
 )
 from reproduction.chapter2.scenes.tabletop_pairs import STANDARD
 
@@ -25,20 +21,6 @@ def row(block, ball=((0, 0, 0.21, 9),), *, scene="s", relation=ON, centres=(0.0,
     """A pair as a cell keeps it: A the ball, B the block; `centres` from the block's to the ball's."""
     contacts = {STANDARD: {"a": list(ball), "b": block}}
     return {"scene": scene, "relation": relation, "gap": 0.001, "contacts": contacts, "centres": list(centres)}
-
-
-@pytest.mark.parametrize(
-    ("block", "remains"),
-    [
-        (FIGURE, True),
-        (FIGURE[:1], True),
-        (FIGURE[1:], False),  # none is strong
-        ([*FIGURE, [0.1, 0, 0.01, 7]], False),  # two are
-        ([[0, 0, 0.2, 6], [0, 0, 0.1, 7]], False),  # the strong one is not topmost
-    ],
-)
-def test_the_topmost_alone_remains(block, remains):
-    assert topmost_alone_remains(nodes(row(block))) is remains
 
 
 LESSONS = [
@@ -79,12 +61,3 @@ def test_measures_and_rows_by_hand():
         (name, arrangement) for name in ("contacts", "centres") for arrangement in ARRANGEMENTS
     ]
     assert picture == {"example": "nodes"}
-
-
-def test_cells_are_lots_of_lessons_and_of_both_arrangements():
-    found = cells({"pairs": 23, "scenes": 16})
-    assert found[:2] == [{"data_set": 0, "first": 0}, {"data_set": 0, "first": 22}]
-    assert [(cell["arrangement"], len(cell["numbers"])) for cell in found[2:]] == [
-        (name, n) for name in ARRANGEMENTS for n in (15, 1)
-    ]
-    assert np.concatenate([cell["numbers"] for cell in found[2:4]]).tolist() == list(range(16))

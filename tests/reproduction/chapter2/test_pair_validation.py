@@ -14,7 +14,6 @@ from reproduction.chapter2.scoring.pair_validation import (
     displacements,
     united,
     votes_of_neighbours,
-    votes_on,
 )
 
 
@@ -44,10 +43,6 @@ def test_every_contact_of_one_meets_every_contact_of_the_other():
     assert displacements(row).tolist() == expected
 
 
-def test_a_pair_that_is_not_near_has_no_displacement():
-    assert displacements(pair("s", NONE, gap=None)).shape == (0, 3)
-
-
 @pytest.mark.parametrize(
     ("supports", "scaled", "fixed"),
     [
@@ -60,19 +55,6 @@ def test_weak_contacts_are_dropped(supports, scaled, fixed):
     row = pair("s", ON, a=[(x, 0, 0, n) for x, n in enumerate(supports)])
     assert displacements(row, threshold=SCALED)[:, 0].tolist() == scaled
     assert displacements(row, threshold=FIXED)[:, 0].tolist() == fixed
-
-
-def test_weak_contacts_are_dropped_on_either_side():
-    row = pair("s", ON, b=[(3, 0, 0, 2), (4, 0, 0, 2)])
-    assert displacements(row, threshold=SCALED).tolist() == [[-3, 0, 0]]
-    assert displacements(row, threshold=FIXED).shape == (0, 3)
-
-
-def test_each_kernel_has_its_own_contacts():
-    row = pair("s", ON)
-    row["contacts"]["other"] = {"a": [[7, 0, 0, 9]], "b": [[0, 0, 0, 9]]}
-    assert displacements(row).tolist() == [[0, 0, 0]]
-    assert displacements(row, "other").tolist() == [[7, 0, 0]]
 
 
 # --- votes ------------------------------------------------------------------------------------------------
@@ -90,16 +72,6 @@ def test_votes_by_hand():
     assert told.shares.tolist() == [[n / 4 for n in votes] for votes in expected]
 
 
-def test_near_votes_weigh_more_by_inverse_distance():
-    told = votes_of_neighbours(LINE, Reading(votes="inverse distance"))
-    # At 0: on at 1; adjacent at 2 and 3; both at 10. At 10: on at 10 and 9, adjacent at 8 and 7.
-    first = np.array([1, 1 / 2 + 1 / 3, 1 / 10, 0])
-    last = np.array([1 / 10 + 1 / 9, 1 / 8 + 1 / 7, 0, 0])
-    np.testing.assert_allclose(told.shares[0], first / first.sum())
-    np.testing.assert_allclose(told.shares[4], last / last.sum())
-    assert (told.labels[0], told.labels[4]) == (ON, ADJACENT)
-
-
 def test_ties_go_to_the_first_by_name():
     rows = one_by_one((ADJACENT, 0), (ON, 1), (NONE, 2), (BOTH, 3))
     assert votes_of_neighbours(rows, Reading(k=1)).labels[0] == ON
@@ -110,56 +82,6 @@ def test_ties_go_to_the_first_by_name():
     told = votes_of_neighbours(rows, Reading(votes="inverse distance"))
     assert told.shares[0].tolist() == [0, 0.5, 0, 0.5]
     assert told.labels[0] == ADJACENT
-
-
-def test_the_thesis_asks_four():
-    assert Reading().k == 4
-    rows = one_by_one(
-        (ON, 0), (ON, 1), (ON, -1.5), (ON, 2), (ADJACENT, -2.5), *[(ADJACENT, 3 + n) for n in range(5)]
-    )
-    told = votes_of_neighbours(rows)
-    assert told.shares[0].tolist() == [0.75, 0.25, 0, 0]
-    # A fifth and sixth would have changed it.
-    assert votes_of_neighbours(rows, Reading(k=7)).labels[0] == ADJACENT
-
-
-def test_nobody_of_the_own_scene_is_asked():
-    rows = [at("s", ON, 0), at("s", ON, 0), at("s", ON, 0.1), at("t", ADJACENT, 50), at("u", NONE, 100)]
-    told = votes_of_neighbours(rows, Reading(k=1))
-    assert told.labels.tolist() == [ADJACENT, ADJACENT, ADJACENT, ON, ADJACENT]
-
-
-def test_fewer_than_four_and_nobody_to_ask():
-    told = votes_of_neighbours([at("s", ON, 0), at("t", ADJACENT, 1)])
-    assert told.shares.tolist() == [[0, 1, 0, 0], [1, 0, 0, 0]]
-    alone = votes_of_neighbours([at("s", ON, 0, 1)])
-    assert alone.labels.tolist() == [NONE, NONE]
-    assert not alone.shares.any()
-    far = votes_of_neighbours([pair("s", NONE, gap=None), pair("t", ON, gap=None)])
-    assert (len(far.row), far.relations(2)) == (0, [NONE, NONE])
-
-
-def test_long_displacements_are_told_but_not_learnt_from():
-    rows = one_by_one((ON, 1), (ON, 2), (ADJACENT, -5), (ADJACENT, -6), (ADJACENT, -7))
-    assert votes_of_neighbours(rows).labels[2] == ADJACENT
-    told = votes_of_neighbours(rows, Reading(omega=2))
-    assert told.row.tolist() == [0, 1, 2, 3, 4]
-    assert told.labels.tolist() == [ON] * 5
-    # The limit is the whole length, and its own end belongs to it.
-    assert votes_of_neighbours(rows, Reading(omega=1.9)).labels.tolist() == [NONE, ON, ON, ON, ON]
-
-
-def test_only_training_rows_are_asked_and_only_others_told():
-    train = np.array([True, False, False, True, False])
-    told = votes_of_neighbours(LINE, train=train)
-    assert told.row.tolist() == [1, 2, 4]
-    assert told.shares.tolist() == [[0.5, 0.5, 0, 0]] * 3
-
-
-def test_a_scene_on_both_sides_is_still_not_asked():
-    rows = [at("s", ON, 0), at("s", ON, 1), at("t", ADJACENT, 9)]
-    told = votes_of_neighbours(rows, train=np.array([True, False, True]))
-    assert told.labels.tolist() == [ADJACENT]
 
 
 def naive(rows, reading, train=None) -> list[tuple[int, dict[str, float]]]:
@@ -226,15 +148,6 @@ def test_block_by_block_is_what_sorting_all_distances_gives(reading, block, monk
             assert label == min((name for name, n in votes.items() if n > best - 1e-12), default=NONE)
 
 
-def test_votes_on_displacements_that_are_known_already_are_the_same():
-    rows = some_rows(2)
-    each = [displacements(row) for row in rows]
-    owner = np.repeat(np.arange(30), [len(one) for one in each])
-    told, again = votes_of_neighbours(rows), votes_on(np.concatenate(each), owner, rows, Reading())
-    assert np.array_equal(told.shares, again.shares)
-    assert np.array_equal(told.row, again.row)
-
-
 # --- the union --------------------------------------------------------------------------------------------
 
 
@@ -258,14 +171,3 @@ def test_the_union_has_a_component_if_any_has(said, whole):
 def test_each_rows_displacements_are_united():
     told = Votes(np.array([0, 2, 0, 2, 3]), np.array([ON, ON, ADJACENT, NONE, NONE]), np.zeros((5, 4)))
     assert told.relations(4) == [BOTH, NONE, ON, NONE]
-
-
-def test_a_pair_with_two_contacts_is_both():
-    rows = [at(f"on {n}", ON, 0.01 * n) for n in range(4)]
-    rows += [at(f"beside {n}", ADJACENT, 9 + 0.01 * n) for n in range(4)]
-    rows += [at("two", ON, 0.1, 9.1)]
-    told = votes_of_neighbours(rows)
-    assert told.row.tolist() == [0, 1, 2, 3, 4, 5, 6, 7, 8, 8]
-    assert told.relations(9)[8] == BOTH
-    # Of the others each has three or more of its own kind beside it.
-    assert told.relations(9)[:8] == [ON] * 4 + [ADJACENT] * 4

@@ -40,13 +40,6 @@ def test_points_are_discarded_with_their_labels_and_colours(cloud):
             fewer_points(cloud, share, np.random.default_rng(0))
 
 
-@pytest.mark.parametrize("spoil", [lambda c, r: fewer_points(c, 0.5, r)])
-def test_the_same_generator_spoils_alike(cloud, spoil):
-    one, other = (spoil(cloud, np.random.default_rng(5)) for _ in range(2))
-    assert (one.points == other.points).all()
-    assert (one.labels == other.labels).all()
-
-
 # --- an object cut into two ---------------------------------------------------------------------------------
 
 STACKED = LabelledCloud(

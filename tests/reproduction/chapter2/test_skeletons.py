@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.core.relations import ADJACENT, NONE, ON
+from lifelore.core.relations import ADJACENT, CORE_RELATIONS, NONE, ON
 from lifelore.perception.contacts.contact_points import ContactPoint
 from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene
 from reproduction.chapter2.c2_07_oversegmented_stack.run import Three, is_path
 from reproduction.chapter2.scenes.scene_example import scene_of_row, scene_row
-from reproduction.chapter2.scenes.skeletons import NEAR, RELATED, only, predicates, reading
+from reproduction.chapter2.scenes.skeletons import RELATED, reading
 
 
 def contact(z, other, x=0.0):
@@ -42,39 +42,18 @@ def points_of(scene):
 
 def test_readings_by_hand():
     scene = tower()
-    assert points_of(reading(scene, NEAR)) == {2: 2, 3: 2, 4: 2}
+    assert points_of(reading(scene, CORE_RELATIONS)) == {2: 2, 3: 2, 4: 2}
     assert points_of(reading(scene, RELATED)) == {2: 1, 3: 2, 4: 1}
     assert points_of(reading(scene, (ON,), ground=True)) == {TABLE: 1, 2: 2, 3: 2, 4: 1}
     assert points_of(reading(scene, (ADJACENT,))) == {2: 0, 3: 0, 4: 0}
-
-
-def test_all_near_pairs_say_nothing_of_strangers():
-    near = reading(tower(), NEAR)
-    assert near.relations == ()
-    assert points_of(near.without_unrelated_contacts) == points_of(near)
-
-
-def test_predicates_leave_out_none():
-    assert predicates(tower()) == {(ON, 3, 2), (ON, 4, 3), (ON, 2, TABLE)}
-
-
-def test_only_keeps_the_table():
-    assert set(only(tower().cloud, (3,)).labels.tolist()) == {TABLE, 3}
 
 
 def test_a_tower_is_a_path_through_its_middle_alone():
     scene = reading(tower())
     assert is_path(scene, Three(scene.cloud, 2, 3, 4))
     assert not is_path(scene, Three(scene.cloud, 3, 2, 4))
-    near = reading(tower(), NEAR)
+    near = reading(tower(), CORE_RELATIONS)
     assert not is_path(near, Three(near.cloud, 2, 3, 4))
-
-
-def test_a_second_contact_is_no_path():
-    scene = tower()
-    twice = (facing(2, 3, (0, 0.1), (0.05, 0.1)), *scene.interfaces[1:])
-    scene = reading(Scene(scene.cloud, twice, scene.relations))
-    assert not is_path(scene, Three(scene.cloud, 2, 3, 4))
 
 
 def test_a_row_comes_back_as_the_scene_it_was():

@@ -1,32 +1,23 @@
 """Pairs as rows: what a row holds of blocks built by hand, which pairs have one, and how lots are cut."""
 
-import json
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.core.relations import ADJACENT, CORE_RELATIONS, NONE, ON, PairLabel
-from lifelore.perception.contacts.contact_settings import ContactSettings
-from lifelore.perception.contacts.interface import interfaces
+from lifelore.core.relations import ADJACENT, NONE, ON, PairLabel
 from lifelore.perception.separation.separator import separate
-from reproduction.chapter2.scenes import scene_lots, tabletop_pairs
-from reproduction.chapter2.scenes.arranged_scenes import place_ball_on_post
+from reproduction.chapter2.scenes import tabletop_pairs
 from reproduction.chapter2.scenes.tabletop_pairs import (
     KERNELS,
     LOT,
     MIX,
-    REAL_LOT,
     STANDARD,
-    contacts_of,
     kernel_name,
-    loose_settings,
     pair_cells,
     pair_rows,
     run_cell,
-    upper_first,
-    without_table,
 )
 
 CAMERA = np.array([0.05, -1.0, 0.6])
@@ -115,11 +106,6 @@ def test_each_kernel_finds_its_contacts_and_none_is_dropped(rows, blocks):
     assert narrow != wide
 
 
-def test_a_row_is_plain_data_and_the_same_again(rows, blocks):
-    assert json.loads(json.dumps(rows, allow_nan=False)) == rows
-    assert pair_rows("by hand", blocks, TRUTH) == rows
-
-
 def test_the_truths_order_turns_contacts_and_centres(rows, blocks):
     (turned,) = pair_rows("by hand", blocks, [PairLabel(2, 3, ON, 3)])
     row = rows[0]
@@ -129,97 +115,12 @@ def test_the_truths_order_turns_contacts_and_centres(rows, blocks):
         assert [sides["a"], sides["b"]] == [row["contacts"][kernel][side] for side in "ba"]
 
 
-def test_of_an_arrangement_the_upper_object_is_first():
-    truth = [PairLabel(2, 3, NONE, 2), PairLabel(3, 4, ON, 3), PairLabel(2, 1, ON, 3)]
-    assert upper_first(truth) == [PairLabel(3, 2, NONE, 2)]
-
-
-def test_a_ball_on_a_post_is_as_far_from_the_centre_as_one_on_the_upright():
-    for seed in range(5):
-        ell, guest, post = place_ball_on_post(np.random.default_rng(seed))
-        foot, upright = ell.shape.parts
-        volumes = [np.prod(part.size) for part in (foot, upright)]
-        places = [np.array(part.position) for part in (foot, upright)]
-        centre = ell.pose.apply(np.average(places, axis=0, weights=volumes)[None])[0]
-        above_upright = ell.pose.apply(places[1][None])[0]
-        # Turned half round about the block's centre of mass, the ball stands over the upright.
-        np.testing.assert_allclose((guest.pose.position - centre)[:2], (centre - above_upright)[:2], atol=1e-6)
-        assert guest.outline()[:, 2].min() == pytest.approx(ell.outline()[:, 2].max(), abs=0.003)
-        assert post.outline()[:, 2].max() < guest.outline()[:, 2].min()
-
-
-def test_without_the_table_there_are_things_alone(blocks):
-    bare = without_table(blocks)
-    assert bare.objects == (2, 3, 4)
-    assert len(bare.points) == sum(len(blocks.of(label)) for label in (2, 3, 4))
-    assert bare.camera is CAMERA
-    assert not (bare.labels < 2).any()
-
-
-def test_contacts_stand_strongest_first():
-    def contact(x, strength, n):
-        return SimpleNamespace(position=np.array([x, 0, 1 / 3]), n_support=n, strength=strength)
-
-    one = SimpleNamespace(contacts_a=(contact(1, 9.0, 4), contact(2, 5.0, 8)), contacts_b=(contact(3, 1.0, 2),))
-    one.a, one.b = 2, 3
-    two, three = [[1, 0, 0.333333, 4], [2, 0, 0.333333, 8]], [[3, 0, 0.333333, 2]]
-    assert contacts_of(one, 2) == {"a": two, "b": three}  # pyright: ignore[reportArgumentType]
-    assert contacts_of(one, 3) == {"a": three, "b": two}  # pyright: ignore[reportArgumentType]
-
-
-def test_loose_settings_change_the_kernel_and_drop_nothing(blocks):
-    loose = loose_settings(0.12, 1.0)
-    assert (loose.length, loose.cost, loose.min_support) == (0.12, 1.0, 0)
-    assert {k for k, v in vars(loose).items() if vars(ContactSettings())[k] != v} == {
-        "length",
-        "cost",
-        "min_support",
-    }
-    assert len(interfaces(without_table(blocks), loose)) == 1
-    assert kernel_name(0.06, 10.0) == STANDARD == "60 mm, C 10"
-    assert kernel_name(0.125, 0.5) == "125 mm, C 0.5"
-
-
 # --- lots -------------------------------------------------------------------------------------------------
-
-
-def test_the_class_mix_is_the_thesiss():
-    assert list(MIX.items()) == list(zip(CORE_RELATIONS, (70, 32, 30, 0), strict=True))
 
 
 def test_data_sets_are_cut_into_lots():
     assert pair_cells(SETTINGS) == [{"data_set": n, "first": first} for n in (0, 1) for first in (0, 22, 44)]
     assert len(pair_cells({**SETTINGS, "pairs": LOT})) == 2
-
-
-@pytest.fixture
-def eight_real_scenes(monkeypatch, blocks, tmp_path):
-    scenes = [
-        SimpleNamespace(name=f"r{n}", cloud=blocks, truth=[PairLabel(2, 4, NONE, 2 + n % 2)]) for n in range(8)
-    ]
-    monkeypatch.setattr(scene_lots, "real_scenes_folder", lambda: tmp_path)
-    for module in (scene_lots, tabletop_pairs):
-        monkeypatch.setattr(module, "real_scenes", lambda: scenes)
-
-
-@pytest.mark.usefixtures("eight_real_scenes")
-def test_real_scenes_follow_in_lots_where_asked_for():
-    assert REAL_LOT == 6
-    cells = pair_cells({**SETTINGS, "real": True})
-    assert cells[:6] == pair_cells(SETTINGS)
-    assert cells[6:] == [{"scenes": [f"r{n}" for n in range(6)]}, {"scenes": ["r6", "r7"]}]
-
-
-@pytest.mark.usefixtures("eight_real_scenes")
-def test_a_lot_of_real_scenes_has_their_rows_alone(monkeypatch):
-    monkeypatch.setattr(tabletop_pairs, "pair_rows", lambda name, cloud, truth: [(name, *truth)])
-    result = run_cell(SETTINGS, {"scenes": ["r6", "r1"]}, 0)
-    assert result == {"set": "real", "rows": [("r1", PairLabel(2, 4, NONE, 3)), ("r6", PairLabel(2, 4, NONE, 2))]}
-
-
-def test_a_machine_without_real_scenes_has_simulated_ones(monkeypatch):
-    monkeypatch.setattr(scene_lots, "real_scenes_folder", lambda: None)
-    assert pair_cells({**SETTINGS, "real": True}) == pair_cells(SETTINGS)
 
 
 @pytest.fixture
@@ -247,17 +148,3 @@ def test_a_lot_ends_with_its_data_set_and_doubtful_scenes_are_drawn_anew(drawn):
     settings = drawn[0][2]
     assert (settings.arrangement, settings.camera, settings.shapes) == ("pair", "stereo", "all")
     assert settings.mix == MIX
-
-
-def test_scenes_depend_on_seed_data_set_and_number_but_not_on_the_lot(drawn, monkeypatch):
-    monkeypatch.setattr(tabletop_pairs, "pair_rows", lambda *scene: [])
-
-    def seeds(seed, data_set, first, pairs):
-        drawn.clear()
-        run_cell({**SETTINGS, "pairs": pairs}, {"data_set": data_set, "first": first}, seed)
-        return [asked[0] for asked in drawn]
-
-    assert seeds(7, 1, 44, 46) == seeds(7, 1, 44, 46)
-    assert seeds(7, 1, 44, 46)[3:] == seeds(7, 1, 45, 46)
-    assert not set(seeds(7, 1, 44, 46)) & set(seeds(7, 0, 44, 46))
-    assert not set(seeds(7, 1, 44, 46)) & set(seeds(8, 1, 44, 46))

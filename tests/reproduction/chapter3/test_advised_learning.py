@@ -8,11 +8,10 @@ from lifelore.core.mdp import TERMINAL
 from lifelore.core.streams import stream
 from reproduction.chapter3.advice.learning import (
     errand_tables,
-    final_reward,
     learner_schedule,
     reached_by_learner,
 )
-from reproduction.chapter3.advice.mazes import errands_of, goal_models_of, maze_of, policy_of, thesis_advisor, walk
+from reproduction.chapter3.advice.mazes import errands_of, goal_models_of, maze_of, thesis_advisor
 from reproduction.engine.learning_run import learnt
 from reproduction.engine.registry import claim_of
 
@@ -23,15 +22,6 @@ SMALL = {**QUICK, "episodes": 12, "max_episode_steps": 30}
 @pytest.fixture(scope="module")
 def maze():
     return maze_of(QUICK, {"loops": 0.1, "maze": 0}, 0)
-
-
-def test_a_learner_starts_where_the_walkers_do_or_anywhere(maze):
-    errand = errands_of(maze, 2)[1]
-    starts = errand_tables(maze, errand, 1, "one").starts
-    advisor = thesis_advisor(goal_models_of(maze, "walks", 0.1))
-    assert walk(maze, errand, policy_of(maze.world, "optimal", errand), advisor, 1, 5).states[0] == starts[0]
-    assert len(starts) == 1
-    assert len(errand_tables(maze, errand, 1, "any").starts) > 20
 
 
 def test_without_advice_it_is_q_learning(maze):
@@ -71,21 +61,3 @@ def test_advised_learning_by_a_naive_twin(maze, kappa):
         reached.append(over)
     assert advised_steps > 0
     assert reached_by_learner(maze, tables, number, schedule, advisor).tolist() == reached
-
-
-def test_the_first_episodes_are_those_of_the_whole(maze):
-    advisor = thesis_advisor(goal_models_of(maze, "walks", 0.1))
-    tables = errands_of(maze, 1)[0].tables
-    first, whole = (
-        reached_by_learner(maze, tables, 0, learner_schedule(QUICK, maze, "printed", n), advisor)
-        for n in (10, None)
-    )
-    assert (whole[:10] == first).all()
-    assert len(whole) == QUICK["episodes"]
-
-
-def test_the_final_reward_is_of_the_last_tenth():
-    reached = np.zeros(40, bool)
-    reached[[3, 37]] = True
-    assert final_reward(reached) == 250.0
-    assert final_reward(np.ones(3, bool)) == 1000.0

@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.core.planning.planning import best_actions
 from reproduction.chapter3.c3_02_lattice_prior.run import measure, online_prior, readings, run_of
-from reproduction.chapter3.learning.grid_tasks import PLAIN, choices_of, learn_task, rows_of
+from reproduction.chapter3.learning.grid_tasks import PLAIN, choices_of, learn_task
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.registry import claim_of
 
@@ -20,17 +20,6 @@ def test_online_prior_after_one_task_by_hand():
     expected = np.where(q.max(axis=1, keepdims=True) > 0, best_actions(q), False)
     assert (prior.counts(np.arange(len(q))) == expected).all()
     assert not prior.counts([run.training[0].goal]).any()
-
-
-def test_the_second_task_is_learnt_with_the_prior_of_the_first():
-    schedule, choice = schedule_of(SETTINGS, [1.0, 0.98, 0.01]), choices_of(SETTINGS)[0]
-    first = online_prior(run_of({**SETTINGS, "training_tasks": 1}, 0, 0), choice, schedule)
-    run = run_of({**SETTINGS, "training_tasks": 2}, 0, 0)
-    q = learn_task(run.training[1], rows_of(run.training[1], first, "proportion", "uniform"), schedule)[1].q
-    second = np.where(q.max(axis=1, keepdims=True) > 0, best_actions(q), False)
-    states = np.arange(len(q))
-    both = online_prior(run, choice, schedule).counts(states)
-    np.testing.assert_array_equal(both, first.counts(states) + second)
 
 
 def test_numbers_by_hand():

@@ -3,19 +3,15 @@
 import numpy as np
 import pytest
 
-from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
-from lifelore.domains.grids.lattice import lattice
 from lifelore.domains.grids.noise_maze import noise_maze
 from reproduction.chapter3.c3_03_noise_maze_prior.run import measure, run_of
-from reproduction.chapter3.learning.grid_tasks import PERCEPT, PLACE, exact_prior, learn_task, rows_of
-from reproduction.chapter3.learning.schedules import schedule_of
+from reproduction.chapter3.learning.grid_tasks import PERCEPT, PLACE, exact_prior
 from reproduction.engine.registry import claim_of
 
 CLAIM = claim_of("C3.3")
 SMALL = {**CLAIM.sizes["quick"], "episodes": 30, "testing_tasks": 2, "training_tasks": 4}
-SCHEDULE = [1.0, 0.98, 0.01]
 
 
 @pytest.fixture(scope="module")
@@ -29,15 +25,6 @@ def maze_of(names):
     density = random.uniform(0.5, 0.8)
     world = noise_maze(random, 11, density)
     return density, world, int(random.integers(world.n_states))
-
-
-def test_every_task_has_a_maze_of_its_own_between_50_and_80_percent(run):
-    mazes = [maze_of((3, "C3.3", 0, kind, i)) for kind, n in (("training", 4), ("testing", 2)) for i in range(n)]
-    met = run.noise + run.testing
-    for (density, world, goal), task in zip(mazes, met, strict=True):
-        assert round(density * 81) == 81 - world.n_states
-        assert (goal, world.n_states) == (task.goal, task.tables.n_states)
-    assert len({world.fingerprint for _, world, _ in mazes}) == 6
 
 
 def test_codes_by_a_slow_look_around(run):
@@ -63,42 +50,6 @@ def test_counts_by_a_slow_tally(run, kind):
     prior = exact_prior(run.noise, 0.1, kind)
     assert prior.contexts.tolist() == sorted(tally)
     np.testing.assert_array_equal(prior.counts(sorted(tally)), [tally[code] for code in sorted(tally)])
-
-
-def test_the_lattices_places_are_read_in_a_maze_and_others_are_unknown(run):
-    grid = lattice(11)
-    prior = exact_prior(run.lattice, 0.1, PLACE)
-    assert prior.contexts.tolist() == sorted((11 * row + column) for row, column in grid.cells.tolist())
-    task = run.testing[0]
-    places = task.contexts[PLACE]
-    in_lattice = ((places // 11) % 2 == 1) | ((places % 11) % 2 == 1)
-    assert (prior.unseen(places) == ~in_lattice).all()
-    explore = np.diff(rows_of(task, prior, "proportion", "uniform", PLACE).explore_cum, axis=1, prepend=0)
-    strange = np.flatnonzero(~in_lattice[np.argsort(places)])
-    np.testing.assert_allclose(explore[strange], 0.25)
-
-
-def test_a_percept_never_counts_a_move_into_a_wall(run):
-    prior = exact_prior(run.noise, 0.1, PERCEPT)
-    passable = (prior.contexts[:, None] >> np.arange(4)) & 1
-    assert not prior.counts(prior.contexts)[passable == 0].any()
-
-
-def test_a_prior_that_has_seen_nothing_is_q_learning(run):
-    schedule = schedule_of({**SMALL, "max_steps": 100}, SCHEDULE)
-    task = run.testing[0]
-    plain, learner = learn_task(task, None, schedule)
-    for kind in (PLACE, PERCEPT):
-        guided, other = learn_task(task, rows_of(task, ActionPrior(4), "proportion", "prior", kind), schedule)
-        assert plain.tobytes() == guided.tobytes()
-        assert learner.q.tobytes() == other.q.tobytes()
-
-
-def test_more_tasks_leave_the_first_ones_alone(run):
-    more = run_of({**SMALL, "training_tasks": 5, "testing_tasks": 3}, 3, 0)
-    for ours, others in ((run.lattice, more.lattice), (run.noise, more.noise)):
-        assert [task.goal for task in others][:4] == [task.goal for task in ours]
-    assert [task.stream for task in more.testing][:2] == [task.stream for task in run.testing]
 
 
 def test_pairs_by_hand():

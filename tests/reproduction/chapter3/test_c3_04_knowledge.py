@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from lifelore.core.planning.planning import best_actions
 from lifelore.domains.factory.contexts import TO_PROCURE, items_flag
 from lifelore.domains.factory.factory import ASSEMBLE, PROCURE
 from lifelore.domains.factory.layout import factory
@@ -22,12 +21,6 @@ EVERY = pytest.mark.parametrize("world", WORLDS.values(), ids=WORLDS)
 
 def line():
     return factory("###########\n#.1.2S+.ab#\n###########")
-
-
-def test_distances_by_hand():
-    assert distances(line(), np.arange(9) == 3).tolist() == [3, 2, 1, 0, 1, 2, 3, 4, 5]
-    world = WORLDS["modified"]
-    assert distances(world, np.ones(world.n_cells, bool)).max() == 0
 
 
 def test_the_expert_on_a_line_by_hand():
@@ -66,29 +59,6 @@ def test_advice_leads_to_the_area_and_into_no_wall(world):
             while not area[cell]:
                 cell, walked = world.floor.neighbour[cell, here[cell].argmax()], walked + 1
             assert walked == distances(world, area)[world.start] or area[world.start]
-
-
-@EVERY
-def test_advice_is_two_directions_a_cell(world):
-    advice = expert_actions(world.task([0, 2, 4, 6])).reshape(81, -1)
-    assert len(np.unique(advice[:-1], axis=0)) == 2
-
-
-@EVERY
-def test_optimal_policies_keep_the_invariances_and_chance_does_not(world):
-    task = world.task([0, 3, 5])
-    best = best_actions(task.optimal_q())
-    share = best / best.sum(axis=1, keepdims=True)
-    flat = np.full(best.shape, 1 / 6)
-    held = {name: (rule.wanted, rule.mass(share), rule.mass(flat)) for name, rule in invariances(task).items()}
-    assert held["wall moves"][:2] == (False, 0.0)
-    assert held["uses elsewhere"][:2] == (False, 0.0)
-    for name, (wanted, optimal, chance) in held.items():
-        if name == "express routes" and not world.express.any():
-            assert np.isnan(optimal)
-        else:
-            assert (optimal > chance) == wanted, name
-    assert held["procurement first"][1] > 0.6
 
 
 def test_invariances_by_hand_on_a_line():

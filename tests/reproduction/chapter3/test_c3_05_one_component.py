@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from reproduction.chapter3.c3_05_one_component.run import Sequences, grid_of, run_cell, windows
+from reproduction.chapter3.c3_05_one_component.run import Sequences, grid_of
 from reproduction.chapter3.c3_06_four_components.run import measure
-from reproduction.chapter3.factory.learning import learn_task, problem_of, tasks_of
-from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.registry import claim_of
 
 SETTINGS = {**claim_of("C3.5").settings("quick"), "prior_tasks": 6, "late": 2, "components": [1]}
@@ -29,11 +27,6 @@ def sequence(run, k=1, per_task=10.0):
 
 
 RESULTS = [sequence(run) for run in range(4)]
-
-
-def test_windows_are_first_and_last_and_shrink_with_the_sequence():
-    assert [list(window) for window in windows(SETTINGS)] == [[1, 2], [5, 6]]
-    assert [list(window) for window in windows({"prior_tasks": 1, "late": 10})] == [[1], [1]]
 
 
 def test_gains_by_hand():
@@ -59,18 +52,3 @@ def test_four_components_less_one_by_hand():
 def test_a_second_number_of_components_is_asked_for():
     with pytest.raises(InputError, match="components must be two numbers"):
         claim_of("C3.6").settings("quick", {"components": [4]})
-
-
-def test_a_sequence_learns_each_task_with_what_came_before():
-    settings = {**SETTINGS, "prior_tasks": 3, "late": 1, "episodes": 4, "max_steps": [200]}
-    result = run_cell(settings, {"components": 1, "run": 0}, 2)
-    tasks = tasks_of(settings, 2, 1, 0, 4)
-    of = {method: [f for f in result["found"] if f["method"] == method] for method in ("uniform", "learnt")}
-    for n, components in enumerate(tasks):
-        problem = problem_of(settings, components, (2, "factory", 1, 0, n))
-        curve, _ = learn_task(problem, None, schedule_of({**settings, "max_steps": 200}, "printed"))
-        assert of["uniform"][0]["rewards"][n] == curve.rewards.mean()
-    # Nobody has a prior in the first task; where choices differ from the default, the windows alone are learnt.
-    assert of["learnt"][0]["rewards"][0] == of["uniform"][0]["rewards"][0]
-    assert [reward is None for reward in of["learnt"][1]["rewards"]] == [True, False, True, False]
-    assert result["seen"] == [components in tasks[:n] for n, components in enumerate(tasks)]

@@ -6,19 +6,14 @@ import pytest
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.domains.factory.contexts import PHI
 from reproduction.chapter3.c3_08_feature_importance.run import (
-    counted_actions,
-    counted_states,
     grid_of,
     importance,
     measure,
-    readings,
     rows,
-    run_cell,
 )
-from reproduction.chapter3.factory.modified_tasks import FULL_SET, contexts_of, problem_of
+from reproduction.chapter3.factory.modified_tasks import FULL_SET
 from reproduction.engine.registry import claim_of
 
-CLAIM = claim_of("C3.8")
 QUICK = dict(claim_of("C3.8").sizes["quick"])
 
 SETTINGS = {**QUICK, "runs": 4, "policies": [3], "over": ["all", "way"], "actions": ["tied"]}
@@ -51,11 +46,6 @@ def test_gaps_by_hand():
     assert south["value"] == pytest.approx(0.1315)
 
 
-def test_a_reading_in_which_another_feature_comes_first():
-    every = {cell["over"]: found for cell, found in readings(SETTINGS, made_up({**OTHERS, "Items": 0.3}))}
-    assert every["all"]["gap_phi3"].value > 0 > every["way"]["gap_phi3"].value
-
-
 def test_importance_of_counts_by_hand():
     # Only N tells: where it is free (0) go north, where it is a wall (1) south, six states each.
     values = np.zeros((12, 10), np.int64)
@@ -69,28 +59,3 @@ def test_importance_of_counts_by_hand():
     # Without N both actions are as likely: one bit. φ1 has no N.
     assert found["phi4"] == {name: float(name == "PosUM") for name in FULL_SET.names}
     assert found["phi1"] == {"PosMM": 0.0, "Items": 0.0}
-
-
-def test_first_best_actions_by_hand():
-    best = np.array([[0, 1, 1], [0, 0, 0], [1, 0, 1]], bool)
-    assert counted_actions(best, "first").tolist() == [[False, True, False], [False] * 3, [True, False, False]]
-    assert counted_actions(best, "tied") is best
-
-
-@pytest.fixture(scope="module")
-def small():
-    settings = {**QUICK, "policies": [2, 1]}
-    return settings, run_cell(settings, {"run": 0}, 4)
-
-
-def test_a_small_run_agrees_with_counts_made_anew(small):
-    settings, result = small
-    prior = ActionPrior(6)
-    for i in range(2):
-        problem = problem_of(settings, (4, "C3.8", 0, "training", i))
-        codes, states = contexts_of(problem, "phi4"), counted_states(problem, "way")
-        for state in states:
-            prior.update(codes[[state]], problem.best[[state]])
-    ours = next(f for f in result["found"] if (f["policies"], f["over"], f["actions"]) == (2, "way", "tied"))
-    assert ours["increase"] == importance(prior)
-    assert len(result["found"]) == len(grid_of(settings).cells) == 8

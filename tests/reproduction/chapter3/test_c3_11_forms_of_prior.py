@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.action.priors.action_prior import ActionPrior
-from reproduction.chapter3.c3_11_forms_of_prior.run import FORMS, SOFTMAX_OF, probs_of
+from reproduction.chapter3.c3_11_forms_of_prior.run import probs_of
 
 
 def test_forms_of_four_counts_by_hand():
@@ -26,15 +26,3 @@ def test_forms_of_four_counts_by_hand():
     # The deviation of a share of mean 6.5 / 11 is sqrt(p (1 - p) / 12) = 0.142, of the mean of 4000 0.0022.
     assert draws[:, 0].mean() == pytest.approx(share[0], abs=0.01)
     assert draws[:, 0].std() == pytest.approx(0.142, abs=0.01)
-
-
-@pytest.mark.parametrize("softmax_of", SOFTMAX_OF)
-@pytest.mark.parametrize("form", FORMS)
-def test_forms_are_probabilities_and_uniform_where_nothing_is_known(form, softmax_of):
-    prior = ActionPrior(6, 0.1)
-    prior.update([1], [[True, False, True, False, False, False]])
-    how = {"softmax_of": softmax_of, "policies": 1}
-    probs = probs_of(prior, np.array([1, 2]), form, how, np.random.default_rng(1))
-    np.testing.assert_allclose(probs.sum(axis=1), 1)
-    if form != "dirichlet":
-        np.testing.assert_allclose(probs[1], 1 / 6)

@@ -19,12 +19,6 @@ def shown(training):
     return {people: [demonstrate(problem, people, i) for i, problem in enumerate(training)] for people in PEOPLE}
 
 
-def test_people_show_in_turn(shown):
-    assert [one.agent for one in shown["varied"]] == [f"person {i}" for i in range(4)]
-    assert {one.agent for one in shown["familiar"]} == {"person 0"}
-    assert [one.task for one in shown["expert"]] == ["0", "1", "2", "3"]
-
-
 def test_an_expert_takes_best_steps_alone(training, shown):
     for problem, one in zip(training, shown["expert"], strict=True):
         assert problem.best[one.states, one.actions].all()
@@ -44,8 +38,3 @@ def test_counts_of_what_was_shown_by_hand(training, shown):
     own = self_trained(training[:2], HOW)
     assert len(own) >= len(prior)
     assert (own.counts(prior.contexts) >= 1).any(axis=1).all()
-
-
-def test_who_gives_up_is_left_out(training, shown):
-    prior = from_shown(training[:2], [None, shown["expert"][1]], HOW)
-    assert len(prior) == len(set(contexts_of(training[1], "phi3")[shown["expert"][1].states].tolist()))

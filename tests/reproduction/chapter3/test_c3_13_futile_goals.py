@@ -4,17 +4,14 @@ import numpy as np
 import pytest
 
 from lifelore.action.search.domain_reduction import domain_futile_states
-from lifelore.core.learning.q_learning import uniform_rows
 from reproduction.chapter3.c3_13_futile_goals.run import (
     best_in,
     constructed,
     constructed_cases,
     found_case,
-    frequency,
     goal_tables,
     measure,
     rows,
-    slope,
 )
 from reproduction.engine.registry import claim_of
 
@@ -46,14 +43,6 @@ def test_constructed_cases_by_hand():
         assert abs(case["taken"] - expected) < 5 * np.sqrt(expected)
 
 
-def test_frequency_counts_steps_into_the_goal():
-    tables = goal_tables(np.array([[1, 0], [1, 1]], np.int32), 1, [0])
-    certain = uniform_rows(tables, np.array([[1.0, 0.0], [0.5, 0.5]]))
-    never = uniform_rows(tables, np.array([[0.0, 1.0], [0.5, 0.5]]))
-    assert frequency(tables, certain, 1.0, 50, (0, "a")) == 50
-    assert frequency(tables, never, 1.0, 50, (0, "a")) == 0
-
-
 @pytest.mark.parametrize("kind", ["random", "lattice", "noise"])
 def test_found_worlds_keep_to_the_bound(kind):
     cases = [found_case(kind, QUICK, (1, "test", kind, i), 3) for i in range(4)]
@@ -63,11 +52,6 @@ def test_found_worlds_keep_to_the_bound(kind):
         assert case["entering"] > 0
         assert case["below"] == 0
         assert case["least"] >= 1 - 1e-12
-
-
-def test_slopes_by_hand():
-    assert slope([1, 10, 100], [1.0, 0.1, 0.01]) == pytest.approx(-1)
-    assert slope([1, 4], [0.5, 0.25]) == pytest.approx(-0.5)
 
 
 def test_numbers_by_hand():

@@ -4,29 +4,23 @@ import numpy as np
 import pytest
 
 from lifelore.action.search.domain_reduction import minimised_domain, tables_within
-from lifelore.core.learning.q_learning import Schedule
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
-from lifelore.core.metrics import Estimate
 from lifelore.core.planning.planning import best_actions, optimal_q
 from reproduction.chapter3.c3_14_minimised_domains.minimised_worlds import (
     Solved,
     TaskSet,
-    random_tables,
     task_set,
     with_goal,
 )
 from reproduction.chapter3.c3_14_minimised_domains.run import (
-    best_returns,
     domain_of,
     exact,
     kept,
-    learn_within,
     measure,
     readings,
     rows,
     traps,
     values_within,
-    worst,
 )
 from reproduction.engine.registry import claim_of
 
@@ -122,36 +116,6 @@ def test_values_where_nothing_leads_out_are_those_of_the_exact_planner():
             np.testing.assert_allclose(values_within(task.tables, domain, tasks.discount), q, atol=1e-6)
 
 
-def test_learners_within_take_kept_actions_alone():
-    task = corridor(0)
-    pairs = np.zeros((5, 2), bool)
-    pairs[1:, 0] = True  # left, and nothing in the goal
-    once = Schedule(np.ones(4), np.full(4, 0.5), 10, DISCOUNT)
-    curve = learn_within(task, pairs, once, "test")
-    assert curve.steps.tolist() == [2, 2, 2, 2]
-    assert curve.reached.all()
-    assert curve.collisions.sum() == 0
-    greedy = Schedule(np.zeros(4), np.full(4, 0.5), 10, DISCOUNT)
-    assert learn_within(task, pairs, greedy, "test").steps.tolist() == [2, 2, 2, 2]
-    # Right only: stuck at the other end, where it stays for nothing.
-    pairs = np.zeros((5, 2), bool)
-    pairs[:4, 1] = True
-    assert learn_within(task, pairs, once, "test").rewards.tolist() == [0.0] * 4
-
-
-def test_best_returns_are_of_the_starts_drawn():
-    task = corridor(0, start=2)
-    assert best_returns(task, 3).tolist() == [pytest.approx(90)] * 3
-    anywhere = task._replace(tables=task.tables._replace(starts=np.arange(1, 5, dtype=np.int32)))
-    assert set(np.round(best_returns(anywhere, 200), 6)) == {100.0, 90.0, 81.0, 72.9}
-
-
-def test_the_worst_is_what_reaches_highest():
-    wide, high = Estimate(0.5, 0.5, (0.2, 1.3), 5), Estimate(1.1, 1.1, (1.0, 1.2), 5)
-    assert worst([wide, high]) == wide
-    assert worst([high, Estimate(1.5, 1.5, (1.5, 1.5), 5)]).value == 1.5
-
-
 def test_numbers_by_hand():
     settings = {**SETTINGS, "kinds": ["lattice, every start", "random, few starts"]}
 
@@ -183,15 +147,3 @@ def test_numbers_by_hand():
     first = rows(settings, results)[0]
     assert [number["value"] for number in first["traps"]] == [0, 0.5]
     assert [number["value"] for number in first["to_80"]] == [100, 51]
-
-
-def test_random_tables_have_walls_and_sinks():
-    tables = random_tables(200, 4, np.random.default_rng(0), (0.8, 0.2))
-    refused = tables.event[:, :, 0] == COLLISION
-    assert 0.2 < refused.mean() < 0.3
-    here = np.arange(200)[:, None, None]
-    assert (tables.next_state[refused] == np.broadcast_to(here, tables.next_state.shape)[refused]).all()
-    assert 0.08 < (tables.next_state == here).all(axis=(1, 2)).mean() < 0.25
-    goal = with_goal(tables, 7, [0])
-    entered = (tables.next_state == 7) & (np.arange(200) != 7)[:, None, None]
-    assert ((goal.event & TERMINAL > 0) == entered).all()

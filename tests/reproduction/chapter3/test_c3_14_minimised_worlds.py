@@ -1,15 +1,11 @@
 """Tasks of one factory domain: paid and ended by their own list, transitions shared."""
 
 import numpy as np
-import pytest
 
 from lifelore.core.mdp import TERMINAL
 from lifelore.domains.factory.factory import ASSEMBLE, PROCURE
 from lifelore.domains.factory.layout import factory
-from reproduction.chapter3.c3_14_minimised_domains.minimised_worlds import KINDS, task_set, with_list
-from reproduction.engine.registry import claim_of
-
-QUICK = dict(claim_of("C3.14").sizes["quick"])
+from reproduction.chapter3.c3_14_minimised_domains.minimised_worlds import with_list
 
 
 def test_a_list_within_a_larger_domain_by_hand():
@@ -43,17 +39,3 @@ def test_the_whole_list_is_the_factorys_own_task():
     for name in ("next_state", "reward", "event", "starts"):
         np.testing.assert_array_equal(getattr(tables, name), getattr(base, name))
     assert (ended == whole.completed).all()
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_tasks_of_a_set_share_their_domain(kind):
-    tasks = task_set(kind, {**QUICK, "max_steps": 50}, (0, "test"))
-    first = tasks.tasks[0].tables
-    assert len(tasks.tasks) >= 2
-    for task in tasks.tasks:
-        np.testing.assert_array_equal(task.tables.next_state, first.next_state)
-        if "start" in kind and "every" not in kind:
-            np.testing.assert_array_equal(task.tables.starts, first.starts)
-        assert (task.q[task.tables.starts].max(axis=1) > 0).all()
-        assert task.best[task.tables.starts].any(axis=1).all()
-    assert len({task.stream for task in tasks.tasks}) == len(tasks.tasks)

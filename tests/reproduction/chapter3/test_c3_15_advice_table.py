@@ -3,9 +3,8 @@
 import pytest
 from scipy.stats import beta
 
-from reproduction.chapter3.advice.mazes import goal_models_of, maze_of
 from reproduction.chapter3.c3_15_advice_table.figure import PRINTED
-from reproduction.chapter3.c3_15_advice_table.run import goals_apart, measure, readings, rows
+from reproduction.chapter3.c3_15_advice_table.run import measure, readings, rows
 from reproduction.engine.registry import claim_of
 
 CLAIM = claim_of("C3.15")
@@ -45,10 +44,3 @@ def test_intervals_of_the_printed_rewards():
         ends = 1000 * beta.ppf(0.025, right, 81 - right), 1000 * beta.ppf(0.975, right + 1, 80 - right)
         assert bounds[measure_name] == pytest.approx(ends, abs=0.5)
     assert bounds["q_learning_advised"] == pytest.approx((1000 * beta.ppf(0.025, 20, 1), 1000), abs=0.5)
-
-
-def test_goals_apart_have_a_model_each_and_a_share():
-    place = maze_of(SETTINGS, {"loops": 0.1, "maze": 0}, 0)
-    advisor = goals_apart(place, goal_models_of(place, "walks", 0.1))
-    assert len(advisor.guide.log_prior) == len(place.errands) + 1
-    assert (advisor.settings.share, advisor.settings.kappa, advisor.settings.window) == (0.4, 0.5, 300)

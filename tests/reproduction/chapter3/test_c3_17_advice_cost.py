@@ -7,13 +7,10 @@ import pytest
 
 from lifelore.action.advice.advisor import Advisor
 from lifelore.action.advice.goal_model import GoalModel
-from reproduction.chapter3.advice.mazes import errands_of, maze_of, policy_of
 from reproduction.chapter3.c3_17_advice_cost.run import (
     EARLY,
     LATE,
-    agent_policies,
     greedy_policy,
-    kappas_of,
     measure,
     readings,
     rows,
@@ -43,18 +40,6 @@ def test_greedy_policy_by_hand():
     found = greedy_policy(q, 0.2)
     assert found[0] == pytest.approx([0.25] * 4)
     assert found[1] == pytest.approx([0.45, 0.05, 0.45, 0.05])
-
-
-def test_q_learning_that_found_nothing_yet_is_random_motion():
-    settings = {**SETTINGS, "tasks": 2, "max_episode_steps": 1}
-    maze = maze_of(settings, {"loops": 0.1, "maze": 0}, 0)
-    for policy, errand in zip(agent_policies(settings, maze)[EARLY], errands_of(maze, 2), strict=True):
-        # One step that is not the last tells nothing: Q is 0 everywhere.
-        assert policy == pytest.approx(policy_of(maze.world, "random", errand)[:, 0])
-
-
-def test_zero_and_the_printed_kappa_are_always_there():
-    assert kappas_of({"kappas": [1.4, 0.2]}) == [0.0, 0.2, 0.5, 1.4]
 
 
 def test_the_steepest_rise_by_hand():

@@ -9,7 +9,6 @@ from reproduction.chapter3.c3_19_acquired_features.run import (
     PLAIN,
     POOL,
     START,
-    counted_task,
     doubt,
     measure,
     readings,
@@ -56,12 +55,3 @@ def test_doubt_by_hand():
     best = np.array([[True, True], [True, False], [False, False]])
     h = 0.25 * 2 - 0.75 * np.log2(0.75)
     assert doubt(probs, best) == pytest.approx(((1 + h) / 2, (1 + 2) / 2))
-
-
-def test_noise_is_independent_of_the_state():
-    task = counted_task(SETTINGS, (0, "test", 1))
-    columns = POOL.columns(task.codes)
-    assert np.array_equal(columns[:, :10], task.problem.seen)
-    # About 1,000 states or more, four values each: within five standard deviations of a quarter.
-    share = (columns[:, 10] == 2).mean()
-    assert abs(share - 0.25) < 5 * (0.25 * 0.75 / len(columns)) ** 0.5

@@ -3,11 +3,8 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import new_curve
-from lifelore.figures.style import new_figure
-from reproduction.chapter3.factory.comparison import Comparison, grid_of, in_blocks, is_default, summary
-from reproduction.chapter3.factory.figure import draw_rewards, looks_of
+from reproduction.chapter3.factory.comparison import Comparison, grid_of, summary
 
 SETTINGS = {"schedule": ["printed", [0.1, 1.0, 0.1]], "ties": ["uniform", "prior"], "alpha0": [0.1, 1.0]}
 GRID = grid_of(SETTINGS, ("schedule", "ties"), ("alpha0",))
@@ -20,13 +17,6 @@ def test_the_first_values_are_the_default_and_each_other_choice_is_met():
     assert GRID.cells[-1] == {**GRID.default, "alpha0": 1.0}
     # Without a prior, neither ties nor α⁰ matter.
     assert [cell["schedule"] for cell in GRID.cells_of("uniform")] == SETTINGS["schedule"]
-
-
-def test_the_default_as_methods_meet_it():
-    other = {**GRID.default, "ties": "prior"}
-    assert is_default(GRID, {**GRID.default, "alpha0": None})
-    assert not is_default(GRID, other)
-    assert is_default(GRID, other, but=["ties"])
 
 
 def curve(rewards, reached):
@@ -45,12 +35,6 @@ def test_summary_by_hand():
     opposite = [curve([0, 2], [1, 1]), curve([2, 0], [1, 1])]
     assert summary(opposite, 2, drawn=False)["spread"] == pytest.approx(2 * 2**-0.5)
     assert "spread" not in summary(opposite[:1], 9, drawn=False)
-
-
-def test_blocks_are_even():
-    found = in_blocks(np.arange(1000.0)[None])
-    assert found.shape == (1, 100)
-    assert found[0, [0, 1, -1]].tolist() == [4.5, 14.5, 994.5]
 
 
 def made_up():
@@ -89,20 +73,3 @@ def test_a_cell_counts_once_for_each_pair():
     assert [found.is_own(cell, "prior", "uniform") for cell in grid.cells] == [True] * 4 + [False]
     assert [found.is_own(cell, "uniform") for cell in grid.cells] == [True, False, True, False, False]
     assert found.is_own(grid.cells[-1], "prior", "another")
-
-
-def test_a_method_without_a_look_is_refused():
-    with pytest.raises(InputError, match="missing another"):
-        looks_of(["prior", "another"], {"prior": ("a prior", "#000000")})
-
-
-def test_curves_are_drawn_as_stored_on_linear_axes():
-    found = Comparison(made_up(), GRID)
-    rows = [found.curve(method, GRID.default) for method in ("prior", "uniform")]
-    axes = new_figure(4, 3).subplots()
-    result = {"measured": {"optimal_reward": {"value": 100.0}}}
-    draw_rewards(axes, result, rows, {"prior": ("a prior", "#000000"), "uniform": ("none", "#777777")}, 20)
-    assert [str(line.get_label()) for line in axes.get_lines()] == ["a prior", "none", "optimal"]
-    assert axes.get_lines()[0].get_xdata().tolist() == [5.5, 15.5]
-    assert axes.get_lines()[0].get_ydata().tolist() == rows[0]["mean"]
-    assert axes.get_xscale() == axes.get_yscale() == "linear"

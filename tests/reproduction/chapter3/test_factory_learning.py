@@ -16,8 +16,6 @@ from reproduction.chapter3.factory.learning import (
     problem_of,
     rows_of,
     solved,
-    tasks_of,
-    with_pseudo_count,
 )
 from reproduction.engine.registry import claim_of
 
@@ -59,17 +57,6 @@ def test_what_has_learnt_the_exact_values_earns_the_optimal_return(corridor):
     assert greedy_return(problem, shuttles) == pytest.approx((-2 - 0.9) / (1 - 0.81))
 
 
-def test_advice_counts_like_so_many_policies():
-    advice = np.array([[True, True, False, False, False, False], [False] * 6])
-    prior = hand_made_prior(advice, 35, 0.5)
-    # 35 each for two of six actions, 0.5 for all; without advice even.
-    np.testing.assert_allclose(prior.probs([0])[0], [35.5 / 73] * 2 + [0.5 / 73] * 4)
-    np.testing.assert_allclose(prior.probs([1])[0], 1 / 6)
-    firmer = with_pseudo_count(prior, 1.0)
-    np.testing.assert_allclose(firmer.probs([0])[0], [36 / 76] * 2 + [1 / 76] * 4)
-    assert prior.alpha0 == 0.5
-
-
 @pytest.mark.parametrize("encoding", ["global", "left", "listed", "phase"])
 def test_prior_counts_as_a_plain_loop_does(encoding):
     known = [solved(components, 0.99) for components in [(0,), (4,), (0,)]]
@@ -83,13 +70,6 @@ def test_prior_counts_as_a_plain_loop_does(encoding):
     np.testing.assert_array_equal(prior.counts(acting), [counts[code] for code in acting])
 
 
-def test_a_longer_sequence_begins_like_a_shorter_one():
-    five, eight = (tasks_of(SETTINGS, 1, 4, 0, n) for n in (5, 8))
-    assert eight[:5] == five
-    assert all(len(set(components)) == 4 for components in eight)
-    assert tasks_of(SETTINGS, 1, 4, 1, 5) != five
-
-
 def test_without_counts_a_prior_is_q_learning_to_the_bit():
     problem = problem_of(SETTINGS, (2,), (5, "test"))
     schedule = QLearning(episodes=20, max_steps=300).schedule(0.99)
@@ -100,12 +80,3 @@ def test_without_counts_a_prior_is_q_learning_to_the_bit():
         curve, other = learn_task(problem, rows, schedule)
         assert curve.rewards.tobytes() == plain.rewards.tobytes()
         assert other.q.tobytes() == learner.q.tobytes()
-
-
-def test_a_prior_of_the_task_itself_finds_it_sooner():
-    problem = problem_of(SETTINGS, (2,), (5, "test"))
-    schedule = QLearning(episodes=20, max_steps=300).schedule(0.99)
-    rows = rows_of(problem, exact_prior([problem.solved], "global", 0.01), "global", "uniform")
-    guided, _ = learn_task(problem, rows, schedule)
-    plain, _ = learn_task(problem, None, schedule)
-    assert guided.rewards.mean() > plain.rewards.mean() + 1000

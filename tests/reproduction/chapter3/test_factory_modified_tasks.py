@@ -33,10 +33,3 @@ def test_pooled_counts_by_a_slow_tally():
     prior = exact_priors(SETTINGS, NAMES, ["phi3"])["phi3", 3]
     assert prior.contexts.tolist() == sorted(tally)
     np.testing.assert_array_equal(prior.counts(sorted(tally)), [tally[code] for code in sorted(tally)])
-
-
-def test_the_prior_of_fewer_policies_is_that_of_the_first():
-    one = exact_priors({**SETTINGS, "policies": [1]}, NAMES, ["phi2"])["phi2", 1]
-    other = exact_priors(SETTINGS, NAMES, ["phi2"])["phi2", 1]
-    assert one.contexts.tolist() == other.contexts.tolist()
-    assert (one.counts(one.contexts) == other.counts(one.contexts)).all()

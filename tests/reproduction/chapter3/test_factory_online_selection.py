@@ -5,17 +5,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from lifelore.core.planning.planning import best_actions
-from reproduction.chapter3.c3_09_online_features.run import mask_of, measure, run_cell
-from reproduction.chapter3.c3_10_selection_over_tasks.run import GOAL, numbers, readings, settled_after, shares
-from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET, learn_problem, problem_of
+from reproduction.chapter3.c3_09_online_features.run import mask_of, run_cell
+from reproduction.chapter3.c3_10_selection_over_tasks.run import GOAL, numbers
+from reproduction.chapter3.factory.modified_tasks import problem_of
 from reproduction.chapter3.factory.online_selection import OnlineAgent, counted
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.registry import claim_of
 
 QUICK = claim_of("C3.10").settings("quick")
 SETTINGS = {**QUICK, "source": ["learnt", "exact"], "schedule": ["printed"]}
-SCHEDULE = schedule_of({**QUICK, "max_steps": 400}, "printed")
 ALL = (1 << 10) - 1
 WITH_ITEMS = GOAL | 1 << 9
 
@@ -45,46 +43,6 @@ def test_what_of_a_learnt_policy_counts_by_hand(problem):
     assert not every[problem.task.completed].any()
 
 
-def test_tried_actions_agree_with_a_loop_over_states(problem):
-    _, learner = learn_problem(problem, None, SCHEDULE)
-    found = counted(problem, learner, "learnt")
-    for state in np.flatnonzero(learner.visits.any(axis=1)):
-        tried = np.flatnonzero(learner.visits[state])
-        best = tried[best_actions(learner.q[[state]][:, tried])[0]]
-        assert np.flatnonzero(found[state]).tolist() == best.tolist()
-    assert found.any(axis=1).sum() == learner.visits.any(axis=1).sum()
-
-
-def test_exact_policies_count_everywhere_or_on_the_way(problem):
-    _, learner = learn_problem(problem, None, SCHEDULE)
-    assert counted(problem, learner, "exact") is problem.best
-    on_the_way = counted(problem, learner, "exact, on the way")
-    assert np.flatnonzero(on_the_way.any(axis=1)).tolist() == sorted(set(problem.way.tolist()))
-    assert (on_the_way[problem.way] == problem.best[problem.way]).all()
-
-
-@pytest.mark.parametrize("selects", [True, False])
-def test_before_its_first_task_an_agent_explores_uniformly(problem, selects):
-    plain = learn_problem(problem, None, SCHEDULE)[0].rewards
-    agent = OnlineAgent(selects, "exact", 0.1, "uniform")
-    assert agent.chosen == FULL_SET.names
-    assert agent.learn(problem, SCHEDULE).rewards.tolist() == plain.tolist()
-    assert agent.learn(problem, SCHEDULE).rewards.tolist() != plain.tolist()
-
-
-def test_masks_by_hand():
-    # PosUM, PosML, PosMR and PosDM are the columns 1, 3, 5 and 7.
-    assert GOAL == mask_of(CARDINALS) == 2 + 8 + 32 + 128
-    found = shares(np.array([[3, 0], [1, 512]]))
-    assert found[:, 0].tolist() == [1.0, 0.5] + [0.0] * 8
-    assert found[:, 1].tolist() == [0.0] * 9 + [0.5]
-
-
-def test_when_a_run_has_settled_by_hand():
-    masks = np.array([[ALL, GOAL, GOAL, GOAL], [GOAL] * 4, [GOAL, ALL, GOAL, GOAL], [GOAL, GOAL, GOAL, ALL]])
-    assert settled_after(masks) == [2, 1, 3, 5]
-
-
 def test_shares_of_runs_by_hand():
     found = numbers(np.array([[ALL, GOAL, GOAL]] * 3 + [[GOAL, GOAL, WITH_ITEMS ^ 2]]), last=2)
     assert {name: of.value for name, of in found.items()} == {
@@ -112,17 +70,3 @@ def test_a_small_run_agrees_with_an_agent_of_its_own(results):
     # Nobody has a prior in the first task.
     at_default = {f["method"]: f["first"][0] for f in reversed(results[0]["found"]) if f["max_steps"] == 2000}
     assert len(set(at_default.values())) == 1
-
-
-def test_the_first_task_takes_no_part_in_comparisons(results):
-    changed = [
-        {**result, "found": [{**found, "first": [-1e6, *found["first"][1:]]} for found in result["found"]]}
-        for result in results
-    ]
-    assert measure(SETTINGS, changed) == measure(SETTINGS, results)
-
-
-def test_exact_policies_are_read_once(results):
-    cells = [cell for cell, _ in readings(SETTINGS, results)]
-    assert sum(cell["source"] == "exact" for cell in cells) == 1
-    assert sum(cell["source"] == "learnt" for cell in cells) == 1 + 3

@@ -4,17 +4,15 @@ import numpy as np
 import pytest
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.core.planning.planning import best_actions, greedy_policy, optimal_q
+from lifelore.core.planning.planning import optimal_q
 from reproduction.chapter3.c3_02_lattice_prior.run import run_of
 from reproduction.chapter3.learning import grid_tasks
 from reproduction.chapter3.learning.grid_tasks import (
     PLAIN,
     STATE,
     Trained,
-    block_curve,
     choices_of,
     compared,
-    even_blocks,
     exact_prior,
     learn_task,
     learnt_by_choice,
@@ -36,27 +34,6 @@ def run():
     return run_of(SETTINGS, seed=3, number=0)
 
 
-def test_schedule_by_hand():
-    schedule = schedule_of({**SETTINGS, "episodes": 4}, [1.0, 0.5, 0.2])
-    assert schedule.epsilon.tolist() == [1.0, 0.5, 0.25, 0.2]
-    assert schedule.alpha.tolist() == [0.5] * 4
-
-
-def test_goals_do_not_repeat_and_runs_differ(run):
-    goals = [p.goal for p in run.testing]
-    assert len(set(goals)) == SETTINGS["testing_tasks"] == len(goals)
-    assert len({p.goal for p in run.training}) == 5
-    again, other = run_of(SETTINGS, 3, 0), run_of(SETTINGS, 3, 1)
-    assert [p.goal for p in again.testing] == goals
-    assert [p.goal for p in other.testing] != goals
-
-
-def test_more_training_tasks_leave_the_first_ones_and_the_test_tasks_alone(run):
-    more = run_of({**SETTINGS, "training_tasks": 8}, 3, 0)
-    assert [p.goal for p in more.training][:5] == [p.goal for p in run.training]
-    assert [p.goal for p in more.testing] == [p.goal for p in run.testing]
-
-
 def test_start_values_are_what_an_optimal_learner_earns(run, monkeypatch):
     # A learner that begins with the exact values, never explores and never learns must earn exactly the best
     # return from each start: so `start_values` follows the very starts that learners meet.
@@ -75,23 +52,6 @@ def test_start_values_are_what_an_optimal_learner_earns(run, monkeypatch):
     np.testing.assert_allclose(returns, start_values(problem, SETTINGS["episodes"]), rtol=1e-12)
 
 
-def test_no_action_of_the_prior_collides_and_goals_are_left_out(run):
-    prior = exact_prior(run.training, 0.1)
-    counts = prior.counts(np.arange(run.world.n_states))
-    assert not counts[run.world.neighbour < 0].any()
-    alone = exact_prior(run.training[:1], 0.1)
-    assert not alone.counts([run.training[0].goal]).any()
-    assert len(alone) == run.world.n_states - 1
-
-
-def test_tied_actions_all_count(run):
-    problem = run.training[0]
-    best = best_actions(optimal_q(problem.tables, SETTINGS["discount"]))
-    best[problem.goal] = False
-    assert (best.sum(axis=1) > 1).any()  # a lattice has crossings from which two ways are equally short
-    assert (exact_prior([problem], 0.1).counts(np.arange(len(best))) == best).all()
-
-
 def test_plain_learning_is_learning_with_a_prior_that_has_seen_nothing(run):
     schedule = schedule_of(SETTINGS, [1.0, 0.98, 0.01])
     for ties in ("uniform", "prior"):
@@ -102,23 +62,6 @@ def test_plain_learning_is_learning_with_a_prior_that_has_seen_nothing(run):
         assert learner.q.tobytes() == other.q.tobytes()
     taught = rows_of(run.testing[1], exact_prior(run.training, 0.1), "proportion", "uniform")
     assert learn_task(run.testing[1], taught, schedule)[0].tobytes() != plain.tobytes()
-
-
-def test_a_draw_from_the_dirichlet_is_the_same_for_the_task_whenever_it_is_made(run):
-    prior = exact_prior(run.training, 0.1)
-    one, two = (rows_of(run.testing[0], prior, "dirichlet", "uniform").explore_cum for _ in range(2))
-    other = rows_of(run.testing[1], prior, "dirichlet", "uniform").explore_cum
-    assert (one == two).all()
-    assert (one != other).any()
-
-
-def test_learning_reaches_the_optimal_policy(run):
-    schedule = schedule_of({**SETTINGS, "episodes": 3000}, [1.0, 1.0, 1.0])
-    problem = run.testing[0]
-    _, learner = learn_task(problem, None, schedule)
-    policy = greedy_policy(learner.q)
-    states = np.delete(np.arange(run.world.n_states), problem.goal)
-    assert problem.best[states, policy[states]].all()
 
 
 def test_every_combination_of_the_choices_and_the_default_first():
@@ -176,17 +119,3 @@ def test_summary_by_hand(monkeypatch):
         "to_80": 9,  # the mean of 7 and 9 is 8
     }
     assert summary(np.zeros(20), best)["to_80"] == 20
-
-
-def test_percent_of_optimal_is_of_the_best_from_the_same_starts(monkeypatch):
-    monkeypatch.setattr(grid_tasks, "WINDOW", 1)
-    lucky = summary(np.array([0.0, 9.0, 40.0, 90.0]), np.array([10.0, 90.0, 90.0, 100.0]))
-    assert lucky["to_80"] == 4  # 9 of a possible 90 is not yet learning, whatever other starts would give
-
-
-def test_a_drawn_curve_has_even_blocks():
-    curve = block_curve(even_blocks(np.array([np.arange(200.0), np.arange(200.0) + 2])), 200)
-    assert len(curve["x"]) == 100
-    assert (curve["x"][:2], curve["mean"][:2]) == ([1.5, 3.5], [1.5, 3.5])
-    assert set(curve["deviation"]) == {1.0}
-    assert block_curve(even_blocks(np.zeros((2, 7))), 7)["x"] == [1, 2, 3, 4, 5, 6, 7]

@@ -6,19 +6,16 @@ import pytest
 from lifelore.core.errors import LifeloreError
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import LossScale, ball_game
-from lifelore.domains.ball_game.moves import N_AFTER, N_OUTCOMES
 from lifelore.interaction.baselines.exp3 import EXP3
 from reproduction.chapter4.ball_game.games import Game, check_games, choices
-from reproduction.chapter4.ball_game.learners import BeatLearner, PrintedExp3, exp3_by_episode
+from reproduction.chapter4.ball_game.learners import BeatLearner, exp3_by_episode
 from reproduction.chapter4.ball_game.play import (
-    FixedSpeeds,
     Learner,
     Players,
     losses_by_speed,
     play_all,
     train,
 )
-from reproduction.chapter4.c4_16_beat_is_reuse.run import library_of, transition_of
 
 GAME = ball_game()
 SCALE = LossScale()
@@ -27,33 +24,6 @@ TRAINED = train(GAME, 12, 0)
 
 def players(n=12, episodes=2, seed=3):
     return Players.drawn(np.arange(n) % 6, episodes, stream(seed, "test"))
-
-
-def test_training_counts_every_move_once():
-    assert TRAINED.steps.shape == TRAINED.hits.shape == (6, 5, 12)
-    moves = TRAINED.steps.sum(axis=2).T  # (speeds, types)
-    np.testing.assert_array_equal(TRAINED.signals.sum(axis=1), moves)
-    assert TRAINED.scale("fixed") == LossScale()
-    assert TRAINED.scale("maxima") == LossScale(TRAINED.steps.max(), TRAINED.hits.max())
-    value = TRAINED.value(SCALE)
-    assert value[2, 4] == pytest.approx(-(TRAINED.steps[2, 4] / 400 + TRAINED.hits[2, 4] / 20).mean())
-
-
-def test_learnt_transitions_are_distributions_and_tell_of_slips():
-    table = np.exp(TRAINED.move_signal().log_table).reshape(5, -1, N_OUTCOMES, 6)
-    np.testing.assert_allclose(table.sum(axis=2), 1)
-    # In mid corridor with room ahead (class 6 of both) balls of 60 slip 30 times as often as balls of 2.
-    slips = 1 - table[2, 6 * 7 + 6].reshape(4, N_AFTER, 6)[0].sum(axis=0)
-    assert slips[0] < 0.06 < 0.15 < slips[5]
-
-
-def test_everybody_meets_the_same_world_whoever_else_plays():
-    everyone = players()
-    alone = Players(everyone.kinds[4:5], everyone.sigma[4:5], everyone.random[4:5])
-    together = play_all(GAME, everyone, FixedSpeeds(np.full(12, 3)), SCALE)
-    single = play_all(GAME, alone, FixedSpeeds(np.array([3])), SCALE)
-    assert single.steps[0].tolist() == together.steps[4].tolist()
-    assert single.hits[0].tolist() == together.hits[4].tolist()
 
 
 class Kept(Learner):
@@ -89,17 +59,6 @@ def test_exp3_by_episode_is_exp3_on_the_table():
         arms.update(chosen, -losses[np.arange(7), episode, chosen])
 
 
-def test_steps_that_pay_nothing_leave_exp3_as_it_is():
-    """As printed, k = 1: the weights after an episode are those of its last step alone."""
-    learner = PrintedExp3(2, 3, worst=2.0, horizon=50, seed=np.random.default_rng(0))
-    plain = EXP3(3, horizon=50, n_tasks=2, seed=np.random.default_rng(0))
-    for speed in ([0, 1], [2, 2], [1, 0]):
-        plain.update(np.array(speed), np.zeros(2))  # payoff 0 in [0, 1] at every step before the goal
-    learner.end_episode(np.array([2, 0]), np.array([0.5, 3.0]))
-    plain.update(np.array([2, 0]), np.array([0.75, 0.0]))
-    np.testing.assert_allclose(learner._arms.probabilities, plain.probabilities)
-
-
 def test_beat_learner_knows_types_that_it_is_told():
     everyone = players(60, 1)
     told = np.eye(6)[everyone.kinds]
@@ -108,17 +67,6 @@ def test_beat_learner_knows_types_that_it_is_told():
     lost = SCALE.loss(*play_all(GAME, everyone, learner, SCALE))
     best = losses_by_speed(GAME, everyone, SCALE)[np.arange(60), :, value.argmax(axis=1)[everyone.kinds]]
     np.testing.assert_array_equal(lost, best)
-
-
-def test_the_library_says_what_the_tables_say():
-    library = library_of(GAME, TRAINED, SCALE)
-    assert library.types[3] == "b = 20"
-    assert library.policies[1] == "speed 40"
-    np.testing.assert_allclose(library.performance.mean, TRAINED.value(SCALE))
-    table = TRAINED.move_signal().log_table
-    for signal in (0, 77, 1234, table.shape[1] - 1):
-        found = library.signal.log_likelihood(2, transition_of(signal))
-        np.testing.assert_allclose(found, table[2, signal], atol=1e-12)
 
 
 def test_the_type_named_halfway_through_the_first_episode():

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from lifelore.core.streams import stream
 from reproduction.chapter4.ball_game.trials import (
     BEAT,
     BEAT_TOLD,
@@ -17,7 +16,6 @@ from reproduction.chapter4.ball_game.trials import (
     by_size,
     cells,
     confusion,
-    players_of,
     readings_of,
     run_cell,
 )
@@ -26,19 +24,6 @@ from reproduction.engine.registry import claim_of
 CLAIM = claim_of("C4.12")
 SETTINGS = CLAIM.settings("quick", {"runs": 2, "games": ["s-maze 160"]})
 RESULT = run_cell(SETTINGS, cells(SETTINGS)[0], 0)
-
-
-def test_there_are_63_populations():
-    assert len(POPULATIONS) == len(set(POPULATIONS)) == 63
-    assert [sum(len(p) == x for p in POPULATIONS) for x in range(1, 7)] == [6, 15, 20, 15, 6, 1]
-
-
-def test_every_type_of_a_population_plays_as_often():
-    kinds = players_of(12, np.random.default_rng(0)).kinds.reshape(63, 12)
-    for population, own in zip(POPULATIONS, kinds, strict=True):
-        counts = np.bincount(own, minlength=6)[list(population)]
-        assert counts.sum() == 12
-        assert np.ptp(counts) <= (12 % len(population) > 0)
 
 
 def test_means_by_size_against_a_loop():
@@ -68,14 +53,6 @@ def test_methods_are_given_what_they_are_said_to_be():
     assert np.sum(RESULT["half"][BEAT]) == 126
 
 
-def test_only_the_default_runs_every_variant():
-    settings = CLAIM.sizes["full"]
-    first, *others = cells(settings)
-    assert (first["runs"], first["all"]) == (settings["runs"], True)
-    assert {(cell["runs"], cell["all"]) for cell in others} == {(settings["grid_runs"], False)}
-    assert len(others) + 1 == len(settings["games"]) * len(settings["normalisations"])
-
-
 def test_readings_are_games_and_single_choices():
     seen = []
     found = list(readings_of([RESULT, RESULT], lambda result, instead: seen.append(dict(instead)) or {}))
@@ -83,8 +60,3 @@ def test_readings_are_games_and_single_choices():
     assert seen[:2] == [{}, {}]
     assert {BEAT, EXP3, STATIC} == {method for instead in seen for method in instead}
     assert len({tuple(reading.items()) for reading, _ in found[1:]}) == len(found) - 1
-
-
-def test_another_seed_gives_other_players():
-    one, other = (players_of(3, stream(seed, "trials")).kinds.tolist() for seed in (0, 1))
-    assert one != other

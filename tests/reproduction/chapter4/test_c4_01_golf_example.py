@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.interaction.selection import Greedy, tied_shares
-from reproduction.chapter4.c4_01_golf_example.run import EXACT, follow_printed, readings, run_cell
+from reproduction.chapter4.c4_01_golf_example.run import follow_printed, readings
 from reproduction.chapter4.golf.rounds import exact_library, learnt_library
-
-SMALL = {"distance": 179.0, "shots": 8, "libraries": 5, "rounds": 4}
 
 
 def test_entropies_and_clubs_of_the_printed_shots_by_hand():
@@ -43,20 +41,6 @@ def test_the_first_club_is_the_six_iron_not_the_wood():
     assert tied_shares(Greedy().scores(library, library.prior)).tolist() == [0, 0, 1, 0]
     mean = library.performance.mean.mean(axis=0)
     assert mean[[2, 0]] == pytest.approx([-33.70, -55.65], abs=0.005)
-
-
-def test_learnt_models_near_the_exact_ones_with_many_shots():
-    library = learnt_library(np.random.default_rng(0), 20_000, 0.5)
-    assert library.performance.mean == pytest.approx(exact_library().performance.mean, abs=0.25)
-    assert follow_printed(library)[0][1] == pytest.approx(0.1762, abs=0.02)
-
-
-def test_a_cell_is_the_same_whenever_it_is_run():
-    cell = {"samples": 10, "pseudo_count": 0.5}
-    found = run_cell(SMALL, cell, 3)
-    assert found == run_cell(SMALL, cell, 3)
-    assert np.shape(found["error"]) == np.shape(found["entropy"]) == (5, 8)
-    assert np.shape(run_cell(SMALL, EXACT, 3)["entropy"]) == (1, 8)
 
 
 def test_numbers_of_a_kind_of_models_by_hand():

@@ -19,15 +19,6 @@ def test_holes_are_played_with_their_luck():
     assert found.error[:, 1].tolist() == [6.0, 215 - 8 - 219]
 
 
-@pytest.mark.parametrize("samples", [None, 10])
-def test_groups_of_holes(samples):
-    found = run_cell(SMALL, {"samples": samples, "first": None}, 1)
-    assert np.shape(found["error"]) == (3, 3)
-    entropy = np.array(found["entropy"])
-    assert entropy[:, 0] == pytest.approx(np.log(4), abs=1e-6)
-    assert (entropy[:, -1] < entropy[:, 0]).all()
-
-
 def test_the_best_club_of_each_hole_is_no_worse_than_any_club_alone():
     found = run_cell({**SMALL, "holes": 400}, {"part": "clubs"}, 1)
     assert (np.array(found["best"]) < np.min(found["club"], axis=1)).all()

@@ -1,10 +1,9 @@
 """Powers of ten between episodes from made-up tasks, by hand."""
 
-import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from reproduction.chapter4.c4_04_pacman.run import LASTING, RETURNS, in_blocks, measure, readings, rows
+from reproduction.chapter4.c4_04_pacman.run import LASTING, RETURNS, measure, readings
 from reproduction.engine.registry import claim_of
 
 SETTINGS = {"episodes": 10_000}
@@ -37,14 +36,6 @@ def test_readings_by_hand():
     # BPR that never lasts counts as all 10,000 too: -1, 0 and -2.
     assert found["10 returns", LASTING, "PRQ in [0, 1]"]["orders_q"].value == pytest.approx(-1)
     assert found["exact", LASTING, "PRQ as paid"]["orders_prq"].value == pytest.approx(1)
-
-
-def test_curves_by_hand():
-    found = {row["method"]: row for row in rows(SETTINGS, RESULTS) if "method" in row}
-    # The second block is 1, 10 and 1: mean 4, deviation √18.
-    assert found["BPR"]["mean"] == [1.0, 4.0]
-    assert found["BPR"]["deviation"] == [0.0, 4.2]
-    assert len(in_blocks(np.ones(1000))) == 100
 
 
 def test_settings_that_limits_cannot_describe():

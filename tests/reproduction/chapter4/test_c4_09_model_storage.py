@@ -1,15 +1,17 @@
-"""What models take to store, by hand."""
+"""What models take to store, by hand, and what the formulas of §4.7.6 assume."""
+
+import itertools
 
 import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from reproduction.chapter4.c4_09_model_storage.run import measure, run_cell, table_sizes
-from reproduction.chapter4.c4_09_model_storage.storage_cost import StorageSizes
+from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
+from lifelore.interaction.signals.transition_signal import TransitionSignal
+from reproduction.chapter4.c4_09_model_storage.run import StorageSizes, entries_of, measure, run_cell
 
-
-def test_entries_by_hand():
-    """One type and policy, two states, one action, three rewards."""
-    found = table_sizes(StorageSizes(1, 1, 2, 1, 3), 3, 4, np.random.default_rng(0))
-    assert found == {"performance": 3, "reward": 2 * 1 * 3, "state_action_state": 2 * 2 * 1}
+COUNT = st.integers(1, 50)
 
 
 def test_tables_are_as_the_right_formulas_say_and_the_printed_ones_are_swapped():
@@ -32,3 +34,34 @@ def test_measures_by_hand():
         "performance_below_reward": 1, "reward_below_transition": 0, "printed_formulas_bound": 4 / 6,
         "right_formulas": 1,
     }  # fmt: skip
+
+
+@pytest.mark.parametrize("n_rewards", [3, 12])
+def test_printed_formulas_are_swapped(n_rewards):
+    """What the two models really store, entry by entry, is what the formulas say once they have changed places."""
+    pairs, n_states, n_actions = (3, 5), 4, 2
+    transitions = TransitionSignal(np.full((*pairs, n_states, n_actions, n_states), 1 / n_states))
+    rewards = StepRewardSignal(range(n_rewards), np.full((*pairs, n_states, n_actions, n_rewards), 1 / n_rewards))
+    sizes = StorageSizes(5, 3, n_states, n_actions, n_rewards)
+    right, printed = entries_of(sizes), entries_of(sizes, printed=True)
+    assert (rewards.n_entries, transitions.n_entries) == (right["reward"], right["state_action_state"])
+    assert (rewards.n_entries, transitions.n_entries) == (printed["state_action_state"], printed["reward"])
+    assert transitions.n_entries != printed["state_action_state"]
+
+
+@given(COUNT, COUNT, COUNT)
+def test_the_printed_order_holds_where_there_are_fewer_rewards_than_states(n_states, n_rewards, n_actions):
+    performance, reward, state = entries_of(StorageSizes(1, 1, n_states, n_actions, n_rewards)).values()
+    assert performance <= reward
+    assert (reward < state) == (n_rewards < n_states)
+
+
+@pytest.mark.parametrize(("rewards", "horizon"), [((0.0, 1.0), 3), ((0.0, 1.0, 10.0), 2), ((0.0, 1.0, 7.3), 3)])
+def test_returns_take_more_values_than_the_printed_bound(rewards, horizon):
+    """|R| values for an average, (1 - γ^T) / (1 - γ) |R| for a discounted sum: sums of rewards take more."""
+    gamma = 0.37
+    drawn = list(itertools.product(rewards, repeat=horizon))
+    sums = {round(sum(of), 9) for of in drawn}
+    discounted = {round(sum(gamma**i * reward for i, reward in enumerate(of)), 9) for of in drawn}
+    assert len(sums) > len(rewards)
+    assert len(discounted) > (1 - gamma**horizon) / (1 - gamma) * len(rewards)

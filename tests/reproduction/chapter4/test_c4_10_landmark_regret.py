@@ -13,8 +13,6 @@ from reproduction.chapter4.c4_10_landmark_regret.run import (
     measure,
     member_regret,
     parted,
-    run_cell,
-    smooth_table,
 )
 
 TABLES = st.tuples(st.integers(1, 12), st.integers(1, 5)).flatmap(
@@ -28,23 +26,6 @@ def test_the_example_reaches_two_epsilon():
     found = parted(np.array(EXAMPLE), 0.5)
     assert (found["shared"], found["largest"], found["past"]) == (2, 2.0, 1)
     assert found["counts"] == [1, *[0] * (BINS - 2), 1]
-
-
-def test_tasks_alone_in_their_type_are_not_counted():
-    found = parted(np.array([[0.0, 1.0], [0.1, 1.0], [9.0, 0.0]]), 0.02)
-    assert (found["shared"], found["past"]) == (2, 0)
-    assert parted(np.array([[0.0], [9.0]]), 0.1)["largest"] == 0
-
-
-def test_smooth_tables_are_smooth_and_never_pass_two_epsilon():
-    table = smooth_table(np.random.default_rng(1), 200, 3)
-    assert np.abs(np.diff(table, axis=0)).mean() / np.ptp(table) < 0.02
-    assert max(parted(table, share)["largest"] for share in (0.1, 0.3)) <= 2.000001
-
-
-def test_the_reserve_has_324_cells():
-    found = run_cell({"shares": [0.1]}, {"family": "surveillance", "layout": "ring", "metric": "euclidean"}, 0)
-    assert 0 < found["parted"][0]["shared"] <= 324
 
 
 def test_measures_by_hand():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reproduction.chapter4.ball_game.trials import BEAT, BEAT_TOLD, EXP3, STATIC
-from reproduction.chapter4.c4_12_user_diversity.run import numbers, rows
+from reproduction.chapter4.c4_12_user_diversity.run import numbers
 
 
 def made():
@@ -25,9 +25,3 @@ def test_measures_by_hand():
     assert found["to_static_at_3"].value == pytest.approx(0.37 / 0.36, abs=0.01)
     assert found["to_static_few"].ci95[0] > 1 > found["to_static_many"].ci95[1]
     assert numbers(made(), {BEAT: BEAT_TOLD})["to_exp3"].value == pytest.approx(0.6, abs=0.01)
-
-
-def test_rows_are_the_curves_of_the_figure():
-    found = {row["method"]: row for row in rows({}, [made()])}
-    assert list(found) == [STATIC, EXP3, BEAT]
-    assert np.diff(found[STATIC]["mean"]) == pytest.approx(0.02, abs=0.02)

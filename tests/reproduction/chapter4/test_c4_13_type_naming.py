@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from reproduction.chapter4.ball_game.trials import BEAT, BEATS
-from reproduction.chapter4.c4_13_type_naming.run import numbers, readings, size_ratio
+from reproduction.chapter4.ball_game.trials import BEAT
+from reproduction.chapter4.c4_13_type_naming.run import numbers
 
 
 def made():
@@ -27,15 +27,3 @@ def test_measures_by_hand():
     changed = numbers({"half": {BEAT: half.tolist()}}, {})
     assert changed["pairs_confused_more_often"].value == 1
     assert changed["worst_ratio_10_to_60"].value == pytest.approx(0.4 + 0.6 * 2)
-
-
-def test_a_ratio_has_the_interval_of_its_players():
-    assert size_ratio([0, 20, 0, 0, 0, 0], 5).ci95 == (1.0, 1.0)
-    assert size_ratio([5, 15, 0, 0, 0, 0], 5).ci95[0] > 0.4
-
-
-def test_readings_leave_out_choices_of_other_methods():
-    result = {"game": "blobs", "normalisation": "fixed", "half": {method: made().tolist() for method in BEATS}}
-    assert [(cell["ε"], cell["prior"]) for cell, _ in readings({}, [result])] == [
-        ("default", "default"), ("1/n", "default"), ("default", "types of the population"),
-    ]  # fmt: skip

@@ -6,7 +6,6 @@ from lifelore.agent.play_study.scripted_player import play_next_round
 from lifelore.agent.play_study.study_plan import BEAT, STATIC, TEST, TRAINING
 from lifelore.agent.play_study.study_records import open_new_session, store_round
 from lifelore.agent.play_study.study_settings import PERSON, SCRIPTED
-from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import open_memory
 from reproduction.chapter4.c4_14_people.run import cells, measure, run_cell, study_settings
 from reproduction.engine.registry import claim_of
@@ -81,12 +80,3 @@ def test_finished_sessions_of_people_are_read_from_a_memory(tmp_path):
     result = run_cell(settings, recorded, 0)
     assert (result["player"], len(result["sessions"])) == (PERSON, 2)
     assert all(len(one["rounds"]) == session.settings.rounds for one in result["sessions"])
-
-
-def test_settings_that_are_no_session_are_refused(tmp_path):
-    with pytest.raises(NotFoundError, match="is not a file"):
-        CLAIM.settings("quick", {"people": str(tmp_path / "none.db")})
-    with pytest.raises(InputError, match="at least two each"):
-        CLAIM.settings("quick", {"speeds": [30]})
-    with pytest.raises(InputError, match="sizes must be distinct"):
-        CLAIM.settings("quick", {"sizes": [2, 2]})

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from reproduction.chapter4.ball_game.trials import BEAT, BEAT_OURS, EXP3, ORACLE, STATIC
-from reproduction.chapter4.c4_15_safety.run import numbers, rows
+from reproduction.chapter4.c4_15_safety.run import numbers
 
 
 def made():
@@ -25,9 +25,3 @@ def test_measures_by_hand():
     assert found["regret_to_exp3"].value == pytest.approx(0.1 / 2.0, rel=0.02)
     assert found["regret_to_exp3_without_exploration"].value == 0
     assert found["worst_ratio_10_to_60"].value == 1
-
-
-def test_regret_in_rows_is_summed():
-    regret = next(row for row in rows({}, [made()]) if (row["method"], row["what"]) == (EXP3, "regret"))
-    assert regret["mean"][-1] == pytest.approx(5 * 0.2, rel=0.02)
-    assert (np.diff(regret["mean"]) > 0).all()

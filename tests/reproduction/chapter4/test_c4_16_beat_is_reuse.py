@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.domains.ball_game.moves import N_OUTCOMES, N_SIGNALS
 from lifelore.interaction.adaptation.move_signal import PRIOR_MOVES
-from reproduction.chapter4.c4_16_beat_is_reuse.run import Algorithm9, measure, rows
+from reproduction.chapter4.c4_16_beat_is_reuse.run import Algorithm9, measure
 
 
 def test_algorithm_9_by_hand():
@@ -35,10 +35,3 @@ def test_a_step_that_differs_is_seen():
     assert found["decisions_alike"].value == pytest.approx(28 / 30)
     assert found["beliefs_apart"].value == 0.25
     assert found["products_that_vanish"].value == pytest.approx(1 / 3)
-
-
-def test_rows_show_a_session_of_each_type():
-    kinds = [session(kind=0, vanished=3), session(kind=2), session(kind=2)]
-    *shown, last = rows({}, [{"sessions": kinds}, {"sessions": kinds}])
-    assert [row["kind"] for row in shown] == [0, 2]
-    assert last == {"vanished": [3, 3]}

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from lifelore.interaction.baselines import UCB1
 from lifelore.interaction.beliefs.belief import entropy
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -12,9 +11,6 @@ from lifelore.interaction.selection import ExpectedImprovement, InformationDirec
 from reproduction.chapter4.reuse.many_tasks import (
     converged_after,
     grouped_mean,
-    grouped_quantile,
-    late_regret,
-    play_baseline,
     play_rule,
 )
 
@@ -39,35 +35,10 @@ def test_many_tasks_at_once_choose_as_single_agents_do(rule):
             agent.update(chosen, MEANS[task, chosen] + 2 * noise[task, t])
 
 
-def test_a_first_policy_may_be_forced():
-    library = PolicyLibrary.from_means(MEANS, 2.0)
-    played = play_rule(
-        ExpectedImprovement(), library, lambda t, p: np.zeros(4), 4, 3, np.random.default_rng(1), first=2
-    )
-    assert (played.policies[:, 0] == 2).all()
-
-
-def test_peers_are_paid_for_what_they_chose():
-    paid = []
-
-    def pays(t, policies):
-        paid.append(policies.copy())
-        return np.where(policies == 1, 1.0, 0.0)
-
-    policies = play_baseline(UCB1(3, n_tasks=5, exploration=0.1), pays, 30)
-    assert (policies == np.array(paid).T).all()
-    assert (policies[:, 10:] == 1).mean() > 0.8
-
-
 def test_when_regret_ended_by_hand():
     regret = np.array([[0.0, 0, 0, 0], [5, 0, 0, 0], [0, 0, 3, 0], [1, 1, 1, 1], [0, 0, 0, 1e-12]])
     # From the first, after one, after three, never (one more than there are), and rounding is no regret.
     assert converged_after(regret).tolist() == [1, 2, 4, 5, 1]
-
-
-def test_late_regret_is_of_the_last_ten():
-    regret = np.concatenate([np.full((1, 5), 100.0), np.arange(10.0)[None]], axis=1)
-    assert late_regret(regret).tolist() == [4.5]
 
 
 def test_groups_make_the_interval():
@@ -79,11 +50,3 @@ def test_groups_make_the_interval():
     assert shifted.ci95 is not None
     assert shifted.ci95[0] >= 5
     assert shifted.ci95[1] <= 7
-
-
-def test_quantile_over_all_values():
-    found = grouped_quantile(np.arange(40.0).reshape(8, 5), 0.9)
-    assert found.value == pytest.approx(35.1)
-    assert found.ci95 is not None
-    assert found.ci95[0] <= found.value <= found.ci95[1]
-    assert grouped_quantile(np.ones((2, 3)), 0.5).ci95 is None

@@ -5,53 +5,18 @@ import pytest
 
 from lifelore.domains.surveillance.surveillance import Surveillance
 from lifelore.interaction.selection.information import mutual_information
-from reproduction.chapter4.reuse.looks import look_of
 from reproduction.chapter4.reuse.rules import RULES
-from reproduction.chapter4.surveillance.peers import GIVEN, PEERS, kernel_of, make_peer
 from reproduction.chapter4.surveillance.runs import (
-    DEFAULT,
     EXACT,
     LEARNT,
     WORLD,
     by_method,
-    draw_tasks,
     library_of,
-    places,
-    reserve_cells,
     run_method,
 )
 
 SETTINGS = {"tasks": 5, "episodes": 12, "samples": 4}
 RESERVE = Surveillance()
-GRID = {"layouts": ["ring"], "metrics": ["euclidean"], "noises": ["variance 20"], "groups": 4, "grid_groups": 2}
-
-
-def test_noise_is_shared_by_reserves_and_not_by_groups():
-    first = draw_tasks(RESERVE, 4, 6, 1, 0)
-    other = draw_tasks(Surveillance("ring", "euclidean"), 4, 6, 1, 0)
-    assert (first.noise == other.noise).all()
-    assert (first.noise != draw_tasks(RESERVE, 4, 6, 1, 1).noise).all()
-    # At its own target one policy pays 210.
-    assert (first.mean.max(axis=1) == 210).all()
-
-
-def test_libraries():
-    exact = library_of(RESERVE, EXACT, 4, 1, 0)
-    assert (exact.performance.mean == RESERVE.mean).all()
-    learnt = library_of(RESERVE, LEARNT, 4, 1, 0)
-    assert np.abs(learnt.performance.mean - RESERVE.mean).mean() == pytest.approx(
-        20 / 2 * (2 / np.pi) ** 0.5, rel=0.1
-    )
-    assert (library_of(RESERVE, LEARNT, 4, 1, 0).performance.mean == learnt.performance.mean).all()
-    assert (library_of(RESERVE, LEARNT, 4, 1, 1).performance.mean != learnt.performance.mean).all()
-
-
-def test_the_default_reserve_is_a_place_whatever_the_grid():
-    found = places(GRID)
-    ring = {"layout": "ring", "metric": "euclidean", "noise": "variance 20"}
-    assert found == [DEFAULT, {"models": EXACT, **WORLD}, {"models": EXACT, **ring}]
-    groups = [(cell["layout"], cell["groups"]) for cell in reserve_cells(GRID, ["EI"])]
-    assert groups == [("X", 4), ("X", 4), ("ring", 2)]
 
 
 @pytest.mark.parametrize("name", ["EI", "sampling", "UCB1, tuned", "GP-UCB"])
@@ -69,15 +34,6 @@ def test_a_small_run_of_a_rule_or_peer(name, models):
     assert (np.abs(found["after"]["realised"]) == found["after"]["size of realised"]).all()
     assert ("entropy" in found) is (name in RULES)
     assert by_method([found], {"models": models}) == {name: found}
-
-
-def test_every_peer_plays_has_a_look_and_says_what_it_was_given():
-    library = library_of(RESERVE, EXACT, 4, 1, 0)
-    for name in PEERS:
-        assert GIVEN[name]
-        assert look_of(name)
-        peer = make_peer(name, library, 3, np.random.default_rng(0), kernel_of(name, library))
-        assert peer.select().shape == (3,)
 
 
 def test_a_hilltop_tells_the_most_and_costs_the_most():

@@ -9,17 +9,10 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
 from lifelore.domains.tabletop.pose import Pose
 from lifelore.domains.tabletop.shapes import ball, box, cup
-from lifelore.perception.relations.relation import Relation
 from reproduction.chapter5.c5_01_more_relations.run import (
     compound_counts,
     compound_facts,
-    f1,
-    outlines,
-    place_angle,
-    place_in_cup,
-    predicted,
     seen,
-    share,
     true_compounds,
     word_counts,
 )
@@ -59,38 +52,6 @@ ANGLE = made(
     [at(-0.065, 0), at(0, 0), at(0, 0.065)],
     [*ON_TABLE, PairLabel(2, 3, "adjacent"), PairLabel(4, 3, "adjacent"), PairLabel(2, 4, "none")],
 )
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_an_angle_is_a_right_one(seed):
-    middle, *others = place_angle(np.random.default_rng(seed))
-    ways = [(one.outline().mean(axis=0) - middle.outline().mean(axis=0))[:2] for one in others]
-    first, second = (way / np.linalg.norm(way) for way in ways)
-    # Blocks up to 100 mm wide are not quite where their neighbour's middle is.
-    assert abs(np.degrees(np.arccos(first @ second)) - 90) < 8
-    for one in others:
-        apart = np.linalg.norm(one.outline()[:, None] - middle.outline()[None], axis=-1).min()
-        assert apart < 0.06
-
-
-@pytest.mark.parametrize("seed", range(5))
-def test_the_ball_goes_into_the_cup(seed):
-    vessel, inner = place_in_cup(np.random.default_rng(seed))
-    rim, thing = vessel.outline(), inner.outline()
-    radius = np.ptp(thing[:, 0]) / 2
-    assert 0.02 < radius <= 0.03
-    middle = (thing.min(axis=0) + thing.max(axis=0))[:2] / 2
-    inside = np.hypot(*rim[rim[:, 2] > rim[:, 2].max() - 0.02][:, :2].T).min()
-    assert np.hypot(*middle) + 0.02 < inside
-    # Above the floor, below the rim.
-    assert 0 < thing[:, 2].min() < rim[:, 2].max()
-
-
-def test_outlines_are_where_the_things_are():
-    spans = outlines(ROW)  # type: ignore[arg-type]
-    assert list(spans) == [2, 3, 4]
-    assert spans[2].min(axis=0) == pytest.approx([-0.095, -0.03, 0])
-    assert spans[4].max(axis=0) == pytest.approx([0.095, 0.03, 0.06])
 
 
 def test_what_is_seen_of_a_row_of_two_by_hand():
@@ -149,26 +110,9 @@ def test_a_word_is_counted_in_both_orders_of_every_labelled_pair():
     assert found["under"] == [0, 0, 0]
 
 
-def test_scores_by_hand():
-    # Rightly predicted, predicted, true: precision 3/4, recall 1/2, and their harmonic mean.
-    counts = np.array([[3, 4, 6], [0, 0, 0]], float)
-    assert f1(counts).value == pytest.approx(2 * (3 / 4) * (1 / 2) / (3 / 4 + 1 / 2))
-    assert share(counts[:, 0], counts[:, 1]).value == pytest.approx(3 / 4)
-    assert np.isnan(share(np.zeros(3), np.zeros(3)).value)
-
-
 def test_facts_are_counted_by_kind_of_scene():
     row = {"kind": "row", "scenes": [{"true": [["between", 3, 2, 4]], "rule": []}] * 2}
     angle = {"kind": "angle", "scenes": [{"true": [], "rule": [["between", 3, 2, 4]]}]}
     assert compound_counts([row, angle], "between").tolist() == [[0, 0, 1], [0, 0, 1], [0, 1, 0]]
     assert compound_counts([row, angle], "between", ("angle",)).tolist() == [[0, 1, 0]]
     assert compound_counts([row, angle], "in").tolist() == [[0, 0, 0]] * 3
-
-
-def test_what_a_model_says_with_symmetric_words_both_ways():
-    said = (Relation(3, 2, "under", 0.9, 0.0), Relation(2, 3, "dwarfs", 0.9, 0.0))
-    model = SimpleNamespace(predict_pairs=lambda scene: said, symmetric_=frozenset({"dwarfs"}))
-    pairs = SimpleNamespace(features=SimpleNamespace(pairs=[[2, 3]]))
-    assert predicted(model, pairs) == {(3, 2, "under"), (2, 3, "dwarfs"), (3, 2, "dwarfs")}  # type: ignore[arg-type]
-    pairs.features.pairs = []
-    assert predicted(model, pairs) == set()  # type: ignore[arg-type]

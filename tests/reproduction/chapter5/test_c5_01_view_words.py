@@ -7,9 +7,7 @@ from lifelore.core.relations import PairLabel
 from reproduction.chapter5.c5_01_more_relations.view_words import (
     is_between,
     is_in,
-    offset,
     shared_outline,
-    side_by_side,
     words,
     words_of_pair,
 )
@@ -41,13 +39,6 @@ def test_the_eastern_block_as_each_side_sees_it(camera, word):
     assert words(LEFT, RIGHT, camera) == [opposite[word]]
 
 
-def test_how_far_right_and_how_far_behind():
-    assert offset(RIGHT, LEFT, SOUTH) == pytest.approx((0.1, 0.0))
-    assert offset(RIGHT, LEFT, NORTH) == pytest.approx((-0.1, 0.0))
-    assert offset(RIGHT, LEFT, EAST) == pytest.approx((0.0, -0.1))
-    assert offset(block(0.03, 0.04), block(0, 0), np.array([0.015, -9, 1])) == pytest.approx((0.03, 0.04))
-
-
 def test_sectors_of_sixty_degrees_overlap():
     def seen_at(degrees: float) -> list[str]:
         way = 0.1 * np.array([np.cos(np.deg2rad(degrees)), np.sin(np.deg2rad(degrees))])
@@ -74,14 +65,6 @@ def test_under_needs_a_quarter_of_the_smaller_outline():
     # The smaller's outline counts: a small thing on a large one shares all of its own.
     assert shared_outline(lower, block(0.01, 0.01, 0.1, size=(0.02, 0.02, 0.02))) == 1.0
     assert shared_outline(lower, block(1, 0)) == 0.0
-
-
-def test_side_by_side_needs_half_of_the_lower_ones_height():
-    assert side_by_side(block(0, 0), block(0.1, 0, 0.04))
-    assert not side_by_side(block(0, 0), block(0.1, 0, 0.06))
-    # 30 mm of a thing 40 mm high are enough, however high the other.
-    assert side_by_side(block(0, 0, 0.07, size=(0.1, 0.1, 0.04)), block(0.1, 0))
-    assert words(block(0, 0), block(0.1, 0, 0.06), SOUTH) == []
 
 
 def test_the_users_word():
@@ -162,10 +145,3 @@ INNER = block(0, 0, 0.01, size=(0.04, 0.04, 0.05))
 )
 def test_in(thing, parts, inside):
     assert is_in(thing, parts) is inside
-
-
-def test_the_outer_thing_may_lie_anywhere():
-    turn = np.array([[0.8, -0.6, 0], [0.6, 0.8, 0], [0, 0, 1]])
-    moved = [part @ turn.T + [3, -2, 0.7] for part in (INNER, FLOOR, *WALLS)]
-    assert is_in(moved[0], moved[1:])
-    assert not is_in(moved[0], moved[1:4])

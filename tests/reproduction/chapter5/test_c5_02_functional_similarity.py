@@ -74,29 +74,6 @@ def test_tokens_by_hand(make_scene, meet):
     assert not any(k[0] == "steps" for k in tokens)
 
 
-def test_symmetric_in_the_unit_interval_and_one_with_itself(make_scene, meet):
-    rng = np.random.default_rng(5)
-    roles = []
-    for _ in range(20):
-        pairs = [(a, b) for a in range(1, 5) for b in range(max(a + 1, 2), 5) if rng.random() < 0.6]
-        normals = rng.normal(size=(len(pairs), 3))
-        parts = [
-            meet(a, b, [(rng.random(3), n / np.linalg.norm(n))]) for (a, b), n in zip(pairs, normals, strict=True)
-        ]
-        scene = make_scene({2: POINT, 3: POINT, 4: POINT}, parts)
-        roles += [role(scene, label) for label in scene.objects]
-    table = np.array([[overlap(a, b) for b in roles] for a in roles])
-    assert np.array_equal(table, table.T)
-    assert (np.diag(table) == 1).all()
-    assert ((table >= 0) & (table <= 1)).all()
-    assert len(np.unique(table.round(9))) > 10
-
-
-def test_an_unknown_object_is_refused(make_scene):
-    with pytest.raises(InputError, match="object"):
-        role(make_scene({2: POINT}), 3)
-
-
 def test_shape_does_not_see_size_and_tells_a_ball_from_a_rod():
     rng = stream(0, "shapes")
     ball = rng.normal(size=(4000, 3))

@@ -1,7 +1,5 @@
 """A maze of C5.3: what its priors have met, that a cell is plain data; and its measures by hand."""
 
-import json
-
 import numpy as np
 import pytest
 
@@ -19,30 +17,11 @@ from reproduction.chapter5.c5_03_priors_in_search.run import (
     maze_of,
     measure,
     readings,
-    run_cell,
 )
 from reproduction.engine.registry import claim_of
 
 QUICK = dict(claim_of("C5.3").sizes["quick"])
 TINY = {**QUICK, "size": 9, "simulations": 10, "max_steps": 8, "pulls": 30}
-
-
-@pytest.fixture(scope="module")
-def found():
-    return run_cell(TINY, {"maze": 1}, 3)
-
-
-def test_a_cell_is_plain_data_and_the_same_each_time(found):
-    assert json.loads(json.dumps(found)) == found == run_cell(TINY, {"maze": 1}, 3)
-
-
-def test_every_way_is_there_once(found):
-    ways = {(s["kind"], s["form"], s["guides"]) for s in found["search"]}
-    assert len(ways) == len(found["search"]) == 1 + len(KINDS) * len(FORMS) * len(GUIDES)
-    orders = {(o["kind"], o["form"], o["order"]) for o in found["depth_first"]}
-    assert len(orders) == len(found["depth_first"]) == 1 + len(KINDS) * len(FORMS) * len(ORDERS)
-    starts = {(b["index"], b["kind"], b["form"]) for b in found["bandit"]}
-    assert len(starts) == len(found["bandit"]) == len(INDICES) * (2 + len(KINDS) * len(FORMS))
 
 
 def test_no_prior_has_met_the_goal():

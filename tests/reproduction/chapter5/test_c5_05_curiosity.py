@@ -8,7 +8,6 @@ import pytest
 from reproduction.chapter5.c5_05_curiosity.run import (
     SIGNS,
     auc_over_lives,
-    late_type,
     measure,
     orders_needed,
     rows,
@@ -56,9 +55,3 @@ def test_signs_leave_the_unknown_type_out():
     assert found["spread at the end"] == pytest.approx(np.log(2), abs=1e-5)
     assert found["mean spread"] == pytest.approx(2 / 3 * np.log(2), abs=1e-5)
     assert found["alarm"] == 3.0
-
-
-def test_a_life_ends_with_the_late_types_first_task():
-    found = late_type(3, 4, 2)
-    assert len(found["known"]) <= 4 - 2
-    assert len(found["late"]) == len(SIGNS)

@@ -3,27 +3,9 @@
 import numpy as np
 import pytest
 
-from lifelore.core.labelled_cloud import TABLE
-from lifelore.core.streams import stream
-from reproduction.chapter5.c5_07_poking.run import drawn_scene, first_view, measures_of, outcome, poke_scene
+from reproduction.chapter5.c5_07_poking.run import measures_of, outcome
 
 pytest.importorskip("mujoco", reason="needs the extra sim")
-
-
-def test_a_block_behind_another_is_one_segment_and_flush_blocks_are_one_too():
-    scene = drawn_scene("occluded", 7, 0)
-    truth, segments = scene.cloud.labels, first_view(scene).labels
-    own = [int(np.bincount(truth[segments == s]).argmax()) for s in np.unique(segments) if s > TABLE]
-    assert sorted(own.count(label) for label in set(own)) == [1, 1, 1]
-    scene = drawn_scene("flush", 7, 0)
-    assert (np.unique(first_view(scene).labels) > TABLE).sum() < len(scene.shapes)
-
-
-def test_a_scene_is_poked():
-    scene = drawn_scene("flush", 7, 0)
-    before, after = poke_scene(scene, stream(7, "test"), 1)
-    assert (before == first_view(scene).labels).all()
-    assert len(outcome(scene.cloud.labels, before, after)) == len(scene.shapes)
 
 
 def test_an_outcome_by_hand():

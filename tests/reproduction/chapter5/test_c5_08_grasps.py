@@ -70,11 +70,6 @@ def test_a_grasp_is_carried_along_a_longer_object_that_is_turned():
     assert next(around([found], RNG(0))) is found
 
 
-def test_contact_points_above_one_another_carry_nothing():
-    upright = on_the_table((0, 0, 0), (0, 0, 0.1))
-    assert carried(Grasp(np.zeros(3), DOWN, ALONG), upright, 2, upright, 2, {(2, k): (2, k) for k in (0, 1)}) == []
-
-
 def test_topology_is_equal_whatever_the_places():
     two, other = on_the_table((0, 0, 0), (0.1, 0, 0)), on_the_table((0, 0, 0), (0, 0.3, 0))
     assert equal_topology(two, other) is not None

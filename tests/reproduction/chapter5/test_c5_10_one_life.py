@@ -5,7 +5,6 @@ import itertools
 import warnings
 from typing import Any
 
-import gymnasium
 import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
@@ -14,22 +13,17 @@ from lifelore.core.streams import stream
 from reproduction.chapter5.c5_10_one_life import lives
 from reproduction.chapter5.c5_10_one_life.lives import AGENTS, FULL, SCRATCH, drawn_tasks, lived, own_name
 from reproduction.chapter5.c5_10_one_life.run import (
-    cells,
     first_returns,
     is_recognised,
     measure,
     pairs,
     readings,
-    rows,
     seen,
 )
-from reproduction.chapter5.c5_10_one_life.worlds import FAMILIES, surveillance, taxi, windy_grid
-from reproduction.chapter5.c5_10_one_life.worlds.door_key import DOOR_KEY
+from reproduction.chapter5.c5_10_one_life.worlds import FAMILIES, taxi, windy_grid
 from reproduction.chapter5.c5_10_one_life.worlds.grid_preference import ACTIONS
-from reproduction.engine.registry import claim_of
 
 pytest.importorskip("minigrid")
-CLAIM = claim_of("C5.10")
 EVERY = [pytest.param(family, id=name) for name, family in FAMILIES.items()]
 
 
@@ -82,34 +76,25 @@ def test_a_type_a_life_and_a_seed_fix_an_episode(family):
 
 @pytest.mark.parametrize("family", EVERY)
 def test_types_differ_in_what_follows_on_the_same_actions(family):
-    """Every two types of a life differ in some of 400 episodes of random actions."""
+    """Every two types of a life differ in some of 150 episodes of random actions."""
 
     def episodes(hidden):
         env = family.make(hidden, 0)
-        return [played(env, family, actions[n], n) for n in range(400)]
+        return [played(env, family, actions[n], n) for n in range(150)]
 
-    actions = [drawn_actions(family, family.max_steps, n) for n in range(400)]
+    actions = [drawn_actions(family, family.max_steps, n) for n in range(150)]
     found = {hidden: episodes(hidden) for hidden in family.types}
     for one, other in itertools.combinations(family.types, 2):
         assert found[one] != found[other]
 
 
 @pytest.mark.parametrize("family", EVERY)
-def test_states_and_features_can_be_counted(family):
-    env = family.make(family.types[0], 0)
-    seen, _ = env.reset(seed=0)
-    assert len({family.state(seen), family.state(seen)}) == 1
-    assert hash(family.features(seen)) == hash(family.features(seen))
-    assert env.spec is None or (env.spec.max_episode_steps or family.max_steps) <= max(family.max_steps, 100)
-
-
-@pytest.mark.parametrize("family", EVERY)
 def test_contexts_show_their_usual_type_four_times_of_five(family):
-    """Of 4,000 tasks; the bound is four standard errors of a share of 0.8."""
+    """Of 1,000 tasks; the bound is four standard errors of a share of 0.8."""
     tasks = family.stream(7)
-    draws = [tasks.draw(number) for number in range(4000)]
+    draws = [tasks.draw(number) for number in range(1000)]
     usual = [one.hidden_type == tasks.usual_type(one.context, one.number) for one in draws]
-    assert np.mean(usual) == pytest.approx(0.8, abs=4 * (0.8 * 0.2 / 4000) ** 0.5)
+    assert np.mean(usual) == pytest.approx(0.8, abs=4 * (0.8 * 0.2 / 1000) ** 0.5)
     of_context = {one.context: tasks.usual_type(one.context, 0) for one in draws}
     assert sorted(of_context.values()) == sorted(family.types)
 
@@ -173,47 +158,6 @@ def walked_onto(env, goal):
     raise AssertionError("every goal can be walked onto")
 
 
-@pytest.mark.parametrize("name", ["DoorKey", "MultiRoom"])
-def test_every_goal_of_a_grid_can_be_reached(name):
-    """Breadth-first through poses, keys and doors, by the environment's own steps."""
-    family = FAMILIES[name]
-    for life, hidden in itertools.product(range(4), family.types):
-        env = family.make(hidden, life)
-        shortest = steps_to_pay(env)
-        assert shortest is not None
-        assert shortest <= 40 < family.max_steps
-
-
-def steps_to_pay(env):
-    """The least number of actions from the first start, by replaying sequences; one a state."""
-    env.reset(seed=0)
-    frontier, met = [()], {tuple(env._seen()[:5])}
-    while frontier:
-        following = []
-        for path in frontier:
-            for action in range(len(ACTIONS)):
-                env.reset(seed=0)
-                for before in path:
-                    env.step(before)
-                seen, paid, ended, _, _ = env.step(action)
-                if paid:
-                    return len(path) + 1
-                if not ended and tuple(seen[:5]) not in met:
-                    met.add(tuple(seen[:5]))
-                    following.append((*path, action))
-        frontier = following
-    return None
-
-
-def test_the_layout_of_a_grid_belongs_to_the_life():
-    first, again, other = ([one.layout, one.goals, one.starts] for one in grids(2, 2, 3))
-    assert first == again != other
-
-
-def grids(*lives_: int) -> list[Any]:
-    return [DOOR_KEY.make("behind, north", life) for life in lives_]
-
-
 def test_a_taxi_hides_its_destination():
     for colour, stop in taxi.STOPS.items():
         env: Any = taxi.make(colour, 0)
@@ -226,45 +170,6 @@ def test_a_taxi_hides_its_destination():
     # Row 0, column 0, passenger at R, which is here; the border stops north and west.
     assert taxi.features(0) == (False, True, 0, 0, (False, True, False, True))
     assert taxi.features(taxi.ON_BOARD) == (True, True, (False, True, False, True))
-
-
-def test_bodies_of_a_cart_and_pole():
-    family = FAMILIES["CartPole"]
-    own: Any = gymnasium.make("CartPole-v1").unwrapped
-    usual: Any = family.make("usual", 0)
-    turned: Any = family.make("reversed", 0)
-    body = usual.unwrapped
-    assert (body.length, body.force_mag, body.polemass_length) == (own.length, own.force_mag, own.polemass_length)
-    for env in (usual, turned):
-        env.reset(seed=0)
-        env.step(1)
-    assert usual.unwrapped.state[1] > 0 > turned.unwrapped.state[1]
-
-
-def test_pays_of_a_patrol_by_hand():
-    """At the place of the intruders 200, and from the top of another hill nothing within its range of 15."""
-    reserve, targets = surveillance._reserve()
-    assert targets.shape == (4, 5)
-    assert np.abs(reserve.targets[targets[0]] - reserve.targets[targets[0, 0]]).max(axis=1).tolist() == [
-        0,
-        4,
-        4,
-        4,
-        4,
-    ]
-    patrol = surveillance.Patrol(hill=2, place=3)
-    patrol.reset(seed=0)
-    paid = []
-    for _ in range(500):
-        patrol._left = 8
-        paid.append(patrol.step(2 * 5 + 3)[1])
-    # 210 with a deviation of 20 in 0.8 + 0.2 / 5 of the deployments, else 10: none of the others is within 3.
-    here = np.array(paid) >= 3
-    assert here.mean() == pytest.approx(0.84, abs=4 * (0.84 * 0.16 / 500) ** 0.5)
-    assert np.array(paid)[here].mean() == pytest.approx(210 / 50, abs=0.1)
-    assert [surveillance.class_of(pay) for pay in (-3.0, 0.0, 1.0, 2.0, 3.0, 4.0)] == [1, 2, 3, 3, 4, 4]
-    gangs = [surveillance.make(name, 9) for name in surveillance.TYPES]
-    assert len({(one.hill, one.place) for one in gangs}) == len(gangs)
 
 
 # ---- lives -------------------------------------------------------------------------------------------------
@@ -370,13 +275,6 @@ def test_measures_by_hand():
     assert [both[f"{part}_families"].value for part in ("prior", "reuse", "context")] == [1.0, 1.0, 0.5]
 
 
-def test_alarms_count_tasks_of_seen_types():
-    lives_ = made_up()
-    for one in lives_[:2]:
-        one["agents"][FULL]["alarm"] = [False, True, True, False]
-    assert measure(SETTINGS, lives_)["alarms"].value == pytest.approx(2 / 16)
-
-
 def test_a_life_without_informed_returns_is_left_out():
     lives_ = made_up()
     lives_[0]["agents"][FULL]["informed"] = [None] * 4
@@ -384,13 +282,6 @@ def test_a_life_without_informed_returns_is_left_out():
     assert np.isnan(values[0])
     assert values[1:] == pytest.approx([-1.9, -1.8, -1.7])
     assert measure({**SETTINGS, "families": ["Taxi"]}, lives_[:4])["first_share"].n == 3
-
-
-def test_nothing_to_know_is_unmeasured():
-    lives_ = [life("Taxi", n, 1.0, {"scratch": 1.0}, informed=1.0) for n in range(3)]
-    found = measure({**SETTINGS, "families": ["Taxi"]}, lives_)
-    assert found["first_share"].n == found["first_least"].n == 0
-    assert found["best_upper"].value == 1.0
 
 
 def test_pairs_and_what_is_recognised():
@@ -401,17 +292,3 @@ def test_pairs_and_what_is_recognised():
     assert not is_recognised(thought | {"new": [False, False]}, 1, 2)
     assert not is_recognised(thought | {"named": ["x", "y", "x"]}, 1, 2)
     assert not is_recognised(thought | {"soon": [None, None, "x"]}, 1, 2)
-
-
-def test_rows_name_every_family_and_agent():
-    taxi, game = rows(SETTINGS, made_up())
-    assert taxi["mean"][FULL] == pytest.approx(-1.85)
-    assert (game["family"], game["first"]["informed"]) == ("Pacman", 10.0)
-    assert set(taxi["mean"]) == set(AGENTS)
-
-
-def test_cells_and_settings_of_the_claim():
-    full = CLAIM.settings("full")
-    assert full["families"] == list(FAMILIES)
-    assert len(cells(full)) == len(FAMILIES) * full["lives"] >= 8 * 20
-    assert full["false_alarm"] == 0.05

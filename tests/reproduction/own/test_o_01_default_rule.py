@@ -1,44 +1,19 @@
 """O1: worlds by hand, measures of made-up results, the decision, and a tiny run."""
 
-import json
-
 import numpy as np
 import pytest
 
 from reproduction.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
-from reproduction.engine.registry import claim_of
 from reproduction.own.o_01_default_rule.run import (
     CANDIDATES,
     RULES,
     _largest_excess,
-    cells,
     decided_rule,
     key_of,
     measure,
     readings,
-    run_cell,
 )
-from reproduction.own.o_01_default_rule.worlds import CALLS, FACTOR, GOLF, TABLES, world_of
-
-CLAIM = claim_of("O1")
-
-
-def test_there_are_22_worlds_with_each_kind_of_model():
-    found = cells(CLAIM.settings("full"))
-    assert len(found) == 44
-    assert sum(cell["model"] == EXACT for cell in found) == 22
-    assert {cell["noise"] for cell in found if cell["world"] == CALLS} == {"equal"}
-
-
-def test_deviations_are_equal_or_drawn_over_a_factor_of_30():
-    assert set(world_of(GOLF, "equal", 0, 0).deviation.ravel()) == {8.0}
-    by_policy = world_of("X", "by policy", 0, 0).deviation
-    assert (by_policy == by_policy[0]).all()
-    by_pair = np.concatenate([world_of("X", "by pair", 0, group).deviation.ravel() for group in range(3)]) / 20
-    low, high = np.quantile(by_pair, [0.025, 0.975])
-    # 13,872 draws: an end is known to about 2 %.
-    assert high / low == pytest.approx(FACTOR, rel=0.1)
-    assert np.median(by_pair) == pytest.approx(1, rel=0.05)
+from reproduction.own.o_01_default_rule.worlds import CALLS, TABLES, world_of
 
 
 def test_pays_have_the_means_and_deviations_of_the_models():
@@ -95,22 +70,6 @@ def test_the_largest_excess_of_stuck_tasks_by_hand():
     assert _largest_excess([small], "KG").ci95 == (0.0, 0.0)
 
 
-def test_measures_of_uncertain_models_by_hand():
-    two, some = {name: [2.0, 4.0] for name in RULES}, dict.fromkeys(RULES, 0.1)
-    learnt = made_up(two | {"IDS": [1.0, 3.0]}, some, noise="by pair", model=LEARNT)
-    learnt[UNCERTAIN] = {
-        "EI, pay": {"regret": [2.0, 2.0], "stuck": [0.0, 0.3]},
-        "IDS": {"regret": [1.0, 1.0], "stuck": [0.1, 0.3]},
-    }
-    found = measure({}, [made_up(two, some), learnt])
-    # The best rule of the learnt world has a mean regret of 2.
-    assert found["regret_EI_pay_uncertain"].value == pytest.approx(1.0)
-    assert found["regret_IDS_uncertain"].value == pytest.approx(0.5)
-    assert found["regret_IDS_uncertain_minus_plug_in"].value == pytest.approx(-0.5)
-    assert found["stuck_above_least_IDS_uncertain"].value == pytest.approx(0.05)
-    assert found["stuck_above_least_EI_pay_uncertain"].value == 0
-
-
 def measured_of(regret, excess):
     return {
         f"{word}_{key_of(name)}": {"value": value}
@@ -124,14 +83,3 @@ def test_the_decision():
     assert decided_rule(measured_of(regret, [0.06, 0.05, 0.0, 0.0, 0.0, 0.0])) == "EI, pay"
     assert decided_rule(measured_of(regret, [0.06, 0.06, 0.07, 0.055, 0.2, 0.3])) == "KG"
     assert decided_rule(measured_of(regret, [0.0, 0.2, 0.1, 0.0, 0.0, 0.0]), CANDIDATES) == "IDS"
-
-
-def test_all_rules_meet_the_same_tasks_and_a_run_repeats():
-    settings = {"groups": 1, "tasks": 2, "episodes": 3, "samples": 4}
-    cell = {"world": TABLES, "noise": "by policy", "model": LEARNT}
-    found = run_cell(settings, cell, 1)
-    assert json.loads(json.dumps(found)) == run_cell(settings, cell, 1)
-    assert set(found["rules"]) == set(RULES)
-    assert set(found[UNCERTAIN]) == set(CANDIDATES)
-    assert UNCERTAIN not in run_cell(settings, {**cell, "model": EXACT}, 1)
-    assert run_cell(settings, cell, 2) != found

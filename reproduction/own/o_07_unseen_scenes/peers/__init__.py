@@ -1,14 +1,7 @@
-"""Peers: two other methods that name relations, with the interface of `RelationClassifier`."""
-
-from collections.abc import Callable
+"""Peers: two other methods that name relations; they describe each near pair by a vector."""
 
 from reproduction.own.o_07_unseen_scenes.peers.bounding_box_rule import BoundingBoxRule
-from reproduction.own.o_07_unseen_scenes.peers.orientation_histogram import orientation_trees
-from reproduction.own.o_07_unseen_scenes.peers.peer import Peer
+from reproduction.own.o_07_unseen_scenes.peers.orientation_trees import OrientationTrees
 
-PEERS: dict[str, Callable[[], Peer]] = {
-    "bounding-box rule": BoundingBoxRule,
-    "orientation histogram": orientation_trees,
-}
-"""Name → function that makes an unfitted peer. The thesis's own method is `RelationClassifier` with
-``method="displacement"``."""
+PEERS = {"bounding-box rule": BoundingBoxRule, "orientation histogram": OrientationTrees}
+"""Name → class. The thesis's own method is `RelationClassifier` with ``method="displacement"``."""

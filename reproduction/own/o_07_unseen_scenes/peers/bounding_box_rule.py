@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, NONE, ON, PairLabel
 from lifelore.perception.pairs.directed_label import REVERSED
 from lifelore.perception.relations.relation import Relation
-from reproduction.own.o_07_unseen_scenes.peers.peer import DescribedPair, Peer
+from reproduction.own.o_07_unseen_scenes.peers.described_pairs import DescribedPair
 
 TOLERANCE = 0.02
 """Metres by which an object may start below the top of its support, or above the table."""
@@ -29,7 +29,7 @@ def boxes(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np
     return np.array([*heights[0], *heights[1], common / max((high - low).prod(axis=1).min(), 1e-12)])
 
 
-class BoundingBoxRule(Peer):
+class BoundingBoxRule:
     """Relations read off axis-aligned boxes.
 
     The boxes' ground plans overlap, and one starts no lower than `TOLERANCE` under the top of the other: on. They

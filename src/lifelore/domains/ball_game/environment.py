@@ -2,7 +2,6 @@
 
 from typing import Any
 
-import gymnasium
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
@@ -19,11 +18,12 @@ from lifelore.domains.ball_game.ball_game import (
 )
 from lifelore.domains.ball_game.picture import draw_ball_game
 from lifelore.domains.ball_game.simulated_player import choose_heading
+from lifelore.domains.checked_environment import CheckedEnvironment
 
 ROLES = ("player", "interface")
 
 
-class BallGameEnvironment(gymnasium.Env):
+class BallGameEnvironment(CheckedEnvironment):
     """The thesis's ball game (§4.8.5.1): a ball is steered to a goal, at a speed that an interface sets.
 
     ## Action Space
@@ -66,11 +66,10 @@ class BallGameEnvironment(gymnasium.Env):
         scale: LossScale | None = None,
         render_mode: str | None = None,
     ) -> None:
-        if render_mode not in (None, "rgb_array"):
-            raise InputError(f"render_mode must be None or one of: rgb_array; got {render_mode!r}")
+        super().__init__(render_mode)
         if role not in ROLES:
             raise InputError(f"role must be one of {', '.join(ROLES)}, got {role!r}")
-        self.render_mode, self.role = render_mode, role
+        self.role = role
         self.game = ball_game(layout, radius_share, blocked=blocked)
         self.kind = _number(self.game.sizes, size, "size")
         self.scale = scale or LossScale()
@@ -78,17 +77,14 @@ class BallGameEnvironment(gymnasium.Env):
         n_actions = len(HEADINGS) if role == "player" else self.game.n_speeds
         self.action_space = spaces.Discrete(n_actions)
         self.observation_space = spaces.Box(0, SIDE, (2,), np.int64)
-        self._place: tuple[int, int] | None = None
+        self._place: tuple[int, int] = self.game.layout.start
         self._trail: list[tuple[int, int]] = []
 
     def set_speed(self, speed: int) -> None:
         """Put another speed in force, from the next step on."""
         self._speed = _number(self.game.speeds, speed, "speed")
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None):
-        """Start an episode; see the class for ``options``."""
-        super().reset(seed=seed)
-        options = options or {}
+    def _begin(self, options: dict[str, Any]) -> tuple[NDArray[np.int64], dict[str, Any]]:
         drawn = float(self.np_random.uniform(*SIGMA_RANGE))
         self._sigma = float(options.get("sigma", drawn))
         if not 0 <= self._sigma < np.inf:
@@ -100,15 +96,10 @@ class BallGameEnvironment(gymnasium.Env):
         self._steps = self._hits = 0
         return self._observation(), self._info(False, None)
 
-    def step(self, action: Any):
-        """One move; gymnasium's five values."""
-        if self._place is None:
-            raise InputError("reset() must be called before step(), got no episode in progress")
-        if not self.action_space.contains(action):
-            raise InputError(f"action must lie in [0, {self.action_space.n}), got {action!r}")  # pyright: ignore
-        field, heading = self.game.field, int(action)
+    def _advance(self, action: int) -> tuple[NDArray[np.int64], float, bool, dict[str, Any]]:
+        field, heading = self.game.field, action
         if self.role == "interface":
-            self._speed = int(action)
+            self._speed = action
             heading = choose_heading(field, self.kind, *self._place, field.speeds[self._speed])
         x, y, hit, reached = step(
             field,
@@ -124,12 +115,10 @@ class BallGameEnvironment(gymnasium.Env):
         self._steps += 1
         self._hits += bool(hit)
         reward = -float(self.scale.loss(self._steps, self._hits)) if reached else 0.0
-        return self._observation(), reward, bool(reached), False, self._info(bool(hit), HEADINGS[heading])
+        return self._observation(), reward, bool(reached), self._info(bool(hit), HEADINGS[heading])
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
-        """The field, the ball and where it has been, (501, 501, 3) uint8; None without a render mode."""
-        if self.render_mode is None:
-            return None
+    def _picture(self) -> NDArray[np.uint8]:
+        """The field, the ball and where it has been, (501, 501, 3) uint8."""
         return draw_ball_game(self.game, self.kind, self._place, self._trail)
 
     def _observation(self) -> NDArray[np.int64]:

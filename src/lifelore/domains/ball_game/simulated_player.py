@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.compiled.jit import kernel
 from lifelore.core.compiled.random_state import next_uniform
 from lifelore.core.errors import InputError
-from lifelore.domains.ball_game.ball_game import MAX_STEPS, MOVES, BallGame, crosses, draw_sigma, step, travel
+from lifelore.domains.ball_game.ball_game import MOVES, BallGame, crosses, step, travel
 from lifelore.domains.ball_game.paths import CELL
 
 STOPPED = 30.0
@@ -73,15 +73,6 @@ def new_balls(game: BallGame, kinds: ArrayLike, sigma: ArrayLike, random: NDArra
         np.array(random, np.uint64), zeros(), zeros(), np.ones(n, bool), np.full(n, -1, np.int64), zeros(),
         zeros(),
     )  # fmt: skip
-
-
-def restart(game: BallGame, balls: Balls, rows: NDArray[np.int64], sigma: ArrayLike, random: NDArray) -> None:
-    """Start a new episode for some players; what they are adapted to stays."""
-    balls.x[rows], balls.y[rows] = game.layout.start
-    balls.sigma[rows] = sigma
-    balls.random[rows] = random
-    balls.steps[rows] = balls.hits[rows] = 0
-    balls.playing[rows] = True
 
 
 def random_states(generator: np.random.Generator, shape: int | tuple[int, ...]) -> NDArray[np.uint64]:
@@ -147,38 +138,3 @@ def advance(field, balls, speed, lag, max_steps, heading, before):
         balls.steps[i] += 1
         balls.hits[i] += hit
         balls.playing[i] = not (reached or balls.steps[i] >= max_steps)
-
-
-def play(
-    game: BallGame,
-    kinds: ArrayLike,
-    speeds: ArrayLike,
-    generator: np.random.Generator,
-    sigma: ArrayLike | None = None,
-    max_steps: int = MAX_STEPS,
-) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Episodes at constant speeds.
-
-    Parameters
-    ----------
-    game : BallGame
-    kinds, speeds : (n,) int
-        Numbers of the sizes and of the speeds.
-    generator : numpy generator
-    sigma : (n,) float, optional
-        Drawn from the thesis's range if left out.
-    max_steps : int
-
-    Returns
-    -------
-    steps, hits : (n,) int64
-        Steps taken and collisions.
-    """
-    kinds = np.asarray(kinds, np.int64)
-    sigma = draw_sigma(generator, len(kinds)) if sigma is None else sigma
-    balls = new_balls(game, kinds, sigma, random_states(generator, len(kinds)))
-    speed = np.array(np.broadcast_to(speeds, kinds.shape), np.int64)
-    heading, before = np.empty(len(kinds), np.int64), np.empty((len(kinds), 2), np.int64)
-    while balls.playing.any():
-        advance(game.field, balls, speed, 0, max_steps, heading, before)
-    return balls.steps, balls.hits

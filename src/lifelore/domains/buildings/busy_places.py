@@ -7,15 +7,18 @@ from scipy.sparse import csgraph
 
 from lifelore.domains.grids.grid_world import GridWorld
 
+WAYS = 40
+"""Number of random ways that are followed."""
 
-def on_shortest_ways(world: GridWorld, rng: np.random.Generator, ways: int = 40) -> NDArray[np.float64]:
+
+def on_shortest_ways(world: GridWorld, rng: np.random.Generator) -> NDArray[np.float64]:
     """How often shortest ways between random places pass each cell, as probabilities above 0."""
     counts = np.full(world.n_states, 0.01)
-    starts = rng.integers(world.n_states, size=ways)
+    starts = rng.integers(world.n_states, size=WAYS)
     before = csgraph.shortest_path(
         move_graph(world.neighbour), indices=starts, unweighted=True, return_predecessors=True
     )[1]
-    for row, place in zip(before, rng.integers(world.n_states, size=ways), strict=True):
+    for row, place in zip(before, rng.integers(world.n_states, size=WAYS), strict=True):
         while place >= 0:
             counts[place] += 1
             place = row[place]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.domains.factory.factory import ACTION_NAMES, ASSEMBLED, N_STAGES, RAW, Factory, FactoryTask
+from lifelore.domains.factory.factory import ASSEMBLED, N_STAGES, RAW, Factory, FactoryTask
 
 FREE, WALL, PROCURE_STATION, ASSEMBLY_STATION = range(4)
 TO_PROCURE, TO_ASSEMBLE, NOTHING_LEFT = range(3)
@@ -136,9 +136,3 @@ def _checked(task: FactoryTask, configurations: ArrayLike | None) -> NDArray[np.
     if chosen.size and not 0 <= chosen.min() <= chosen.max() < task.n_configurations:
         raise InputError(f"configurations must lie in [0, {task.n_configurations}), got {chosen.tolist()}")
     return chosen
-
-
-def context_key(factory: Factory, encoding: str = "global") -> str:
-    """What must agree for two priors over `state_contexts` to merge: encoding, size of the picture, actions."""
-    rows, columns = factory.floor.shape
-    return f"factory {rows}x{columns} {encoding}; {', '.join(ACTION_NAMES)}"

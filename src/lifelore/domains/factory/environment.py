@@ -54,10 +54,8 @@ class AnyFactoryEnvironment(TaskEnvironment):
         self._features = features(self.factory_task)
         super().__init__(self.factory_task, render_mode)
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
-        """The picture of the factory, (height, width, 3) uint8; None without a render mode."""
-        if self.render_mode is None:
-            return None
+    def _picture(self) -> NDArray[np.uint8]:
+        """The picture of the factory, (height, width, 3) uint8."""
         return draw_factory(self.factory, self.factory_task, self._state)
 
     def _info(self, event: int) -> dict[str, Any]:

@@ -7,15 +7,15 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.domains.checked_environment import CheckedEnvironment
 from lifelore.domains.golf.golf import CATEGORIES, Golf, category_of
 from lifelore.domains.golf.picture import draw_hole
-from lifelore.domains.policy_world import PolicyWorldEnvironment
 
 LONGEST = 1000.0
 """Longest hole that may be asked for, yards."""
 
 
-class GolfEnvironment(PolicyWorldEnvironment):
+class GolfEnvironment(CheckedEnvironment):
     """The thesis's golf club selection (§4.6.1): shots from one tee at a hole of unknown distance.
 
     ## Action Space
@@ -49,9 +49,9 @@ class GolfEnvironment(PolicyWorldEnvironment):
         self.distance = 0.0
         self.landed: list[float] = []
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
-        """The course, (200, 720, 3) uint8; None without a render mode."""
-        return None if self.render_mode is None else draw_hole(self.distance, self.landed)
+    def _picture(self) -> NDArray[np.uint8]:
+        """The course, (200, 720, 3) uint8."""
+        return draw_hole(self.distance, self.landed)
 
     def _begin(self, options: dict[str, Any]) -> tuple[int, dict[str, Any]]:
         drawn = float(self.world.draw_holes(self.np_random, 1)[0])

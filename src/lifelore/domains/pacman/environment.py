@@ -3,19 +3,20 @@
 from collections.abc import Sequence
 from typing import Any
 
-import gymnasium
 import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.core.mdp import COLLISION, TERMINAL
+from lifelore.core.mdp import COLLISION
 from lifelore.core.streams import stream
+from lifelore.domains.checked_environment import CheckedEnvironment
 from lifelore.domains.pacman.pacman import N_ACTIONS, STRATEGIES, PacmanMaze, PacmanTask, step
 from lifelore.domains.pacman.picture import draw_pacman
+from lifelore.domains.task_environment import TaskEnvironment
 
 
-class PacmanEnvironment(gymnasium.Env):
+class PacmanEnvironment(TaskEnvironment):
     """The thesis's Pacman (§4.6.3): four items of food, and a ghost seen only in line of sight.
 
     One uniform number is drawn for each reset and each step, so a rollout equals one through the task's tables
@@ -57,42 +58,19 @@ class PacmanEnvironment(gymnasium.Env):
         seed: int = 0,
         render_mode: str | None = None,
     ) -> None:
-        if render_mode not in (None, "rgb_array"):
-            raise InputError(f"render_mode must be None or one of: rgb_array; got {render_mode!r}")
+        CheckedEnvironment.__init__(self, render_mode)
         maze = PacmanMaze(rows, columns)
         foods = maze.draw_foods(stream(seed, "foods")) if foods is None else tuple(foods)
         strategy = str(stream(seed, "strategy").choice(STRATEGIES)) if strategy is None else strategy
-        self.render_mode = render_mode
-        self.task = PacmanTask(maze, foods, strategy)
+        self.task: PacmanTask = PacmanTask(maze, foods, strategy)  # pyright: ignore[reportIncompatibleVariableOverride]
         self.action_space = spaces.Discrete(N_ACTIONS)
         self.observation_space = spaces.Discrete(self.task.n_observations)
         # The plain function: one call from Python costs less than entering compiled code.
         self._step = getattr(step, "py_func", step)
         self._state: int | None = None
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None):
-        """Start an episode; see the class for ``options``."""
-        super().reset(seed=seed)
-        starts = self.task.starts
-        drawn = int(starts[int(self.np_random.random() * len(starts))])
-        chosen = (options or {}).get("state")
-        self._state = drawn if chosen is None else self._check_state(chosen)
-        return self._observed(), self._info(0)
-
-    def step(self, action: Any):
-        """One move; gymnasium's five values."""
-        if self._state is None:
-            raise InputError("reset() must be called before step(), got no episode in progress")
-        if not self.action_space.contains(action):
-            raise InputError(f"action must lie in [0, {N_ACTIONS}), got {action!r}")
-        state, reward, event = self._step(self.task.params, self._state, int(action), self.np_random.random())
-        self._state = int(state)
-        return self._observed(), float(reward), bool(event & TERMINAL), False, self._info(event)
-
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
-        """The picture of the maze, (height, width, 3) uint8; None without a render mode."""
-        if self.render_mode is None:
-            return None
+    def _picture(self) -> NDArray[np.uint8]:
+        """The picture of the maze, (height, width, 3) uint8."""
         if self._state is None:
             raise InputError("reset() must be called before render(), got no episode in progress")
         return draw_pacman(self.task, self._state)

@@ -7,7 +7,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.domains.policy_world import PolicyWorldEnvironment
+from lifelore.domains.checked_environment import CheckedEnvironment
 from lifelore.domains.surveillance.picture import draw_reserve
 from lifelore.domains.surveillance.surveillance import SIDE, Surveillance
 
@@ -15,7 +15,7 @@ LARGEST = 10_000.0
 """Bound of what is observed, far beyond any pay."""
 
 
-class SurveillanceEnvironment(PolicyWorldEnvironment):
+class SurveillanceEnvironment(CheckedEnvironment):
     """The thesis's surveillance domain (§4.6.4): deployments of a drone until the poachers' place is known.
 
     ## Action Space
@@ -58,9 +58,9 @@ class SurveillanceEnvironment(PolicyWorldEnvironment):
         self.poachers = (0, 0)
         self._drone: int | None = None
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
-        """The reserve, (624, 624, 3) uint8; None without a render mode."""
-        return None if self.render_mode is None else draw_reserve(self.world, self._drone, self.poachers)
+    def _picture(self) -> NDArray[np.uint8]:
+        """The reserve, (624, 624, 3) uint8."""
+        return draw_reserve(self.world, self._drone, self.poachers)
 
     def _begin(self, options: dict[str, Any]) -> tuple[NDArray[np.float64], dict[str, Any]]:
         row, column = self.world.draw_cells(self.np_random, 1, seen=not self.unseen)[0].tolist()

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.core.relations import ADJACENT, BOTH, NONE, ON
+from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, NONE, ON
 from lifelore.domains.tabletop.groups import Template, bridge, heap, lean, nested, single, stacked, step, tower
 from lifelore.domains.tabletop.kits import Kit
 from lifelore.domains.tabletop.layout import Group, put_beside, separation, stand, top
@@ -116,7 +116,7 @@ def place_pair(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, w
     if wanted in (ON, BOTH):
         template = (stacked, nested)[rng.random() < 0.05] if wanted == ON else (lean, step)[rng.random() < 0.25]
         return [item.turned(float(rng.uniform(0, 2 * np.pi))) for item in template(rng, kit)]
-    edge = settings.adjacent_gap
+    edge = ADJACENT_GAP
     low, high = (0.0005, edge) if wanted == ADJACENT else (edge, edge + 0.0125 if rng.random() < 0.4 else 0.075)
     first = _set_down(rng, [], single(rng, kit), 0.0)
     return [*first[1], *_set_down(rng, [first], single(rng, kit), float(rng.uniform(low, high)))[1]]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.core.relations import ADJACENT_GAP, CORE_RELATIONS, PairLabel
+from lifelore.core.relations import CORE_RELATIONS, PairLabel
 from lifelore.domains.tabletop.depth_camera import CAMERAS
 from lifelore.domains.tabletop.pose import Pose
 from lifelore.domains.tabletop.shapes import Shape
@@ -33,8 +33,6 @@ class TabletopSettings:
         ``"training"``, ``"held-out"`` (no kind in common) or ``"all"``.
     meshes : sequence of str
         Files of the user's own shapes, metres.
-    adjacent_gap, near : float
-        Metres: largest visible gap of *adjacent*, and of a pair that gets a label.
     separation : float
         Metres between the two objects of arrangement ``"apart"``, 0 to 1.
 
@@ -50,8 +48,6 @@ class TabletopSettings:
     camera: str = "kinect"
     shapes: str = "training"
     meshes: tuple[str, ...] = ()
-    adjacent_gap: float = ADJACENT_GAP
-    near: float = 0.08
     separation: float = 0.1
 
     def __post_init__(self) -> None:
@@ -62,8 +58,6 @@ class TabletopSettings:
             raise InputError(f"camera must be one of {', '.join(CAMERAS)}, got '{self.camera}'")
         if not 0 <= self.separation <= 1:
             raise InputError(f"separation must be 0 to 1 m, got {self.separation}")
-        if not 0 < self.adjacent_gap < self.near <= 0.5:
-            raise InputError(f"need 0 < adjacent_gap < near <= 0.5 m, got {self.adjacent_gap} and {self.near}")
         if self.mix is not None:
             _check_mix(self.mix)
 

@@ -23,7 +23,7 @@ from lifelore.domains.tabletop.photograph import FIRST_OBJECT, Photograph, choos
 from lifelore.domains.tabletop.physics import Contacts, Tabletop
 from lifelore.domains.tabletop.quota import to_mix, wanted_relation
 from lifelore.domains.tabletop.settings import TabletopScene, TabletopSettings
-from lifelore.domains.tabletop.truth import Gap, bearing, contact_regions, true_relations
+from lifelore.domains.tabletop.truth import NEAR, Gap, bearing, contact_regions, true_relations
 
 JAMMED = -0.001
 """Metres: surfaces that overlap more were pressed together, not set down."""
@@ -146,11 +146,11 @@ def settle_scene(
     photo = photograph(solid, outlines, view, camera, rng) if view is not None else None
     if photo is None:
         return None
-    farthest = 5.0 if settings.arrangement == "apart" else settings.near
+    farthest = 5.0 if settings.arrangement == "apart" else NEAR
     gaps = _gaps(solid, photo, farthest)
     labels = range(FIRST_OBJECT, FIRST_OBJECT + len(placed))
     heights = np.array([(outline[:, 2].min(), outline[:, 2].max()) for outline in outlines])
-    truth = true_relations(borne, gaps, heights, labels, settings.adjacent_gap, settings.near)
+    truth = true_relations(borne, gaps, heights, labels)
     if settings.arrangement == "pair" and _pair_relation(truth) not in ((wanted,) if wanted else CORE_RELATIONS):
         return None
     near = tuple(

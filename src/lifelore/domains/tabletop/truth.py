@@ -2,9 +2,9 @@
 
 *on*: more than `SHARE` of a's weight comes from b through contacts whose normal lies within 45° of up. *Beside*: a
 contact or near miss with a normal within 45° of horizontal between objects that overlap in height, or a visible
-gap of at most `adjacent_gap` between objects side by side. *both*: on and beside, or leaning: b carries part of a,
+gap of at most `ADJACENT_GAP` between objects side by side. *both*: on and beside, or leaning: b carries part of a,
 and a reaches well below the place where it does. Where forces and the view disagree (neighbours touch, but the gap
-that is seen is wider than `adjacent_gap`) the label is doubtful. Thesis: §2.3.2, §2.4.1: there a person labels.
+that is seen is wider than `ADJACENT_GAP`) the label is doubtful. Thesis: §2.3.2, §2.4.1: there a person labels.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,12 +18,14 @@ from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, NONE, ON, PairLabel
 from lifelore.domains.tabletop.physics import Contacts
 
+NEAR = 0.08
+"""Metres: pairs that do not touch and are seen further apart get no label."""
 SHARE = 0.05
 """Part of its weight that an object must get from what it rests on."""
 DOUBTFUL_SHARE = (0.02, 0.12)
 DOUBTFUL_GAP = 0.005
 PROBABLE_GAP = 0.010
-"""Metres from `adjacent_gap` within which a label by the gap alone is doubtful (1) or probable (2)."""
+"""Metres from `ADJACENT_GAP` within which a label by the gap alone is doubtful (1) or probable (2)."""
 UNSEEN = 0.04
 """Metres of visible gap above which a contact is hidden from whoever looks: probable (2) at most."""
 LEAN_DEPTH = 0.015
@@ -99,8 +101,6 @@ def true_relations(
     gaps: Mapping[tuple[int, int], Gap],
     heights: NDArray[np.float64],
     labels: Sequence[int],
-    adjacent_gap: float = ADJACENT_GAP,
-    near: float = 0.08,
 ) -> tuple[PairLabel, ...]:
     """Labels of every near pair of objects, and of every object with the table.
 
@@ -113,15 +113,13 @@ def true_relations(
         Of each object's lowest and highest point, metres.
     labels : sequence of int
         The label of object i in the cloud.
-    adjacent_gap, near : float
-        Metres; pairs that do not touch and are seen further apart than `near` get no label.
     """
     n = len(heights)
     truth = [_with_table(borne, i, n, labels[i]) for i in range(n)]
     for (i, j), gap in sorted(gaps.items()):
-        if borne.touching[i, j] or gap.visible <= near:
+        if borne.touching[i, j] or gap.visible <= NEAR:
             upper, lower = (i, j) if _carried(borne, i, j) >= _carried(borne, j, i) else (j, i)
-            relation, confidence = _relation(borne, upper, lower, gap, heights, adjacent_gap)
+            relation, confidence = _relation(borne, upper, lower, gap, heights)
             if relation != NONE and gap.visible > UNSEEN:
                 confidence = min(confidence, 2)
             truth.append(PairLabel(labels[upper], labels[lower], relation, confidence))
@@ -137,9 +135,7 @@ def _carried(borne: Bearing, a: int, b: int) -> float:
     return float(max(borne.share[a, b], borne.lift[a, b]))
 
 
-def _relation(
-    borne: Bearing, a: int, b: int, gap: Gap, heights: NDArray[np.float64], adjacent_gap: float
-) -> tuple[str, int]:
+def _relation(borne: Bearing, a: int, b: int, gap: Gap, heights: NDArray[np.float64]) -> tuple[str, int]:
     share, lift = float(borne.share[a, b]), float(borne.lift[a, b])
     overlap = min(heights[a, 1], heights[b, 1]) - max(heights[a, 0], heights[b, 0])
     side = bool(borne.side[a, b]) and overlap >= OVERLAP
@@ -151,12 +147,12 @@ def _relation(
     if lift > SHARE and borne.side[a, b]:
         return (BOTH if side else ON), _by_share(lift)
     if side:
-        return ADJACENT, _by_share(lift) if gap.visible <= adjacent_gap else 1
-    off = abs(gap.visible - adjacent_gap)
+        return ADJACENT, _by_share(lift) if gap.visible <= ADJACENT_GAP else 1
+    off = abs(gap.visible - ADJACENT_GAP)
     confidence = 1 if off < DOUBTFUL_GAP else 2 if off < PROBABLE_GAP else 3
-    if gap.visible <= adjacent_gap:
+    if gap.visible <= ADJACENT_GAP:
         return (ADJACENT, confidence) if gap.sideways else (NONE, 2)
-    hidden = gap.true <= adjacent_gap and gap.sideways
+    hidden = gap.true <= ADJACENT_GAP and gap.sideways
     return NONE, 1 if hidden else confidence
 
 

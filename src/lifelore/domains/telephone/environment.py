@@ -6,12 +6,12 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from lifelore.domains.policy_world import PolicyWorldEnvironment, chosen_number
+from lifelore.domains.checked_environment import CheckedEnvironment, chosen_number
 from lifelore.domains.telephone.picture import draw_call
 from lifelore.domains.telephone.telephone import OPEN, START, STATES, Telephone, reward
 
 
-class TelephoneEnvironment(PolicyWorldEnvironment):
+class TelephoneEnvironment(CheckedEnvironment):
     """A call in the thesis's online personalisation (§4.6.2): a step is one transition of the call.
 
     ## Action Space
@@ -52,9 +52,9 @@ class TelephoneEnvironment(PolicyWorldEnvironment):
         self.caller = 0
         self._state = START
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
-        """The states of the call, (320, 610, 3) uint8; None without a render mode."""
-        return None if self.render_mode is None else draw_call(self._state)
+    def _picture(self) -> NDArray[np.uint8]:
+        """The states of the call, (320, 610, 3) uint8."""
+        return draw_call(self._state)
 
     def _begin(self, options: dict[str, Any]) -> tuple[int, dict[str, Any]]:
         self._state = START

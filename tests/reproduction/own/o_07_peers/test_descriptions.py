@@ -2,13 +2,11 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from reproduction.own.o_07_unseen_scenes.peers import orientation_histogram as orientation
+from reproduction.own.o_07_unseen_scenes.peers import orientation_trees as orientation
 from reproduction.own.o_07_unseen_scenes.peers.bounding_box_rule import BoundingBoxRule, boxes
-from reproduction.own.o_07_unseen_scenes.peers.orientation_histogram import orientation_histogram
-from reproduction.own.o_07_unseen_scenes.peers.peer import DescribedPair
+from reproduction.own.o_07_unseen_scenes.peers.described_pairs import DescribedPair
+from reproduction.own.o_07_unseen_scenes.peers.orientation_trees import orientation_histogram
 
 from .conftest import box
 
@@ -24,21 +22,6 @@ def test_orientation_histogram_by_hand():
     # Level at 20 cm: the first bin above the middle, 16 to 23 cm.
     level = orientation_histogram(HIGH + np.array([0.2, 0, 0]), HIGH).reshape(orientation.ELEVATION_BINS, -1)
     assert level[orientation.ELEVATION_BINS // 2, 5] == 1
-
-
-@settings(deadline=None, max_examples=20)
-@given(st.integers(0, 10_000), st.floats(0, 6.28))
-def test_orientation_histogram_does_not_see_the_heading(seed, turn):
-    rng = np.random.default_rng(seed)
-    # Points far apart, so that coarse cells hold one each whichever way they are turned.
-    first, second = (rng.integers(0, 4, (5, 3)) * 0.1 + shift for shift in (0.0, np.array([0.45, 0, 0])))
-    turned = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
-    first, second = np.unique(first, axis=0), np.unique(second, axis=0)
-    # Off the edges of the bins, which rounding would move points across.
-    first = first + np.array([0.013, 0.007, 0.0171])
-    assert orientation_histogram(first @ turned.T, second @ turned.T) == pytest.approx(
-        orientation_histogram(first, second)
-    )
 
 
 def test_boxes_by_hand():

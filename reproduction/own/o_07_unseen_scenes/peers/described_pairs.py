@@ -1,18 +1,12 @@
-"""`Peer`: the interface of `RelationClassifier` for a method that describes each pair by a vector.
+"""Near pairs of a scene described by vectors, for methods that learn relations from them."""
 
-Describing and learning are separate: a scene is described once, and any number of models learn from it.
-"""
-
-from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import SYMMETRIC, PairLabel
 from lifelore.perception.clouds.voxel import voxelised
@@ -58,57 +52,20 @@ class DescribedPair:
         return Relation(self.a, self.b, name, confidence, self.gap)
 
 
-class Peer(ABC):
-    """A method that represents each pair by the vector `describe`."""
-
-    describe: Describe
-
-    @abstractmethod
-    def fit_pairs(self, scenes: Sequence[Sequence[DescribedPair]], truths: Sequence[Sequence[PairLabel]]) -> Self:
-        """As `fit`, from scenes already described by `describe_pairs`."""
-
-    @abstractmethod
-    def predict_pairs(self, scene: Sequence[DescribedPair]) -> tuple[Relation, ...]:
-        """As `predict`, from a scene already described by `describe_pairs`."""
-
-    def describe_pairs(self, cloud: LabelledCloud) -> tuple[DescribedPair, ...]:
-        """The near pairs of a scene, described; pairs of objects first, then each object with the table."""
-        seen = []
-        for pair in default_near_pairs(cloud):
-            first, second = pair.first.points, pair.second.points
-            rows = np.array([self.describe(first, second), self.describe(second, first)])
-            seen.append(DescribedPair(pair.first.label, pair.second.label, pair.gap, rows))
-        return tuple(seen)
-
-    def fit(self, clouds: Sequence[LabelledCloud], truths: Sequence[Sequence[PairLabel]]) -> Self:
-        """Learn from scenes and the labels of their pairs with confidence 2 or more.
-
-        Raises
-        ------
-        InputError
-            `clouds` and `truths` differ in number, no label is of a near pair, or one pair has two relations (or
-            one in both directions that is not *adjacent* or *none*, the only symmetric relations of a peer).
-        """
-        return self.fit_pairs([self.describe_pairs(cloud) for cloud in clouds], truths)
-
-    def predict(self, cloud: LabelledCloud) -> tuple[Relation, ...]:
-        """The relation of every near pair, *none* included, of a kind (among objects, with the table) it knows.
-
-        Raises
-        ------
-        InputError
-            A learning method has not been fitted.
-        """
-        return self.predict_pairs(self.describe_pairs(cloud))
+def described_pairs(cloud: LabelledCloud, describe: Describe) -> tuple[DescribedPair, ...]:
+    """The near pairs of a scene, described; pairs of objects first, then each object with the table."""
+    seen = []
+    for pair in default_near_pairs(cloud):
+        first, second = pair.first.points, pair.second.points
+        rows = np.array([describe(first, second), describe(second, first)])
+        seen.append(DescribedPair(pair.first.label, pair.second.label, pair.gap, rows))
+    return tuple(seen)
 
 
 def labelled_pairs(
     scenes: Sequence[Sequence[DescribedPair]], truths: Sequence[Sequence[PairLabel]]
-) -> list[tuple[DescribedPair, str]]:
-    """Labelled near pairs, and the directed class of (a, b)."""
-    if len(scenes) != len(truths):
-        raise InputError(f"truths must be one for each cloud, got {len(truths)} for {len(scenes)} clouds")
-    found = []
+) -> Iterator[tuple[DescribedPair, str]]:
+    """Near pairs with a label of confidence 2 or more, and the directed class of (a, b)."""
     for pairs, truth in zip(scenes, truths, strict=True):
         by_pair: dict[frozenset[int], list[PairLabel]] = {}
         for label in truth:
@@ -116,10 +73,7 @@ def labelled_pairs(
                 by_pair.setdefault(frozenset((label.a, label.b)), []).append(label)
         for pair in pairs:
             if labels := by_pair.get(frozenset((pair.a, pair.b))):
-                found.append((pair, pair_class(labels, pair.a, SYMMETRIC)))
-    if not found:
-        raise InputError("truths must label a near pair of clouds with confidence 2 or 3; check their numbers")
-    return found
+                yield pair, pair_class(labels, pair.a, SYMMETRIC)
 
 
 # Peers process one scene after another: a small cache finds the near pairs once for all of them.
