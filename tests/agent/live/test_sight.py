@@ -106,8 +106,8 @@ TOUCH = {
     [
         ({"sensor": "sonar"}, "sensor must be one of touch, lidar"),
         ({"range": 3.0}, "range applies to sensor lidar"),
-        ({"sensor": "lidar", "range": 0.0}, "range must be positive"),
-        ({"sensor": "lidar", "range": float("nan")}, "range must be a finite number"),
+        ({"sensor": "lidar", "range": 0.0}, "range must lie in"),
+        ({"sensor": "lidar", "range": float("nan")}, "range must lie in"),
         ({"sensor": "lidar", "domain": "lattice"}, "sensor lidar needs a building"),
         ({"sensor": "lidar", "learner": "q"}, "sensor lidar needs learner model"),
     ],

@@ -1,7 +1,8 @@
 """The agents that can live a life: `lore`, its parts, and the baselines it is compared with."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.learning.model_learning import ExplorationStrategy
 
@@ -35,6 +36,16 @@ of a cell lead as soon as it has visited the cell."""
 
 Q_AGENTS = ("lore", "prior", "scratch")
 """A Q-learner has no model: with the prior, `lore` and `prior` are the same agent; without it, it is `scratch`."""
+
+
+def agent_kind(name: str, settings: LifeSettings) -> AgentKind:
+    """What an agent uses with these settings: no prior without a condition, no remembered moves in Q-learning."""
+    kind = AGENTS[name]
+    return replace(
+        kind,
+        uses_prior=kind.uses_prior and settings.prior.condition != "none",
+        remembers=kind.remembers and settings.learner == "model",
+    )
 
 
 def baselines_for(agent: str, learner: str) -> list[str]:

@@ -6,10 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.agent.live.buildings.carried_model import carried_model
 from lifelore.agent.live.buildings.map_watch import MapWatch
-from lifelore.agent.live.buildings.recognition import own_place
 from lifelore.agent.live.life import Life, live
+from lifelore.agent.live.lore import Lore, prior_scope
 from lifelore.agent.live.output.report import FILES, write_portfolio
 from lifelore.core.errors import InputError
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
@@ -172,9 +171,8 @@ def test_a_map_that_changes_back_brings_back_what_memory_holds(watched):
 
 def test_nothing_is_carried_to_another_building(watched):
     life, _ = life_with(watched, {}, tasks=2)
-    old = life.lore
-    place = own_place(make_world("building", seed=4))
+    world = make_world("building", seed=4)
     with open_memory(watched.with_name("life.db")) as memory:
-        model, agreement = carried_model(old, place, memory)
-    assert agreement == 0
-    assert (model.target < 0).all()
+        lore = Lore.recalled(world, prior_scope(world, "observation"), 0.1, memory)
+        assert lore.carry(life.lore, memory) == 0
+    assert (lore.model.target < 0).all()

@@ -149,9 +149,9 @@ def test_columns_stay(tmp_path):
 
 def test_logs_that_cannot_be(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(InputError, match="folder must be a folder, but"):
+    with pytest.raises(InputError, match="folder must name a folder, got"):
         L2Log(tmp_path / "file", "life", ["reward"])
-    with pytest.raises(InputError, match="folder must be a folder, but"):
+    with pytest.raises(InputError, match="folder must name a folder, got"):
         LifeLog(tmp_path / "file", "lattice")
     with pytest.raises(InputError, match="scenario must be of letters, digits"):
         L2Log(tmp_path, "a/b", ["reward"])
@@ -159,5 +159,5 @@ def test_logs_that_cannot_be(tmp_path):
         L2Log(tmp_path, "life", [])
     log = L2Log(tmp_path, "life", ["reward"])
     (log.path / "worker-0" / "0-train" / "data-log.tsv").mkdir(parents=True)
-    with pytest.raises(StoreError, match=r"cannot write .*data-log\.tsv"):
+    with pytest.raises(StoreError, match=r"cannot write into .*0-train"):
         log.add("train", "maze_1", {"reward": [1.0]})
