@@ -92,10 +92,10 @@ class DrivenTasks:
 
     def _begin(self, own: OwnGoal) -> float:
         """When the job starts: at its time, or in turn; not before the robot is free."""
-        if self._jobs is None or own.time is None:
-            return next_start(self._clock.clock)
-        day = self._jobs.begun(lambda: list_day(self._clock.clock, own.time))
-        return max(job_start(own.time, day), self._clock.clock)
+        now, time = self._clock.clock, own.time
+        if self._jobs is None or time is None:
+            return next_start(now)
+        return max(job_start(time, self._jobs.begun(lambda: list_day(now, time))), now)
 
     def _start(self, number: int, seq: int, goal: int) -> int:
         """The given start, or any place; in a job list, from the second job on, where the robot stands."""

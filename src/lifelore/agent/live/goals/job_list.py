@@ -167,7 +167,7 @@ def _time_key(job: Job) -> tuple:
         raise _bad(
             job.line, f"time must be a number of seconds, HH:MM or an ISO 8601 date, got '{job.time[:40]}'"
         ) from None
-    if isinstance(value, float):
+    if not isinstance(value, time | datetime):
         return "a number of seconds", value
     kind = "a date" if isinstance(value, datetime) else "a clock time"
     return kind + (" with a time zone" if value.tzinfo else ""), value
