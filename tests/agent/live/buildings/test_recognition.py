@@ -42,7 +42,7 @@ def steps(life: Life) -> list[int]:
 def lived(tmp_path_factory) -> bytes:
     """A memory after some tasks at home."""
     folder = tmp_path_factory.mktemp("home")
-    first = life_on(folder, OFFICE, tasks=6)
+    first = life_on(folder, OFFICE, tasks=4)
     assert first.report["building"] == {
         "name": "home", "recognised": False, "agreement": None, "walls": None, "pose": None,
         "reason": "no building is remembered",
@@ -64,10 +64,10 @@ def test_the_same_map_goes_on_as_before(home):
 
 
 def test_a_padded_or_shifted_map_is_as_good_as_the_same(home, lived):
-    expected = steps(life_on(home, OFFICE, tasks=3))
+    expected = steps(life_on(home, OFFICE, tasks=2))
     for edit in (padded, shifted):
         (home / "life.db").write_bytes(lived)
-        again = life_on(home, edit(OFFICE), "again", tasks=3)
+        again = life_on(home, edit(OFFICE), "again", tasks=2)
         assert again.report["building"]["recognised"]
         assert again.report["building"]["agreement"] == 1.0
         assert steps(again) == expected

@@ -114,14 +114,6 @@ def test_a_life_is_logged_episode_by_episode(learner, tmp_path):
     assert info == {"scenario_type": "ste", "agent": "scratch"}
 
 
-def test_a_watched_life_is_the_life(tmp_path):
-    settings = [flat_settings(tasks=2, memory=str(tmp_path / f"{i}.db")) for i in range(2)]
-    seen = []
-    plain, watched = live(settings[0]), live(settings[1], watch=lambda task, results: seen.append(set(results)))
-    assert plain.report["tasks"] == watched.report["tasks"]
-    assert seen == [{"lore", "scratch"}] * 2
-
-
 @pytest.mark.parametrize(
     ("change", "words"),
     [
