@@ -234,7 +234,7 @@ def test_in_another_building_the_observation_prior_holds_and_nothing_else(tmp_pa
 @pytest.mark.slow
 @pytest.mark.skipif("LIFELORE_DATA" not in os.environ, reason="LIFELORE_DATA is not set")
 def test_willow(tmp_path):
-    """The goals of the main job, as loose here as a few tasks of a single seed need; the numbers are in the docs."""
+    """The goals of the main job, as loose here as a few tasks of one seed need; the numbers are in the docs."""
     willow = str(Path(os.environ["LIFELORE_DATA"]) / "maps" / "willow-full.yaml")
     report = live(settings(tmp_path, domain="building", map=willow, tasks=9, seed=0)).report
     assert 3000 <= report["n_states"] <= 4500
