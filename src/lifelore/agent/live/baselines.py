@@ -48,8 +48,11 @@ def agent_kind(name: str, settings: LifeSettings) -> AgentKind:
     )
 
 
-def baselines_for(agent: str, learner: str) -> list[str]:
-    """Names of the agents that live the same tasks as `agent`, for comparison; ``all`` stands for `lore`.
+def agents_for(agent: str, learner: str, compare: bool = True) -> list[str]:
+    """Names of all agents that live when `agent` is asked for; memory stores the first one's knowledge.
+
+    The others live the same tasks for comparison; with `compare` False the agent lives alone. ``all`` stands for
+    `lore` and asks for the baselines by name, so they live in any case.
 
     Raises
     ------
@@ -62,15 +65,6 @@ def baselines_for(agent: str, learner: str) -> list[str]:
         raise NotFoundError(f"agent must be one of {', '.join(AGENTS)}, all; got '{agent}'")
     if learner == "q" and agent not in (*Q_AGENTS, "all"):
         raise InputError(f"learner 'q' has agents {', '.join(Q_AGENTS)}, got '{agent}': use learner 'model'")
-    if agent == "all" and learner == "model":
-        return [name for name in AGENTS if name != "lore"]
-    return [] if agent == "scratch" else ["scratch"]
-
-
-def agents_for(agent: str, learner: str, compare: bool = True) -> list[str]:
-    """Names of all agents that live when `agent` is asked for; memory stores the first one's knowledge.
-
-    With `compare` False the agent lives alone; ``all`` asks for the baselines by name, so they live too.
-    """
-    baselines = baselines_for(agent, learner)
-    return ["lore" if agent == "all" else agent, *(baselines if compare or agent == "all" else [])]
+    if agent == "all":
+        return list(AGENTS) if learner == "model" else ["lore", "scratch"]
+    return [agent, "scratch"] if compare and agent != "scratch" else [agent]

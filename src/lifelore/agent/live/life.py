@@ -124,7 +124,10 @@ def live(
             notice = _KNOWN_GOALS if settings.destinations else None
         if notice:
             notify(notice)
-        jobs = _job_progress(settings, place, memory)
+        jobs = None
+        if settings.goals:
+            key, again = NamedPlaces.of(place).key, settings.again
+            jobs = JobProgress.recalled(settings.goals, settings.memory.robot, key, memory, again)
         if jobs and jobs.finished:
             settings = replace(settings, goals=jobs.unfinished(settings.goals))
             notify(jobs.notice())
@@ -171,13 +174,6 @@ def _place(
             f"building names a map that is remembered, got {name!r} for a life that remembers no map; leave it out"
         )
     return own_place(world, occupancy)
-
-
-def _job_progress(settings: LifeSettings, place: Place, memory: Memory) -> JobProgress | None:
-    if not settings.goals:
-        return None
-    progress = JobProgress.recalled(settings.goals, settings.memory.robot, NamedPlaces.of(place).key, memory)
-    return replace(progress, finished=0, day=0.0) if settings.again else progress
 
 
 @dataclass

@@ -15,7 +15,6 @@ from lifelore.agent.live.lore import Lore, prior_scope
 from lifelore.agent.live.output.folder import folder_to_write
 from lifelore.agent.live.output.move_costs import MoveCosts
 from lifelore.agent.live.output.nav2_masks import write_masks
-from lifelore.agent.live.output.route_graph import write_route_graph
 from lifelore.agent.travel.travel import Travel
 from lifelore.core.errors import NotFoundError
 from lifelore.core.learning.known_world import WorldModel
@@ -78,6 +77,8 @@ class KnownBuilding:
         OSError, StoreError
             The files cannot be written.
         """
+        from lifelore.agent.live.output.route_graph import write_route_graph
+
         if not self.known.any():
             return []
         write_masks(folder, self.costs, self.known, self.floor, self.given)
