@@ -10,6 +10,9 @@ from scipy.sparse import csgraph
 from lifelore.agent.live.driven.route import chain_to
 from lifelore.domains.grids.grid_world import GridWorld
 
+N_PATHS = 3
+"""Largest number of paths of a task; more make the picture harder to read."""
+
 
 @dataclass(frozen=True, eq=False)
 class GreedyPaths:
@@ -31,9 +34,9 @@ class GreedyPaths:
 
 
 def greedy_paths_of(
-    world: GridWorld, policy: ArrayLike, task: int, goal: int, start: int | None = None, n_paths: int = 3
+    world: GridWorld, policy: ArrayLike, task: int, goal: int, start: int | None = None
 ) -> GreedyPaths:
-    """Paths of a task from up to `n_paths` starts that are far apart; the first is the farthest from the goal.
+    """Paths of a task from up to `N_PATHS` starts that are far apart; the first is the farthest from the goal.
 
     Starts from which the policy never reaches the goal are left out. If `start` is given, it is the only start.
     `policy` (n_states,) has the action of each state, -1 where none is known.
@@ -45,18 +48,18 @@ def greedy_paths_of(
     length, following = csgraph.dijkstra(back, indices=goal, unweighted=True, return_predecessors=True)
     starts = np.delete(np.arange(world.n_states), goal) if start is None else np.array([start])
     arriving = starts[(length[starts] > 0) & np.isfinite(length[starts])]
-    chosen = _far_apart(world, arriving, length, goal, n_paths)
+    chosen = _far_apart(world, arriving, length, goal)
     paths = [np.array(chain_to(state, goal, following)[::-1], np.int32) for state in chosen]
     return GreedyPaths(task, goal, paths, len(arriving) / len(starts))
 
 
-def _far_apart(world: GridWorld, states: NDArray, length: NDArray, goal: int, n: int) -> list[int]:
+def _far_apart(world: GridWorld, states: NDArray, length: NDArray, goal: int) -> list[int]:
     chosen: list[int] = []
     if not len(states):
         return chosen
     nearest = np.linalg.norm(world.cells[states] - world.cells[goal], axis=1)
     state = int(states[length[states].argmax()])
-    while len(chosen) < n:
+    while len(chosen) < N_PATHS:
         chosen.append(state)
         nearest = np.minimum(nearest, np.linalg.norm(world.cells[states] - world.cells[state], axis=1))
         if not nearest.any():
