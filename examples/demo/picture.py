@@ -7,12 +7,13 @@ import json
 import sys
 from pathlib import Path
 
+from known_and_hidden import draw_known_and_hidden
+
 from lifelore import open_memory
 from lifelore.agent.live.buildings.recognition import recognised_place
 from lifelore.agent.live.output.drive_figure import learnt_floor, lost_time
 from lifelore.agent.travel.travel import Travel
 from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
-from lifelore.figures.lives.known_and_hidden import draw_known_and_hidden
 from lifelore.figures.style import save_figure
 
 folder = Path(sys.argv[1])

@@ -2,7 +2,7 @@
 
 import csv
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from math import hypot
 from pathlib import Path
 
@@ -19,7 +19,7 @@ from lifelore.agent.live.buildings.recognition import (
 from lifelore.agent.live.goals.destinations import Destination, NamedPlaces, Point
 from lifelore.agent.live.goals.job_list import named_points, read_jobs
 from lifelore.core.errors import InputError, NotFoundError, StoreError
-from lifelore.domains.buildings.floor import Floor, Refusal, floor_of
+from lifelore.domains.buildings.floor import Floor, floor_of
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, read_occupancy_map
 from lifelore.domains.buildings.registration import Pose, inverse, moved
 from lifelore.domains.worlds import WorldSettings, world_from_settings
@@ -72,24 +72,13 @@ class Recognition:
     waypoints: tuple[Waypoint, ...]
 
     def to_dict(self) -> dict:
-        """JSON data; points are [x, y] in metres, ``away`` is the distance to the nearest free place."""
+        """JSON data; points are (x, y) in metres, ``away`` is the distance to the nearest free place."""
         return {
             "building": self.building,
             "map": self.map,
             "pose": list(self.pose),
             "walls": round(self.walls, 4),
-            "waypoints": [
-                {
-                    "name": one.name,
-                    "before": list(one.before),
-                    "point": list(one.point),
-                    "state": one.state,
-                    "reason": one.reason,
-                    "nearest": one.nearest and list(one.nearest),
-                    "away": one.away,
-                }
-                for one in self.waypoints
-            ],
+            "waypoints": [asdict(one) | {"away": one.away} for one in self.waypoints],
         }
 
     def write_jobs(self, path: str | Path, goals: str | Path | None = None) -> None:
@@ -244,18 +233,14 @@ def _without_memory(place: Destination) -> Destination:
 
 def _found_again(places: Sequence[Destination], pose: Pose, floor: Floor) -> tuple[Waypoint, ...]:
     """Places of the remembered frame at a pose in the frame of the new map."""
-    points = _moved(pose, [place.located_point for place in places])
-    return tuple(
-        _waypoint(place, point, floor.refusal(point)) for place, point in zip(places, points, strict=True)
-    )
-
-
-def _waypoint(place: Destination, point: Point, refusal: Refusal | None) -> Waypoint:
-    found = Waypoint(place.name, place.located_point, point)
-    if refusal is None:
-        return found
-    state = BLOCKED if refusal.known else OUTSIDE
-    return replace(found, state=state, reason=refusal.reason, nearest=refusal.nearest)
+    found = []
+    for place, point in zip(places, _moved(pose, [place.located_point for place in places]), strict=True):
+        one, refusal = Waypoint(place.name, place.located_point, point), floor.refusal(point)
+        if refusal is not None:
+            state = BLOCKED if refusal.known else OUTSIDE
+            one = replace(one, state=state, reason=refusal.reason, nearest=refusal.nearest)
+        found.append(one)
+    return tuple(found)
 
 
 def _moved(pose: Pose, points: Sequence[Point]) -> list[Point]:

@@ -110,7 +110,7 @@ def way(
         start, goal = names.located("from", start, opened), names.located("to", goal, opened)
         travel = Travel.recalled(place.world, place.grid, opened)
     floor = floor_of(place.occupancy or occupancy, place.world)
-    contradicted = _KnownPart(moves, floor).contradicted(start, goal)
+    contradicted = _contradicted(moves, floor, start, goal)
     minutes = travel.passes.minute
     now = float(clock if clock is not None else 60 * minutes.max(initial=0))
     price = price_of_moves(np.where(moves.open, travel.cost(now), np.inf), place.world.frame.cell)
@@ -161,60 +161,49 @@ def _driven(path: NDArray[np.float64], floor: Floor, slowness: NDArray[np.float6
     return len(np.unique(states)), float(seconds.sum() * floor.occupancy.resolution)
 
 
-@dataclass(frozen=True, eq=False)
-class _KnownPart:
-    """What memory knows about a building, with points that a robot can stand at."""
+def _contradicted(
+    moves: RememberedMoves, floor: Floor, start: Destination, goal: Destination
+) -> NDArray[np.float64]:
+    """Points (n, 2) of the moves that the map contradicts on a shorter remembered way.
 
-    moves: RememberedMoves
-    floor: Floor
+    Raises
+    ------
+    NotFoundError
+        Memory knows no way that the map allows.
+    """
 
-    def contradicted(self, start: Destination, goal: Destination) -> NDArray[np.float64]:
-        """Points (n, 2) of the moves that the map contradicts on a shorter remembered way.
-
-        Raises
-        ------
-        NotFoundError
-            Memory knows no way that the map allows.
-        """
-        first, last = self._cell("from", start), self._cell("to", goal)
-        chain, remembered = self.moves.chain(first, last), self.moves.chain(first, last, true_only=False)
-        contradicted = self.moves.contradicted(remembered)
-        if chain:
-            return contradicted[: 0 if len(remembered) == len(chain) else None]
-        so_far = self._so_far(first, goal)
-        if remembered:
-            at = "; ".join(f"{x:.2f},{y:.2f}" for x, y in contradicted[:3])
-            raise NotFoundError(
-                f"the map contradicts the remembered way from {start} to {goal} in {len(contradicted)} of its "
-                f"{len(remembered) - 1} moves (near {at}), and memory knows no other way; {so_far}"
-            )
-        raise NotFoundError(f"memory knows no way from {start} to {goal}; {so_far}; live more tasks there")
-
-    def _cell(self, argument: str, end: Destination) -> int:
-        states = self.moves.states
-        cell = np.flatnonzero(states == self.floor.state_at(argument, end.located_point))
-        if len(cell):
-            return int(cell[0])
-        x, y, away = self._nearest(np.flatnonzero(states >= 0), end)
-        raise NotFoundError(
-            f"{argument}: memory knows no move at {end}; the nearest place that it knows is {x:.3f},{y:.3f}, "
-            f"{away:.2f} m away; give that place, or live more tasks there"
-        )
-
-    def _so_far(self, start: int, goal: Destination) -> str:
-        """How far the way is known, in words."""
-        reached = np.flatnonzero(np.isfinite(self.moves.reached(start)[0]))
-        x, y, away = self._nearest(reached, goal)
-        return (
-            f"from there it knows the way to {len(reached):,} of its {len(self.moves.cells):,} places, the "
-            f"nearest {x:.3f},{y:.3f}, {away:.2f} m from {goal}"
-        )
-
-    def _nearest(self, cells: NDArray[np.int64], end: Destination) -> tuple[float, float, float]:
-        points = self.floor.metres(self.floor.anchors[self.moves.states[cells]])
+    def nearest(cells: NDArray[np.int64], end: Destination) -> str:
+        points = floor.metres(floor.anchors[moves.states[cells]])
         away = np.hypot(*(points - end.located_point).T)
         x, y = points[away.argmin()]
-        return x, y, away.min()
+        return f"{x:.3f},{y:.3f}, {away.min():.2f} m"
+
+    def cell(argument: str, end: Destination) -> int:
+        found = np.flatnonzero(moves.states == floor.state_at(argument, end.located_point))
+        if len(found):
+            return int(found[0])
+        raise NotFoundError(
+            f"{argument}: memory knows no move at {end}; the nearest place that it knows is "
+            f"{nearest(np.flatnonzero(moves.states >= 0), end)} away; give that place, or live more tasks there"
+        )
+
+    first, last = cell("from", start), cell("to", goal)
+    chain, remembered = moves.chain(first, last), moves.chain(first, last, true_only=False)
+    contradicted = moves.contradicted(remembered)
+    if chain:
+        return contradicted[: 0 if len(remembered) == len(chain) else None]
+    reached = np.flatnonzero(np.isfinite(moves.reached(first)[0]))
+    so_far = (
+        f"from there it knows the way to {len(reached):,} of its {len(moves.cells):,} places, the nearest "
+        f"{nearest(reached, goal)} from {goal}"
+    )
+    if remembered:
+        at = "; ".join(f"{x:.2f},{y:.2f}" for x, y in contradicted[:3])
+        raise NotFoundError(
+            f"the map contradicts the remembered way from {start} to {goal} in {len(contradicted)} of its "
+            f"{len(remembered) - 1} moves (near {at}), and memory knows no other way; {so_far}"
+        )
+    raise NotFoundError(f"memory knows no way from {start} to {goal}; {so_far}; live more tasks there")
 
 
 def poses_along(path: NDArray[np.float64], spacing: float | None = None) -> NDArray[np.float64]:

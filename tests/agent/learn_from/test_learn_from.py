@@ -5,12 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy import sparse
-from scipy.sparse import csgraph
 
 from lifelore.agent.learn_from.learn_from import LearnFromSettings, forget_source, learn_from
 from lifelore.agent.learn_from.run_log import Run, read_runs
 from lifelore.agent.live.buildings.recognition import recognised_place
+from lifelore.agent.live.driven.route import cheapest_route
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.agent.live.lore import Lore, prior_scope
@@ -146,15 +145,9 @@ def way_around(world, path, start: int, goal: int, clock: float) -> list[int]:
         occupancy = map_from_settings(OFFICE)
         place = recognised_place(OFFICE, world, occupancy, memory)
         cost = Travel.recalled(world, place.grid, memory).cost(clock)
-    tail, action = np.nonzero(world.neighbour >= 0)
-    graph = sparse.csr_array(
-        (cost[tail, action], (tail, world.neighbour[tail, action])), shape=(world.n_states,) * 2
-    )
-    _, before = csgraph.dijkstra(graph, indices=start, return_predecessors=True)
-    way = [goal]
-    while way[-1] != start:
-        way.append(int(before[way[-1]]))
-    return way[::-1]
+    route = cheapest_route(world, start, goal, cost)
+    assert route is not None
+    return route.states.tolist()
 
 
 def test_bumps_close_a_place_that_passes_and_age_reopen(world, runs, tmp_path):

@@ -2,13 +2,11 @@
 
 import pytest
 
-from lifelore.agent.live.baselines import AGENTS, agents_for, baselines_for
+from lifelore.agent.live.baselines import AGENTS, agents_for
 from lifelore.core.errors import InputError, NotFoundError
 
 
 def test_agents_and_their_baselines():
-    assert baselines_for("lore", "model") == baselines_for("all", "q") == ["scratch"]
-    assert baselines_for("scratch", "model") == []
     assert agents_for("lore", "model") == ["lore", "scratch"]
     assert agents_for("prior", "model") == ["prior", "scratch"]
     assert agents_for("scratch", "model") == ["scratch"]

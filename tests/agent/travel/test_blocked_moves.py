@@ -19,12 +19,12 @@ WORLD = GridWorld.from_free("building", np.ones((1, 20), np.bool_), frame=Frame(
 EAST = 2
 
 
-def blocked(moves, clock, **options):
+def blocked(moves, clock):
     """Probability of a refusal of the move east from state 5, after (clock, passed) of this move."""
     times, passed = (np.array(column) for column in zip(*moves, strict=True))
     n = len(times)
     rows = observed(WORLD, np.full(n, 5), np.full(n, EAST), times, np.where(passed, 1.0, np.nan))
-    return blocked_probability(WORLD, rows, clock, **options)[5, EAST]
+    return blocked_probability(WORLD, rows, clock)[5, EAST]
 
 
 def test_one_refusal_by_hand():
@@ -46,8 +46,6 @@ def test_a_pass_reopens_at_once_and_age_slowly():
     assert reopened < 0.2
     assert month < week < 0.6 * fresh
     assert month < 0.2  # the share of refusals at this hour
-    quick = blocked([*usual, (bump, False), (bump + 600, False)], bump + 7 * DAYS, half_life=1.0)
-    assert quick < week
 
 
 def test_a_door_that_is_closed_every_night_is_expected_to_be_open_by_day():

@@ -79,11 +79,6 @@ def test_a_larger_map_of_the_building_finds_the_same_cells(tmp_path):
     assert recalled.news() == []  # left of the first map
 
 
-def test_a_half_life_that_is_none_is_refused():
-    with pytest.raises(InputError, match="half_life must be a number of days above 0, got 0"):
-        Travel(corridor(), BuildingGrid("frame"), half_life=0.0)
-
-
 def test_observations_of_another_decade_and_of_the_future_give_numbers():
     travel = travel_in(corridor())
     travel.observe([2, 2, 3], [2, 2, 2], [100.0, 200.0, 2 * NOON], [2.0, np.nan, 2.0])

@@ -1,11 +1,13 @@
 """Figures of driven jobs are drawn, and say what was lost."""
 
+from pathlib import Path
+from runpy import run_path
+
 import numpy as np
 import pytest
 
 from lifelore.domains.grids.lattice import lattice
 from lifelore.figures.lives.drives import LearntFloor, draw_drives
-from lifelore.figures.lives.known_and_hidden import RECENT, draw_known_and_hidden
 from lifelore.figures.style import save_figure
 
 WORLD = lattice(9)
@@ -37,8 +39,10 @@ def test_lost_minutes_are_added_up(n, tmp_path):
 
 
 def test_searches_and_drives_in_one_picture(tmp_path):
-    searched = {"lore": [100.0] * 3 + [50.0] * RECENT, "scratch": [400.0] * (3 + RECENT)}
-    figure = draw_known_and_hidden(searched, driven(20), floor(), title="Both")
+    demo = run_path(str(Path(__file__).parents[3] / "examples" / "demo" / "known_and_hidden.py"))
+    recent = demo["RECENT"]
+    searched = {"lore": [100.0] * 3 + [50.0] * recent, "scratch": [400.0] * (3 + recent)}
+    figure = demo["draw_known_and_hidden"](searched, driven(20), floor(), title="Both")
     assert save_figure(figure, tmp_path / "both.png").stat().st_size > 5_000
     left = figure.axes[0]
     assert left.get_yscale() == "log"

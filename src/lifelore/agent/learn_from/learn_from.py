@@ -13,20 +13,22 @@ from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
+from uuid import uuid4
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.demonstrations.competence import competence_by_steps
 from lifelore.action.priors.policy_counts import actions_to_count
-from lifelore.agent.learn_from.learnt_runs import LearntRun, RunStore, has_clock
+from lifelore.agent.learn_from.learnt_runs import DRIVER, LearntRun, has_clock
 from lifelore.agent.learn_from.localisation_noise import localisation_noise
 from lifelore.agent.learn_from.log_fit import Reachable, Shift, shifted_runs
 from lifelore.agent.learn_from.log_report import checked_log, log_report
 from lifelore.agent.learn_from.run_log import Run
 from lifelore.agent.learn_from.tried_moves import tried_moves
-from lifelore.agent.live.buildings.recognition import recognised_place
+from lifelore.agent.live.buildings.recognition import Place, recognised_place
 from lifelore.agent.live.life_settings import MemorySettings, PriorSettings
+from lifelore.agent.live.lore import Lore, prior_scope
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.planning.planning import optimal_q
 from lifelore.core.protocols import Progress
@@ -100,17 +102,40 @@ def learn_from(
     occupancy = map_from_settings(settings.world)
     world, noise = world_from_settings(settings.world, occupancy), localisation_noise(runs)
     outside = checked_log(runs, Reachable.of(floor_of(occupancy, world)), noise, world.frame.cell, source)
+    robot = settings.memory.robot
     with _opened(settings) as memory:
         place = recognised_place(settings.world, world, occupancy, memory, settings.memory.building)
         learnt = [_learnt(place.world, run, noise, settings.reached_goal) for run in runs]
-        weights = _competence(place.world, learnt, settings.memory.robot)
+        competence = _competence(place.world, [one for one in learnt if one.goal is not None])
         report = log_report(place, learnt, source, outside, noise)
         report["clock"] = all(has_clock(run.time) for run in runs)
-        report["competence"] = weights.get(settings.memory.robot)
+        report["competence"] = competence
         report["dry_run"] = settings.dry_run
-        store = RunStore(place, memory, settings.memory.robot, settings.prior, source)
-        report["new"] = store.count_new(learnt) if settings.dry_run else store.store(learnt, weights, progress)
+        # A run that was forgotten has a tombstone, and comes again under the next number.
+        numbers = [memory.times_forgotten(robot, one.process) for one in learnt]
+        if settings.dry_run:
+            known = (memory.is_known(robot, one.process, seq) for one, seq in zip(learnt, numbers, strict=True))
+            report["new"] = len(learnt) - sum(known)
+            return report
+        _store_building(place, settings, memory)
+        report["new"] = 0
+        for done, (one, seq) in enumerate(zip(learnt, numbers, strict=True), start=1):
+            records = one.records(place, settings.prior.alpha0, settings.prior.weight * (competence or 0.0))
+            goal = None if one.goal is None else place.world.cells[one.goal].tolist()
+            task = {"run": one.run.name, "goal": goal, "world": place.world.fingerprint, "source": source}
+            report["new"] += memory.contribute(robot, records, process=one.process, seq=seq, task=task)
+            if progress:
+                progress(done, len(learnt), f"run {one.run.name}")
     return report
+
+
+def _store_building(place: Place, settings: LearnFromSettings, memory: Memory) -> None:
+    """Store the building and what carries over from its earlier map; both stay if the runs are forgotten."""
+    scope = prior_scope(place.world, "observation")
+    lore = Lore.recalled(place.world, scope, settings.prior.alpha0, memory, place.grid)
+    if records := [record for record in (*place.news, lore.model_news()) if len(record.slots)]:
+        task = {"world": place.world.fingerprint}
+        memory.contribute(settings.memory.robot, records, process=uuid4().hex, seq=0, task=task)
 
 
 def forget_source(memory: Memory, source: str, robot: str | None = None) -> int:
@@ -154,10 +179,12 @@ def _learnt(world: GridWorld, run: Run, noise: float, reached_goal: bool) -> Lea
     return LearntRun(run, tried_moves(world, run, noise), goal if at_goal and goal >= 0 else None)
 
 
-def _competence(world: GridWorld, learnt: Sequence[LearntRun], robot: str) -> dict[str, float]:
+def _competence(world: GridWorld, to_goal: Sequence[LearntRun]) -> float | None:
+    """The robot's competence w in [0, 1] from its runs to goals; None without one."""
+
     @cache
     def best(goal: str) -> NDArray[np.bool_]:
         q = optimal_q(world.task(int(goal)).tables(), world.discount)
         return actions_to_count(q, "all", ended=np.arange(world.n_states) == int(goal))
 
-    return competence_by_steps([one.demonstration(robot, True) for one in learnt if one.goal is not None], best)
+    return competence_by_steps([one.demonstration(with_bumps=True) for one in to_goal], best).get(DRIVER)

@@ -15,7 +15,7 @@ import hashlib
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import chain
+from itertools import chain, pairwise
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +49,10 @@ class Run:
     heading: NDArray[np.float64]
     outcome: Sequence[str]
 
+    def part(self, name: str, part: slice) -> "Run":
+        """A part of the poses as a run of its own."""
+        return Run(name, self.time[part], self.points[part], self.heading[part], self.outcome[part])
+
     @property
     def reached_goal(self) -> bool:
         """Whether the run ended at its goal."""
@@ -62,19 +66,6 @@ class Run:
             "\0".join(self.outcome).encode(),
         ]
         return hashlib.sha256(b"".join(parts)).hexdigest()[:32]
-
-
-@dataclass(frozen=True)
-class _Pose:
-    """A line of the log."""
-
-    line: int
-    run: str
-    time: float
-    x: float
-    y: float
-    heading: float
-    outcome: str
 
 
 def read_runs(path: str | Path) -> list[Run]:
@@ -93,28 +84,41 @@ def read_runs(path: str | Path) -> list[Run]:
         raise NotFoundError(f"runs '{path}' does not exist; give a CSV file with the columns {', '.join(NEEDED)}")
     try:
         with Path(path).open(encoding="utf-8-sig", newline="") as file:
-            runs = _runs(_poses(file, str(path)), str(path))
+            rows = list(_rows(file, str(path)))
     except OSError as error:
         raise StoreError(f"cannot read {path}: {error.strerror}") from None
     except UnicodeDecodeError:
         raise InputError(f"{path} must be UTF-8 text, got other bytes; convert the file") from None
-    if not runs:
+    if not rows:
         raise InputError(f"{path} must hold at least one pose, got only a header")
-    return runs
+    lines, names, outcome, poses = zip(*rows, strict=True)
+    time, x, y, heading = np.array(poses).T
+    whole, name = Run("", time, np.column_stack([x, y]), heading, list(outcome)), np.array(names)
+    named, ended = (name[1:] != "") | (name[:-1] != ""), np.isin(outcome[:-1], (GOAL, FAILED))
+    ends = np.where(named, name[1:] != name[:-1], ended | (np.diff(time) > GAP))
+    for at in np.flatnonzero(~ends & (np.diff(time) < 0))[:1].tolist():
+        raise InputError(f"{path} line {lines[at + 1]}: time must ascend within a run, got {time[at + 1]:g} after "
+                         f"{time[at]:g}")  # fmt: skip
+    parts = _parts(ends)
+    return [whole.part(names[part.start] or str(number), part) for number, part in enumerate(parts)]
 
 
 def cut_runs(whole: Run, ends: NDArray[np.bool_]) -> list[Run]:
     """The runs of a log, each of which ends where `ends` (n,) is true; named as the log, with their number."""
-    lasts = [*np.flatnonzero(ends[:-1]).tolist(), len(whole.time) - 1]
-    parts = [slice(a, b + 1) for a, b in zip([0, *(last + 1 for last in lasts)], lasts, strict=False)]
-    return [
-        Run(f"{whole.name} {number}" if len(parts) > 1 else whole.name,
-            whole.time[part], whole.points[part], whole.heading[part], whole.outcome[part])
-        for number, part in enumerate(parts)
-    ]  # fmt: skip
+    parts = _parts(ends[:-1])
+    if len(parts) == 1:
+        return [whole]
+    return [whole.part(f"{whole.name} {number}", part) for number, part in enumerate(parts)]
 
 
-def _poses(file: Iterable[str], name: str) -> Iterator[_Pose]:
+def _parts(ends: NDArray[np.bool_]) -> list[slice]:
+    """The slices of n poses that end where `ends` (n - 1,) is true, and at the last pose."""
+    borders = [0, *(np.flatnonzero(ends) + 1).tolist(), len(ends) + 1]
+    return [slice(*pair) for pair in pairwise(borders)]
+
+
+def _rows(file: Iterable[str], name: str) -> Iterator[tuple[int, str, str, tuple[float, ...]]]:
+    """Number of the line, run, outcome, and (time, x, y, heading) of each pose."""
     lines = iter(file)
     header = next(lines, "")
     separator = max(",;\t", key=header.count)
@@ -127,14 +131,14 @@ def _poses(file: Iterable[str], name: str) -> Iterator[_Pose]:
             raise InputError(f"{name} line 1: column '{missing[0]}' is missing; it needs {', '.join(NEEDED)}")
         for row in reader:
             if row:
-                yield _pose(row, columns, reader.line_num, name)
+                yield reader.line_num, *_pose(row, columns, f"{name} line {reader.line_num}")
     except csv.Error as error:
         raise InputError(f"{name} line {reader.line_num}: is no CSV ({error})") from None
 
 
-def _pose(row: list[str], columns: list[str], line: int, name: str) -> _Pose:
+def _pose(row: list[str], columns: list[str], where: str) -> tuple[str, str, tuple[float, ...]]:
     if len(row) != len(columns):
-        raise InputError(f"{name} line {line}: must have {len(columns)} values, got {len(row)}")
+        raise InputError(f"{where}: must have {len(columns)} values, got {len(row)}")
     value = {column: text.strip() for column, text in zip(columns, row, strict=True)}
 
     def number(column: str, most: float) -> float:
@@ -143,39 +147,14 @@ def _pose(row: list[str], columns: list[str], line: int, name: str) -> _Pose:
         except ValueError:
             found = math.nan
         if not abs(found) <= most:
-            raise InputError(f"{name} line {line}: {column} must be a number of magnitude {most:g} at most, "
-                             f"got {value[column][:40]!r}")  # fmt: skip
+            raise InputError(
+                f"{where}: {column} must be a number of magnitude {most:g} at most, got {value[column][:40]!r}"
+            )
         return found
 
     outcome = value.get("outcome", "").lower()
     if outcome not in (NOTHING, *OUTCOMES):
-        raise InputError(f"{name} line {line}: outcome must be empty or one of {', '.join(OUTCOMES)}, "
-                         f"got {outcome[:40]!r}")  # fmt: skip
+        raise InputError(f"{where}: outcome must be empty or one of {', '.join(OUTCOMES)}, got {outcome[:40]!r}")
     heading = number("heading", 1e4) if value.get("heading") else math.nan
-    time, x, y = number("time", _LATEST), number("x", _FARTHEST), number("y", _FARTHEST)
-    return _Pose(line, value.get("run", ""), time, x, y, heading, outcome)
-
-
-def _runs(poses: Iterable[_Pose], name: str) -> list[Run]:
-    runs: list[list[_Pose]] = []
-    for pose in poses:
-        last = runs[-1][-1] if runs else None
-        if last is None or _begins(pose, last):
-            runs.append([])
-        elif pose.time < last.time:
-            raise InputError(f"{name} line {pose.line}: time must ascend within a run, got {pose.time:g} after "
-                             f"{last.time:g}")  # fmt: skip
-        runs[-1].append(pose)
-    return [_run(run, number) for number, run in enumerate(runs)]
-
-
-def _begins(pose: _Pose, last: _Pose) -> bool:
-    if pose.run or last.run:
-        return pose.run != last.run
-    return last.outcome in (GOAL, FAILED) or pose.time - last.time > GAP
-
-
-def _run(poses: list[_Pose], number: int) -> Run:
-    columns = np.array([(pose.time, pose.x, pose.y, pose.heading) for pose in poses])
-    outcome = [pose.outcome for pose in poses]
-    return Run(poses[0].run or str(number), columns[:, 0], columns[:, 1:3], columns[:, 3], outcome)
+    pose = number("time", _LATEST), number("x", _FARTHEST), number("y", _FARTHEST), heading
+    return value.get("run", ""), outcome, pose

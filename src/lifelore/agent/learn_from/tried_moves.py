@@ -6,6 +6,7 @@ are no moves. A bump counts also where the map is free, because the robot met an
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -126,27 +127,23 @@ def _without_tremble(
     """The crossings without those into a cell that the robot left at once, after `depth` metres at most."""
     kept: list[_Crossing] = []
     for one in crossings:
-        last = kept[-1] if kept else None
-        if last is None or (last.state, last.target) != (one.target, one.state):
-            kept.append(one)
-            continue
-        inside = run.points[last.pose + 1 : one.pose + 1] - last.point
-        if (inside @ vectors[last.action]).max(initial=0.0) <= depth and BUMP not in run.outcome[
-            last.pose + 1 : one.pose + 1
-        ]:
-            kept.pop()
-        else:
-            kept.append(one)
+        if kept and (kept[-1].state, kept[-1].target) == (one.target, one.state):
+            last = kept[-1]
+            between = slice(last.pose + 1, one.pose + 1)
+            deepest = ((run.points[between] - last.point) @ vectors[last.action]).max(initial=0.0)
+            if deepest <= depth and BUMP not in run.outcome[between]:
+                kept.pop()
+                continue
+        kept.append(one)
     return kept
 
 
 def _seconds(crossings: list[_Crossing], gaps: NDArray[np.int64], cell: float) -> list[float]:
     """Seconds of each crossing's move, see `TriedMoves`; `gaps` counts the gaps before each pose."""
-    taken, last = [], None
-    for one in crossings:
-        entered = last is not None and last.target == one.state and gaps[last.pose] == gaps[one.pose]
-        taken.append(one.time - last.time if entered and last else one.slowness * cell)
-        last = one
+    taken = [one.slowness * cell for one in crossings]
+    for i, (last, one) in enumerate(pairwise(crossings), start=1):
+        if last.target == one.state and gaps[last.pose] == gaps[one.pose]:
+            taken[i] = one.time - last.time
     return taken
 
 

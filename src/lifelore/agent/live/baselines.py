@@ -1,7 +1,8 @@
 """The agents that can live a life: `lore`, its parts, and the baselines it is compared with."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
+from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.learning.model_learning import ExplorationStrategy
 
@@ -37,8 +38,21 @@ Q_AGENTS = ("lore", "prior", "scratch")
 """A Q-learner has no model: with the prior, `lore` and `prior` are the same agent; without it, it is `scratch`."""
 
 
-def baselines_for(agent: str, learner: str) -> list[str]:
-    """Names of the agents that live the same tasks as `agent`, for comparison; ``all`` stands for `lore`.
+def agent_kind(name: str, settings: LifeSettings) -> AgentKind:
+    """What an agent uses with these settings: no prior without a condition, no remembered moves in Q-learning."""
+    kind = AGENTS[name]
+    return replace(
+        kind,
+        uses_prior=kind.uses_prior and settings.prior.condition != "none",
+        remembers=kind.remembers and settings.learner == "model",
+    )
+
+
+def agents_for(agent: str, learner: str, compare: bool = True) -> list[str]:
+    """Names of all agents that live when `agent` is asked for; memory stores the first one's knowledge.
+
+    The others live the same tasks for comparison; with `compare` False the agent lives alone. ``all`` stands for
+    `lore` and asks for the baselines by name, so they live in any case.
 
     Raises
     ------
@@ -51,15 +65,6 @@ def baselines_for(agent: str, learner: str) -> list[str]:
         raise NotFoundError(f"agent must be one of {', '.join(AGENTS)}, all; got '{agent}'")
     if learner == "q" and agent not in (*Q_AGENTS, "all"):
         raise InputError(f"learner 'q' has agents {', '.join(Q_AGENTS)}, got '{agent}': use learner 'model'")
-    if agent == "all" and learner == "model":
-        return [name for name in AGENTS if name != "lore"]
-    return [] if agent == "scratch" else ["scratch"]
-
-
-def agents_for(agent: str, learner: str, compare: bool = True) -> list[str]:
-    """Names of all agents that live when `agent` is asked for; memory stores the first one's knowledge.
-
-    With `compare` False the agent lives alone; ``all`` asks for the baselines by name, so they live too.
-    """
-    baselines = baselines_for(agent, learner)
-    return ["lore" if agent == "all" else agent, *(baselines if compare or agent == "all" else [])]
+    if agent == "all":
+        return list(AGENTS) if learner == "model" else ["lore", "scratch"]
+    return [agent, "scratch"] if compare and agent != "scratch" else [agent]

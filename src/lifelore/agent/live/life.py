@@ -7,23 +7,23 @@ from dataclasses import dataclass, field, replace
 from threading import Event
 
 from lifelore.agent.life.loop import LivedTask, run_life
-from lifelore.agent.live.baselines import AGENTS, agents_for
+from lifelore.agent.live.baselines import agent_kind, agents_for
 from lifelore.agent.live.buildings.map_watch import MapWatch
 from lifelore.agent.live.buildings.recognition import Place, own_place, recognised_place
 from lifelore.agent.live.driven.driven_tasks import DrivenTasks
 from lifelore.agent.live.goals.destinations import NamedPlaces
 from lifelore.agent.live.goals.job_progress import JobProgress
-from lifelore.agent.live.goals.own_places import OwnGoal, own_places
+from lifelore.agent.live.goals.own_places import own_places
 from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.agent.live.life_size import size_of_life
 from lifelore.agent.live.lived_tasks import DRIVEN, Result, TasksOfLife
 from lifelore.agent.live.lore import Lore
 from lifelore.agent.live.output.known_building import KnownBuilding
 from lifelore.agent.live.searched_tasks import SearchedTasks
-from lifelore.agent.live.settings_document import path_text, settings_document
+from lifelore.agent.live.settings_document import settings_document
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Progress, Record
-from lifelore.domains.buildings.floor import Floor, floor_of
+from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.buildings.occupancy_map import OccupancyMap
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.worlds import map_from_settings, world_from_settings
@@ -111,50 +111,50 @@ def live(
     StoreError
         Memory cannot store the task; earlier tasks stay stored.
     """
-    stop = stop or Event()
+    stop, notify = stop or Event(), notify or (lambda line: None)
     began = time.perf_counter()
-    agents_for(settings.agent, settings.learner)  # a mistake in the name shows before the map is read
+    first = agents_for(settings.agent, settings.learner)[0]  # a mistake in the name shows before the map is read
     map_watch = MapWatch(settings.world) if settings.watch else None
     occupancy = map_from_settings(settings.world) if settings.world.domain == "building" else None
     world = world_from_settings(settings.world, occupancy)
-    with open_memory(settings.memory.location) as memory:
-        first = agents_for(settings.agent, settings.learner)[0]
+    with open_memory(settings.memory.location) as memory, ThreadPoolExecutor(settings.jobs) as pool:
         place = _place(settings, world, occupancy, memory, first)
         names, notice = size_of_life(settings, place.world.n_states)
         if settings.driven:
             notice = _KNOWN_GOALS if settings.destinations else None
-        if notify and notice:
+        if notice:
             notify(notice)
-        jobs = _job_progress(settings, place, memory)
+        jobs = None
+        if settings.goals:
+            key, again = NamedPlaces.of(place).key, settings.again
+            jobs = JobProgress.recalled(settings.goals, settings.memory.robot, key, memory, again)
         if jobs and jobs.finished:
             settings = replace(settings, goals=jobs.unfinished(settings.goals))
-            if notify:
-                notify(jobs.notice())
-        with ThreadPoolExecutor(settings.jobs) as pool:
-            if settings.driven:
-                tasks: TasksOfLife = DrivenTasks(settings, memory, jobs)
-            else:
-                tasks = SearchedTasks(settings, names, memory, pool)
-            life = _GridLife(settings, place, occupancy, tasks, memory, map_watch, jobs, watch, notify)
-            run_life(
-                life,
-                settings.n_tasks,
-                memory=memory,
-                robot=settings.memory.robot,
-                refresh=settings.memory.refresh,
-                progress=progress,
-                stop=stop,
-                notify=notify,
-            )
-        report = _report(settings, life, time.perf_counter() - began)
+            notify(jobs.notice())
+        tasks: TasksOfLife = SearchedTasks(settings, names, memory, pool)
+        if settings.driven:
+            tasks = DrivenTasks(settings, memory, jobs)
+        life = _GridLife(settings, tasks, memory, map_watch, jobs, watch, notify)
+        life.settle(place, occupancy, 0)
+        run_life(
+            life,
+            settings.n_tasks,
+            memory=memory,
+            robot=settings.memory.robot,
+            refresh=settings.memory.refresh,
+            progress=progress,
+            stop=stop,
+            notify=notify,
+        )
+        report = life.report(time.perf_counter() - began)
         building = None
         if life.given is not None:
-            building = KnownBuilding.recalled(life.place, life.given, memory, life.tasks.lore.model)
+            building = KnownBuilding.recalled(life.place, life.given, memory, tasks.lore.model)
     return Life(
         report,
-        life.world,
+        life.place.world,
         life.results,
-        life.tasks.lore,
+        tasks.lore,
         stop.is_set(),
         start=life.places.start,
         first_here=life.first_here,
@@ -167,8 +167,7 @@ def _place(
 ) -> Place:
     """The remembered building of the world, if the agent remembers transitions of buildings."""
     name = settings.memory.building
-    remembers = settings.driven or (AGENTS[agent].remembers and settings.learner == "model")
-    if occupancy is not None and remembers:
+    if occupancy is not None and (settings.driven or agent_kind(agent, settings).remembers):
         return recognised_place(settings.world, world, occupancy, memory, name)
     if name is not None:
         raise InputError(
@@ -177,94 +176,72 @@ def _place(
     return own_place(world, occupancy)
 
 
-def _floor_at(place: Place) -> Floor:
-    assert place.occupancy is not None, "a building has a map"
-    return floor_of(place.occupancy, place.world)
-
-
-def _job_progress(settings: LifeSettings, place: Place, memory: Memory) -> JobProgress | None:
-    if not settings.goals:
-        return None
-    progress = JobProgress.recalled(settings.goals, settings.memory.robot, NamedPlaces.of(place).key, memory)
-    return replace(progress, finished=0, day=0.0) if settings.again else progress
-
-
+@dataclass
 class _GridLife:
-    """A life in progress: where it is lived, its tasks, and what memory stores of them."""
+    """A life in progress: where it is lived, its tasks, and what memory stores of them; a `RunningLife`."""
 
-    def __init__(
-        self,
-        settings: LifeSettings,
-        place: Place,
-        given: OccupancyMap | None,
-        tasks: TasksOfLife,
-        memory: Memory,
-        map_watch: MapWatch | None,
-        jobs: JobProgress | None,
-        watch: Watcher | None,
-        notify: Callable[[str], None] | None,
-    ) -> None:
-        self.settings, self.tasks, self.memory = settings, tasks, memory
-        self.map_watch, self.jobs, self.watch, self.notify = map_watch, jobs, watch, notify
-        self.unstored: list[Record] = []
-        self._settle(place, given, first=0)
-        self.tasks_before = memory.tasks(settings.memory.robot)
-        self.finished: list[dict] = []
-        self.results: list[dict[str, Result]] = []
-        self.map_changes: list[dict] = []
+    settings: LifeSettings
+    tasks: TasksOfLife
+    memory: Memory
+    map_watch: MapWatch | None
+    jobs: JobProgress | None
+    watch: Watcher | None
+    notify: Callable[[str], None]
+    unstored: list[Record] = field(default_factory=list)
+    finished: list[dict] = field(default_factory=list)
+    results: list[dict[str, Result]] = field(default_factory=list)
+    map_changes: list[dict] = field(default_factory=list)
 
-    def _settle(self, place: Place, given: OccupancyMap | None, first: int) -> None:
+    def __post_init__(self) -> None:
+        self.tasks_before = self.memory.tasks(self.settings.memory.robot)
+
+    def settle(self, place: Place, given: OccupancyMap | None, first: int) -> None:
         """Live at `place` from task number `first` on; changes nothing if a goal is not free there."""
-        names = NamedPlaces.of(place)
-        places = own_places(self.settings, place.world, lambda: _floor_at(place), names, self.memory, first)
+        places = own_places(self.settings, place, self.memory, first)
         self.tasks.settle(place, places)
-        self.world, self.place, self.given, self.first_here = place.world, place, given, first
-        self.named, self.places = names, places
+        self.place, self.given, self.first_here, self.places = place, given, first, places
         self.unstored = self.unstored + place.news
 
     def recall(self) -> None:
         """The first agent knows what memory holds; at the start all agents do, and then learn by themselves."""
         self.tasks.recall()
 
-    def _look_at_map(self, index: int, done: int) -> None:
+    def _look_at_map(self, map_watch: MapWatch, index: int, done: int) -> None:
         """Replace the world if the watched map has changed; keep it if the new map cannot be used."""
-        path = self.settings.world.map
         change: dict = {"before_task": index}
-        assert self.map_watch is not None, "only a watched map is looked at"
+        line = f"map {self.settings.world.map} changed before task {index}"
         try:
-            given = self.map_watch.changed()
+            given = map_watch.changed()
             if given is None:
                 return
-            change |= self._replace_map(given, done)
-            line = (
-                f"map {path} changed before task {index}: {self.world.n_states:,} places, "
-                f"{int(100 * change['agreement'])} % of the remembered ones agree"
-            )
+            world = world_from_settings(self.settings.world, given)
+            self.settle(_place(self.settings, world, given, self.memory, self.tasks.names[0]), given, done)
+            # All agents move to the new map, and still know what agrees with it.
+            agreement, n_states = self.tasks.carry(), self.place.world.n_states
+            change |= {"used": True, "n_states": n_states, "agreement": round(agreement, 4)}
+            line += f": {n_states:,} places, {int(100 * agreement)} % of the remembered ones agree"
         except InputError as error:
             change |= {"used": False, "reason": str(error)}
-            line = f"map {path} changed before task {index}, but cannot be used: {error}; the last good map stays"
+            line += f", but cannot be used: {error}; the last good map stays"
         self.map_changes.append(change)
-        if self.notify:
-            self.notify(line)
-
-    def _replace_map(self, given: OccupancyMap, done: int) -> dict:
-        """Move all agents to the new map; what agrees with it, they still know."""
-        world = world_from_settings(self.settings.world, given)
-        self._settle(_place(self.settings, world, given, self.memory, self.tasks.names[0]), given, done)
-        return {"used": True, "n_states": self.world.n_states, "agreement": round(self.tasks.carry(), 4)}
+        self.notify(line)
 
     def live(self, number: int, seq: int, stop: Event) -> LivedTask:
         """Live a task with each agent; look at the watched map before."""
         if self.map_watch and seq:
-            self._look_at_map(number, seq)
+            self._look_at_map(self.map_watch, number, seq)
         own = self.places.goal(seq)
         lived = self.tasks.live(number, seq, own, stop)
-        about = {"index": number, "goal": self.world.cells[lived.goal].tolist(), "how": self.tasks.how}
+        world = self.place.world
+        about = {"index": number, "goal": world.cells[lived.goal].tolist(), "how": self.tasks.how}
         about |= ({} if own is None else own.to_dict()) | dict(lived.report)
         agents = {name: result.to_dict() for name, result in lived.results.items()}
+        records = [*lived.records, *self.unstored, *([] if own is None else own.names)]
+        if self.jobs is not None:
+            records.append(self.jobs.record(seq + 1))
         return LivedTask(
-            [*lived.records, *self.unstored, *self._names(own), *self._job_records(seq)],
-            about | {"world": self.world.fingerprint, "agents": agents, **lived.document},
+            records,
+            about | {"world": world.fingerprint, "agents": agents, **lived.document},
             (about | {"agents": agents}, lived.results),
         )
 
@@ -280,31 +257,21 @@ class _GridLife:
             for old in self.results[-1 - TASKS_WITH_POLICY].values():
                 old.drop_arrays()
 
-    def _names(self, own: OwnGoal | None) -> list[Record]:
-        """The record by which memory knows a named destination from now on."""
-        end = own and own.destination
-        if end is None or end.name is None or end.point is None:
-            return []
-        return [self.named.record(end.name, end.point)]
-
-    def _job_records(self, seq: int) -> list[Record]:
-        """The record by which memory knows that the job of task number `seq` is finished."""
-        return [] if self.jobs is None else [self.jobs.record(seq + 1)]
-
-
-def _report(settings: LifeSettings, life: _GridLife, seconds: float) -> dict:
-    world, place = life.world, life.place
-    report = {
-        "domain": settings.world.domain,
-        "how": life.tasks.how,
-        "map": path_text(settings.world.map),
-        "n_states": world.n_states,
-        "building": place.report,
-        "seed": settings.seed,
-        "settings": settings_document(settings, world, life.memory.location),
-        "tasks": life.finished,
-        "summary": life.tasks.summary(life.finished) if life.finished else {},
-        "memory": {"tasks_before": life.tasks_before, "tasks_after": life.memory.tasks(settings.memory.robot)},
-        "seconds": round(seconds, 3),
-    }
-    return report | ({"map_changes": life.map_changes} if settings.watch else {})
+    def report(self, seconds: float) -> dict:
+        """The JSON document of ``lifelore live``."""
+        settings, world, robot = self.settings, self.place.world, self.settings.memory.robot
+        document = settings_document(settings, world, self.memory.location)
+        report = {
+            "domain": settings.world.domain,
+            "how": self.tasks.how,
+            "map": document["map"],
+            "n_states": world.n_states,
+            "building": self.place.report,
+            "seed": settings.seed,
+            "settings": document,
+            "tasks": self.finished,
+            "summary": self.tasks.summary(self.finished) if self.finished else {},
+            "memory": {"tasks_before": self.tasks_before, "tasks_after": self.memory.tasks(robot)},
+            "seconds": round(seconds, 3),
+        }
+        return report | ({"map_changes": self.map_changes} if settings.watch else {})

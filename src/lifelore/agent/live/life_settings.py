@@ -4,7 +4,7 @@ The first sentence on a setting stands in ``lifelore live --settings``.
 """
 
 from dataclasses import dataclass, field
-from math import ceil, isfinite
+from math import ceil
 
 from lifelore.action.priors.action_prior import FORMS, MOST_WEIGHT
 from lifelore.action.priors.exploration import TIES
@@ -18,8 +18,8 @@ CONDITIONS = ("observation", "state", "none")
 SENSORS = ("touch", "lidar")
 DEFAULT_RANGE = 5.0
 """Range of a lidar in metres."""
-MOST_LENGTH = 1e3
-"""Largest cell side and robot radius, in metres: a larger number is a typing mistake."""
+MOST_RANGE = 1e3
+"""Largest range of a lidar in metres: a larger number is a typing mistake."""
 MOST_REWARD = 1e6
 """Largest magnitude of rewards and of α⁰: a larger number hides the others by rounding."""
 LONGEST_NAME = 200
@@ -56,9 +56,8 @@ class SensorSettings:
         _check_choice("sensor", self.kind, SENSORS)
         if self.range is not None and self.kind != "lidar":
             raise InputError(f"range applies to sensor lidar, got {self.range} for {self.kind}; leave it out")
-        _check_magnitude("range", self.range, MOST_LENGTH)
-        if self.range is not None and self.range <= 0:
-            raise InputError(f"range must be positive, got {self.range}")
+        if self.range is not None and not 0 < self.range <= MOST_RANGE:
+            raise InputError(f"range must lie in (0, {MOST_RANGE:g}] metres, got {self.range}")
 
     @property
     def reach(self) -> float | None:
@@ -311,18 +310,13 @@ class LifeSettings:
 
 
 def _check_world(world: WorldSettings) -> None:
-    """Check also the numbers that this domain does not use, because the report repeats them."""
-    _check_magnitude("cell", world.cell, MOST_LENGTH)
-    _check_magnitude("robot_radius", world.robot_radius, MOST_LENGTH)
-    _check_magnitude("goal_reward", world.goal_reward, MOST_REWARD)
-    _check_magnitude("wall_reward", world.wall_reward, MOST_REWARD)
-    _check_magnitude("density", world.density, 1.0)
+    """Check what the worlds themselves allow, and a life does not."""
     if world.discount is not None and not 0 < world.discount < 1:
         raise InputError(f"discount must lie in (0, 1), got {world.discount}")
-    if world.goal_reward is not None and world.goal_reward <= 0:
-        raise InputError(f"goal_reward must be positive, got {world.goal_reward}")
-    if world.wall_reward is not None and world.wall_reward > 0:
-        raise InputError(f"wall_reward must be at most 0, got {world.wall_reward}")
+    if world.goal_reward is not None and not 0 < world.goal_reward <= MOST_REWARD:
+        raise InputError(f"goal_reward must be positive and at most {MOST_REWARD:g}, got {world.goal_reward}")
+    if world.wall_reward is not None and not -MOST_REWARD <= world.wall_reward <= 0:
+        raise InputError(f"wall_reward must be at most 0 and at least {-MOST_REWARD:g}, got {world.wall_reward}")
 
 
 def _check_choice(name: str, value: str, known: tuple[str, ...]) -> None:
@@ -333,10 +327,3 @@ def _check_choice(name: str, value: str, known: tuple[str, ...]) -> None:
 def _check_whole(name: str, value: int, least: int, most: int) -> None:
     if not (isinstance(value, int) and least <= value <= most):
         raise InputError(f"{name} must be a whole number from {least} to {most:,}, got {value}")
-
-
-def _check_magnitude(name: str, value: float | None, most: float) -> None:
-    if value is not None and not isfinite(value):
-        raise InputError(f"{name} must be a finite number, got {value}")
-    if value is not None and abs(value) > most:
-        raise InputError(f"{name} must be of magnitude {most:g} at most, got {value}")

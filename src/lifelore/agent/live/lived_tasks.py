@@ -6,7 +6,7 @@ from threading import Event
 from typing import Any, Protocol
 
 from lifelore.agent.live.buildings.recognition import Place
-from lifelore.agent.live.driven.driven_job import DrivenJob
+from lifelore.agent.live.driven.drive_job import DrivenJob
 from lifelore.agent.live.goals.own_places import OwnGoal, OwnPlaces
 from lifelore.agent.live.lore import Lore
 from lifelore.agent.live.task_result import TaskResult

@@ -1,11 +1,12 @@
-"""Summary of a life: means of each agent over thirds of the tasks, and ratios to `scratch`."""
+"""Summary of a life: means of each agent over thirds of the tasks, and comparisons of agents."""
 
 import math
 
 from lifelore.core.learning.learning_metrics import jumpstart
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 
-MEASURES = ("steps_to_80", "steps_to_goal", "collisions", "episodes_to_80", "first_return")
+SEARCH_MEASURES = ("steps_to_80", "steps_to_goal", "collisions", "episodes_to_80", "first_return")
+DRIVE_MEASURES = ("seconds", "metres", "refusals", "replans")
 
 
 def plain(estimate: Estimate) -> dict:
@@ -21,47 +22,71 @@ def third(tasks: list[dict], which: str) -> list[dict]:
 
 
 def summarise(tasks: list[dict]) -> dict:
-    """Ratios to scratch with raw means over the last third, and means of each agent over the first and last third.
+    """Summary of searches: ratios to scratch with raw means over the last third, and means of each agent.
 
     Parameters
     ----------
     tasks : list of dict
         The ``tasks`` of a life's report, at least one.
     """
-    agents = list(tasks[0]["agents"])
-    last = third(tasks, "last")
-    summary: dict = {}
-    if "scratch" in agents:
-        for name in agents:
-            if name != "scratch":
-                summary[f"{name}_vs_scratch"] = _compared_with_scratch(last, name)
-    summary["agents"] = {name: _own(tasks, name) for name in agents}
-    return summary
+    agents, last = list(tasks[0]["agents"]), third(tasks, "last")
+    others = [name for name in agents if name != "scratch" and "scratch" in agents]
+    compared = {f"{name}_vs_scratch": _compared_with_scratch(last, name) for name in others}
+    return compared | _means(tasks, SEARCH_MEASURES, "capped")
+
+
+def summarise_drives(tasks: list[dict]) -> dict:
+    """Summary of driven jobs: the first agent compared with the other, if there is one, and means of each agent.
+
+    ``lore_vs_map_only`` has the ratio of seconds and the number of refusals over all jobs and over the last third.
+    """
+    agents, summary = list(tasks[0]["agents"]), {}
+    if len(agents) > 1:
+        parts = {"all": tasks, "last": third(tasks, "last")}
+        summary["lore_vs_map_only"] = {which: _compared_drives(part, *agents) for which, part in parts.items()}
+    return summary | _means(tasks, DRIVE_MEASURES, "no_way")
+
+
+def _means(tasks: list[dict], measures: tuple[str, ...], failed: str) -> dict:
+    """``agents``: means over the first and last third; `failed` names the count of goals that were not reached."""
+    return {
+        "agents": {
+            name: {
+                which: {m: plain(mean_estimate(_column(third(tasks, which), name, m))) for m in measures}
+                | {failed: _failures(third(tasks, which), name)}
+                for which in ("first", "last")
+            }
+            for name in tasks[0]["agents"]
+        }
+    }
 
 
 def _column(tasks: list[dict], agent: str, measure: str) -> list[float]:
     return [task["agents"][agent][measure] for task in tasks]
 
 
+def _failures(tasks: list[dict], agent: str) -> int:
+    return sum(not reached for reached in _column(tasks, agent, "reached"))
+
+
 def _compared_with_scratch(tasks: list[dict], name: str) -> dict:
-    steps, other_steps = _column(tasks, name, "steps_to_80"), _column(tasks, "scratch", "steps_to_80")
-    hits, other_hits = _column(tasks, name, "collisions"), _column(tasks, "scratch", "collisions")
-    first, other_first = _column(tasks, name, "first_return"), _column(tasks, "scratch", "first_return")
+    def compared(measure: str, compare=ratio_estimate) -> dict:
+        own, scratch = _column(tasks, name, measure), _column(tasks, "scratch", measure)
+        raw = {name: sum(own) / len(own), "scratch": sum(scratch) / len(scratch)}
+        return plain(compare(own, scratch)) | {"raw": raw}
+
     return {
-        "steps_to_80_ratio": plain(ratio_estimate(steps, other_steps)) | _raw(name, steps, other_steps),
-        "collisions_ratio": plain(ratio_estimate(hits, other_hits)) | _raw(name, hits, other_hits),
-        "jumpstart": plain(jumpstart(first, other_first)) | _raw(name, first, other_first),
-        "capped": {who: sum(not t["agents"][who]["reached"] for t in tasks) for who in (name, "scratch")},
+        "steps_to_80_ratio": compared("steps_to_80"),
+        "collisions_ratio": compared("collisions"),
+        "jumpstart": compared("first_return", jumpstart),
+        "capped": {who: _failures(tasks, who) for who in (name, "scratch")},
     }
 
 
-def _raw(name: str, own: list[float], scratch: list[float]) -> dict:
-    return {"raw": {name: sum(own) / len(own), "scratch": sum(scratch) / len(scratch)}}
-
-
-def _own(tasks: list[dict], name: str) -> dict:
+def _compared_drives(tasks: list[dict], name: str, other: str) -> dict:
+    own, others = _column(tasks, name, "seconds"), _column(tasks, other, "seconds")
     return {
-        which: {m: plain(mean_estimate(_column(third(tasks, which), name, m))) for m in MEASURES}
-        | {"capped": sum(not reached for reached in _column(third(tasks, which), name, "reached"))}
-        for which in ("first", "last")
+        "seconds_ratio": plain(ratio_estimate(own, others)),
+        "seconds": {name: sum(own), other: sum(others)},
+        "refusals": {who: sum(_column(tasks, who, "refusals")) for who in (name, other)},
     }

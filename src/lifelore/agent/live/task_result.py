@@ -1,6 +1,6 @@
 """Result of one agent on one task: the numbers of the report and the arrays for the pictures."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,8 +9,6 @@ from lifelore.core.learning.curve import Curve, new_curve
 
 THRESHOLD = 0.8
 """Share of the optimal return at which a task counts as learnt (thesis §3.4.1, Fig. 3.3)."""
-CHECK_EVERY, CHECK_EVERY_BY_SIGHT = 100, 10
-"""Steps between two evaluations of the greedy policy, by touch and by sight; the same for every agent."""
 
 
 @dataclass
@@ -19,6 +17,7 @@ class TaskResult:
 
     first_return : discounted return of the first episode
     collisions : refused moves until the threshold (or the cap)
+    steps_to_goal : steps until the goal was found: entered, or seen by a lidar; the cap if it never was
     steps_to_80, episodes_to_80 : steps and episodes until the greedy policy's exact value, averaged over the
         starts, is ≥ 80 % of the optimum; the cap (all episodes at full length) if it never is
     reached : whether the threshold was reached
@@ -28,11 +27,11 @@ class TaskResult:
     trace : (n_checks, 2) steps and share of the optimum at each check
     curve : the episodes that began
     complete : number of episodes that ended; one less if the last was interrupted
-    steps_to_goal : steps until the goal was found: entered, or seen by a lidar; the cap if it never was
     """
 
     first_return: float
     collisions: int
+    steps_to_goal: int
     steps_to_80: int
     episodes_to_80: int
     reached: bool
@@ -42,7 +41,6 @@ class TaskResult:
     trace: NDArray[np.float64] = field(repr=False)
     curve: Curve = field(repr=False)
     complete: int = field(repr=False)
-    steps_to_goal: int
 
     def drop_arrays(self) -> None:
         """Drop the episodes and the arrays of the world's size."""
@@ -60,18 +58,5 @@ class TaskResult:
         }
 
     def to_dict(self) -> dict:
-        """The numbers as JSON data."""
-        return {
-            "first_return": self.first_return,
-            "collisions": self.collisions,
-            "steps_to_goal": self.steps_to_goal,
-            "steps_to_80": self.steps_to_80,
-            "episodes_to_80": self.episodes_to_80,
-            "reached": self.reached,
-            "final_return": self.final_return,
-        }
-
-
-def first_arrival(curve: Curve, cap: int) -> int:
-    """Steps until the first episode that reached its goal had ended; `cap` if none did."""
-    return int(curve.steps[: curve.reached.argmax() + 1].sum()) if curve.reached.any() else cap
+        """The numbers as JSON data: the fields that `repr` shows."""
+        return {one.name: getattr(self, one.name) for one in fields(self) if one.repr}

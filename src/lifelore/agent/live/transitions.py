@@ -38,7 +38,7 @@ def model_table(world: GridWorld, model: WorldModel) -> NDArray[np.int64]:
 
 
 def to_record(
-    world: GridWorld, table: NDArray[np.int64], before: NDArray[np.int64], grid: BuildingGrid | None = None
+    world: GridWorld, table: NDArray[np.int64], before: NDArray[np.int64] | int, grid: BuildingGrid | None = None
 ) -> Record:
     """The entries of `table` that differ from `before`, as a record in which the newest value counts.
 

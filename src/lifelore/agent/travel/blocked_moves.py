@@ -20,6 +20,8 @@ BASE = 0.01
 """Share of refusals where nothing was observed; counts as `STRENGTH` observations."""
 STRENGTH = 4.0
 """Observations of the base rate that each hour of a place has before any observation of its own."""
+HALF_LIFE = 7.0
+"""Days after which half of a belief about a blocked place is left."""
 BASE_HALF_LIFE = 60.0
 """Days after which an observation counts half in a base rate."""
 NEWEST = 16
@@ -34,9 +36,7 @@ class _Events(NamedTuple):
     refused: NDArray[np.bool_]
 
 
-def blocked_probability(
-    world: GridWorld, passes: Passes, clock: float, half_life: float = 7.0
-) -> NDArray[np.float64]:
+def blocked_probability(world: GridWorld, passes: Passes, clock: float) -> NDArray[np.float64]:
     """Probability (n_states, 4) that each move is refused at `clock`; 1 where the map has no move.
 
     Parameters
@@ -45,8 +45,6 @@ def blocked_probability(
     passes : Passes
     clock : float
         Seconds since 1970 by the robot's clock.
-    half_life : float
-        Days, above 0.
     """
     minute = int(clock // 60)
     events = _events(world, passes)
@@ -56,14 +54,14 @@ def blocked_probability(
     surprise, seen = np.zeros(len(entered)), np.zeros(len(entered), np.int64)
     for rows in _newest_last(events):
         place, now = events.place[rows], events.minute[rows]
-        left = surprise[place] * 0.5 ** ((now - seen[place]) / DAY / half_life)
+        left = surprise[place] * 0.5 ** ((now - seen[place]) / DAY / HALF_LIFE)
         expected = base[place, hour_of(now)]
         before = np.clip(expected + left, 1e-4, 1 - 1e-4)
         refused = events.refused[rows]
         if_blocked = before * np.where(refused, REFUSED_IF_BLOCKED, 1 - REFUSED_IF_BLOCKED)
         if_open = (1 - before) * np.where(refused, REFUSED_IF_OPEN, 1 - REFUSED_IF_OPEN)
         surprise[place], seen[place] = if_blocked / (if_blocked + if_open) - expected, now
-    left = surprise * 0.5 ** (np.maximum(minute - seen, 0) / DAY / half_life)
+    left = surprise * 0.5 ** (np.maximum(minute - seen, 0) / DAY / HALF_LIFE)
     blocked = np.full(world.n_states, unseen)
     blocked[entered] = np.clip(base[:, int(hour_of(np.array(minute)))] + left, 0.0, 1.0)
     return np.where(world.neighbour >= 0, blocked[world.neighbour], 1.0)

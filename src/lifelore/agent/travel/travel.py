@@ -16,7 +16,6 @@ from lifelore.agent.travel import passes as records
 from lifelore.agent.travel.blocked_moves import blocked_probability
 from lifelore.agent.travel.edge_times import typical_seconds
 from lifelore.agent.travel.passes import Passes, joined, observed
-from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.domains.grids.cell_numbers import BuildingGrid
 from lifelore.domains.grids.grid_world import GridWorld
@@ -36,19 +35,12 @@ class Travel:
         States and actions are its own.
     grid : BuildingGrid
         Where the world lies in the grid of the building's first map.
-    half_life : float
-        Days after which half of a belief about a blocked place is left, above 0.
     """
 
     world: GridWorld
     grid: BuildingGrid
-    half_life: float = 7.0
     _parts: list[Passes] = field(default_factory=list, repr=False)
     _stored: int = field(default=0, repr=False)
-
-    def __post_init__(self) -> None:
-        if not self.half_life > 0:
-            raise InputError(f"half_life must be a number of days above 0, got {self.half_life}")
 
     @classmethod
     def recalled(cls, world: GridWorld, grid: BuildingGrid, memory: Memory) -> "Travel":
@@ -104,7 +96,7 @@ class Travel:
         All moves into one cell share it. A refusal raises it, a pass lowers it, and age brings it back to the
         share of refusals at this hour.
         """
-        return blocked_probability(self.world, self.passes, clock, self.half_life)
+        return blocked_probability(self.world, self.passes, clock)
 
     def cost(self, clock: float) -> NDArray[np.float64]:
         """Seconds (n_states, 4) to plan with: typical seconds + probability of refusal · `DETOUR`.

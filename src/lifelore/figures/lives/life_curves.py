@@ -14,13 +14,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def draw_life(
-    tasks: ArrayLike,
-    agents: Mapping[str, Mapping[str, ArrayLike]],
-    *,
-    title: str = "",
-    measures: Mapping[str, str] | None = None,
-) -> "Figure":
+MEASURES = {"steps_to_80": "Steps to 80 % of optimal", "collisions": "Collisions on the way there"}
+"""Measure to the title of its panel."""
+
+
+def draw_life(tasks: ArrayLike, agents: Mapping[str, Mapping[str, ArrayLike]], *, title: str = "") -> "Figure":
     """A panel a measure: a point a task, a line for the running median, a cross where the cap was met.
 
     Parameters
@@ -28,22 +26,19 @@ def draw_life(
     tasks : (n,) int
         Numbers of the tasks.
     agents : mapping
-        Agent's name (a key of `style.COLOURS`) to its measures, each (n,), and ``reached``, (n,) bool.
+        Agent's name (a key of `style.COLOURS`) to its `MEASURES`, each (n,), and ``reached``, (n,) bool.
     title : str
-    measures : mapping, optional
-        Measure to the title of its panel; default: steps to 80 % and collisions.
 
     Raises
     ------
     InputError
         An agent's measure has not one value a task.
     """
-    measures = measures or {"steps_to_80": "Steps to 80 % of optimal", "collisions": "Collisions on the way there"}
     tasks = np.asarray(tasks)
     with house_style():
         figure = new_figure(10.4, 4.6)
-        row = figure.subplots(1, len(measures), squeeze=False)[0]
-        for axes, (measure, words) in zip(row, measures.items(), strict=True):
+        row = figure.subplots(1, len(MEASURES))
+        for axes, (measure, words) in zip(row, MEASURES.items(), strict=True):
             for name, of in agents.items():
                 _draw_agent(axes, tasks, name, np.asarray(of[measure], float), np.asarray(of["reached"], bool))
             _dress(axes, tasks, measure != "steps_to_80")

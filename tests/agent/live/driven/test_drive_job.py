@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.agent.live.driven.drive_job import drive_job
-from lifelore.agent.live.driven.driven_job import DrivenJob
-from lifelore.agent.live.driven.route import RoutePlanner
+from lifelore.agent.live.driven.drive_job import DrivenJob, drive_job
 from lifelore.agent.live.transitions import frame_key
 from lifelore.agent.travel.travel import Travel
 from lifelore.domains.buildings.busy_building import REFUSED_SECONDS, Drive
@@ -22,7 +20,6 @@ class Ring:
 
     def __init__(self) -> None:
         self.world = GridWorld.from_free("ring", RING, frame=Frame(0.5))
-        self.planner = RoutePlanner(self.world)
         self.travel = Travel(self.world, BuildingGrid(frame_key(self.world)))
         self.closed: list[int] = []
 
@@ -38,7 +35,7 @@ class Ring:
 
     def drive(self, start: int, goal: int, clock: float) -> DrivenJob:
         travel = self.travel
-        return drive_job(self.world, self.planner, start, goal, clock, travel.cost, self.building, travel.observe)
+        return drive_job(self.world, start, goal, clock, travel.cost, self.building, travel.observe)
 
 
 def test_the_straight_way_is_driven():

@@ -1,8 +1,7 @@
 """An interrupted job list goes on with its first unfinished job."""
 
-import subprocess
-import sys
 from pathlib import Path
+from threading import Event
 
 import numpy as np
 import pytest
@@ -17,22 +16,6 @@ from lifelore.memory import open_memory
 
 JOBS = "time,name,x,y\n08:00,lab,5.05,3.05\n09:00,dock,0.55,0.55\n10:00,lab,,\n11:00,,3.05,2.05\n"
 NAMES = ["lab", "dock", "lab", None]
-KILLED = """
-import os, signal, sys
-from lifelore.agent.live.goals.job_list import read_jobs
-from lifelore.agent.live.life import live
-from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
-from lifelore.domains.worlds import WorldSettings
-
-finished = []
-def kill(task, results):
-    finished.append(task)
-    if len(finished) == 2:
-        os.kill(os.getpid(), signal.SIGKILL)
-
-live(LifeSettings(WorldSettings(map="room.yaml"), memory=MemorySettings("life.db"), goals=read_jobs("jobs.csv"),
-     compare=False), watch=kill)
-"""
 
 
 @pytest.fixture
@@ -46,28 +29,27 @@ def folder(tmp_path: Path, monkeypatch) -> Path:
     return tmp_path
 
 
-def life(memory: str = "life.db", jobs: str = "jobs.csv", notify=None, robot: str = "robot", **changes) -> Life:
+def life(
+    memory="life.db", jobs="jobs.csv", notify=None, robot="robot", progress=None, stop=None, **changes
+) -> Life:
     where = MemorySettings(memory, robot)
-    return live(
-        LifeSettings(
-            WorldSettings(map="room.yaml"), memory=where, goals=read_jobs(jobs), compare=False, **changes
-        ),
-        notify=notify,
+    settings = LifeSettings(
+        WorldSettings(map="room.yaml"), memory=where, goals=read_jobs(jobs), compare=False, **changes
     )
+    return live(settings, notify=notify, progress=progress, stop=stop)
 
 
 def names(life: Life) -> list[str | None]:
     return [task.get("name") for task in life.report["tasks"]]
 
 
-def kill_after_two_jobs() -> None:
-    done = subprocess.run([sys.executable, "-c", KILLED], check=False)
-    assert done.returncode == -9
+def stop_after_two_jobs() -> None:
+    stop = Event()
+    life(stop=stop, progress=lambda done, total, label: stop.set() if done == 2 else None)
 
 
-@pytest.mark.slow
-def test_a_killed_list_goes_on_and_lives_the_same_tasks_as_an_unbroken_one(folder):
-    kill_after_two_jobs()
+def test_a_stopped_list_goes_on_and_lives_the_same_tasks_as_an_unbroken_one(folder):
+    stop_after_two_jobs()
     lines = []
     rest = life(notify=lines.append)
     assert names(rest) == NAMES[2:]
@@ -80,9 +62,8 @@ def test_a_killed_list_goes_on_and_lives_the_same_tasks_as_an_unbroken_one(folde
     assert rest.report["tasks"] == whole.report["tasks"][2:]
 
 
-@pytest.mark.slow
 def test_a_name_means_the_point_of_the_list_also_if_memory_has_moved_it(folder):
-    kill_after_two_jobs()
+    stop_after_two_jobs()
     (folder / "moved.csv").write_text("name,x,y\nlab,2.05,1.05\n")
     with pytest.raises(InputError, match="goals line 2: memory knows 'lab'"):
         life(jobs="moved.csv")
@@ -90,9 +71,8 @@ def test_a_name_means_the_point_of_the_list_also_if_memory_has_moved_it(folder):
     assert life(move_names=True).report["tasks"][0]["position"] == [5.05, 3.05]
 
 
-@pytest.mark.slow
 def test_again_another_list_or_another_robot_starts_with_the_first_job(folder):
-    kill_after_two_jobs()
+    stop_after_two_jobs()
     (folder / "later.csv").write_text(JOBS.replace("11:00", "12:00"))
     assert names(life(jobs="later.csv")) == NAMES
     assert names(life(robot="other")) == NAMES

@@ -111,8 +111,10 @@ def test_a_name_within_a_cell_of_its_place_is_no_question(room):
 def test_names_belong_to_their_building(room, tmp_path):
     life_in(room, goals=jobs(Destination(LAB, "lab")))
     assert life_in(room, goal="lab", cell=0.25, tasks=1).report["tasks"][0]["position"] == list(LAB)
+    hall = np.pad(np.zeros((20, 80), np.uint8), 1, constant_values=1)
+    write_occupancy_map(tmp_path / "hall.yaml", OccupancyMap(hall, 0.1))
     with pytest.raises(NotFoundError, match="memory knows no names here"):
-        live(flat_settings(domain="building", memory=str(tmp_path / "life.db"), goal="lab"))
+        life_in(str(tmp_path / "hall.yaml"), goal="lab")
 
 
 def test_names_are_forgotten_with_their_building(room):

@@ -1,72 +1,60 @@
-"""Paths of policies small enough to follow by hand."""
+"""Paths of policies small enough to follow by hand, and beside a walk step by step."""
 
 import numpy as np
 import pytest
 
-from lifelore.agent.live.output.greedy_paths import greedy_path, greedy_paths_of, path_lengths
+from lifelore.agent.live.output.greedy_paths import greedy_paths_of
 from lifelore.core.planning.planning import greedy_policy, optimal_q
 from lifelore.domains import make_world
 from lifelore.domains.grids.grid_world import GridWorld
 
 NORTH, SOUTH, EAST, WEST = range(4)
+CORRIDOR = GridWorld.from_free("corridor", np.ones((1, 4), bool))
 
 
-@pytest.fixture
-def corridor() -> GridWorld:
-    return GridWorld.from_free("corridor", np.ones((1, 4), bool))
+def walk(world: GridWorld, policy: np.ndarray, start: int, goal: int) -> list[int]:
+    """The states passed on the way to the goal; empty if it is not reached."""
+    path = [start]
+    while path[-1] != goal and policy[path[-1]] >= 0 and len(path) <= world.n_states:
+        path.append(int(world.neighbour[path[-1], policy[path[-1]]]))
+        if path[-1] < 0:
+            return []
+    return path if path[-1] == goal else []
 
 
 @pytest.mark.parametrize(
     ("policy", "path"),
     [
         ([EAST, EAST, EAST, -1], [0, 1, 2, 3]),
-        ([EAST, WEST, EAST, -1], [0, 1]),  # to and fro
-        ([EAST, NORTH, EAST, -1], [0, 1]),  # into the wall
-        ([EAST, -1, EAST, -1], [0, 1]),  # no move known
-        ([-1, -1, -1, -1], [0]),
+        ([EAST, EAST, EAST, WEST], [0, 1, 2, 3]),
+        ([EAST, WEST, EAST, -1], None),  # to and fro
+        ([EAST, NORTH, EAST, -1], None),  # into the wall
+        ([EAST, -1, EAST, -1], None),  # no move known
     ],
 )
-def test_corridor(corridor, policy, path):
-    assert greedy_path(corridor, policy, 0, 3).tolist() == path
+def test_from_one_start_through_a_corridor(policy, path):
+    ways = greedy_paths_of(CORRIDOR, policy, 0, 3, start=0)
+    assert [one.tolist() for one in ways.paths] == ([] if path is None else [path])
+    assert ways.arriving == (path is not None)
 
 
-def test_at_the_goal_the_path_is_the_goal(corridor):
-    assert greedy_path(corridor, [EAST] * 4, 3, 3).tolist() == [3]
+@pytest.mark.parametrize("seed", range(3))
+def test_paths_are_those_of_a_walk_under_any_policy(seed):
+    world, rng = make_world("lattice", size=9), np.random.default_rng(seed)
+    best = greedy_policy(optimal_q(world.task(7).tables(), world.discount))
+    policy = np.where(rng.random(world.n_states) < 0.2, rng.integers(-1, 4, world.n_states), best)
+    walks = [walk(world, policy, start, 7) for start in range(world.n_states) if start != 7]
+    ways = greedy_paths_of(world, policy, 5, 7)
+    assert (ways.task, ways.goal) == (5, 7)
+    assert ways.arriving == pytest.approx(np.mean([bool(path) for path in walks]))
+    assert 0 < ways.arriving < 1
+    assert all(path.tolist() in walks for path in ways.paths)
+    assert len(ways.paths[0]) == max(map(len, walks))
+    assert len({int(path[0]) for path in ways.paths}) == min(3, sum(map(bool, walks)))
 
 
-def test_lengths_in_the_corridor(corridor):
-    assert path_lengths(corridor, [EAST, EAST, EAST, EAST], 3).tolist() == [3, 2, 1, 0]
-    assert path_lengths(corridor, [WEST, EAST, WEST, NORTH], 2).tolist() == [-1, 1, 0, -1]
-
-
-def test_lengths_agree_with_paths_under_any_policy():
-    world = make_world("lattice", size=9)
-    policy = np.random.default_rng(3).integers(-1, 4, world.n_states)
-    lengths = path_lengths(world, policy, 7)
-    for start in range(world.n_states):
-        path = greedy_path(world, policy, start, 7)
-        assert len(set(path.tolist())) == len(path)
-        assert lengths[start] == (len(path) - 1 if path[-1] == 7 else -1)
-    assert -1 in lengths
-
-
-def test_ways_start_apart_and_arrive():
-    world = make_world("lattice", size=9)
-    policy = greedy_policy(optimal_q(world.task(0).tables(), world.discount))
-    ways = greedy_paths_of(world, policy, 5, 0)
-    assert (ways.task, ways.goal, ways.arriving, len(ways.paths)) == (5, 0, 1.0, 3)
-    assert len({int(path[0]) for path in ways.paths}) == 3
-    assert all(path[-1] == 0 for path in ways.paths)
-    assert len(ways.paths[0]) - 1 == path_lengths(world, policy, 0).max()
-
-
-def test_ways_where_few_or_none_arrive(corridor):
-    some = greedy_paths_of(corridor, [WEST, WEST, EAST, -1], 0, 3)
+def test_ways_where_few_or_none_arrive():
+    some = greedy_paths_of(CORRIDOR, [WEST, WEST, EAST, -1], 0, 3)
     assert ([path.tolist() for path in some.paths], some.arriving) == ([[2, 3]], pytest.approx(1 / 3))
-    none = greedy_paths_of(corridor, [-1] * 4, 0, 3)
+    none = greedy_paths_of(CORRIDOR, [-1] * 4, 0, 3)
     assert (none.paths, none.arriving) == ([], 0.0)
-
-
-def test_a_fixed_start_is_the_only_one(corridor):
-    ways = greedy_paths_of(corridor, [EAST] * 4, 0, 3, start=1)
-    assert ([path.tolist() for path in ways.paths], ways.arriving) == ([[1, 2, 3]], 1.0)

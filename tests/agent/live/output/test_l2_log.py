@@ -114,14 +114,6 @@ def test_a_life_is_logged_episode_by_episode(learner, tmp_path):
     assert info == {"scenario_type": "ste", "agent": "scratch"}
 
 
-def test_a_watched_life_is_the_life(tmp_path):
-    settings = [flat_settings(tasks=2, memory=str(tmp_path / f"{i}.db")) for i in range(2)]
-    seen = []
-    plain, watched = live(settings[0]), live(settings[1], watch=lambda task, results: seen.append(set(results)))
-    assert plain.report["tasks"] == watched.report["tasks"]
-    assert seen == [{"lore", "scratch"}] * 2
-
-
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -149,9 +141,9 @@ def test_columns_stay(tmp_path):
 
 def test_logs_that_cannot_be(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(InputError, match="folder must be a folder, but"):
+    with pytest.raises(InputError, match="folder must name a folder, got"):
         L2Log(tmp_path / "file", "life", ["reward"])
-    with pytest.raises(InputError, match="folder must be a folder, but"):
+    with pytest.raises(InputError, match="folder must name a folder, got"):
         LifeLog(tmp_path / "file", "lattice")
     with pytest.raises(InputError, match="scenario must be of letters, digits"):
         L2Log(tmp_path, "a/b", ["reward"])
@@ -159,5 +151,5 @@ def test_logs_that_cannot_be(tmp_path):
         L2Log(tmp_path, "life", [])
     log = L2Log(tmp_path, "life", ["reward"])
     (log.path / "worker-0" / "0-train" / "data-log.tsv").mkdir(parents=True)
-    with pytest.raises(StoreError, match=r"cannot write .*data-log\.tsv"):
+    with pytest.raises(StoreError, match=r"cannot write into .*0-train"):
         log.add("train", "maze_1", {"reward": [1.0]})

@@ -1,5 +1,4 @@
 """Buildings in memory: their maps, how a map that was saved again is recognised, and maps that change.
 
-Read in this order: `building_record`, `recognition`, `building_memory`, `remembered_moves`, `carried_model`,
-`map_watch`.
+Read in this order: `building_record`, `recognition`, `building_memory`, `remembered_moves`, `map_watch`.
 """

@@ -1,6 +1,6 @@
 """Recognises the building that a map shows, and makes the world on the building's own grid."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from lifelore.agent.live.buildings.building_record import (
@@ -94,40 +94,26 @@ def recognised_place(
         The map does not fit the building of this name, or is remembered under another name.
     """
     found, reason = recognised_building(occupancy, world, memory, name)
+    laid, corner = occupancy, (0, 0)
     if found is None:
         free_name = name or _free_name(settings, occupancy, remembered_buildings(memory))
-        building = Building.new(occupancy, free_name)
-        new = Recognised(building, IDENTITY, 1.0)
-        return replace(_place(world, (0, 0), building, new, occupancy, memory, reason), occupancy=occupancy)
-    laid, corner = aligned_map(occupancy, found.pose, found.building.frame, world.frame.cell)
-    if found.pose != IDENTITY or laid.origin != occupancy.origin or laid.state.shape != occupancy.state.shape:
-        world = world_from_settings(settings, laid)
-    return replace(_place(world, corner, found.building, found, occupancy, memory, None), occupancy=laid)
-
-
-def _place(
-    world: GridWorld,
-    corner: tuple[int, int],
-    building: Building,
-    found: Recognised,
-    occupancy: OccupancyMap,
-    memory: Memory,
-    reason: str | None,
-) -> Place:
-    frame = Frame(world.frame.cell, building.frame.origin)
-    grid = BuildingGrid(frame_key(world, frame), corner, building.key)
+        found = Recognised(Building.new(occupancy, free_name), IDENTITY, 1.0)
+    else:
+        laid, corner = aligned_map(occupancy, found.pose, found.building.frame, world.frame.cell)
+        if found.pose != IDENTITY or laid.origin != occupancy.origin or laid.state.shape != occupancy.state.shape:
+            world = world_from_settings(settings, laid)
+    building, recognised = found.building, reason is None
+    grid = BuildingGrid(frame_key(world, Frame(world.frame.cell, building.frame.origin)), corner, building.key)
     earlier = same_place(world, memory, grid)
-    # Memories of earlier versions of Lifelore hold transitions in this frame and no map.
-    recognised = reason is None or earlier is not None
     report = {
         "name": building.name,
         "recognised": recognised,
         "agreement": round(earlier.agreement, 4)
         if earlier and earlier.record.about["frame"] == grid.frame
         else None,
-        "walls": round(found.walls, 4) if reason is None else None,
+        "walls": round(found.walls, 4) if recognised else None,
         "pose": list(found.pose) if recognised else None,
-        "reason": None if recognised else reason,
+        "reason": reason,
     }
     news = []
     if memory.recall(MAP_KIND, map_digest(occupancy), VERSION) is None:
@@ -135,7 +121,7 @@ def _place(
             building.record(occupancy, found.pose, memory.recall(KIND, building.key, VERSION)),
             map_record(occupancy, building, found.pose, found.walls),
         ]
-    return Place(world, grid, report, [record for record in news if len(record.slots)])
+    return Place(world, grid, report, [record for record in news if len(record.slots)], laid)
 
 
 def _free_name(settings: WorldSettings, occupancy: OccupancyMap, buildings: list[Building]) -> str:

@@ -16,6 +16,7 @@ from scipy.sparse import csgraph
 
 from lifelore.agent.live import transitions
 from lifelore.agent.live.buildings.recognition import Place
+from lifelore.agent.live.driven.route import chain_to
 from lifelore.agent.live.lore import same_place
 from lifelore.core.errors import NotFoundError
 from lifelore.domains.grids.cell_numbers import COLUMN_BITS
@@ -93,13 +94,7 @@ class RememberedMoves:
 
     def chain(self, start: int, goal: int, true_only: bool = True) -> list[int]:
         """Cell indices of a shortest way, `start` first; empty if no way is known."""
-        _, before = self.reached(start, true_only)
-        chain = [goal]
-        while chain[-1] != start:
-            if before[chain[-1]] < 0:
-                return []
-            chain.append(int(before[chain[-1]]))
-        return chain[::-1]
+        return chain_to(goal, start, self.reached(start, true_only)[1])
 
     def contradicted(self, chain: list[int]) -> NDArray[np.float64]:
         """Points (n, 2) in metres, halfway on the moves of a chain that the map does not have."""

@@ -6,18 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.life.loop import Stopped
-from lifelore.agent.live.buildings.carried_model import carried_model
 from lifelore.agent.live.buildings.recognition import Place
-from lifelore.agent.live.driven.drive_job import drive_job
-from lifelore.agent.live.driven.drive_summary import summarise_drives
-from lifelore.agent.live.driven.driven_job import DrivenJob
+from lifelore.agent.live.driven.drive_job import DrivenJob, drive_job
 from lifelore.agent.live.driven.robot_clock import RobotClock, clock_text, job_start, list_day, next_start
-from lifelore.agent.live.driven.route import RoutePlanner
+from lifelore.agent.live.driven.route import cheapest_route, moves_along
 from lifelore.agent.live.goals.job_progress import JobProgress
 from lifelore.agent.live.goals.own_places import OwnGoal, OwnPlaces
 from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.agent.live.lived_tasks import DRIVEN, LivedByAll
 from lifelore.agent.live.lore import Lore, prior_scope
+from lifelore.agent.live.summary import summarise_drives
 from lifelore.agent.travel.travel import Travel
 from lifelore.core.streams import stream
 from lifelore.domains.buildings.busy_building import SPEED, BusyBuilding, Drive
@@ -54,7 +52,6 @@ class DrivenTasks:
     def settle(self, place: Place, places: OwnPlaces) -> None:
         """Live in this place from now on."""
         self._place, self._places = place, places
-        self._planner = RoutePlanner(place.world)
         self._busy = BusyBuilding(place.world, self._settings.seed) if self._settings.in_busy_building else None
 
     def recall(self) -> None:
@@ -69,8 +66,7 @@ class DrivenTasks:
         """Take over the remembered moves that agree with the new place; the share that agrees."""
         old = self._lore
         self.recall()
-        self._lore.model, agreement = carried_model(old, self._place, self._memory)
-        return agreement
+        return self._lore.carry(old, self._memory)
 
     def live(self, number: int, seq: int, own: OwnGoal | None, stop: Event) -> LivedByAll:
         """Drive to the goal with memory, and again on the map alone, from one start at one clock."""
@@ -91,15 +87,15 @@ class DrivenTasks:
             "start": self._place.world.cells[start].tolist(),
             "map_metres": round(self._map_metres(start, own.state), 3),
         }
-        known = {"places": int((self._lore.model.percept >= 0).sum())}
+        known = {"places": self._lore.known_places}
         return LivedByAll(own.state, results, [one for one in records if len(one.slots)], report, known)
 
     def _begin(self, own: OwnGoal) -> float:
         """When the job starts: at its time, or in turn; not before the robot is free."""
-        if self._jobs is None or own.time is None:
-            return next_start(self._clock.clock)
-        day = self._jobs.begun(lambda: list_day(self._clock.clock, own.time))
-        return max(job_start(own.time, day), self._clock.clock)
+        now, time = self._clock.clock, own.time
+        if self._jobs is None or time is None:
+            return next_start(now)
+        return max(job_start(time, self._jobs.begun(lambda: list_day(now, time))), now)
 
     def _start(self, number: int, seq: int, goal: int) -> int:
         """The given start, or any place; in a job list, from the second job on, where the robot stands."""
@@ -119,21 +115,19 @@ class DrivenTasks:
         def building(way: NDArray[np.int64], clock: float) -> Drive:
             return quiet_building(way, clock, world) if self._busy is None else self._busy.drive(way, clock, noise)
 
-        return drive_job(world, self._planner, start, goal, clock, travel.cost, building, travel.observe)
+        return drive_job(world, start, goal, clock, travel.cost, building, travel.observe)
 
     def _map_metres(self, start: int, goal: int) -> float:
         """Length of the shortest route on the map; 0 where there is none."""
         world = self._place.world
-        route = self._planner.route(start, goal, np.where(world.neighbour >= 0, 1.0, np.inf))
+        route = cheapest_route(world, start, goal, np.where(world.neighbour >= 0, 1.0, np.inf))
         return 0.0 if route is None else float(route.lengths.sum()) * world.frame.cell
 
     def _walked(self, drive: DrivenJob) -> None:
         """Remember the moves that were made, for ways over known places."""
         world, model = self._place.world, self._lore.model
         for leg in drive.legs:
-            at, to = leg[:-1], leg[1:]
-            action = (world.neighbour[at] == to[:, None]).argmax(axis=1)
-            model.target[at, action] = to
+            model.target[leg[:-1], moves_along(world, leg)] = leg[1:]
             model.percept[leg] = world.percepts[leg]
 
     def summary(self, tasks: list[dict]) -> dict:
@@ -144,6 +138,5 @@ class DrivenTasks:
 def quiet_building(way: NDArray[np.int64], clock: float, world: GridWorld) -> Drive:
     """A building in which every move is made at full speed, and none is refused."""
     seconds = np.full(len(way) - 1, world.frame.cell / SPEED)
-    actions = (world.neighbour[way[:-1]] == way[1:, None]).argmax(axis=1)
     ends = clock + seconds.cumsum()
-    return Drive(way[:-1], actions, ends - seconds, seconds, float(ends[-1]))
+    return Drive(way[:-1], moves_along(world, way), ends - seconds, seconds, float(ends[-1]))

@@ -12,6 +12,7 @@ from datetime import UTC, datetime, time
 import numpy as np
 
 from lifelore.agent.live.buildings.recognition import Place
+from lifelore.agent.live.goals.job_list import parsed_time
 from lifelore.core.protocols import Record
 from lifelore.domains.grids.cell_numbers import cells_in_building, states_in_building
 from lifelore.memory import Memory
@@ -70,34 +71,23 @@ def next_start(clock: float) -> float:
     return start
 
 
-def list_day(clock: float, first_time: str | None) -> float:
+def list_day(clock: float, first_time: str) -> float:
     """Midnight of the first working day on which a job list can start at the time of its first job."""
     day = BEGIN + (clock - BEGIN) // DAY * DAY
-    of_day = None if first_time is None else _parsed(first_time)
-    earliest = math.inf if of_day is None or isinstance(of_day, datetime) else day + of_day
-    while not _is_working_day(day) or earliest < clock:
-        day, earliest = day + DAY, earliest + DAY
+    dated = isinstance(parsed_time(first_time), datetime)
+    while not _is_working_day(day) or (job_start(first_time, day) < clock and not dated):
+        day += DAY
     return day
 
 
 def job_start(text: str, day: float) -> float:
     """The clock that a time of a job list means: a number of seconds or HH:MM on `day`, or a date in ISO 8601."""
-    when = _parsed(text)
-    return when.timestamp() if isinstance(when, datetime) else day + when
-
-
-def _parsed(text: str) -> float | datetime:
-    """Seconds of the day, or a date."""
-    try:
-        return float(text)
-    except ValueError:
-        pass
-    try:
-        of_day = time.fromisoformat(text)
-    except ValueError:
-        date = datetime.fromisoformat(text)
-        return date if date.tzinfo else date.replace(tzinfo=UTC)
-    return 3600.0 * of_day.hour + 60.0 * of_day.minute + of_day.second
+    when = parsed_time(text)
+    if isinstance(when, datetime):
+        return (when if when.tzinfo else when.replace(tzinfo=UTC)).timestamp()
+    if isinstance(when, time):
+        return day + 3600.0 * when.hour + 60.0 * when.minute + when.second
+    return day + when
 
 
 def clock_text(clock: float) -> str:

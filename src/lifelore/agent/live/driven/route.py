@@ -31,67 +31,64 @@ class Route:
     lengths: NDArray[np.float64]
 
 
-class RoutePlanner:
-    """Plans routes in one building.
+def cheapest_route(world: GridWorld, start: int, goal: int, seconds: NDArray[np.float64]) -> Route | None:
+    """The route of least seconds; None if no moves lead to the goal.
 
     Parameters
     ----------
     world : GridWorld
+    start, goal : int
+        States.
+    seconds : (n_states, 4) float
+        Seconds of each move, > 0; inf for a move that is not possible.
     """
+    neighbour = world.neighbour.astype(np.int64)
+    ends = [neighbour[np.maximum(neighbour[:, first], 0), second] for first, second in _CORNERS]
+    targets, steps = np.column_stack([neighbour, *ends]), _steps(neighbour, seconds)
+    possible = np.isfinite(steps)
+    begin = np.concatenate([[0], possible.sum(axis=1).cumsum()])
+    graph = sparse.csr_array((steps[possible], targets[possible], begin), shape=(len(steps),) * 2)
+    _, before = csgraph.dijkstra(graph, indices=start, return_predecessors=True)
+    chain = chain_to(goal, start, before)
+    states, lengths = chain[:1], []
+    for place, following in pairwise(chain):
+        step = int(np.where(targets[place] == following, steps[place], np.inf).argmin())
+        if step >= 4:
+            orders = _CORNERS[step - 4], _CORNERS[step - 4][::-1]
+            first, _ = min(
+                orders, key=lambda two: seconds[place, two[0]] + seconds[neighbour[place, two[0]], two[1]]
+            )
+            states.append(int(neighbour[place, first]))
+        states.append(following)
+        lengths += [1.0] if step < 4 else [DIAGONAL, DIAGONAL]
+    return Route(np.array(states, np.int64), np.array(lengths)) if chain else None
 
-    def __init__(self, world: GridWorld) -> None:
-        self._neighbour = neighbour = world.neighbour.astype(np.int64)
-        ends = [neighbour[np.maximum(neighbour[:, first], 0), second] for first, second in _CORNERS]
-        self._targets = np.column_stack([neighbour, *ends])
 
-    def route(self, start: int, goal: int, seconds: NDArray[np.float64]) -> Route | None:
-        """The route of least seconds; None if no moves lead to the goal.
+def chain_to(goal: int, start: int, before: NDArray[np.int32]) -> list[int]:
+    """The nodes of a shortest path, `start` first; empty if none leads to `goal`.
 
-        Parameters
-        ----------
-        start, goal : int
-            States.
-        seconds : (n_states, 4) float
-            Seconds of each move, > 0; inf for a move that is not possible.
-        """
-        steps = self._steps(seconds)
-        possible = np.isfinite(steps)
-        begin = np.concatenate([[0], possible.sum(axis=1).cumsum()])
-        n = len(steps)
-        graph = sparse.csr_array((steps[possible], self._targets[possible], begin), shape=(n, n))
-        _, before = csgraph.dijkstra(graph, indices=start, return_predecessors=True)
-        if start != goal and before[goal] < 0:
-            return None
-        chain = [goal]
-        while chain[-1] != start:
-            chain.append(int(before[chain[-1]]))
-        return self._moves(chain[::-1], steps, seconds)
+    `before` (n,) is the node before each node, negative where there is none, as SciPy's `dijkstra` returns it.
+    """
+    chain = [goal]
+    while chain[-1] != start:
+        if before[chain[-1]] < 0:
+            return []
+        chain.append(int(before[chain[-1]]))
+    return chain[::-1]
 
-    def _steps(self, seconds: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(n_states, 8) seconds of the four moves and the four diagonal steps."""
-        seconds = np.where(self._neighbour < 0, np.inf, seconds)
-        after = seconds[np.maximum(self._neighbour, 0)]
-        corners = []
-        for first, second in _CORNERS:
-            ways = seconds[:, first] + after[:, first, second], seconds[:, second] + after[:, second, first]
-            free = np.isfinite(ways[0]) & np.isfinite(ways[1])
-            corners.append(np.where(free, DIAGONAL * np.minimum(*ways), np.inf))
-        return np.column_stack([seconds, *corners])
 
-    def _moves(self, chain: list[int], steps: NDArray[np.float64], seconds: NDArray[np.float64]) -> Route:
-        states, lengths = chain[:1], []
-        for place, following in pairwise(chain):
-            step = int(np.where(self._targets[place] == following, steps[place], np.inf).argmin())
-            if step >= 4:
-                first = self._cheaper_first(place, _CORNERS[step - 4], seconds)
-                states.append(int(self._neighbour[place, first]))
-            states.append(following)
-            lengths += [1.0] if step < 4 else [DIAGONAL, DIAGONAL]
-        return Route(np.array(states, np.int64), np.array(lengths))
+def moves_along(world: GridWorld, states: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The action (n,) of each move along a way of (n + 1,) states."""
+    return (world.neighbour[states[:-1]] == states[1:, None]).argmax(axis=1)
 
-    def _cheaper_first(self, place: int, corner: tuple[int, int], seconds: NDArray[np.float64]) -> int:
-        """The first of a corner's two moves in the order that takes less time."""
-        orders = (corner, corner[::-1])
-        return min(
-            orders, key=lambda two: seconds[place, two[0]] + seconds[self._neighbour[place, two[0]], two[1]]
-        )[0]
+
+def _steps(neighbour: NDArray[np.int64], seconds: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n_states, 8) seconds of the four moves and the four diagonal steps."""
+    seconds = np.where(neighbour < 0, np.inf, seconds)
+    after = seconds[np.maximum(neighbour, 0)]
+    corners = []
+    for first, second in _CORNERS:
+        ways = seconds[:, first] + after[:, first, second], seconds[:, second] + after[:, second, first]
+        free = np.isfinite(ways[0]) & np.isfinite(ways[1])
+        corners.append(np.where(free, DIAGONAL * np.minimum(*ways), np.inf))
+    return np.column_stack([seconds, *corners])

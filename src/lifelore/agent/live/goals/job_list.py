@@ -159,22 +159,36 @@ def _check_kind(keyed: tuple[tuple, Job], kind: str, line: int) -> None:
 
 def _time_key(job: Job) -> tuple:
     """Kind of the time, and a value to sort by."""
-    text = job.time
-    if text is None:
+    if job.time is None:
         raise _bad(job.line, "time is missing, but other lines have one; give every line a time, or none")
     try:
-        seconds = float(text)
-        if math.isfinite(seconds):
-            return "a number of seconds", seconds
+        value = parsed_time(job.time)
     except ValueError:
-        pass
-    for kind, parse in (("a clock time", time.fromisoformat), ("a date", datetime.fromisoformat)):
+        raise _bad(
+            job.line, f"time must be a number of seconds, HH:MM or an ISO 8601 date, got '{job.time[:40]}'"
+        ) from None
+    if not isinstance(value, time | datetime):
+        return "a number of seconds", value
+    kind = "a date" if isinstance(value, datetime) else "a clock time"
+    return kind + (" with a time zone" if value.tzinfo else ""), value
+
+
+def parsed_time(text: str) -> float | time | datetime:
+    """Seconds of the day, a clock time or a date, as a job list writes them.
+
+    Raises
+    ------
+    ValueError
+        The text is none of them.
+    """
+    for parse in (float, time.fromisoformat, datetime.fromisoformat):
         try:
             value = parse(text)
         except ValueError:
             continue
-        return kind + (" with a time zone" if value.tzinfo else ""), value
-    raise _bad(job.line, f"time must be a number of seconds, HH:MM or an ISO 8601 date, got '{text[:40]}'")
+        if not isinstance(value, float) or math.isfinite(value):
+            return value
+    raise ValueError(f"no time: {text}")
 
 
 def _bad(line: int, reason: str) -> InputError:

@@ -36,12 +36,14 @@ class JobProgress:
     day: float = 0.0
 
     @classmethod
-    def recalled(cls, jobs: tuple[Job, ...], robot: str, building: str, memory: Memory) -> "JobProgress":
-        """The progress that memory holds; none for a list that is new or was finished."""
+    def recalled(
+        cls, jobs: tuple[Job, ...], robot: str, building: str, memory: Memory, again: bool = False
+    ) -> "JobProgress":
+        """The progress that memory holds; none for a list that is new, was finished or is started `again`."""
         listed = [(job.time, job.destination.name, job.destination.point) for job in jobs]
         text = json.dumps([robot, building, listed])
         key = hashlib.sha256(text.encode()).hexdigest()[:32]
-        record = memory.recall(KIND, key, VERSION)
+        record = None if again else memory.recall(KIND, key, VERSION)
         finished, day = (0, 0) if record is None else np.resize(np.append(record.values, 0), 2).tolist()
         return cls(key, len(jobs), finished, float(day)) if finished < len(jobs) else cls(key, len(jobs))
 

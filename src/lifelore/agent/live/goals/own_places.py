@@ -1,14 +1,16 @@
 """The start and the goals that the user chose for a life, as states of its world."""
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
+from lifelore.agent.live.buildings.recognition import Place
 from lifelore.agent.live.goals.destinations import Destination, NamedPlaces
 from lifelore.agent.live.goals.job_list import for_each, named_points
-from lifelore.agent.live.life_settings import LifeSettings, Place
+from lifelore.agent.live.life_settings import LifeSettings
+from lifelore.agent.live.life_settings import Place as Chosen
 from lifelore.core.errors import InputError
-from lifelore.domains.buildings.floor import Floor
+from lifelore.core.protocols import Record
+from lifelore.domains.buildings.floor import floor_of
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.memory import Memory
 
@@ -20,11 +22,13 @@ class OwnGoal:
     state : in the world of the life
     destination : its point and name; None in worlds without metres
     time : as in the job list
+    names : records by which memory knows the destination by its name from then on
     """
 
     state: int
     destination: Destination | None = None
     time: str | None = None
+    names: tuple[Record, ...] = ()
 
     def to_dict(self) -> dict:
         """JSON data: ``position`` in metres, ``name`` and ``time``, each where there is one."""
@@ -52,14 +56,7 @@ class OwnPlaces:
         return self.goals[0] if len(self.goals) == 1 else self.goals[seq - self.first]
 
 
-def own_places(
-    settings: LifeSettings,
-    world: GridWorld,
-    floor: Callable[[], Floor],
-    names: NamedPlaces,
-    memory: Memory,
-    first: int = 0,
-) -> OwnPlaces:
+def own_places(settings: LifeSettings, place: Place, memory: Memory, first: int = 0) -> OwnPlaces:
     """The places that the settings name, from task number `first` of the life on.
 
     Raises
@@ -70,25 +67,30 @@ def own_places(
     NotFoundError
         Memory does not know a name.
     """
+    world = place.world
     if settings.world.domain != "building":
         start = None if settings.start is None else grid_state("start", settings.start, world)
         goals = () if settings.goal is None else (OwnGoal(grid_state("goal", settings.goal, world)),)
         return _checked(OwnPlaces(start, goals))
     asked = [("goal", _destination(settings.goal), None)] if settings.goal is not None else []
     asked += [(f"goals line {job.line}", job.destination, job.time) for job in settings.goals[first:]]
-    named = named_points(settings.goals)
+    if settings.start is None and not asked:
+        return OwnPlaces()
+    names, named = NamedPlaces.of(place), named_points(settings.goals)
+    assert place.occupancy is not None, "a building has a map"
+    floor = floor_of(place.occupancy, world)
     farthest = math.inf if settings.move_names else world.frame.cell
 
-    def located(argument: str, end: Destination) -> OwnGoal:
+    def located(argument: str, end: Destination, time: str | None = None) -> OwnGoal:
         if end.point is None and end.name in named:
             end = Destination(named[end.name], end.name)
         end = names.located(argument, end, memory)
         _check_unmoved(argument, end, names, memory, farthest)
-        return OwnGoal(floor().state_at(argument, end.located_point), end)
+        records = () if end.name is None else (names.record(end.name, end.located_point),)
+        return OwnGoal(floor.state_at(argument, end.located_point), end, time, records)
 
     start = None if settings.start is None else located("start", _destination(settings.start)).state
-    goals = for_each(lambda one: replace(located(*one[:2]), time=one[2]), asked)
-    places = OwnPlaces(start, tuple(goals), first)
+    places = OwnPlaces(start, tuple(for_each(lambda one: located(*one), asked)), first)
     return places if settings.goals else _checked(places)
 
 
@@ -103,7 +105,7 @@ def _check_unmoved(argument: str, end: Destination, names: NamedPlaces, memory: 
         )
 
 
-def grid_state(argument: str, place: Place, world: GridWorld) -> int:
+def grid_state(argument: str, place: Chosen, world: GridWorld) -> int:
     """The state in the cell (row, column) of a world without metres.
 
     Raises
@@ -125,7 +127,7 @@ def grid_state(argument: str, place: Place, world: GridWorld) -> int:
     )
 
 
-def _destination(place: Place) -> Destination:
+def _destination(place: Chosen) -> Destination:
     return Destination(name=place) if isinstance(place, str) else Destination((float(place[0]), float(place[1])))
 
 

@@ -4,8 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy import sparse
+from scipy.sparse import csgraph
 
+from lifelore.agent.live.driven.route import chain_to
 from lifelore.domains.grids.grid_world import GridWorld
+
+N_PATHS = 3
+"""Largest number of paths of a task; more make the picture harder to read."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,72 +33,33 @@ class GreedyPaths:
     name: str | None = None
 
 
-def greedy_path(world: GridWorld, policy: ArrayLike, start: int, goal: int) -> NDArray[np.int32]:
-    """The states that following `policy` visits, `start` first.
-
-    Parameters
-    ----------
-    world : GridWorld
-    policy : (n_states,) int
-        Action of each state, -1 where none is known.
-    start, goal : int
-        States.
-
-    Returns
-    -------
-    (n,) int32
-        Ends with `goal` if the policy reaches it. Otherwise it ends where the policy has no action, hits a wall
-        or returns to a state of the path. No state occurs twice.
-    """
-    policy = np.asarray(policy)
-    path, seen, state = [start], {start}, start
-    while state != goal and policy[state] >= 0:
-        state = int(world.neighbour[state, policy[state]])
-        if state < 0 or state in seen:
-            break
-        path.append(state)
-        seen.add(state)
-    return np.array(path, np.int32)
-
-
-def path_lengths(world: GridWorld, policy: ArrayLike, goal: int) -> NDArray[np.int32]:
-    """Moves that `policy` needs from each state to `goal`, (n_states,); -1 where it never reaches the goal."""
-    policy = np.asarray(policy)
-    states = np.arange(world.n_states)
-    following = world.neighbour[states, np.maximum(policy, 0)]
-    following = np.where((policy < 0) | (following < 0) | (states == goal), states, following)
-    length = np.full(world.n_states, -1, np.int32)
-    length[goal] = 0
-    moved = True
-    while moved:
-        arrived = (length < 0) & (length[following] >= 0)
-        length[arrived] = length[following[arrived]] + 1
-        moved = bool(arrived.any())
-    return length
-
-
 def greedy_paths_of(
-    world: GridWorld, policy: ArrayLike, task: int, goal: int, start: int | None = None, n_paths: int = 3
+    world: GridWorld, policy: ArrayLike, task: int, goal: int, start: int | None = None
 ) -> GreedyPaths:
-    """Paths of a task from up to `n_paths` starts that are far apart; the first is the farthest from the goal.
+    """Paths of a task from up to `N_PATHS` starts that are far apart; the first is the farthest from the goal.
 
     Starts from which the policy never reaches the goal are left out. If `start` is given, it is the only start.
+    `policy` (n_states,) has the action of each state, -1 where none is known.
     """
-    length = path_lengths(world, policy, goal)
+    action = np.asarray(policy)
+    after = np.where(action >= 0, world.neighbour[np.arange(world.n_states), action], -1)
+    moved = np.flatnonzero(after >= 0)
+    back = sparse.csr_array((np.ones(len(moved)), (after[moved], moved)), shape=(world.n_states,) * 2)
+    length, following = csgraph.dijkstra(back, indices=goal, unweighted=True, return_predecessors=True)
     starts = np.delete(np.arange(world.n_states), goal) if start is None else np.array([start])
-    arriving = starts[length[starts] > 0]
-    chosen = _far_apart(world, arriving, length, goal, n_paths)
-    paths = [greedy_path(world, policy, state, goal) for state in chosen]
+    arriving = starts[(length[starts] > 0) & np.isfinite(length[starts])]
+    chosen = _far_apart(world, arriving, length, goal)
+    paths = [np.array(chain_to(state, goal, following)[::-1], np.int32) for state in chosen]
     return GreedyPaths(task, goal, paths, len(arriving) / len(starts))
 
 
-def _far_apart(world: GridWorld, states: NDArray, length: NDArray, goal: int, n: int) -> list[int]:
+def _far_apart(world: GridWorld, states: NDArray, length: NDArray, goal: int) -> list[int]:
     chosen: list[int] = []
     if not len(states):
         return chosen
     nearest = np.linalg.norm(world.cells[states] - world.cells[goal], axis=1)
     state = int(states[length[states].argmax()])
-    while len(chosen) < n:
+    while len(chosen) < N_PATHS:
         chosen.append(state)
         nearest = np.minimum(nearest, np.linalg.norm(world.cells[states] - world.cells[state], axis=1))
         if not nearest.any():

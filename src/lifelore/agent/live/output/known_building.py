@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.live.buildings.recognition import Place, recognised_place
-from lifelore.agent.live.goals.destinations import Destination, NamedPlaces, Point
+from lifelore.agent.live.goals.destinations import NamedPlaces, Point
 from lifelore.agent.live.lore import Lore, prior_scope
+from lifelore.agent.live.output.folder import folder_to_write
 from lifelore.agent.live.output.move_costs import MoveCosts
-from lifelore.agent.live.output.nav2_masks import known_places, write_masks
-from lifelore.agent.live.output.route_graph import write_route_graph
+from lifelore.agent.live.output.nav2_masks import write_masks
 from lifelore.agent.travel.travel import Travel
-from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.core.errors import NotFoundError
 from lifelore.core.learning.known_world import WorldModel
 from lifelore.domains.buildings.floor import Floor, floor_of
 from lifelore.domains.buildings.occupancy_map import OccupancyMap
@@ -52,11 +52,9 @@ class KnownBuilding:
             model = Lore.recalled(
                 place.world, prior_scope(place.world, "observation"), 1.0, memory, place.grid
             ).model
-        names = NamedPlaces.of(place)
-        ends = [names.located("places", Destination(name=name), memory) for name in names.names(memory)]
         travel = Travel.recalled(place.world, place.grid, memory)
-        places = {str(end): end.located_point for end in ends}
-        return cls(place.occupancy or given, given, known_places(model), travel, places)
+        places = NamedPlaces.of(place).points(memory)
+        return cls(place.occupancy or given, given, model.percept >= 0, travel, places)
 
     @cached_property
     def floor(self) -> Floor:
@@ -79,6 +77,8 @@ class KnownBuilding:
         OSError, StoreError
             The files cannot be written.
         """
+        from lifelore.agent.live.output.route_graph import write_route_graph
+
         if not self.known.any():
             return []
         write_masks(folder, self.costs, self.known, self.floor, self.given)
@@ -112,11 +112,5 @@ def write_known_building(
             f"memory knows no place of the map {settings.map} with this cell and robot radius; live there first "
             "(lifelore live --map, lifelore learn-from), or give the options with which the robot lived there"
         )
-    folder = Path(out)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
+    with folder_to_write(out) as folder:
         return known.write(folder)
-    except (FileExistsError, NotADirectoryError):
-        raise InputError(f"out must name a folder, got {out}; name another folder") from None
-    except OSError as error:
-        raise StoreError(f"cannot write into {out}: {error.strerror}; choose another folder with --out") from None

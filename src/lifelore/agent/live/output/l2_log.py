@@ -22,8 +22,9 @@ from numpy.typing import ArrayLike
 
 from lifelore.agent.live.baselines import AGENTS
 from lifelore.agent.live.lived_tasks import Result
+from lifelore.agent.live.output.folder import folder_to_write
 from lifelore.agent.live.task_result import TaskResult
-from lifelore.core.errors import InputError, StoreError
+from lifelore.core.errors import InputError
 
 VERSION = "1.1"
 STANDARD = (
@@ -78,7 +79,6 @@ class L2Log:
         self.path = Path(folder) / f"{scenario}-{moment:.6f}".replace(".", "-")
         self._columns: list[str] | None = None
         self._block, self._type, self._experiences = -1, "", 0
-        _make(self.path)
         logger = {"metrics_columns": self.measures, "log_format_version": VERSION}
         for name, data in (("logger_info", logger), ("scenario_info", dict(info or {}))):
             _write(self.path / f"{name}.json", json.dumps(data, indent=2))
@@ -140,31 +140,16 @@ class L2Log:
 
     def _write(self, rows: list[list]) -> None:
         file = self.path / WORKER / f"{self._block}-{self._type}" / "data-log.tsv"
-        _make(file.parent)
         text = StringIO()
         table = csv.writer(text, delimiter="\t", lineterminator="\n")
         table.writerows(rows if file.exists() else [[*STANDARD, *(self._columns or [])], *rows])
         _write(file, text.getvalue())
 
 
-def _make(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except (FileExistsError, NotADirectoryError):
-        raise InputError(
-            f"folder must be a folder, but {folder} is a file or lies below a file; name another folder"
-        ) from None
-    except OSError as error:
-        raise StoreError(f"cannot write into {folder}: {error.strerror}; choose another folder") from None
-
-
 def _write(file: Path, text: str) -> None:
-    """Append to a file."""
-    try:
-        with file.open("a", encoding="utf-8", newline="") as out:
-            out.write(text)
-    except OSError as error:
-        raise StoreError(f"cannot write {file}: {error.strerror}; choose another folder") from None
+    """Append to a file, in a folder that is made if it is missing."""
+    with folder_to_write(file.parent, "folder"), file.open("a", encoding="utf-8", newline="") as out:
+        out.write(text)
 
 
 class LifeLog:
@@ -185,7 +170,8 @@ class LifeLog:
         self.folder, self._label = Path(folder), re.sub("[^0-9a-zA-Z]", "", domain) or "task"
         self._lives: dict[str, L2Log] = {}
         # A folder that cannot be made fails here, before the long run.
-        _make(self.folder)
+        with folder_to_write(folder, "folder"):
+            pass
 
     def add(self, task: Mapping, results: Mapping[str, Result]) -> None:
         """Log one finished task; pass it to `live` as ``watch``. Driven tasks have no episodes."""

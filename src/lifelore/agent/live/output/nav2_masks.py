@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from lifelore.agent.live.output.move_costs import MoveCosts
-from lifelore.core.learning.known_world import WorldModel
 from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.buildings.inflation import inflate
 from lifelore.domains.buildings.map_alignment import axis_aligned
@@ -40,11 +39,6 @@ _MEANINGS = {
     "keepout": "100: no place that the robot knows, or one that is blocked; 0: known space.\n"
     "# A mask for nav2's KeepoutFilter",
 }
-
-
-def known_places(model: WorldModel) -> NDArray[np.bool_]:
-    """(n_states,) states that the robot has visited."""
-    return model.percept >= 0
 
 
 def place_costs(costs: MoveCosts, known: NDArray[np.bool_]) -> NDArray[np.uint8]:

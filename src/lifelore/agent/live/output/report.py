@@ -11,19 +11,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.live.baselines import AGENTS
-from lifelore.agent.live.driven.driven_job import DrivenJob
+from lifelore.agent.live.driven.drive_job import DrivenJob
 from lifelore.agent.live.goals.destinations import Point
 from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
 from lifelore.agent.live.lived_tasks import Result
 from lifelore.agent.live.output.drive_figure import drives_figure
 from lifelore.agent.live.output.exports import path_points, write_paths, write_prior_map
+from lifelore.agent.live.output.folder import folder_to_write
 from lifelore.agent.live.output.greedy_paths import GreedyPaths, greedy_paths_of
 from lifelore.agent.live.output.known_building import NAV2_FILES, KnownBuilding
 from lifelore.agent.live.output.logged_life import Recorder, goal_points, write_life_log
 from lifelore.agent.live.output.nav2_masks import write_directions
 from lifelore.agent.live.summary import third
 from lifelore.agent.live.task_result import THRESHOLD, TaskResult
-from lifelore.core.errors import InputError, StoreError
+from lifelore.core.errors import InputError
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.figures.lives.floor_plan import FloorPlan
 from lifelore.figures.lives.life_curves import draw_life
@@ -49,17 +50,8 @@ def check_folder(path: str) -> None:
     StoreError
         The folder cannot be written: the disk is full or read-only, or permission is missing.
     """
-    folder = _folder(path)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder) as probe:
-            probe.write(b"\0")
-    except (FileExistsError, NotADirectoryError):
-        raise InputError(
-            f"out must name a folder, got {path}, which is or lies below a file; name another folder"
-        ) from None
-    except OSError as error:
-        raise StoreError(f"cannot write into {path}: {error.strerror}; choose another folder with --out") from None
+    with folder_to_write(path) as folder, tempfile.TemporaryFile(dir=folder) as probe:
+        probe.write(b"\0")
     for name in FILES:
         if (folder / name).is_dir():
             raise InputError(f"out must have no folder named {name}, but {path} has it; choose another folder")
@@ -87,20 +79,14 @@ def write_portfolio(life: Life, out: str) -> list[str]:
         The folder cannot be written, see `check_folder`.
     """
     check_folder(out)
-    folder = _folder(out)
-    try:
-        with tempfile.TemporaryDirectory(dir=folder, prefix=".part-") as part:
-            _write_all(life, Path(part))
-            written = [name for name in FILES if (Path(part) / name).exists()]
-            for name in FILES:
-                if name in written:
-                    os.replace(Path(part) / name, folder / name)
-                else:
-                    (folder / name).unlink(missing_ok=True)
-    except StoreError:
-        raise
-    except OSError as error:
-        raise StoreError(f"cannot write into {out}: {error.strerror}; choose another folder with --out") from None
+    with folder_to_write(out) as folder, tempfile.TemporaryDirectory(dir=folder, prefix=".part-") as part:
+        _write_all(life, Path(part))
+        written = [name for name in FILES if (Path(part) / name).exists()]
+        for name in FILES:
+            if name in written:
+                os.replace(Path(part) / name, folder / name)
+            else:
+                (folder / name).unlink(missing_ok=True)
     return [str(folder / name) for name in written]
 
 
@@ -108,12 +94,6 @@ def write_log(life: Life, path: str, recorder: Recorder) -> str:
     """Write the log of a life in a building; returns `path`. Errors as in `write_life_log`."""
     write_life_log(path, life, _last_paths(life) if life.results else [], recorder)
     return path
-
-
-def _folder(path: str) -> Path:
-    if not path.strip() or "\0" in path:
-        raise InputError(f"out must name a folder, got {path!r}")
-    return Path(path)
 
 
 def _write_all(life: Life, folder: Path) -> None:

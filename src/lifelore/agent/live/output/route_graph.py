@@ -9,18 +9,20 @@ The file has what the plugin ``GeoJsonGraphFileLoader`` of the package nav2_rout
 """
 
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse import csgraph
 
+from lifelore.agent.live.driven.route import moves_along
 from lifelore.agent.live.output.move_costs import MoveCosts
 from lifelore.core.errors import InputError
 from lifelore.domains.buildings.clear_path import clear_path
@@ -41,47 +43,38 @@ Chain = tuple[int, ...]
 def write_route_graph(
     path: Path, costs: MoveCosts, known: NDArray[np.bool_], floor: Floor, places: Mapping[str, tuple[float, float]]
 ) -> bool:
-    """Write the graph of the ways between `places`, names and points in metres; False if there is no way to write.
+    """Write the graph of the ways between places, nodes and directed edges; False if there is no way to write.
 
-    Places where the robot cannot stand, or to which no way is known, are left out.
+    Parameters
+    ----------
+    path : Path
+    costs : MoveCosts
+    known : (n_states,) bool
+        Cells that ways may lead over.
+    floor : Floor
+    places : mapping of str to (x, y)
+        Metres of the map's frame; at most `MOST_PLACES` of them are used, the first ones. Places where the robot
+        cannot stand, or to which no way is known, are left out.
 
     Raises
     ------
     OSError
         The file cannot be written.
     """
-    features = route_graph(costs, known, floor, places)
-    if features:
-        document = {"type": "FeatureCollection", "name": "routes", "features": features}
-        path.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
-    return bool(features)
-
-
-def route_graph(
-    costs: MoveCosts, known: NDArray[np.bool_], floor: Floor, places: Mapping[str, tuple[float, float]]
-) -> list[dict[str, Any]]:
-    """GeoJSON features: the nodes, then the directed edges; empty without two places that a way joins.
-
-    Parameters
-    ----------
-    costs : MoveCosts
-    known : (n_states,) bool
-        Cells that ways may lead over.
-    floor : Floor
-    places : mapping of str to (x, y)
-        At most `MOST_PLACES` of them are used, the first ones.
-    """
-    graph = _Graph(costs, floor)
+    neighbour = costs.world.neighbour
+    possible = np.isfinite(costs.cost) & (neighbour >= 0) & known[:, None] & known[neighbour]
+    graph = _Graph(costs, floor, possible)
     for name, point in list(places.items())[:MOST_PLACES]:
         graph.add_place(name, point)
-    neighbour = costs.world.neighbour
-    graph.possible = np.isfinite(costs.cost) & (neighbour >= 0) & known[:, None] & known[neighbour]
-    tail, action = np.nonzero(graph.possible)
+    tail, action = np.nonzero(possible)
     edges = costs.cost[tail, action], (tail, neighbour[tail, action])
-    used = _moves_of_routes(sparse.csr_array(edges, shape=(len(known),) * 2), sorted(graph.names))
-    for chain in _chains(used, set(graph.names)):
+    used = _moves_of_routes(sparse.csr_array(edges, shape=(len(known),) * 2), sorted(graph.places))
+    for chain in _chains(used, set(graph.places)):
         graph.add_chain(chain)
-    return graph.features()
+    if graph.routes.edges:
+        document = {"type": "FeatureCollection", "name": "routes", "features": _features(graph.routes)}
+        path.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+    return bool(graph.routes.edges)
 
 
 def _moves_of_routes(graph: sparse.csr_array, ends: list[int]) -> dict[int, set[int]]:
@@ -120,60 +113,63 @@ def _chains(used: Mapping[int, set[int]], places: set[int]) -> Iterator[Chain]:
 
 @dataclass
 class _Graph:
-    """Nodes and edges as they are added."""
+    """The graph as it is made: a node is a state, or a corner (chain, number), and has the point ``at``.
+
+    possible : (n_states, 4) moves that ways may lead over
+    places : by state, the point and the names of a place
+    """
 
     costs: MoveCosts
     floor: Floor
-    possible: NDArray[np.bool_] = field(init=False)  # (n_states, 4) moves that ways may lead over
-    names: dict[int, list[str]] = field(default_factory=dict)
-    _points: dict[int, NDArray[np.float64]] = field(default_factory=dict)
-    _nodes: list[NDArray[np.float64]] = field(default_factory=list)
-    _node_of: dict[int, int] = field(default_factory=dict)
-    _corners: dict[Chain, list[int]] = field(default_factory=dict)
-    _edges: list[tuple[int, int, dict[str, float]]] = field(default_factory=list)
+    possible: NDArray[np.bool_]
+    places: dict[int, tuple[NDArray[np.float64], list[str]]] = field(default_factory=dict)
+    routes: nx.DiGraph = field(default_factory=nx.DiGraph)
+    _nodes: dict[Chain, list] = field(default_factory=dict)
 
     def add_place(self, name: str, point: tuple[float, float]) -> None:
         try:
             state = self.floor.state_at(name, point)
         except InputError:
             return
-        self.names.setdefault(state, []).append(name)
-        self._points.setdefault(state, np.array(point, float))
+        self.places.setdefault(state, (np.array(point, float), []))[1].append(name)
 
     def add_chain(self, chain: Chain) -> None:
         """Add the edges along a chain; both directions of a chain share their corners."""
         one_way = min(chain, chain[::-1])
-        if one_way not in self._corners:
-            self._corners[one_way] = self._new_corners(one_way)
-        nodes = self._corners[one_way] if chain == one_way else self._corners[one_way][::-1]
-        lengths = np.array([np.hypot(*(self._nodes[a] - self._nodes[b])) for a, b in pairwise(nodes)])
+        if one_way not in self._nodes:
+            self._nodes[one_way] = self._new_nodes(one_way)
+        nodes = self._nodes[one_way] if chain == one_way else self._nodes[one_way][::-1]
+        points = np.array([self.routes.nodes[node]["at"] for node in nodes])
+        lengths = np.hypot(*np.diff(points, axis=0).T)
         about = self._about(chain)
         for (a, b), share in zip(pairwise(nodes), lengths / lengths.sum(), strict=True):
             scaled = {"abs_time_taken": about["seconds"] * share, "penalty": about["penalty"] * share}
-            self._edges.append((a, b, scaled | {"blocked": about["blocked"]}))
+            self.routes.add_edge(a, b, **scaled, blocked=about["blocked"])
 
     def _about(self, chain: Chain) -> dict[str, float]:
         """Expected seconds, seconds of penalty, and the probability that a move of the chain is refused."""
-        tail, head = np.array(chain[:-1]), np.array(chain[1:])
-        action = (self.costs.world.neighbour[tail] == head[:, None]).argmax(axis=1)
+        tail, action = np.array(chain[:-1]), moves_along(self.costs.world, np.array(chain))
         seconds = float(self.costs.seconds[tail, action].sum())
         passed = float(np.prod(1 - self.costs.blocked[tail, action]))
         penalty = float(self.costs.cost[tail, action].sum()) - seconds
         return {"seconds": seconds, "penalty": penalty, "blocked": 1 - passed}
 
-    def _new_corners(self, chain: Chain) -> list[int]:
-        """The nodes of a clear path along a chain; its ends and its corners."""
-        first, last = (self._node(state) for state in (chain[0], chain[-1]))
-        (a, b), (c, d) = self._nodes[first].tolist(), self._nodes[last].tolist()
+    def _new_nodes(self, chain: Chain) -> list:
+        """The nodes of a clear path along a chain: its ends and its corners."""
+        for state in (chain[0], chain[-1]):
+            point, names = self.places.get(state, (self.floor.metres(self.floor.anchors[[state]])[0], []))
+            self.routes.add_node(state, at=point, names=names)
+        (a, b), (c, d) = (self.routes.nodes[state]["at"].tolist() for state in (chain[0], chain[-1]))
         cells = self._cells_beside(chain)
         price = np.full(self.possible.shape, np.inf)
         inside = np.isin(self.costs.world.neighbour[cells], cells)
         price[cells] = np.where(self.possible[cells] & inside, 0.0, np.inf)
         path = clear_path(self._part(cells), (a, b), (c, d), price)
         assert path is not None, "a route follows the moves of its floor"
-        self._nodes.extend(path[1:-1])
-        inner = range(len(self._nodes) - len(path) + 2, len(self._nodes))
-        return [first, *inner, last]
+        corners = [(chain, number) for number in range(len(path) - 2)]
+        for corner, point in zip(corners, path[1:-1], strict=True):
+            self.routes.add_node(corner, at=point, names=[])
+        return [chain[0], *corners, chain[-1]]
 
     def _cells_beside(self, chain: Chain) -> NDArray[np.int64]:
         """The cells of a chain, and those beside it that are not closed."""
@@ -197,40 +193,26 @@ class _Graph:
     def _closed(self) -> NDArray[np.bool_]:
         return self.costs.closed()
 
-    def _node(self, state: int) -> int:
-        if state not in self._node_of:
-            if state not in self._points:
-                self._points[state] = self.floor.metres(self.floor.anchors[[state]])[0]
-            self._node_of[state] = len(self._nodes)
-            self._nodes.append(self._points[state])
-        return self._node_of[state]
 
-    def features(self) -> list[dict[str, Any]]:
-        """The nodes, numbered from 0, and the edges, numbered on."""
-        names = {node: self.names[state] for state, node in self._node_of.items() if state in self.names}
-        nodes = [_node_feature(i, point, names.get(i, ())) for i, point in enumerate(self._nodes)]
-        edges = [
-            _edge_feature(i, a, b, [self._nodes[a], self._nodes[b]], about)
-            for i, (a, b, about) in enumerate(self._edges, start=len(nodes))
-        ]
-        return nodes + edges if edges else []
-
-
-def _node_feature(number: int, point: NDArray[np.float64], names: Sequence[str]) -> dict[str, Any]:
-    about = {"metadata": {"name": ", ".join(names)}} if names else {}
-    geometry = {"type": "Point", "coordinates": _rounded(point)}
-    return {"type": "Feature", "properties": {"id": number, "frame": FRAME} | about, "geometry": geometry}
-
-
-def _edge_feature(
-    number: int, start: int, end: int, points: Sequence[NDArray[np.float64]], about: Mapping[str, float]
-) -> dict[str, Any]:
-    # The loader takes a number without a decimal point for an integer, and its scorers read floats only.
-    metadata = {name: float(round(value, 6)) for name, value in about.items()}
-    cost = float(round(metadata["abs_time_taken"] + metadata["penalty"], 6))
-    properties = {"id": number, "startid": start, "endid": end, "cost": cost, "overridable": True}
-    geometry = {"type": "MultiLineString", "coordinates": [[_rounded(point) for point in points]]}
-    return {"type": "Feature", "properties": properties | {"metadata": metadata}, "geometry": geometry}
+def _features(routes: nx.DiGraph) -> list[dict[str, Any]]:
+    """GeoJSON features: the nodes, numbered from 0, and the edges, numbered on."""
+    number = {node: i for i, node in enumerate(routes)}
+    nodes = []
+    for node, about in routes.nodes(data=True):
+        named = {"metadata": {"name": ", ".join(about["names"])}} if about["names"] else {}
+        properties = {"id": number[node], "frame": FRAME} | named
+        geometry = {"type": "Point", "coordinates": _rounded(about["at"])}
+        nodes.append({"type": "Feature", "properties": properties, "geometry": geometry})
+    edges = []
+    for i, (a, b, about) in enumerate(routes.edges(data=True), len(nodes)):
+        # The loader takes a number without a decimal point for an integer, and its scorers read floats only.
+        metadata = {name: float(round(value, 6)) for name, value in about.items()}
+        cost = float(round(metadata["abs_time_taken"] + metadata["penalty"], 6))
+        properties = {"id": i, "startid": number[a], "endid": number[b], "cost": cost, "overridable": True}
+        line = [[_rounded(routes.nodes[node]["at"]) for node in (a, b)]]
+        geometry = {"type": "MultiLineString", "coordinates": line}
+        edges.append({"type": "Feature", "properties": properties | {"metadata": metadata}, "geometry": geometry})
+    return nodes + edges
 
 
 def _rounded(point: NDArray[np.float64]) -> list[float]:
