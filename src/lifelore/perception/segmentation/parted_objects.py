@@ -100,9 +100,8 @@ def _coplanar(
     """(p,) and (p,): patches of different `large` regions in one plane, each pair once."""
     own = np.flatnonzero(large[regions])
     middles, normals = patches.middles[own], patches.normals[own]
-    between = middles[:, None] - middles[None]
-    off = np.abs(np.einsum("ijk,ik->ij", between, normals))
-    good = (normals @ normals.T >= _ALIKE) & (np.maximum(off, off.T) <= _APART)
-    good &= (regions[own][:, None] != regions[own][None]) & (np.einsum("ijk,ijk->ij", between, between) <= _FAR**2)
-    first, second = np.nonzero(np.triu(good))
-    return own[first], own[second]
+    off = np.abs(normals @ middles.T - np.einsum("ij,ij->i", normals, middles)[:, None])
+    good = (normals @ normals.T >= _ALIKE) & (off <= _APART) & (off.T <= _APART)
+    first, second = np.nonzero(np.triu(good & (regions[own][:, None] != regions[own])))
+    near = np.linalg.norm(middles[first] - middles[second], axis=1) <= _FAR
+    return own[first[near]], own[second[near]]

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.perception.clouds.surface_normals import surface_normals
 from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.segmentation.outline import convex_corners, over_outline
 from lifelore.perception.segmentation.plane import Plane
@@ -20,7 +21,6 @@ LEAST_AREA = 0.004
 _MOST_PLANES = 16
 _HYPOTHESES = 200
 _SAMPLE = 3000
-_NEIGHBOURS = 12
 _ALIKE = np.cos(np.radians(30.0))
 """A voxel is part of a plane only if its own normal is within 30° of the plane's."""
 _MOST_VOXELS = 25_000
@@ -44,6 +44,8 @@ class OrientedVoxels:
         The voxel of each point of the cloud.
     size : float
         Side of a voxel, metres.
+    links : (k, 2) int64
+        Pairs of voxels nearer than two and a half sides.
     """
 
     points: NDArray[np.float64]
@@ -53,13 +55,7 @@ class OrientedVoxels:
     free: NDArray[np.bool_]
     inverse: NDArray[np.int64]
     size: float
-
-    @cached_property
-    def links(self) -> NDArray[np.int64]:
-        """(k, 2) pairs of voxels nearer than two and a half sides."""
-        from scipy.spatial import KDTree
-
-        return KDTree(self.points).query_pairs(2.5 * self.size, output_type="ndarray")
+    links: NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +97,8 @@ def oriented_voxels(
     points: NDArray[np.float64], camera: NDArray[np.float64] | None, free: NDArray[np.bool_]
 ) -> OrientedVoxels:
     """The voxels of a cloud; those with `free` (n,) and other points are separate."""
+    from scipy.spatial import KDTree
+
     low, high = np.percentile(points[:: max(1, len(points) // 20_000)], (2, 98), axis=0)
     size = float(np.clip(np.max(high - low) / 50, 1e-4, COARSEST))
     labelled = LabelledCloud(points, np.where(free, 0, 2).astype(np.int64))
@@ -109,21 +107,11 @@ def oriented_voxels(
         size *= 1.5
         thin = voxelised(labelled, size)
     places = thin.cloud.points
+    links = KDTree(places).query_pairs(2.5 * size, output_type="ndarray").astype(np.int64).reshape(-1, 2)
+    normals = surface_normals(places, links)
     return OrientedVoxels(
-        places, _normals(places), thin.counts, band(places, camera), thin.cloud.labels == 0, thin.inverse, size
+        places, normals, thin.counts, band(places, camera), thin.cloud.labels == 0, thin.inverse, size, links
     )
-
-
-def _normals(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(m, 3) direction of least spread among the nearest neighbours of each point."""
-    from scipy.spatial import KDTree
-
-    k = min(_NEIGHBOURS, len(points))
-    if k < 3:
-        return np.tile([0.0, 0.0, 1.0], (len(points), 1))
-    near = points[KDTree(points).query(points, k)[1]]
-    near -= near.mean(axis=1, keepdims=True)
-    return np.linalg.eigh(np.einsum("nki,nkj->nij", near, near))[1][:, :, 0]
 
 
 def patches(voxels: OrientedVoxels, rng: np.random.Generator) -> list[Patch]:
