@@ -16,8 +16,10 @@ from lifelore.perception.segmentation.range_noise import band
 
 COARSEST = 0.02
 """Metres: side of a voxel; a smaller scene gets smaller voxels, a fiftieth of its width."""
+LEAST_PLANE = 0.03
+"""Square metres of a plane, all its pieces together; a smaller one is no table, and is not looked for."""
 LEAST_AREA = 0.004
-"""Square metres; a smaller plane is not looked for."""
+"""Square metres; a smaller piece of a plane is left out."""
 _MOST_PLANES = 16
 _HYPOTHESES = 200
 _SAMPLE = 3000
@@ -120,12 +122,12 @@ def patches(voxels: OrientedVoxels, rng: np.random.Generator) -> list[Patch]:
     found: list[Patch] = []
     for _ in range(_MOST_PLANES):
         places = np.flatnonzero(left)
-        if len(places) * voxels.size**2 < LEAST_AREA or len(places) < 12:
+        if len(places) * voxels.size**2 < LEAST_PLANE or len(places) < 12:
             break
         plane = _best_plane(voxels, places, rng)
         near = places[np.abs(plane.height(voxels.points[places])) <= voxels.bands[places]]
         on_it = near[np.abs(voxels.normals[near] @ plane.normal) >= _ALIKE]
-        if len(on_it) * voxels.size**2 < LEAST_AREA or len(on_it) < 12:
+        if len(on_it) * voxels.size**2 < LEAST_PLANE or len(on_it) < 12:
             break
         left[near] = False
         found += _pieces(voxels, plane, on_it)
