@@ -12,8 +12,8 @@ from lifelore.perception.clouds.voxel import voxelised
 
 LINK = 1.9
 """Voxel sizes: greatest distance of neighbours. A diagonal step of the grid is 1.7 long."""
-_SUPPORT = 2.6
-"""Voxel sizes: radius of the voxels that a normal is fitted to, some 20. Less is noisier, more rounds off
+_SUPPORT = 2.3
+"""Voxel sizes: radius of the voxels that a normal is fitted to, some 16. Less is noisier, more rounds off
 creases."""
 DENSE = 1.5
 """Least mean number of points in a voxel; below, a surface has holes between its voxels, and they grow."""
