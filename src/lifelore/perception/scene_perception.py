@@ -9,6 +9,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED, LabelledCloud
 from lifelore.core.relations import NONE
 from lifelore.perception.contacts.interface import Interface, interfaces
+from lifelore.perception.contacts.object_shape import ObjectShape
 from lifelore.perception.pairs.scene_pairs import scene_pairs
 from lifelore.perception.pairs.side_faces import pairs_beside
 from lifelore.perception.reasoning.raised_objects import off_the_table
@@ -73,12 +74,18 @@ def _core_scene(
     pairs = scene_pairs(cloud, found, model.settings)
     beliefs = model.beliefs_of(pairs)
     if cloud.has_table:
-        beliefs = off_the_table(beliefs, cloud)
+        beliefs = off_the_table(beliefs, cloud, _shapes(found))
     decided = most_likely_scene(alternatives(beliefs), cloud.objects, beside=pairs_beside(pairs))
     # Logic puts on the table what nothing carries; where no table was seen, that is no perception.
     seen = (r for r in decided.relations if cloud.has_table or TABLE not in (r.a, r.b))
     stated = tuple(r for r in seen if r.relation != NONE or r.gap < inf)
     return Scene(cloud, found, stated, decided.optimal, beliefs)
+
+
+def _shapes(found: Sequence[Interface]) -> dict[int, ObjectShape]:
+    """The shape of each object: with a table, all are in its pairs."""
+    bodies = (body for one in found if one.pair is not None for body in (one.pair.first, one.pair.second))
+    return {body.label: body.shape for body in bodies if body.label != TABLE}
 
 
 def _stated_words(

@@ -3,7 +3,7 @@
 import numpy as np
 
 from lifelore.perception.clouds.connected_parts import connected_parts
-from lifelore.perception.clouds.view_pixels import view_pixels
+from lifelore.perception.clouds.view_image import view_pixels
 
 
 def plain_parts(pairs, n):

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from lifelore.core.compiled.jit import kernel
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.perception.clouds.cell_cloud import CellCloud, cell_cloud, closest_distances
+from lifelore.perception.contacts.object_shape import ObjectShape, shape_of
 
 CLOSEST = 5
 """Number of smallest distances in the mean gap; more make it robust to stray points, and larger."""
@@ -35,6 +36,11 @@ class ObjectCloud:
     def high(self) -> NDArray[np.float64]:
         """The box's greatest corner, ``(3,)``."""
         return self.box[1]
+
+    @cached_property
+    def shape(self) -> ObjectShape:
+        """Foot, top and outline."""
+        return shape_of(self.points)
 
     @cached_property
     def cells(self) -> CellCloud:

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.contacts.interface import Interface, interfaces
 from lifelore.perception.contacts.near_pairs import ObjectCloud
-from lifelore.perception.contacts.object_shape import ObjectShape, shape_of
+from lifelore.perception.contacts.object_shape import ObjectShape
 from lifelore.perception.pairs.objects_between import BETWEEN_COLUMNS, ObjectsBetween
 
 Array = NDArray[np.float64]
@@ -97,13 +97,8 @@ def pair_features(scene: LabelledCloud | HasInterfaces, found: Sequence[Interfac
     gaps = np.repeat([one.gap for one in found], 2).astype(float)
     if not found:
         return PairFeatures(names, np.empty((0, len(names))), pairs, gaps)
-    shapes: dict[int, ObjectShape] = {}
-    for one in found:
-        for body in _bodies(one):
-            if body.label != TABLE and body.label not in shapes:
-                shapes[body.label] = shape_of(body.points)
     objects_between = ObjectsBetween(found)
-    rows = [row for one in found for row in _both_ways(one, shapes, objects_between, cloud.camera)]
+    rows = [row for one in found for row in _both_ways(one, objects_between, cloud.camera)]
     return PairFeatures(names, np.array(rows), pairs, gaps)
 
 
@@ -126,14 +121,11 @@ def _bodies(one: Interface) -> tuple[ObjectCloud, ObjectCloud]:
 
 def _both_ways(
     one: Interface,
-    shapes: dict[int, ObjectShape],
     objects_between: ObjectsBetween,
     camera: NDArray[np.float64] | None,
 ) -> Array:
     """The rows of (a, b) and of (b, a), ``(2, d)``."""
-    first, second = (
-        shapes[body.label] if body.label in shapes else shape_of(body.points) for body in _bodies(one)
-    )
+    first, second = (body.shape for body in _bodies(one))
     # With the table there is one scale; its columns are repeated for the others.
     dipoles = (one.dipoles + one.dipoles[-1:] * N_SCALES)[:N_SCALES]
     middles = np.array([(dipole.first + dipole.second) / 2 for dipole in dipoles])

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.perception.clouds.view_pixels import view_pixels
+from lifelore.perception.clouds.view_image import ViewImage, lengths
 
 CELL = 0.01
 """Metres between two places; smaller finds smaller hidden parts and costs time with its square."""
@@ -44,7 +44,7 @@ def hidden_tops(cloud: LabelledCloud) -> tuple[int, ...]:
     return tuple(label for label, rays in places.items() if image.n_hidden(rays, label) >= LEAST_HIDDEN)
 
 
-class _Image:
+class _Image(ViewImage):
     """The nearest object in each pixel and its distance, and the distance of the nearest other object.
 
     Parameters
@@ -56,30 +56,19 @@ class _Image:
     """
 
     def __init__(self, rays: NDArray[np.float64], labels: NDArray[np.int64]) -> None:
-        pixels = view_pixels(rays, PIXEL)
-        self._low = pixels.min(axis=0)
-        columns, rows = (pixels.max(axis=0) - self._low + 1).tolist()
-        self._shape = columns, rows
-        at, depths = self._numbers(pixels - self._low), _lengths(rays)
-        self._first = np.full(int(np.prod(self._shape)), np.inf)
-        self._second = self._first.copy()
-        self._nearest = np.zeros(len(self._first), np.int64)
-        np.minimum.at(self._first, at, depths)
-        wins = depths == self._first[at]
-        self._nearest[at[wins]] = labels[wins]
-        other = labels != self._nearest[at]
-        np.minimum.at(self._second, at[other], depths[other])
+        super().__init__(rays, PIXEL)
+        wins = self.depths == self.nearest[self.at]
+        self._label = np.zeros(len(self.nearest), np.int64)
+        self._label[self.at[wins]] = labels[wins]
+        other = labels != self._label[self.at]
+        self._second = np.full(len(self.nearest), np.inf)
+        np.minimum.at(self._second, self.at[other], self.depths[other])
 
     def n_hidden(self, rays: NDArray[np.float64], label: int) -> int:
         """Number of places below the camera before which another object than `label` lies; rays are ``(m, 3)``."""
-        pixels = view_pixels(rays, PIXEL) - self._low
-        inside = ((pixels >= 0) & (pixels < self._shape)).all(axis=1) & (rays[:, 2] < 0)
-        at = self._numbers(pixels[inside])
-        depths = np.where(self._nearest[at] == label, self._second[at], self._first[at])
-        return int((depths < _lengths(rays[inside]) - BEFORE).sum())
-
-    def _numbers(self, pixels: NDArray[np.int64]) -> NDArray[np.int64]:
-        return pixels[:, 0] * self._shape[1] + pixels[:, 1]
+        at, inside = self.pixels_of(rays)
+        depths = np.where(self._label[at] == label, self._second[at], self.nearest[at])
+        return int((inside & (rays[:, 2] < 0) & (depths < lengths(rays) - BEFORE)).sum())
 
 
 def _places_over(points: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -103,7 +92,3 @@ def _between(grid: NDArray[np.bool_]) -> NDArray[np.bool_]:
     before = np.maximum.accumulate(grid, axis=1)
     behind = np.maximum.accumulate(grid[:, ::-1], axis=1)[:, ::-1]
     return before & behind
-
-
-def _lengths(rays: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.sqrt(np.einsum("ij,ij->i", rays, rays))

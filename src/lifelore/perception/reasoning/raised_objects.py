@@ -12,7 +12,7 @@ import numpy as np
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import NONE, ON
-from lifelore.perception.clouds.view_pixels import view_pixels
+from lifelore.perception.clouds.view_image import ViewImage
 from lifelore.perception.contacts.object_shape import DIRECTIONS, ObjectShape, shape_of
 from lifelore.perception.relations.relation import PairBelief
 
@@ -34,25 +34,33 @@ STILL = 0.02
 """Probability that a raised object rests on the table after all."""
 
 
-def off_the_table(beliefs: Iterable[PairBelief], cloud: LabelledCloud) -> tuple[PairBelief, ...]:
-    """The beliefs of the pairs of a scene, in which raised objects do not rest on the table."""
+def off_the_table(
+    beliefs: Iterable[PairBelief], cloud: LabelledCloud, shapes: Mapping[int, ObjectShape] | None = None
+) -> tuple[PairBelief, ...]:
+    """The beliefs of the pairs of a scene, in which raised objects do not rest on the table.
+
+    `cloud` and `shapes` are those of `raised_objects`.
+    """
     beliefs = tuple(beliefs)
-    raised = raised_objects(cloud)
+    raised = raised_objects(cloud, shapes)
     gaps = {belief.a + belief.b - TABLE: belief.gap for belief in beliefs if TABLE in (belief.a, belief.b)}
     others = (b for b in beliefs if not (TABLE in (b.a, b.b) and b.a + b.b - TABLE in raised))
     shares = {NONE: 1 - STILL, ON: STILL}
     return (*others, *(PairBelief(label, TABLE, gaps.get(label, inf), shares) for label in sorted(raised)))
 
 
-def raised_objects(cloud: LabelledCloud) -> frozenset[int]:
+def raised_objects(cloud: LabelledCloud, shapes: Mapping[int, ObjectShape] | None = None) -> frozenset[int]:
     """Objects of a scene that cannot rest on the table.
 
     Parameters
     ----------
     cloud : LabelledCloud
         In the scene's frame: z up, the table at z = 0.
+    shapes : mapping of int to ObjectShape, optional
+        Of each object, where they are known.
     """
-    shapes = {label: shape_of(cloud.of(label)) for label in cloud.objects}
+    if shapes is None:
+        shapes = {label: shape_of(cloud.of(label)) for label in cloud.objects}
     high = [label for label, shape in shapes.items() if shape.foot >= RAISED]
     raised = {label for label in high if any(_tops_below(label, shapes))}
     if cloud.camera is not None and len(raised) < len(high):
@@ -75,14 +83,11 @@ class _Image:
 
     def __init__(self, cloud: LabelledCloud) -> None:
         assert cloud.camera is not None
-        rays = cloud.points - cloud.camera
-        pixels = view_pixels(rays, PIXEL)
-        self._depths = np.full(pixels.max(axis=0) - pixels.min(axis=0) + 1, np.inf)
-        self._labels = np.full(self._depths.shape, -1)
-        at, depths = tuple((pixels - pixels.min(axis=0)).T), np.linalg.norm(rays, axis=1)
-        np.minimum.at(self._depths, at, depths)
-        nearest = depths == self._depths[at]
-        self._labels[tuple(index[nearest] for index in at)] = cloud.labels[nearest]
+        view = ViewImage(cloud.points - cloud.camera, PIXEL)
+        wins = view.depths == view.nearest[view.at]
+        labels = np.full(len(view.nearest), -1)
+        labels[view.at[wins]] = cloud.labels[wins]
+        self._depths, self._labels = view.nearest.reshape(view.shape), labels.reshape(view.shape)
 
     def edge_seen(self, label: int) -> float:
         """Share of the columns of an object in which something farther away is seen right below it, 0 to 1."""

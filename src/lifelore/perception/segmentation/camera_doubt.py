@@ -41,9 +41,8 @@ def share_behind(rays: NDArray[np.float32], ranges: NDArray[np.float32]) -> floa
         return 0.0
     ranges = ranges[chosen]
     cells = np.floor(rays[chosen] / size[chosen, None]).astype(np.int64) + 256
-    keys = (cells[:, 0] << 20) + (cells[:, 1] << 10) + cells[:, 2]
-    order = np.lexsort((ranges, keys))
-    keys, ranges = keys[order], ranges[order]
-    first = np.concatenate([[True], keys[1:] != keys[:-1]])
-    nearest = ranges[first][np.cumsum(first) - 1]
+    _, cell = np.unique((cells[:, 0] << 20) + (cells[:, 1] << 10) + cells[:, 2], return_inverse=True)
+    nearest = np.full(int(cell.max()) + 1, np.inf)
+    np.minimum.at(nearest, cell, ranges)
+    nearest = nearest[cell]
     return float(np.mean(ranges > nearest + BEHIND * np.maximum(nearest, 1.0) ** 2))

@@ -23,6 +23,9 @@ STANDING = 0.25
 RISE = 1.5
 """Bands of noise (`range_noise`) above the table; an object of which less than that share is higher is noise."""
 
+_SAMPLE = 20_000
+"""Points on which the shares of objects are measured; small objects have some dozens of them."""
+
 
 @dataclass(frozen=True)
 class SegmentationSettings:
@@ -94,11 +97,14 @@ def cut_cloud(
     labels = np.zeros(len(points), np.int64)
     labels[np.abs(points[:, 2]) <= settings.table_band] = TABLE
     above = np.flatnonzero((points[:, 2] > settings.table_band) & (points[:, 2] <= settings.reach))
-    cut = _objects(points[above], None if colours is None else colours[above], settings, camera, points)
-    tests = [over_outline(points[above, :2], points[labels == TABLE, :2])]
-    if camera is not None and (labels == TABLE).any():
-        tests.append(points[above, 2] > RISE * noise(points[above], camera))
-    cut = _standing(cut, tests)
+    standing = points.take(above, axis=0)
+    cut = _objects(standing, None if colours is None else colours[above], settings, camera, points)
+    table = np.flatnonzero(labels == TABLE)
+    few = slice(None, None, max(1, len(above) // _SAMPLE))
+    tests = [over_outline(standing[few, :2], points[table[:: max(1, len(table) // _SAMPLE)], :2])]
+    if camera is not None and len(table):
+        tests.append(standing[few, 2] > RISE * noise(standing[few], camera))
+    cut = _standing(cut, cut.labels[few], tests)
     labels[above] = cut.labels
     return CutCloud(labels, cut.confidence)
 
@@ -130,13 +136,16 @@ def _objects(
     return convex_objects(points, camera, settings.min_area, seen)
 
 
-def _standing(cut: CutCloud, shares: Iterable[NDArray[np.bool_]]) -> CutCloud:
-    """The objects of which at least `STANDING` of the points are in each of `shares` (n,), numbered again."""
+def _standing(cut: CutCloud, labels: NDArray[np.int64], shares: Iterable[NDArray[np.bool_]]) -> CutCloud:
+    """The objects of which at least `STANDING` of the points are in each of `shares`, numbered again.
+
+    `labels` (m,) and the shares (m,) are those of a sample of the points.
+    """
     n = int(cut.labels.max(initial=TABLE)) + 1
-    counts = np.maximum(np.bincount(cut.labels, minlength=n), 1)
+    counts = np.maximum(np.bincount(labels, minlength=n), 1)
     keep = np.arange(n) > TABLE
     for share in shares:
-        keep &= np.bincount(cut.labels[share], minlength=n) >= STANDING * counts
+        keep &= np.bincount(labels[share], minlength=n) >= STANDING * counts
     kept = np.flatnonzero(keep)
     number = np.full(n, UNLABELLED, np.int64)
     number[kept] = np.arange(2, 2 + len(kept))

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.perception.clouds.view_pixels import view_pixels
+from lifelore.perception.clouds.view_image import ViewImage, lengths
 from lifelore.perception.segmentation.supervoxels import Supervoxels
 
 _PIXEL = 0.006
@@ -29,27 +29,6 @@ _HIDDEN, _FREE = 0.15, 0.15
 """Least share of the line behind a nearer object, and largest share before a farther one."""
 _CONTINUES = 0.4
 """Least share of both regions that continues in the other. Less joins equal boxes beside each other."""
-
-
-class _DepthImage:
-    """Distances of the nearest and the farthest point in each pixel, seen from the origin; metres."""
-
-    def __init__(self, rays: NDArray[np.float64]) -> None:
-        pixels, depths = view_pixels(rays, _PIXEL), np.linalg.norm(rays, axis=1)
-        self._low = pixels.min(axis=0)
-        self._shape = pixels.max(axis=0) - self._low + 1
-        self._nearest, self._farthest = np.full(self._shape, np.inf), np.full(self._shape, -np.inf)
-        at = tuple((pixels - self._low).T)
-        np.minimum.at(self._nearest, at, depths)
-        np.maximum.at(self._farthest, at, depths)
-
-    def before_and_behind(self, rays: NDArray[np.float64]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-        """(m,) bool each: whether something is seen before, and behind, the end of each ray (m, 3)."""
-        pixels, depths = view_pixels(rays, _PIXEL) - self._low, np.linalg.norm(rays, axis=1)
-        known = ((pixels >= 0) & (pixels < self._shape)).all(axis=1)
-        at = tuple(np.where(known[:, None], pixels, 0).T)
-        before = known & (self._nearest[at] < depths - _BEFORE)
-        return before, known & (self._farthest[at] > depths + _BEFORE)
 
 
 def parted_pairs(
@@ -76,13 +55,17 @@ def parted_pairs(
     first, second = _coplanar(patches, regions, sizes >= least)
     if len(first) == 0:
         return
-    image = _DepthImage(seen[:: max(1, len(seen) // _SEEN)] - camera)
-    hidden, free = np.zeros(len(first)), np.zeros(len(first))
-    for step in _STEPS:
-        place = (1 - step) * patches.middles[first] + step * patches.middles[second]
-        before, behind = image.before_and_behind(place - camera)
-        hidden += before / len(_STEPS)
-        free += behind / len(_STEPS)
+    image = ViewImage(seen[:: max(1, len(seen) // _SEEN)] - camera, _PIXEL)
+    farthest = np.full(len(image.nearest), -np.inf)
+    np.maximum.at(farthest, image.at, image.depths)
+    steps = _STEPS[:, None, None]
+    lines = ((1 - steps) * patches.middles[first] + steps * patches.middles[second] - camera).reshape(-1, 3)
+    at, known = image.pixels_of(lines)
+    depths = lengths(lines)
+    hidden, free = (
+        (known & seen_there).reshape(len(_STEPS), -1).mean(axis=0)
+        for seen_there in (image.nearest[at] < depths - _BEFORE, farthest[at] > depths + _BEFORE)
+    )
     goes_on = (hidden >= _HIDDEN) & (free <= _FREE)
     first, second = first[goes_on], second[goes_on]
     ends = np.sort(np.stack([regions[first], regions[second]], axis=1), axis=1)
@@ -100,9 +83,8 @@ def _coplanar(
     """(p,) and (p,): patches of different `large` regions in one plane, each pair once."""
     own = np.flatnonzero(large[regions])
     middles, normals = patches.middles[own], patches.normals[own]
-    between = middles[:, None] - middles[None]
-    off = np.abs(np.einsum("ijk,ik->ij", between, normals))
-    good = (normals @ normals.T >= _ALIKE) & (np.maximum(off, off.T) <= _APART)
-    good &= (regions[own][:, None] != regions[own][None]) & (np.einsum("ijk,ijk->ij", between, between) <= _FAR**2)
-    first, second = np.nonzero(np.triu(good))
-    return own[first], own[second]
+    off = np.abs(normals @ middles.T - np.einsum("ij,ij->i", normals, middles)[:, None])
+    good = (normals @ normals.T >= _ALIKE) & (off <= _APART) & (off.T <= _APART)
+    first, second = np.nonzero(np.triu(good & (regions[own][:, None] != regions[own])))
+    near = np.linalg.norm(middles[first] - middles[second], axis=1) <= _FAR
+    return own[first[near]], own[second[near]]

@@ -46,8 +46,9 @@ def supervoxels(surface: SurfaceVoxels, spacing: float) -> Supervoxels:
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     ends = np.sort(of_voxel[surface.pairs], axis=1)
     between = ends[:, 0] != ends[:, 1]
-    pairs, borders = np.unique(ends[between], axis=0, return_counts=True)
-    return Supervoxels(of_voxel, counts, middles, normals, pairs.reshape(-1, 2), borders)
+    numbers, borders = np.unique(ends[between] @ [len(counts), 1], return_counts=True)
+    pairs = np.stack(np.divmod(numbers, len(counts)), axis=1)
+    return Supervoxels(of_voxel, counts, middles, normals, pairs, borders)
 
 
 def _grown(surface: SurfaceVoxels, spacing: float) -> NDArray[np.int64]:
@@ -69,14 +70,13 @@ def _grown(surface: SurfaceVoxels, spacing: float) -> NDArray[np.int64]:
 
 
 def _seeds(surface: SurfaceVoxels, spacing: float) -> NDArray[np.int64]:
-    """Voxels nearest to the mean of each occupied cell of the lattice."""
-    from scipy.spatial import KDTree
-
+    """The voxel of each occupied cell of the lattice that is nearest to the mean of the cell's voxels."""
     cells = np.floor((surface.points - surface.points.min(axis=0)) / spacing).astype(np.int64)
-    _, cell = np.unique(cells, axis=0, return_inverse=True)
-    cell = cell.reshape(-1)
-    means = _sums(cell, surface.points) / np.bincount(cell)[:, None]
-    return np.unique(np.asarray(KDTree(surface.points).query(means)[1], np.int64))
+    sides = tuple(cells.max(axis=0) + 1)
+    _, cell = np.unique(np.ravel_multi_index(tuple(cells.T), sides), return_inverse=True)
+    away = surface.points - (_sums(cell, surface.points) / np.bincount(cell)[:, None])[cell]
+    order = np.lexsort((np.einsum("ij,ij->i", away, away), cell))
+    return order[np.unique(cell[order], return_index=True)[1]]
 
 
 def _sums(group: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.float64]:

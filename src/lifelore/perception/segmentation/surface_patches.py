@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.perception.clouds.surface_normals import surface_normals
 from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.segmentation.outline import convex_corners, over_outline
 from lifelore.perception.segmentation.plane import Plane
@@ -15,12 +16,13 @@ from lifelore.perception.segmentation.range_noise import band
 
 COARSEST = 0.02
 """Metres: side of a voxel; a smaller scene gets smaller voxels, a fiftieth of its width."""
+LEAST_PLANE = 0.03
+"""Square metres of a plane, all its pieces together; a smaller one is no table, and is not looked for."""
 LEAST_AREA = 0.004
-"""Square metres; a smaller plane is not looked for."""
+"""Square metres; a smaller piece of a plane is left out."""
 _MOST_PLANES = 16
 _HYPOTHESES = 200
 _SAMPLE = 3000
-_NEIGHBOURS = 12
 _ALIKE = np.cos(np.radians(30.0))
 """A voxel is part of a plane only if its own normal is within 30° of the plane's."""
 _MOST_VOXELS = 25_000
@@ -44,6 +46,8 @@ class OrientedVoxels:
         The voxel of each point of the cloud.
     size : float
         Side of a voxel, metres.
+    links : (k, 2) int64
+        Pairs of voxels nearer than two and a half sides.
     """
 
     points: NDArray[np.float64]
@@ -53,13 +57,7 @@ class OrientedVoxels:
     free: NDArray[np.bool_]
     inverse: NDArray[np.int64]
     size: float
-
-    @cached_property
-    def links(self) -> NDArray[np.int64]:
-        """(k, 2) pairs of voxels nearer than two and a half sides."""
-        from scipy.spatial import KDTree
-
-        return KDTree(self.points).query_pairs(2.5 * self.size, output_type="ndarray")
+    links: NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,6 +99,8 @@ def oriented_voxels(
     points: NDArray[np.float64], camera: NDArray[np.float64] | None, free: NDArray[np.bool_]
 ) -> OrientedVoxels:
     """The voxels of a cloud; those with `free` (n,) and other points are separate."""
+    from scipy.spatial import KDTree
+
     low, high = np.percentile(points[:: max(1, len(points) // 20_000)], (2, 98), axis=0)
     size = float(np.clip(np.max(high - low) / 50, 1e-4, COARSEST))
     labelled = LabelledCloud(points, np.where(free, 0, 2).astype(np.int64))
@@ -109,21 +109,11 @@ def oriented_voxels(
         size *= 1.5
         thin = voxelised(labelled, size)
     places = thin.cloud.points
+    links = KDTree(places).query_pairs(2.5 * size, output_type="ndarray").astype(np.int64).reshape(-1, 2)
+    normals = surface_normals(places, links)
     return OrientedVoxels(
-        places, _normals(places), thin.counts, band(places, camera), thin.cloud.labels == 0, thin.inverse, size
+        places, normals, thin.counts, band(places, camera), thin.cloud.labels == 0, thin.inverse, size, links
     )
-
-
-def _normals(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(m, 3) direction of least spread among the nearest neighbours of each point."""
-    from scipy.spatial import KDTree
-
-    k = min(_NEIGHBOURS, len(points))
-    if k < 3:
-        return np.tile([0.0, 0.0, 1.0], (len(points), 1))
-    near = points[KDTree(points).query(points, k)[1]]
-    near -= near.mean(axis=1, keepdims=True)
-    return np.linalg.eigh(np.einsum("nki,nkj->nij", near, near))[1][:, :, 0]
 
 
 def patches(voxels: OrientedVoxels, rng: np.random.Generator) -> list[Patch]:
@@ -132,12 +122,12 @@ def patches(voxels: OrientedVoxels, rng: np.random.Generator) -> list[Patch]:
     found: list[Patch] = []
     for _ in range(_MOST_PLANES):
         places = np.flatnonzero(left)
-        if len(places) * voxels.size**2 < LEAST_AREA or len(places) < 12:
+        if len(places) * voxels.size**2 < LEAST_PLANE or len(places) < 12:
             break
         plane = _best_plane(voxels, places, rng)
         near = places[np.abs(plane.height(voxels.points[places])) <= voxels.bands[places]]
         on_it = near[np.abs(voxels.normals[near] @ plane.normal) >= _ALIKE]
-        if len(on_it) * voxels.size**2 < LEAST_AREA or len(on_it) < 12:
+        if len(on_it) * voxels.size**2 < LEAST_PLANE or len(on_it) < 12:
             break
         left[near] = False
         found += _pieces(voxels, plane, on_it)

@@ -7,14 +7,14 @@ from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.clouds.connected_parts import connected_parts
+from lifelore.perception.clouds.surface_normals import surface_normals
 from lifelore.perception.clouds.voxel import voxelised
 
 LINK = 1.9
 """Voxel sizes: greatest distance of neighbours. A diagonal step of the grid is 1.7 long."""
-_NEIGHBOURS = 24
-"""Greatest number of voxels that a normal is fitted to; more is slower, and no more accurate."""
-_SUPPORT = 3.6
-"""Voxel sizes: radius of the points that a normal is fitted to. Less is noisier, more rounds off creases."""
+_SUPPORT = 2.3
+"""Voxel sizes: radius of the voxels that a normal is fitted to, some 16. Less is noisier, more rounds off
+creases."""
 DENSE = 1.5
 """Least mean number of points in a voxel; below, a surface has holes between its voxels, and they grow."""
 COARSER, COARSEST = 1.25, 3.0
@@ -70,28 +70,16 @@ def surface_voxels(
         size *= 2
         thin = voxelised(unlabelled, size)
     middles = thin.cloud.points
-    tree = KDTree(middles)
-    pairs = tree.query_pairs(LINK * size, output_type="ndarray").astype(np.int64).reshape(-1, 2)
-    # The order that a tree gives depends on its version; sums below must not.
-    pairs = pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
-    distance, near = tree.query(middles, k=min(_NEIGHBOURS, len(middles)), distance_upper_bound=_SUPPORT * size)
-    normals = _normals(middles, np.isfinite(distance).reshape(len(middles), -1), near.reshape(len(middles), -1))
+    around = KDTree(middles).query_pairs(_SUPPORT * size, output_type="ndarray").astype(np.int64).reshape(-1, 2)
+    normals = surface_normals(middles, around)
+    apart = middles[around[:, 0]] - middles[around[:, 1]]
+    pairs = around[np.einsum("ij,ij->i", apart, apart) <= (LINK * size) ** 2]
     outward = middles - _inside(middles, pairs) if camera is None else camera - middles
     away = np.einsum("ij,ij->i", normals, outward) < 0
     if camera is None:
         steep = np.abs(normals[:, 2]) > _LEVEL
         away = np.where(steep, normals[:, 2] < 0, away)
     return SurfaceVoxels(middles, np.where(away[:, None], -normals, normals), pairs, thin.inverse, size)
-
-
-def _normals(
-    points: NDArray[np.float64], known: NDArray[np.bool_], near: NDArray[np.int64]
-) -> NDArray[np.float64]:
-    """(m, 3): direction of least spread of each voxel's neighbours, those of `near` that are `known`."""
-    around = points[np.where(known, near, 0)]
-    weight = known[..., None].astype(float)
-    spread = (around - (around * weight).sum(axis=1, keepdims=True) / weight.sum(axis=1, keepdims=True)) * weight
-    return np.linalg.eigh(np.swapaxes(spread, 1, 2) @ spread)[1][:, :, 0]
 
 
 def _inside(points: NDArray[np.float64], pairs: NDArray[np.int64]) -> NDArray[np.float64]:

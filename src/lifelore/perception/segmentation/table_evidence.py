@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.segmentation.outline import over_outline
 from lifelore.perception.segmentation.plane import Plane
-from lifelore.perception.segmentation.surface_patches import OrientedVoxels, Patch
+from lifelore.perception.segmentation.surface_patches import LEAST_PLANE, OrientedVoxels, Patch
 
 LEVEL = 10.0
 """Degrees between a table's normal and a known up direction."""
@@ -22,8 +22,6 @@ HANGING = 0.20
 """Metres above a plane from which a cluster hangs in the air; below, its support may be hidden."""
 HIDDEN_FOOT = 0.15
 """Metres between a cluster in the air and what stands below it, within which it hides its own support."""
-LEAST_TABLE = 0.03
-"""Square metres; a smaller patch is no table."""
 BELOW_SHARE = 0.3
 _SPECK = 4
 FRINGE = 2.0
@@ -104,7 +102,7 @@ def candidates_of(
     around = _surroundings(voxels, large)
     made = []
     for patch in found:
-        if patch.area < LEAST_TABLE:
+        if patch.area < LEAST_PLANE:
             continue
         near_side = camera is None or patch.plane.height(camera) >= 0
         for plane in (patch.plane, patch.plane.flipped()) if near_side else (patch.plane.flipped(), patch.plane):

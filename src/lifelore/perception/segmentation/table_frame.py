@@ -207,19 +207,19 @@ def _cut(
     `camera` is in the scene's frame.
     """
     labels, bands = np.full(len(points), UNLABELLED, np.int64), band(points, cloud.camera)
-    upright_points = scene_points.copy()
     if table is None:
-        chosen = np.ones(len(points), bool)
-        lift = np.array([0.0, 0.0, 2 * settings.table_band - upright_points[:, 2].min()])
-        upright_points += lift
+        chosen = np.arange(len(points))
+        lift = np.array([0.0, 0.0, 2 * settings.table_band - scene_points[:, 2].min()])
+        upright_points = scene_points + lift
         camera = None if camera is None else camera + lift
     else:
         on_it, over = over_table(points, bands, table)
-        chosen = on_it | over | reaching_out(points, bands, table, over)
+        chosen = np.flatnonzero(on_it | over | reaching_out(points, bands, table, over))
+        upright_points = scene_points.take(chosen, axis=0)
         # The band of a far table is wider than that of the segmentation: its points are laid onto the plane.
-        upright_points[on_it, 2] = 0.0
-    colours = None if cloud.colours is None else cloud.colours[chosen]
-    cut = cut_cloud(upright_points[chosen], colours, settings, camera)
+        upright_points[on_it[chosen], 2] = 0.0
+    colours = None if cloud.colours is None else cloud.colours.take(chosen, axis=0)
+    cut = cut_cloud(upright_points, colours, settings, camera)
     labels[chosen] = cut.labels
     return CutCloud(labels if table is None else with_feet(labels, scene_points, bands), cut.confidence)
 

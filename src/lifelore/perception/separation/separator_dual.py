@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.compiled.jit import kernel
 from lifelore.perception.separation.far_field import Cells, far_field
 from lifelore.perception.separation.gaussian import Array, kernel_sums
 
@@ -139,20 +140,15 @@ class Dual:
 
         Without remaining work: as far apart as the errors allow.
         """
-        rising, falling = np.flatnonzero(self.beta < self.upper), np.flatnonzero(self.beta > self.lower)
-        if len(rising) == 0 or len(falling) == 0:
-            return 0.0, 0.0
         if not self.spent:
-            most = float((self.slope[rising] - self.error[rising]).max())
-            least = float((self.slope[falling] + self.error[falling]).min())
+            most, least = _ends(self.beta, self.lower, self.upper, self.slope, self.error, -1.0)
             if most - least > tolerance:
                 return most, least
-            self.settle(rising[self.slope[rising] + self.error[rising] >= most])
-            self.settle(falling[self.slope[falling] - self.error[falling] <= least])
-        if self.spent:
-            slope, error = self.slope, self.error
-            return float((slope + error)[rising].max()), float((slope - error)[falling].min())
-        return float(self.slope[rising].max()), float(self.slope[falling].min())
+            if self.error.any():
+                rising, falling = self.beta < self.upper, self.beta > self.lower
+                self.settle(np.flatnonzero(rising & (self.slope + self.error >= most)))
+                self.settle(np.flatnonzero(falling & (self.slope - self.error <= least)))
+        return _ends(self.beta, self.lower, self.upper, self.slope, self.error, 1.0 if self.spent else 0.0)
 
     def free(self) -> Indices:
         """The points strictly between their bounds."""
@@ -166,3 +162,19 @@ class Dual:
             return float(self.slope[free].mean())
         most, least = self.extremes(np.inf)
         return (most + least) / 2 if np.isfinite(most - least) else float(np.median(self.slope))
+
+
+@kernel
+def _ends(beta, lower, upper, slope, error, errors):
+    """max{r : β < upper} and min{r : β > lower}, farther apart by `errors` times the error of each slope.
+
+    Since Σβ = 0, both sets hold a point.
+    """
+    most, least = -np.inf, np.inf
+    for i in range(len(beta)):
+        wider = errors * error[i] if errors != 0.0 else 0.0
+        if beta[i] < upper[i]:
+            most = max(most, slope[i] + wider)
+        if beta[i] > lower[i]:
+            least = min(least, slope[i] - wider)
+    return most, least
