@@ -15,6 +15,12 @@ def counts_of(rows):
     return counts
 
 
+def drawn(random, laws, n):
+    """Counts of n outcomes of each cause, by its law."""
+    rows = {cause: random.multinomial(n, law).tolist() for cause, law in enumerate(laws)}
+    return counts_of({cause: {o: count for o, count in enumerate(row) if count} for cause, row in rows.items()})
+
+
 def log_dm(counts, base):
     """Log probability of a sequence, outcome by outcome."""
     total = lgamma(sum(base)) - lgamma(sum(base) + sum(counts))
@@ -68,28 +74,18 @@ def test_types_that_nothing_tells_apart_are_joined():
     random = np.random.default_rng(0)
     laws = {"left": random.dirichlet([0.3] * 3, 60), "right": random.dirichlet([0.3] * 3, 60)}
 
-    def task(name):
-        rows = {cause: dict(enumerate(random.multinomial(6, law))) for cause, law in enumerate(laws[name])}
-        return counts_of({cause: {o: n for o, n in row.items() if n} for cause, row in rows.items()})
-
-    moves = KnownMoves([task("left"), task("right"), task("left"), task("right")])
+    moves = KnownMoves([drawn(random, laws[name], 6) for name in ("left", "right", "left", "right")])
     assert sorted(moves.joined()) == [[0, 2], [1, 3]]
 
 
 def test_a_task_of_another_type_is_told_from_a_known_one():
     random = np.random.default_rng(1)
     law = random.dirichlet([0.3] * 3, 40)
-
-    def task(law):
-        return counts_of(
-            {c: {o: int(n) for o, n in enumerate(random.multinomial(8, row)) if n} for c, row in enumerate(law)}
-        )
-
-    moves = KnownMoves([task(law), task(random.dirichlet([0.3] * 3, 40))])
-    assert moves.evidence_of_another(0, task(law)) < 0
+    moves = KnownMoves([drawn(random, law, 8), drawn(random, random.dirichlet([0.3] * 3, 40), 8)])
+    assert moves.evidence_of_another(0, drawn(random, law, 8)) < 0
     other = law.copy()
     other[:8] = random.dirichlet([0.3] * 3, 8)  # differs in a fifth of its causes
-    found = [moves.evidence_of_another(0, task(other)) for _ in range(5)]
+    found = [moves.evidence_of_another(0, drawn(random, other, 8)) for _ in range(5)]
     assert min(found) > 0
 
 

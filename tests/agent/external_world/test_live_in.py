@@ -8,7 +8,6 @@ import minigrid
 import numpy as np
 import pytest
 from gymnasium.envs.toy_text.frozen_lake import generate_random_map
-from gymnasium.spaces import Dict, Discrete
 from minigrid.core.world_object import Wall
 from minigrid.envs import CrossingEnv
 from scipy.stats import binomtest
@@ -42,21 +41,6 @@ class Doors:
 
     def context(self, state, last_reward):
         return self._context
-
-
-class Twofold(gymnasium.Env):
-    """Observes a dict; the colour of the lamp says which of two buttons pays."""
-
-    action_space = Discrete(2, start=1)
-    observation_space = Dict(lamp=Discrete(2), room=Discrete(5))
-
-    def reset(self, *, seed=None, options=None):
-        super().reset(seed=seed)
-        self.seen = {"lamp": int(self.np_random.integers(2)), "room": int(self.np_random.integers(5))}
-        return self.seen, {}
-
-    def step(self, action):
-        return self.seen, float(action - 1 == self.seen["lamp"]), True, False, {}
 
 
 def lake(task, size=4, slippery=False):
@@ -124,19 +108,6 @@ def test_a_world_of_costs_teaches_by_the_best_returns():
     assert lore > scratch > textbook
 
 
-@pytest.mark.slow
-def test_first_choice_follows_the_counts():
-    """After t tasks of eight doors the first choice is right with (t + α⁰) / (t + 8 α⁰), scratch's with 1/8.
-
-    Over 300 tasks that is 0.99 on average, with a standard error below 0.01, against 0.125.
-    """
-    report = live_in(Doors(), tasks=300, episodes=40)
-    lore, scratch = (np.mean(numbers_of(report, name, "first_return")) for name in ("lore", "scratch"))
-    expected = np.mean([(t + 0.1) / (t + 0.8) for t in range(300)])
-    assert abs(lore - expected) < 0.05
-    assert abs(scratch - 1 / 8) < 5 * np.sqrt(1 / 8 * 7 / 8 / 300)
-
-
 @pytest.mark.filterwarnings("ignore:The action prior is empty")
 def test_all_agents_are_given_the_same_episodes():
     world = Doors()
@@ -150,25 +121,17 @@ def test_all_agents_are_given_the_same_episodes():
 
 
 @pytest.mark.slow
-def test_lore_of_thirty_lakes_helps_on_the_next_thirty(tmp_path):
+def test_lore_of_twenty_lakes_helps_on_the_next_thirty(tmp_path):
     """A sign test: were the prior useless, each would win equally often, and this fail but once in a hundred."""
     path = tmp_path / "lake.db"
-    live_in(lakes(), tasks=30, memory=path, key="tiles around")
-    later = live_in(lakes(), tasks=30, episodes=60, memory=path, key="tiles around")
+    live_in(lakes(), tasks=20, memory=path, key="tiles around")
+    later = live_in(lakes(), tasks=30, episodes=20, memory=path, key="tiles around")
     for measure in ("first_return", "mean_return"):
         lore, scratch = (np.array(numbers_of(later, name, measure)) for name in ("lore", "scratch"))
         wins, losses = int((lore > scratch).sum()), int((lore < scratch).sum())
         assert binomtest(wins, wins + losses, alternative="greater").pvalue < 0.01
-    assert later["tasks"][0]["index"] == 30
+    assert later["tasks"][0]["index"] == 20
     assert later["summary"]["lore_vs_scratch"]["mean_return_difference"]["value"] > 0
-
-
-@pytest.mark.slow
-def test_slippery_lakes_are_lived_in():
-    report = live_in(lakes(slippery=True), tasks=3, episodes=150)
-    assert any(numbers_of(report, "lore", "reached"))
-    assert 1 < report["n_states"] <= 15
-    assert report["domain"] == "FrozenLake-v1"
 
 
 TURN = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
@@ -186,29 +149,11 @@ def test_minigrid_is_lived_in():
     """SimpleCrossing at its smallest: a river of wall with one gap through a room of 3 x 3."""
     env = minigrid.wrappers.FullyObsWrapper(CrossingEnv(size=5, num_crossings=1, obstacle_type=Wall))
     world = GymnasiumWorld(env, context=ahead, state=lambda seen: seen["image"].tobytes())
-    report = live_in(world, tasks=3, episodes=20, max_steps=100)
+    report = live_in(world, tasks=2, episodes=15, max_steps=100)
     assert all(numbers_of(report, "lore", "reached"))
     # A context is one of a few kinds of thing in each of three directions.
     assert 0 < report["n_contexts"] <= 4**3
     assert report["n_states"] > report["n_contexts"]
-
-
-@pytest.mark.slow
-def test_blackjack_is_lived_in():
-    world = GymnasiumWorld(gymnasium.make("Blackjack-v1"), reset_by="episode")
-    report = live_in(world, tasks=2, episodes=400, discount=1)
-    assert report["n_states"] > 100
-    assert all(-1 <= value <= 1 for value in numbers_of(report, "lore", "mean_return"))
-
-
-def test_dicts_and_actions_that_do_not_start_at_zero():
-    """Two lamps, two buttons: in the end every lamp's button is known, so the last episodes pay nearly 1."""
-    world = GymnasiumWorld(Twofold(), context=lambda seen: seen["lamp"], reset_by="episode")
-    report = live_in(world, tasks=4, episodes=200)
-    assert report["n_contexts"] == 2
-    assert report["n_states"] == 10
-    # A tenth of 200 episodes explores once in a hundred: three of its 20 failing has odds below 1 in 10,000.
-    assert min(numbers_of(report, "lore", "final_return")) >= 0.85
 
 
 # ---- memory --------------------------------------------------------------------------------------
@@ -262,18 +207,9 @@ def test_report_is_plain_json_of_the_shape_of_live():
     report = live_in(Doors(), tasks=4, episodes=10, progress=lambda *tick: ticks.append(tick))
     assert json.loads(json.dumps(report, allow_nan=False)) == report
     assert set(report) == {
-        "domain",
-        "map",
-        "n_states",
-        "n_contexts",
-        "seed",
-        "settings",
-        "tasks",
-        "summary",
-        "memory",
-        "warnings",
+        "domain", "map", "n_states", "n_contexts", "seed", "settings", "tasks", "summary", "memory", "warnings",
         "seconds",
-    }
+    }  # fmt: skip
     assert (report["domain"], report["map"], report["n_states"]) == ("doors", None, 1)
     task = report["tasks"][2]
     assert (task["index"], task["goal"], task["optimal_return"]) == (2, None, None)
@@ -283,11 +219,8 @@ def test_report_is_plain_json_of_the_shape_of_live():
     assert {"first_return", "reached", "final_return", "mean_return"} < set(own)
     assert {"value", "median", "ci95", "n"} < set(report["summary"]["lore_vs_scratch"]["jumpstart"])
     assert ticks == [(0, 4, ""), *((done, 4, f"task {done - 1}") for done in range(1, 5))]
-
-
-def test_same_seed_same_life_and_another_seed_another():
-    first, again, other = (live_in(lakes(), tasks=2, episodes=30, seed=seed)["tasks"] for seed in (0, 0, 1))
-    assert first == again != other
+    again, other = (live_in(Doors(), tasks=4, episodes=10, seed=seed)["tasks"] for seed in (0, 1))
+    assert report["tasks"] == again != other
 
 
 # ---- stopping ------------------------------------------------------------------------------------
@@ -305,22 +238,6 @@ def test_stop_keeps_the_finished_tasks(tmp_path):
     assert len(report["tasks"]) == 2
     with open_memory(path) as memory:
         assert memory.tasks("robot") == report["memory"]["tasks_after"] == 2
-
-
-def test_stop_is_heard_within_an_episode():
-    stop = Event()
-
-    class Endless(Doors):
-        steps = 0
-
-        def step(self, action):
-            self.steps += 1
-            stop.set()
-            return "hall", 0.0, False, False
-
-    world = Endless()
-    report = live_in(world, max_steps=10**6, stop=stop)
-    assert (report["tasks"], report["summary"], world.steps) == ([], {}, 200)
 
 
 # ---- refusals ------------------------------------------------------------------------------------
@@ -365,9 +282,5 @@ def test_what_is_no_world_is_refused():
         live_in(gymnasium.make("FrozenLake-v1"))  # type: ignore[arg-type]
     with pytest.raises(InputError, match=r"world\.n_actions must lie in"):
         live_in(Doors(2**16))
-
-
-@pytest.mark.parametrize("context", [["a"], object()])
-def test_contexts_without_a_stable_code_are_refused(context):
     with pytest.raises(InputError, match="context must be"):
-        live_in(Doors(context=context))
+        live_in(Doors(context=object()))

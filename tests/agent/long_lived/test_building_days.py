@@ -6,7 +6,6 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.long_lived.families.building_days import (
     CROWDED,
     DETOUR,
@@ -17,7 +16,7 @@ from lifelore.agent.long_lived.families.building_days import (
     WayTask,
 )
 from lifelore.agent.long_lived.knowledge import Knowledge
-from lifelore.agent.long_lived.known_types import KnownType, KnownTypes, effect_counts
+from lifelore.agent.long_lived.known_types import KnownTypes, effect_counts
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task
 from lifelore.agent.long_lived.task_family import AGENTS
 from lifelore.domains.buildings import building_days as world
@@ -134,7 +133,7 @@ def test_cells_without_effects_have_those_of_their_neighbours():
 
 def test_types_are_told_apart_by_regions_alone():
     counts = effect_counts(RING, [(1, REFUSED), (RING.n_cells, REFUSED)])
-    known = KnownTypes(RING, [KnownType("a", counts, ActionPrior(1), ("a",))])
+    known = KnownTypes.joined(RING, ["a"], counts.counts(range(RING.n_causes))[None])
     assert known.judged.tolist() == [RING.n_cells]
     assert known.library(np.ones(1)).n_policies == 1
 
@@ -172,9 +171,9 @@ def test_a_day_is_learnt_and_reused():
 @pytest.mark.slow
 def test_reuse_and_memory_pay():
     missed = {"full": 0.0, "no-reuse": 0.0, "scratch": 0.0}
-    for seed in range(3):
-        stream = TaskStream(tuple(DAYS), seed, n_contexts=5, loyalty=0.9)
-        family = BuildingFamily(BuildingDays(OFFICE, stream, seed, n_destinations=3))
-        for agent in missed:
-            missed[agent] += life(agent, family, 50)[0][25:].mean()
+    family = BuildingFamily(
+        BuildingDays(OFFICE, TaskStream(tuple(DAYS), n_contexts=3, loyalty=0.9), n_destinations=3)
+    )
+    for agent in missed:
+        missed[agent] = life(agent, family, 30)[0][15:].mean()
     assert missed["full"] < missed["no-reuse"] < missed["scratch"]

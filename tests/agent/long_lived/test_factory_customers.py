@@ -103,19 +103,8 @@ def test_returns_of_tours_are_those_of_the_world():
     assert played(order, lambda task: TABLE.act(task.state, planned[0], rest)) == pytest.approx(expected[0, 0])
     pay = np.array([LAYOUT.floor.discount, 10.0, -10.0, 100.0])
     plain = getattr(returns_of_tours, "py_func", returns_of_tours)
-    again = plain(
-        TABLE.acts,
-        TABLE.walk,
-        TABLE.shrink,
-        pay,
-        now.stages,
-        now.known,
-        now.place,
-        planned,
-        rest[None],
-        truth[None],
-    )
-    assert np.array_equal(again, expected)
+    table, state = (TABLE.acts, TABLE.walk, TABLE.shrink), (now.stages, now.known, now.place)
+    assert np.array_equal(plain(*table, pay, *state, planned, rest[None], truth[None]), expected)
 
 
 def test_the_sets_agree_with_what_is_known():
@@ -179,7 +168,7 @@ def test_a_customer_is_learnt_from_one_order_and_served_best_from_the_next():
 def test_context_and_reuse_and_memory_pay():
     family = FactoryFamily(TaskStream(tuple(CUSTOMERS), n_contexts=3, loyalty=1.0))
     missed = {
-        agent: life(agent, family, 16)[0][8:].mean() for agent in ("full", "no-prior", "no-reuse", "scratch")
+        agent: life(agent, family, 12)[0][6:].mean() for agent in ("full", "no-prior", "no-reuse", "scratch")
     }
     assert missed["full"] < missed["no-prior"] < missed["scratch"]
     assert missed["full"] < 0.3 * missed["no-reuse"]

@@ -15,7 +15,7 @@ from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
 from lifelore.action.priors.action_prior import VERSION as PRIOR_VERSION
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.any_tasks.moves import ONE, OutcomeCounts
-from lifelore.agent.any_tasks.policies import QTable, StoredPolicy, StoresItself, stored
+from lifelore.agent.any_tasks.policies import StoredPolicy, StoresItself, stored, table_records, update_table
 from lifelore.agent.external_world.context_labels import KIND as LABELS
 from lifelore.agent.external_world.context_labels import VERSION as LABELS_VERSION
 from lifelore.agent.external_world.context_labels import ContextLabels, labels_record
@@ -164,10 +164,10 @@ class Experience:
         yield labels_record(f"{self.key}/contexts", contexts, {})
 
     def _policy_records(self, name: str, policy: Any) -> Iterable[Record]:
-        if isinstance(policy, QTable):
+        if isinstance(policy, dict):
             before = self.types[name].policy if name in self.types else None
-            known = before if isinstance(before, QTable) else None
-            yield from policy.to_records(POLICIES, f"{self.key}/table/{name}", known)
+            known = before if isinstance(before, dict) else {}
+            yield from table_records(policy, POLICIES, f"{self.key}/table/{name}", known)
         elif isinstance(policy, StoresItself):
             yield stored(policy, POLICIES, f"{self.key}/bytes/{name}")
 
@@ -207,9 +207,9 @@ class Experience:
             case "idle":
                 self._type(name).idle = values[0]
             case "table":
-                if not isinstance(self._type(name).policy, QTable):
-                    self._type(name).policy = QTable()
-                self._type(name).policy.update(record, self.n_actions)
+                if not isinstance(self._type(name).policy, dict):
+                    self._type(name).policy = {}
+                update_table(self._type(name).policy, record, self.n_actions)
             case "bytes":
                 self._type(name).policy = StoredPolicy.from_record(record)
 

@@ -19,10 +19,10 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import gammaln
 
 from lifelore.agent.any_tasks.moves import OutcomeCounts
 from lifelore.agent.any_tasks.novelty import log_odds
+from lifelore.agent.long_lived.same_type import joined_types, log_evidence
 
 Array = NDArray[np.float64]
 
@@ -154,22 +154,7 @@ class KnownMoves:
 
     def joined(self) -> list[list[int]]:
         """Groups of types that nothing tells apart, by number; each type is in one."""
-        groups = [[number] for number in range(len(self.counts))]
-        sums = list(self.counts)
-        pairs = {(i, j): self._apart(sums[i], sums[j]) for j in range(len(sums)) for i in range(j)}
-        while pairs:
-            i, j = min(pairs, key=pairs.__getitem__)
-            if pairs[i, j] >= ALIKE:
-                break
-            groups[i] += groups[j]
-            groups[j] = []
-            sums[i] = sums[i] + sums[j]
-            pairs = {
-                pair: self._apart(sums[pair[0]], sums[pair[1]]) if i in pair else found
-                for pair, found in pairs.items()
-                if j not in pair
-            }
-        return [sorted(group) for group in groups if group]
+        return joined_types(self.counts, self._apart, ALIKE)
 
     def _apart(self, first: Array, second: Array) -> float:
         """Log odds that counts (n_causes, n_effects) are of two types and not of one."""
@@ -178,11 +163,7 @@ class KnownMoves:
         return float(log_odds(evidence[common], self.kinds[common], self.known_apart[common]))
 
     def _log_dm(self, counts: Array) -> Array:
-        """Log probability of sequences with counts (..., n_causes, n_effects), (..., n_causes)."""
-        base = np.where(self.base > 0, self.base, 1.0)
-        gain = np.where(self.base > 0, gammaln(base + counts) - gammaln(base), 0.0).sum(axis=-1)
-        total = self.base.sum(axis=1)
-        return gain - (gammaln(total + counts.sum(axis=-1)) - gammaln(total))
+        return log_evidence(counts, self.base)
 
 
 def _most(row: Mapping[int, float]) -> dict[int, int]:

@@ -1,7 +1,6 @@
 """The known types of a life as recognition reads them: alike ones joined, with what they have shown and where."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,23 +8,10 @@ from numpy.typing import NDArray
 from lifelore.agent.any_tasks.experience import Experience
 from lifelore.agent.any_tasks.known_moves import KnownMoves
 from lifelore.agent.any_tasks.moves import OutcomeCounts
+from lifelore.agent.long_lived.same_type import JoinedType
 from lifelore.agent.long_lived.type_prior import TypePrior
 
 Array = NDArray[np.float64]
-
-
-class JoinedType(NamedTuple):
-    """Types that nothing tells apart.
-
-    members : their names in memory
-    """
-
-    members: tuple[str, ...]
-
-    @property
-    def name(self) -> str:
-        """The members' names."""
-        return "+".join(self.members)
 
 
 class KnownTypes:
@@ -65,10 +51,7 @@ class KnownTypes:
 
     def type_prior(self) -> TypePrior:
         """The prior over types by context and date, learnt from the sightings."""
-        prior = TypePrior(np.full(len(self), 1 / len(self)))
-        for (date, context), belief in self.sighted().items():
-            prior.count(context, belief, date)
-        return prior
+        return TypePrior.of_sightings(len(self), self.sighted())
 
     def sighted(self) -> dict[tuple[int, int], Array]:
         """Belief in each type at the end of tasks, (n_types,), by date and context in their order."""

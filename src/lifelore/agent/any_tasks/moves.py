@@ -5,12 +5,12 @@ episode ended, is all three. Where moves are noisy, rewards mostly are not: they
 """
 
 import hashlib
-from collections.abc import Hashable, Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Hashable, Iterator
 
 import numpy as np
 
 from lifelore.agent.external_world.context_code import ContextCodes
+from lifelore.agent.external_world.episode import Step
 from lifelore.core.protocols import Record
 
 OUTCOME_BITS = 16
@@ -21,20 +21,6 @@ MOST_REPEATS = 20
 """Most times that a task counts one cause: in a task the same cause is mostly answered alike."""
 ONE = 1_000_000
 """Fixed-point unit of counts in records."""
-
-
-class Step(NamedTuple):
-    """A step of an episode; states and contexts are codes.
-
-    ended : whether the world ended the episode
-    """
-
-    state: int
-    context: int
-    action: int
-    reward: float
-    following: int
-    ended: bool
 
 
 Pairs = tuple[tuple[int, int], tuple[int, int]]
@@ -119,11 +105,6 @@ class OutcomeCounts:
         for slot, value in zip(record.slots.tolist(), record.values.tolist(), strict=True):
             counts.add(slot >> OUTCOME_BITS, slot & (1 << OUTCOME_BITS) - 1, value / ONE)
         return counts
-
-
-def discounted(steps: Sequence[Step], discount: float) -> float:
-    """The return of an episode."""
-    return sum(discount**place * step.reward for place, step in enumerate(steps))
 
 
 def counted(steps: list[Step], codes: MoveCodes) -> OutcomeCounts:

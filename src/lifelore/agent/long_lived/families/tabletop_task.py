@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.long_lived.families.outcome_planning import OutcomeModel, OutcomePlanner
-from lifelore.agent.long_lived.families.pick_lessons import LIVED, Lesson, TrayPairs
+from lifelore.agent.long_lived.families.pick_lessons import LIVED, TrayPairs
 from lifelore.agent.long_lived.families.tray_features import (
     PerceivedTray,
     look_with_labels,
@@ -101,7 +101,7 @@ class TabletopTask:
     ) -> None:
         self.job, self._look = job, look
         self._graph = TrayGraph()
-        self._shown: dict[Done, tuple[TrayPairs, dict[frozenset[int], PairLabel]]] = {}
+        self._shown: dict[str, tuple[TrayPairs, dict[frozenset[int], PairLabel]]] = {}
         self.begin()
 
     # ---- the scene ----------------------------------------------------------------------------------
@@ -167,25 +167,17 @@ class TabletopTask:
 
     def _note_relations(self, lifted: int, events: Events) -> None:
         if self._seen is not None and self._seen.pairs is not None:
-            found = self._seen.pairs.shown_by(lifted, events.spilled, events.knocked)
-            _, labels = self._shown.setdefault(self._done, (self._seen.pairs, {}))
+            tray = self._seen.pairs
+            found = tray.shown_by(lifted, events.spilled, events.knocked)
+            _, labels = self._shown.setdefault(LabelledScene(tray.pairs, ()).digest, (tray, {}))
             labels |= {frozenset((label.a, label.b)): label for label in found}
-
-    def lessons(self) -> dict[Done, Lesson]:
-        """What picks have shown so far, by the actions that led to each tray."""
-        return {
-            done: Lesson(tray, tuple(labels.values())) for done, (tray, labels) in self._shown.items() if labels
-        }
 
     def relation_examples(self) -> list[Record]:
         """See `ShowsRelations`; a scene that came after several ways is one example, with the labels of all."""
-        scenes: dict[str, tuple[TrayPairs, dict[frozenset[int], PairLabel]]] = {}
-        for tray, labels in self.lessons().values():
-            _, joined = scenes.setdefault(LabelledScene(tray.pairs, ()).digest, (tray, {}))
-            joined |= {frozenset((label.a, label.b)): label for label in labels}
         return [
-            scene_record(LIVED, LabelledScene(tray.pairs, tuple(joined.values())))
-            for tray, joined in scenes.values()
+            scene_record(LIVED, LabelledScene(tray.pairs, tuple(labels.values())))
+            for tray, labels in self._shown.values()
+            if labels
         ]
 
     # ---- plans --------------------------------------------------------------------------------------
