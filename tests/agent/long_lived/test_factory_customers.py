@@ -203,12 +203,7 @@ def test_answers_hold_for_the_whole_task_where_customers_stay():
 def test_tables_of_orders_met_last_are_kept(monkeypatch):
     monkeypatch.setattr(factory_customers, "MOST_TABLES", 2)
     family = FactoryFamily(TaskStream(tuple(CUSTOMERS)))
-    first, second = (family.meet(number, FULL)[1].table for number in (0, 1))
-    assert family.meet(0, FULL)[1].table is first
-    family.meet(2, FULL)
-    assert family.meet(0, FULL)[1].table is first
-    again = family.meet(1, FULL)[1]
-    assert again.table is not second
-    assert list(family.tables) == [0, 1]
-    np.testing.assert_array_equal(again.table.values, second.values)
-    assert again.order.best_return == pytest.approx(family.best_return(1), abs=0)
+    first, second, again, _, kept, anew = (family.meet(number, FULL)[1].table for number in (0, 1, 0, 2, 0, 1))
+    assert first is again is kept
+    assert anew is not second
+    np.testing.assert_array_equal(anew.values, second.values)
