@@ -65,9 +65,7 @@ MET = {  # by the checker, and in a life
     "acts must be a tuple of names, at least one, got ()": constant(acts=()),
     "n_causes must be a whole number from 1, got 0": constant(n_causes=0),
     "n_effects must be a whole number from 1, got 2.0": constant(n_effects=2.0),
-    "possible must be an array of shape (3, 2), causes × effects, got (2, 3)": constant(
-        possible=np.ones((2, 3)) / 3
-    ),
+    "possible must be an array of shape (3, 2), causes × effects, got (2, 3)": constant(possible=np.eye(2, 3)),
     f"{ROWS} [1.0, 1.0] for cause 0": constant(possible=np.ones((3, 2))),
     f"{ROWS} [-1.0, 2.0] for cause 2": constant(possible=np.array([HALF, HALF, [-1.0, 2.0]])),
     f"{ROWS} [nan, 1.0] for cause 0": constant(possible=np.array([[np.nan, 1.0], HALF, HALF])),
@@ -85,7 +83,7 @@ MET = {  # by the checker, and in a life
     "best_return must be a finite number, got nan for task 0": constant(best_return=lambda *given: np.nan),
     "plan must return a Plan, got NoneType": (None, {"plan": lambda *given: None}),
     "values of a plan must be of shape (%, %), types × behaviours, got (4, 1)": plan(
-        values=lambda n: np.ones((4, 1))
+        values=lambda n: np.eye(4, 1)
     ),
     "values of a plan must be finite, got infinite %": plan(values=lambda n: np.full((n, n), np.inf)),
     "acts of a plan must be of shape (%,), got (9,)": plan(acts=lambda n: np.zeros(9, int)),
@@ -155,7 +153,7 @@ def test_defaults_by_hand():
     bare = family({name: getattr(TaskFamily, name) for name in ("cause_name", "effect_name")})
     assert bare.possible.tolist() == [HALF] * 3
     assert (bare.groups.tolist(), bare.kinds.tolist(), bare.judges.tolist()) == ([0, 1, 2], [0] * 3, [True] * 3)
-    assert bare.constancy.tolist() == HALF + [0.5]
+    assert bare.constancy.tolist() == [*HALF, 0.5]
     counts = np.arange(6.0).reshape(1, 3, 2)
     assert bare.smoothed(counts) is counts
     assert (bare.domain, bare.cause_name(2), bare.effect_name(2, 1)) == ("doors", "cause 2", "effect 1")
