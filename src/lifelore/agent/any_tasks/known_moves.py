@@ -154,13 +154,11 @@ class KnownMoves:
 
     def joined(self) -> list[list[int]]:
         """Groups of types that nothing tells apart, by number; each type is in one."""
-        return joined_types(self.counts, self._apart, ALIKE)
+        return joined_types(self.counts, self.base, self._log_odds, ALIKE)
 
-    def _apart(self, first: Array, second: Array) -> float:
-        """Log odds that counts (n_causes, n_effects) are of two types and not of one."""
-        common = first.any(axis=1) & second.any(axis=1)
-        evidence = self._log_dm(first) + self._log_dm(second) - self._log_dm(first + second)
-        return float(log_odds(evidence[common], self.kinds[common], self.known_apart[common]))
+    def _log_odds(self, evidence: Array) -> Array:
+        """Log odds of two types, (n,), from the evidence of causes, (n, n_causes)."""
+        return np.array([log_odds(row, self.kinds, self.known_apart) for row in evidence])
 
     def _log_dm(self, counts: Array) -> Array:
         return log_evidence(counts, self.base)

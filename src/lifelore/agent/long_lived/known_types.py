@@ -68,10 +68,9 @@ class KnownTypes:
     def joined(cls, family: TaskFamily, names: Sequence[str], counts: Array) -> Self:
         """The types of some names, those joined that nothing tells apart; memory keeps each type's own counts."""
         apart = cls(family, [JoinedType((name,)) for name in names], counts)
-        prior = apart._base[family.judges]
+        judges = family.judges
         # Evidence 0: types without a common cause.
-        judged = apart.counts[:, family.judges]
-        groups = joined_types(judged, lambda one, two: evidence_for_two(one, two, prior), 0.0)
+        groups = joined_types(apart.counts[:, judges], apart._base[judges], evidence_for_two, 0.0)
         if len(groups) == len(names):
             return apart
         types = [JoinedType(tuple(names[number] for number in group)) for group in groups]
@@ -130,7 +129,9 @@ class KnownTypes:
         judges = self.family.judges
         own = effect_counts(self.family, effects).counts(np.arange(self.family.n_causes))
         own = self.family.smoothed(own[None])[0, judges]
-        return evidence_for_two(self.counts[number, judges], own, self._base[judges]) > 0
+        known, base = self.counts[number, judges], self._base[judges]
+        evidence = log_evidence(known, base) + log_evidence(own, base) - log_evidence(known + own, base)
+        return bool(evidence_for_two(evidence) > 0)
 
     @cached_property
     def judged(self) -> NDArray[np.int64]:
@@ -156,11 +157,10 @@ def _drawn(counts: Array, generator: np.random.Generator) -> Array:
     return generator.standard_gamma(counts) + 1e-12 * counts
 
 
-def evidence_for_two(first: Array, second: Array, prior: Array) -> float:
-    """Evidence in nats that counts (n_causes, n_effects) have two laws and not one; `prior` in observations.
+def evidence_for_two(evidence: Array) -> Array:
+    """Evidence in nats that counts have two laws and not one, (...), from that of each cause, (..., n_causes).
 
     It is that of all causes together, and infinite where a single cause gives more than `TELLING`: types may agree
     in nearly all they do.
     """
-    for_two = log_evidence(first, prior) + log_evidence(second, prior) - log_evidence(first + second, prior)
-    return np.inf if for_two.max(initial=0.0) > TELLING else float(for_two.sum())
+    return np.where(evidence.max(axis=-1, initial=0.0) > TELLING, np.inf, evidence.sum(axis=-1))

@@ -39,29 +39,36 @@ def log_evidence(counts: Array, base: Array) -> Array:
     return gain - (gammaln(total + counts.sum(axis=-1)) - gammaln(total))
 
 
-def joined_types(counts: Array, apart: Callable[[Array, Array], float], least: float) -> list[list[int]]:
+def joined_types(counts: Array, base: Array, apart: Callable[[Array], Array], least: float) -> list[list[int]]:
     """Groups of types that nothing tells apart, by number; the two least apart are joined first.
 
     Parameters
     ----------
     counts : (n_types, n_causes, n_outcomes) float
+    base : (n_causes, n_outcomes) float
+        See `log_evidence`.
     apart : callable
-        Evidence in nats that two counts (n_causes, n_outcomes) are of two types.
+        From the evidence (n, n_causes) in nats of each cause that pairs are two types, what all causes tell, (n,).
     least : float
         Evidence from which types stay apart.
     """
-    groups, sums = [[number] for number in range(len(counts))], list(counts)
-    pairs = {(i, j): apart(sums[i], sums[j]) for i in range(len(sums)) for j in range(i + 1, len(sums))}
-    while pairs:
-        i, j = min(pairs, key=pairs.__getitem__)
-        if pairs[i, j] >= least:
-            break
-        groups[i] += groups[j]
-        groups[j] = []
-        sums[i] = sums[i] + sums[j]
-        pairs = {
-            pair: apart(sums[pair[0]], sums[pair[1]]) if i in pair else found
-            for pair, found in pairs.items()
-            if j not in pair
-        }
+    n, sums = len(counts), counts.copy()
+    alone, groups = log_evidence(sums, base), [[number] for number in range(n)]
+
+    def against(one: int, others: NDArray[np.int64]) -> Array:
+        # A cause that one of two types has not shown tells nothing: its evidence is 0.
+        return apart(alone[one] + alone[others] - log_evidence(sums[one] + sums[others], base))
+
+    pairs = np.full((n, n), np.inf)
+    for one in range(n - 1):
+        pairs[one, one + 1 :] = against(one, np.arange(one + 1, n))
+    while n > 1 and pairs.min() < least:
+        one, other = divmod(int(pairs.argmin()), n)
+        groups[one] += groups[other]
+        groups[other] = []
+        sums[one] += sums[other]
+        alone[one] = log_evidence(sums[one], base)
+        pairs[other] = pairs[:, other] = np.inf
+        left = np.array([number for number in range(n) if groups[number] and number != one], np.int64)
+        pairs[np.minimum(one, left), np.maximum(one, left)] = against(one, left)
     return [sorted(group) for group in groups if group]
