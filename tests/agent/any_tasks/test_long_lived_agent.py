@@ -273,28 +273,30 @@ def test_a_wrong_setting_is_named(settings, says):
         LongLivedAgent(**SETTINGS | settings)
 
 
-def test_a_wrong_environment_is_named():
-    agent = LongLivedAgent(**SETTINGS)
-    with pytest.raises(InputError, match=r"env must be a gymnasium\.Env, got str"):
-        agent.live("FrozenLake-v1")
-    with pytest.raises(InputError, match="actions must be Discrete"):
-        agent.live(gymnasium.make("Pendulum-v1"))
-    with pytest.raises(InputError, match="prior needs a task"):
-        _ = agent.prior
+class Nan(WindyGrid):
+    def step(self, action):
+        return np.array(self.place), float("nan"), True, False, {}
 
-    class Nan(WindyGrid):
-        def step(self, action):
-            return np.array(self.place), float("nan"), True, False, {}
 
-    with pytest.raises(InputError, match="reward must be a finite number, got nan"):
-        agent.live(Nan(0))
+def unfinished(env, prior, start):
+    env.reset()
+    env.step(0)
 
-    def unfinished(env, prior, start):
-        env.reset()
-        env.step(0)
 
-    with pytest.raises(InputError, match="reward must be a finite number, got nan"):
-        LongLivedAgent(**SETTINGS, learner=unfinished).live(Nan(0))
-    agent.live(WindyGrid(0))
-    with pytest.raises(InputError, match="env must have the 4 actions"):
-        agent.live(gymnasium.make("CartPole-v1"))
+@pytest.mark.parametrize(
+    ("live", "says"),
+    [
+        (lambda agent: agent.live("FrozenLake-v1"), r"env must be a gymnasium\.Env, got str"),
+        (lambda agent: agent.live(gymnasium.make("Pendulum-v1")), "actions must be Discrete"),
+        (lambda agent: agent.prior, "prior needs a task"),
+        (lambda agent: agent.live(Nan(0)), "reward must be a finite number, got nan"),
+        (lambda _: LongLivedAgent(**SETTINGS, learner=unfinished).live(Nan(0)), "reward must be a finite number"),
+        (
+            lambda agent: [agent.live(WindyGrid(0)), agent.live(gymnasium.make("CartPole-v1"))],
+            "have the 4 actions",
+        ),
+    ],
+)
+def test_a_wrong_environment_is_named(live, says):
+    with pytest.raises(InputError, match=says):
+        live(LongLivedAgent(**SETTINGS))
