@@ -1,19 +1,15 @@
+from collections import Counter
 from math import exp, lgamma, log
 
 import numpy as np
 import pytest
 
 from lifelore.agent.any_tasks.known_moves import KnownMoves
-from lifelore.agent.any_tasks.moves import OutcomeCounts
 from lifelore.agent.long_lived.same_type import joined_types
 
 
 def counts_of(rows):
-    counts = OutcomeCounts()
-    for cause, outcomes in rows.items():
-        for outcome, number in outcomes.items():
-            counts.add(cause, outcome, number)
-    return counts
+    return Counter({(cause, outcome): n for cause, outcomes in rows.items() for outcome, n in outcomes.items()})
 
 
 def drawn(random, laws, n):

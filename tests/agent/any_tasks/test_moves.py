@@ -1,6 +1,8 @@
+from collections import Counter
+
 import pytest
 
-from lifelore.agent.any_tasks.moves import MOST_REPEATS, MoveCodes, OutcomeCounts, counted
+from lifelore.agent.any_tasks.moves import MOST_REPEATS, MoveCodes, counted, counts_of, counts_record, totals
 from lifelore.agent.external_world.episode import Step
 
 
@@ -24,22 +26,18 @@ def test_codes_tell_moves_apart():
 
 
 def test_counts_survive_a_record_and_add_up():
-    first, second = OutcomeCounts(), OutcomeCounts()
-    first.add(2**47 - 1, 2**16 - 1, 1.5)
-    second.add(2**47 - 1, 2**16 - 1)
-    second.add(3, 4, 0.25)
-    first.merge(OutcomeCounts.from_record(second.to_record("moves", "key")))
-    assert dict(first.by_cause) == {2**47 - 1: {2**16 - 1: 2.5}, 3: {4: 0.25}}
-    assert first.total(3) == 0.25
-    assert first.total(5) == 0.0
+    largest = 2**47 - 1, 2**16 - 1
+    counts = Counter({largest: 1.5})
+    counts.update(counts_of(counts_record("moves", "key", Counter({largest: 2, (3, 4): 0.5}), 0.5)))
+    assert counts == {largest: 2.5, (3, 4): 0.25}
+    assert totals(Counter({(3, 4): 0.25, (3, 5): 1.0, (2, 4): 2.0})) == {3: 1.25, 2: 2.0}
 
 
 def test_a_task_counts_a_cause_so_often_at_most():
     codes = MoveCodes()
     step = Step(codes.state(0), 0, 1, 0.0, codes.state(1), False)
     other = step._replace(reward=1.0)
-    counts = counted([step] * (3 * MOST_REPEATS) + [other] * MOST_REPEATS, codes).scaled(0.5)
     moved, paid = codes.pairs(step)
-    assert counts.by_cause[moved[0]] == {moved[1]: pytest.approx(0.5 * MOST_REPEATS)}
-    assert counts.total(paid[0]) == pytest.approx(0.5 * MOST_REPEATS)
-    assert counts.by_cause[paid[0]][paid[1]] == pytest.approx(0.75 * 0.5 * MOST_REPEATS)
+    found = counted([step] * (3 * MOST_REPEATS) + [other] * MOST_REPEATS, codes)
+    shares = {moved: 1.0, paid: 0.75, codes.pairs(other)[1]: 0.25}
+    assert found == pytest.approx({pair: share * MOST_REPEATS for pair, share in shares.items()})

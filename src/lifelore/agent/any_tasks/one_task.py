@@ -10,6 +10,7 @@ for each episode:
 count moves, returns, useful actions, and the belief in this context                   remember
 """
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from threading import Event
 from typing import Any
@@ -21,7 +22,7 @@ from lifelore.agent.any_tasks.contest import Contest
 from lifelore.agent.any_tasks.experience import Experience, TaskNews
 from lifelore.agent.any_tasks.known_types import KnownTypes
 from lifelore.agent.any_tasks.learners import FixedPolicy, Player
-from lifelore.agent.any_tasks.moves import MoveCodes, OutcomeCounts, counted
+from lifelore.agent.any_tasks.moves import Counts, MoveCodes, counted, totals
 from lifelore.agent.any_tasks.policies import QTable, StoredPolicy
 from lifelore.agent.any_tasks.recorded_env import RecordedEnv
 from lifelore.agent.any_tasks.reuse import TaskReuse
@@ -200,14 +201,14 @@ class OneTask:
         if callable(self.settings.learner) and self.abilities.learner is None:
             self.learner = self.taught(self.settings.learner, None if start is None else self.known_policy(start))
             return
-        fresh = self.table(None, None)
+        fresh = self.table({}, Counter())
         fresh.take_over(self.steps)
         if start is None:
             self.learner = fresh
             return
         seeded = self.player(start)
         if own is None:
-            seeded = self.table(self.experience.types[start].policy, None)
+            seeded = self.table(self.experience.types[start].policy, Counter())
             seeded.take_over(self.steps)
         patience = self.settings.learning.episode_cap // PATIENCE
         self.learner = Contest(seeded, fresh, self.experience.hope, patience)
@@ -222,13 +223,15 @@ class OneTask:
                 self.players[name] = self.fixed(self.known_policy(name))
         return self.players[name]
 
-    def table(self, start: QTable | None, moves: OutcomeCounts | None) -> TableLearner:
+    def table(self, start: QTable, moves: Counts) -> TableLearner:
         """A learner by table that starts from a policy, and from what its type has shown before."""
         settings, prior = self.settings, self.experience.prior if self.abilities.prior else None
         own = self.abilities.learner or (settings.learner if isinstance(settings.learner, str) else "q")
 
+        number = totals(moves)
+
         def met(state: int, action: int) -> float:
-            return 0.0 if moves is None else moves.total(self.codes.cause(state, action))
+            return number[self.codes.cause(state, action)]
 
         return TableLearner(
             self.experience.n_actions, prior, settings.learning, settings.discount, settings.guidance,
@@ -274,7 +277,7 @@ class OneTask:
             return None
         result, experience = self.result, self.experience
         by_moves = self.settings.signals == "moves"
-        moves = counted(self.steps, self.codes) if by_moves else OutcomeCounts()
+        moves = counted(self.steps, self.codes) if by_moves else Counter()
         belief = self.learning_types(name, moves)
         if result.new and self.learner is None:
             self.begin_learning()
@@ -309,7 +312,7 @@ class OneTask:
         policy = self.learner.policy()
         return news._replace(returns=returns, learner=own, policy=policy, idle=idle, fresh=reached)
 
-    def learning_types(self, name: str, moves: OutcomeCounts) -> dict[str, float]:
+    def learning_types(self, name: str, moves: Counts) -> dict[str, float]:
         """How much each type learns from the task; a new one has the given name."""
         if not self.abilities.reuse:
             return {}

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from lifelore.agent.any_tasks.experience import Experience
 from lifelore.agent.any_tasks.known_returns import known_returns
 from lifelore.agent.any_tasks.known_types import KnownTypes
-from lifelore.agent.any_tasks.moves import OutcomeCounts, Pairs
+from lifelore.agent.any_tasks.moves import Counts, Pairs
 from lifelore.agent.any_tasks.novelty import NoveltyAlarm
 from lifelore.agent.any_tasks.task_settings import TaskSettings
 from lifelore.core.streams import stream
@@ -179,7 +179,7 @@ class TaskReuse:
             return self.policy
         return next((name for name in members if name in self.policies), None)
 
-    def differs(self, moves: OutcomeCounts) -> bool:
+    def differs(self, moves: Counts) -> bool:
         """Whether the moves of the task are better explained by a type of its own."""
         type_ = int(self.belief.argmax())
         return self.known.moves.evidence_of_another(type_, moves) + self.returns_against(type_) > 0
