@@ -146,12 +146,11 @@ class TableLearner:
     def _learn(self, step: Step) -> None:
         future = 0.0 if step.ended else self.discount * float(self.q[step.following].max())
         q = self.q[step.state]
-        q[0, step.action] += self._rate((step.state, step.action)) * (step.reward + future - q[0, step.action])
+        rate = self._falling_rate((step.state, step.action)) if self.replays else self.rate
+        q[0, step.action] += rate * (step.reward + future - q[0, step.action])
 
-    def _rate(self, move: tuple[Any, int]) -> float:
-        """The learning rate of a move; with replay it falls with the number of times that it was learnt."""
-        if not self.replays:
-            return self.rate
+    def _falling_rate(self, move: tuple[Any, int]) -> float:
+        """The learning rate of a move, which falls with the number of times that it was learnt."""
         number = self._number[move] if move in self._number else self._met(*move)
         self._number[move] = number + 1
         return self.rate * max(LEAST_RATE, 1 / (1 + number / HALF))
