@@ -1,18 +1,21 @@
+from collections import Counter
 from math import exp, lgamma, log
 
 import numpy as np
 import pytest
 
 from lifelore.agent.any_tasks.known_moves import KnownMoves
-from lifelore.agent.any_tasks.moves import OutcomeCounts
+from lifelore.agent.long_lived.same_type import joined_types
 
 
 def counts_of(rows):
-    counts = OutcomeCounts()
-    for cause, outcomes in rows.items():
-        for outcome, number in outcomes.items():
-            counts.add(cause, outcome, number)
-    return counts
+    return Counter({(cause, outcome): n for cause, outcomes in rows.items() for outcome, n in outcomes.items()})
+
+
+def drawn(random, laws, n):
+    """Counts of n outcomes of each cause, by its law."""
+    rows = {cause: random.multinomial(n, law).tolist() for cause, law in enumerate(laws)}
+    return counts_of({cause: {o: count for o, count in enumerate(row) if count} for cause, row in rows.items()})
 
 
 def log_dm(counts, base):
@@ -68,28 +71,18 @@ def test_types_that_nothing_tells_apart_are_joined():
     random = np.random.default_rng(0)
     laws = {"left": random.dirichlet([0.3] * 3, 60), "right": random.dirichlet([0.3] * 3, 60)}
 
-    def task(name):
-        rows = {cause: dict(enumerate(random.multinomial(6, law))) for cause, law in enumerate(laws[name])}
-        return counts_of({cause: {o: n for o, n in row.items() if n} for cause, row in rows.items()})
-
-    moves = KnownMoves([task("left"), task("right"), task("left"), task("right")])
+    moves = KnownMoves([drawn(random, laws[name], 6) for name in ("left", "right", "left", "right")])
     assert sorted(moves.joined()) == [[0, 2], [1, 3]]
 
 
 def test_a_task_of_another_type_is_told_from_a_known_one():
     random = np.random.default_rng(1)
     law = random.dirichlet([0.3] * 3, 40)
-
-    def task(law):
-        return counts_of(
-            {c: {o: int(n) for o, n in enumerate(random.multinomial(8, row)) if n} for c, row in enumerate(law)}
-        )
-
-    moves = KnownMoves([task(law), task(random.dirichlet([0.3] * 3, 40))])
-    assert moves.evidence_of_another(0, task(law)) < 0
+    moves = KnownMoves([drawn(random, law, 8), drawn(random, random.dirichlet([0.3] * 3, 40), 8)])
+    assert moves.evidence_of_another(0, drawn(random, law, 8)) < 0
     other = law.copy()
     other[:8] = random.dirichlet([0.3] * 3, 8)  # differs in a fifth of its causes
-    found = [moves.evidence_of_another(0, task(other)) for _ in range(5)]
+    found = [moves.evidence_of_another(0, drawn(random, other, 8)) for _ in range(5)]
     assert min(found) > 0
 
 
@@ -105,3 +98,27 @@ def test_worlds_that_surprise_are_expected_to_surprise():
     shown = [len(row) - 1 for row in noisy._effects]
     assert np.mean(shown) > 1
     assert 0.05 < noisy.laws[0, :, -1].mean() < 0.2  # truly 0.1
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_two_least_apart_are_joined_first_as_a_plain_loop_does(seed):
+    random = np.random.default_rng(seed)
+    laws, base = random.dirichlet([0.3] * 3, (3, 5)), np.full((5, 3), 0.4)
+    counts = random.multinomial(2, laws[random.integers(3, size=12)]).astype(float)
+
+    def apart(one, other):
+        pairs = zip(one.tolist(), other.tolist(), strict=True)
+        return sum(log_dm(a, [0.4] * 3) + log_dm(b, [0.4] * 3) - log_dm(np.add(a, b), [0.4] * 3) for a, b in pairs)
+
+    groups = {number: (counts[number], [number]) for number in range(12)}
+    while len(groups) > 1:
+        found = {(i, j): apart(groups[i][0], groups[j][0]) for i in groups for j in groups if i < j}
+        i, j = min(found, key=found.__getitem__)
+        if found[i, j] >= 0:
+            break
+        second = groups.pop(j)
+        groups[i] = groups[i][0] + second[0], groups[i][1] + second[1]
+    joined = joined_types(counts, base, lambda evidence: evidence.sum(axis=-1), 0.0)
+    assert joined == [sorted(members) for _, members in groups.values()]
+    assert 1 < len(joined) < 12
+    assert joined_types(np.ones((3, 5, 3)), base, lambda evidence: evidence.sum(axis=-1), 0.0) == [[0, 1, 2]]

@@ -1,10 +1,4 @@
-import os
 import re
-import signal
-import subprocess
-import sys
-import textwrap
-from pathlib import Path
 from threading import Event
 
 import gymnasium
@@ -87,8 +81,8 @@ def test_ablations_keep_what_they_lack():
         agent, _found = life(2, agent=name)
         assert len(agent.types) >= types if types else not agent.types, name
         assert bool(len(agent.prior)) == (name not in ("scratch", "textbook")), name
-    same = [life(2, agent="textbook")[1][1][1].returns for _ in range(2)]
-    assert same[0] == same[1]
+    for learner in ("model", "textbook"):
+        assert life(2, learner=learner)[1][0][1].new
 
 
 def test_the_informed_agent_knows_the_type_and_learns_nothing(full):
@@ -109,13 +103,10 @@ def test_the_informed_agent_knows_the_type_and_learns_nothing(full):
 
 def test_a_life_goes_on_in_another_agent(tmp_path):
     one = life(4)[1]
-    random = stream(0, "life")
     found = []
-    for _ in range(4):
+    for wind, before in one:
         with LongLivedAgent(**SETTINGS, memory=tmp_path / "life.db") as agent:
-            context = int(random.integers(2))
-            wind = WINDS[context if random.random() < 0.8 else 1 - context]
-            found.append(agent.live(WindyGrid(wind), context=("day", context)))
+            found.append(agent.live(WindyGrid(wind), context=before.context))
     assert [result.number for result in found] == [0, 1, 2, 3]
     with LongLivedAgent(**SETTINGS, memory=tmp_path / "life.db") as agent:
         for summary in agent.types.values():
@@ -134,42 +125,14 @@ def test_robots_share_what_they_learn(tmp_path):
     with open_memory(tmp_path / "ann.db") as memory:
         memory.merge_from(tmp_path / "bob.db")
     with LongLivedAgent(**SETTINGS, memory=tmp_path / "ann.db", robot="cleo") as agent:
+        # The tasks of a robot on the same memory are heard before the next one.
+        with LongLivedAgent(**SETTINGS, memory=tmp_path / "ann.db", robot="dan") as other:
+            assert other.live(WindyGrid(-1), context=-1).type == "ann.0"
         result = agent.live(WindyGrid(1), context=1)
         assert set(agent.policies) >= {"ann.0", "bob.0"}
+        assert sum(one.tasks for one in agent.types.values()) == pytest.approx(4, abs=0.1)
         assert result.type == "bob.0"
         assert result.policies[0] in ("ann.0", "bob.0")
-
-
-def test_another_process_on_the_memory_is_heard(tmp_path):
-    agents = [LongLivedAgent(**SETTINGS, memory=tmp_path / "life.db", robot=robot) for robot in ("ann", "bob")]
-    agents[0].live(WindyGrid(-1))
-    result = agents[1].live(WindyGrid(-1))
-    assert result.type == "ann.0"
-    for agent in agents:
-        agent.close()
-
-
-def test_a_killed_task_is_lived_again(tmp_path):
-    program = textwrap.dedent(f"""
-        import os, signal
-        from tests.agent.any_tasks.windy_grid import SETTINGS, WindyGrid
-        from lifelore import LongLivedAgent
-        agent = LongLivedAgent(**SETTINGS, memory={str(tmp_path / "life.db")!r})
-        agent.live(WindyGrid(-1))
-        class Dies(WindyGrid):
-            def step(self, action):
-                os.kill(os.getpid(), signal.SIGKILL)
-        agent.live(Dies(-1))
-    """)
-    root = Path(__file__).parents[3]
-    killed = subprocess.run(
-        [sys.executable, "-c", program], cwd=root, env=os.environ | {"PYTHONPATH": f"{root}/src:{root}"}
-    )
-    assert killed.returncode == -signal.SIGKILL
-    with LongLivedAgent(**SETTINGS, memory=tmp_path / "life.db") as agent:
-        result = agent.live(WindyGrid(-1))
-        assert result.number == 1
-        assert result.type == "robot.0"
 
 
 def test_what_memory_refuses_was_not_learnt(tmp_path, monkeypatch):
@@ -265,12 +228,6 @@ def test_a_learner_of_the_user_is_called_and_its_policy_reused(tmp_path):
         agent.live(WindyGrid(0))
 
 
-@pytest.mark.parametrize("learner", ["model", "textbook"])
-def test_other_learners_by_name(learner):
-    _, found = life(3, learner=learner)
-    assert found[0][1].new
-
-
 def test_returns_alone_tell_types_apart_too():
     class Paid(gymnasium.Env):
         """A bandit whose states never come again; the hidden type says which arm pays."""
@@ -316,28 +273,30 @@ def test_a_wrong_setting_is_named(settings, says):
         LongLivedAgent(**SETTINGS | settings)
 
 
-def test_a_wrong_environment_is_named():
-    agent = LongLivedAgent(**SETTINGS)
-    with pytest.raises(InputError, match=r"env must be a gymnasium\.Env, got str"):
-        agent.live("FrozenLake-v1")
-    with pytest.raises(InputError, match="actions must be Discrete"):
-        agent.live(gymnasium.make("Pendulum-v1"))
-    with pytest.raises(InputError, match="prior needs a task"):
-        _ = agent.prior
+class Nan(WindyGrid):
+    def step(self, action):
+        return np.array(self.place), float("nan"), True, False, {}
 
-    class Nan(WindyGrid):
-        def step(self, action):
-            return np.array(self.place), float("nan"), True, False, {}
 
-    with pytest.raises(InputError, match="reward must be a finite number, got nan"):
-        agent.live(Nan(0))
+def unfinished(env, prior, start):
+    env.reset()
+    env.step(0)
 
-    def unfinished(env, prior, start):
-        env.reset()
-        env.step(0)
 
-    with pytest.raises(InputError, match="reward must be a finite number, got nan"):
-        LongLivedAgent(**SETTINGS, learner=unfinished).live(Nan(0))
-    agent.live(WindyGrid(0))
-    with pytest.raises(InputError, match="env must have the 4 actions"):
-        agent.live(gymnasium.make("CartPole-v1"))
+@pytest.mark.parametrize(
+    ("live", "says"),
+    [
+        (lambda agent: agent.live("FrozenLake-v1"), r"env must be a gymnasium\.Env, got str"),
+        (lambda agent: agent.live(gymnasium.make("Pendulum-v1")), "actions must be Discrete"),
+        (lambda agent: agent.prior, "prior needs a task"),
+        (lambda agent: agent.live(Nan(0)), "reward must be a finite number, got nan"),
+        (lambda _: LongLivedAgent(**SETTINGS, learner=unfinished).live(Nan(0)), "reward must be a finite number"),
+        (
+            lambda agent: [agent.live(WindyGrid(0)), agent.live(gymnasium.make("CartPole-v1"))],
+            "have the 4 actions",
+        ),
+    ],
+)
+def test_a_wrong_environment_is_named(live, says):
+    with pytest.raises(InputError, match=says):
+        live(LongLivedAgent(**SETTINGS))

@@ -32,11 +32,11 @@ def test_new_contexts_by_hand():
 def test_a_forgotten_state_is_said():
     """CartPole's numbers never come twice, so each state and context is new."""
     with pytest.warns(UserWarning, match="Of the states met in later tasks of CartPole-v1, 100% have"):
-        forgotten = live_in(GymnasiumWorld(gymnasium.make("CartPole-v1")), tasks=4, episodes=10)
+        forgotten = live_in(GymnasiumWorld(gymnasium.make("CartPole-v1")), tasks=4, episodes=4)
     assert any("Pass context= (few, coarse features), and state=" in text for text in forgotten["warnings"])
     env = gymnasium.make("CartPole-v1")
     coarse = GymnasiumWorld(env, lambda seen: bool(seen[2] > 0), lambda seen: tuple(np.rint(10 * seen).tolist()))
-    assert not any("no earlier task" in text for text in live_in(coarse, tasks=4, episodes=10)["warnings"])
+    assert not any("no earlier task" in text for text in live_in(coarse, tasks=4, episodes=4)["warnings"])
 
 
 @pytest.mark.parametrize("other", ["scratch", "textbook"])

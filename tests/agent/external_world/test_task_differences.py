@@ -11,8 +11,6 @@ from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
 from lifelore.agent.external_world.live_in import live_in
 from lifelore.agent.external_world.task_differences import CERTAIN, TaskDifferences, homogeneity
 
-SAME = "Nothing that was observed tells the . tasks of FrozenLake-v1 apart"
-
 
 def lake(number, slippery):
     return gymnasium.make("FrozenLake-v1", desc=generate_random_map(4, seed=number), is_slippery=slippery)
@@ -22,55 +20,43 @@ def walked(task_maps, slippery, steps=2000):
     """Random walks over a map for each task."""
     differences, random = TaskDifferences(), np.random.default_rng(0)
     for number in task_maps:
-        env = lake(number, slippery)
+        env = lake(number, slippery).unwrapped
         state, _ = env.reset(seed=int(random.integers(2**31)))
-        for _ in range(steps):
-            action = int(random.integers(4))
-            following, reward, terminated, truncated, _ = env.step(action)
+        for action in random.integers(4, size=steps).tolist():
+            following, reward, terminated, _, _ = env.step(action)
             differences.see(state, action, following, float(reward), terminated)
-            state = env.reset()[0] if terminated or truncated else following
+            state = env.reset()[0] if terminated else following
         differences.end_task()
     return differences
 
 
 @pytest.mark.parametrize("slippery", [False, True])
-def test_one_map_met_again_is_one_task(slippery):
+def test_one_map_met_again_is_one_task_and_two_maps_are_two(slippery):
     assert walked([3] * 5, slippery).one_task
+    for other in (4, 6):
+        assert lake(3, False).unwrapped.desc.tobytes() != lake(other, False).unwrapped.desc.tobytes()
+        assert not walked([3, other], slippery).one_task
+        assert not walked([3, 3, other], slippery).one_task
 
 
-@pytest.mark.parametrize("slippery", [False, True])
-@pytest.mark.parametrize("other", range(4, 8))
-def test_two_maps_are_two_tasks(slippery, other):
-    assert lake(3, False).unwrapped.desc.tobytes() != lake(other, False).unwrapped.desc.tobytes()
-    assert not walked([3, other], slippery).one_task
-    assert not walked([3, 3, other], slippery).one_task
-
-
-def test_tasks_in_other_states_are_not_one():
+def told(*tasks):
+    """Whether tasks of transitions are called one."""
     differences = TaskDifferences()
-    for task in range(3):
-        for step in range(300):
-            differences.see((task, step % 10), 0, (task, (step + 1) % 10), 0.0, False)
+    for transitions in tasks:
+        for transition in transitions:
+            differences.see(*transition)
         differences.end_task()
-    assert not differences.one_task
+    return differences.one_task
 
 
-def test_a_reward_alone_tells_tasks_apart_in_a_certain_world():
-    for paid, one in ((1.0, True), (2.0, False)):
-        differences = TaskDifferences()
-        for reward in (1.0, paid):
-            for step in range(200):
-                differences.see(step % 5, 0, (step + 1) % 5, reward if step % 5 == 4 else 0.0, False)
-            differences.end_task()
-        assert differences.one_task is one
+def test_other_states_and_a_reward_alone_tell_tasks_apart_and_few_transitions_decide_nothing():
+    def ring(states, paid=1.0):
+        return [(states[k % 5], 0, states[(k + 1) % 5], paid if k % 5 == 4 else 0.0, False) for k in range(200)]
 
-
-def test_few_transitions_decide_nothing():
-    differences = TaskDifferences()
-    for _ in range(2):
-        differences.see("a", 0, "b", 0.0, True)
-        differences.end_task()
-    assert not differences.one_task
+    assert told(ring("abcde"), ring("abcde"))
+    assert not told(ring("abcde"), ring("abcde", 2.0))
+    assert not told(ring("abcde"), ring("fghij"), ring("klmno"))
+    assert not told([("a", 0, "b", 0.0, True)], [("a", 0, "b", 0.0, True)])
 
 
 def test_a_row_of_uncertain_outcomes_against_all_deals():
@@ -93,7 +79,7 @@ def test_a_row_of_uncertain_outcomes_against_all_deals():
 
 def test_a_life_on_one_map_warns_and_on_several_does_not():
     once = GymnasiumWorld(gymnasium.make("FrozenLake-v1", is_slippery=False))
-    with pytest.warns(UserWarning, match=SAME):
+    with pytest.warns(UserWarning, match="Nothing that was observed tells the . tasks of FrozenLake-v1 apart"):
         report = live_in(once, tasks=3, episodes=80)
     assert len(report["warnings"]) == 1
     maps = GymnasiumWorld(lambda task: lake(task, False), context=lambda place: place % 4)

@@ -6,7 +6,6 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.long_lived.families.building_days import (
     CROWDED,
     DETOUR,
@@ -17,8 +16,8 @@ from lifelore.agent.long_lived.families.building_days import (
     WayTask,
 )
 from lifelore.agent.long_lived.knowledge import Knowledge
-from lifelore.agent.long_lived.known_types import KnownType, KnownTypes, effect_counts
-from lifelore.agent.long_lived.live_task import LivingSettings, live_task
+from lifelore.agent.long_lived.known_types import KnownTypes, effect_counts
+from lifelore.agent.long_lived.long_life import live_long
 from lifelore.agent.long_lived.task_family import AGENTS
 from lifelore.domains.buildings import building_days as world
 from lifelore.domains.buildings.building import building_from_map
@@ -134,7 +133,7 @@ def test_cells_without_effects_have_those_of_their_neighbours():
 
 def test_types_are_told_apart_by_regions_alone():
     counts = effect_counts(RING, [(1, REFUSED), (RING.n_cells, REFUSED)])
-    known = KnownTypes(RING, [KnownType("a", counts, ActionPrior(1), ("a",))])
+    known = KnownTypes.joined(RING, ["a"], counts.counts(range(RING.n_causes))[None])
     assert known.judged.tolist() == [RING.n_cells]
     assert known.library(np.ones(1)).n_policies == 1
 
@@ -147,34 +146,26 @@ def test_the_day_is_not_read():
     assert all(b in RING.days.world.neighbour[a] for a, b in pairwise([0, *quiet._ways[0]]))
 
 
-def life(agent, family, n_tasks):
-    """Points of the first episodes below the best possible, and the knowledge at the end."""
-    abilities, knowledge, missed = AGENTS[agent], Knowledge.empty(family), []
-    for number in range(n_tasks):
-        if not abilities.memory:
-            knowledge = Knowledge.empty(family)
-        drawn, task = family.meet(number, abilities)
-        lived, _ = live_task(knowledge, drawn, task, abilities, LivingSettings(n_episodes=2), f"a.{number}")
-        missed.append(family.best_return(number) - lived.returns[0])
-    assert min(missed) >= 0
-    return np.array(missed), knowledge
+def missed(family, agent, tasks):
+    """Points of the first episodes below the best possible, and the number of types met."""
+    lived = live_long(family, tasks=tasks, agent=agent, episodes=2)["tasks"]
+    points = np.array([task["best_return"] - task["returns"][0] for task in lived])
+    assert points.min() >= 0
+    return points, sum(task["new_type"] for task in lived)
 
 
 def test_a_day_is_learnt_and_reused():
     family = BuildingFamily(BuildingDays(OFFICE, TaskStream(("works",), n_contexts=1), n_destinations=2))
-    missed, knowledge = life("full", family, 24)
-    alone, _ = life("scratch", family, 24)
+    full, types = missed(family, "full", 24)
     # At 5 % false alarms, four or more in 23 tasks have a probability below 3 %.
-    assert len(knowledge.types) <= 4
-    assert missed[12:].mean() < 0.3 * alone[12:].mean()
+    assert types <= 4
+    assert full[12:].mean() < 0.3 * missed(family, "scratch", 24)[0][12:].mean()
 
 
 @pytest.mark.slow
 def test_reuse_and_memory_pay():
-    missed = {"full": 0.0, "no-reuse": 0.0, "scratch": 0.0}
-    for seed in range(3):
-        stream = TaskStream(tuple(DAYS), seed, n_contexts=5, loyalty=0.9)
-        family = BuildingFamily(BuildingDays(OFFICE, stream, seed, n_destinations=3))
-        for agent in missed:
-            missed[agent] += life(agent, family, 50)[0][25:].mean()
-    assert missed["full"] < missed["no-reuse"] < missed["scratch"]
+    stream = TaskStream(tuple(DAYS), n_contexts=3, loyalty=0.9)
+    family = BuildingFamily(BuildingDays(OFFICE, stream, n_destinations=3))
+    agents = "full", "no-reuse", "scratch"
+    full, no_reuse, scratch = (missed(family, agent, 30)[0][15:].mean() for agent in agents)
+    assert full < no_reuse < scratch

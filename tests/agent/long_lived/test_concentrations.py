@@ -24,15 +24,12 @@ class Family:
         return counts
 
 
-def drawn_counts(rng, kappa, n_types=6, n_tasks=20, common=None):
+def drawn_counts(rng, kappa, n_types=6, n_tasks=20):
     """Counts of types whose laws are drawn around a common law with concentration kappa of each kind of cause."""
-    common = rng.dirichlet(np.ones(N_EFFECTS), N_CAUSES) if common is None else common
-    counts = np.zeros((n_types, N_CAUSES, N_EFFECTS))
-    for one in range(n_types):
-        for cause in range(N_CAUSES):
-            law = rng.dirichlet(kappa[Family.kinds[cause]] * common[cause] + 1e-9)
-            counts[one, cause] = rng.multinomial(n_tasks, law)
-    return counts
+    common = rng.dirichlet(np.ones(N_EFFECTS), N_CAUSES)
+    around = np.array(kappa)[Family.kinds, None] * common + 1e-9
+    laws = [[rng.dirichlet(row) for row in around] for _ in range(n_types)]
+    return rng.multinomial(n_tasks, laws).astype(float)
 
 
 def log_score(counts, more, kappa, alpha):
@@ -44,10 +41,14 @@ def log_score(counts, more, kappa, alpha):
     return float((more * np.log(laws / laws.sum(axis=2, keepdims=True))).sum())
 
 
-def test_nothing_known_is_usual():
-    kappa, alpha = learnt_concentrations(Family(), *np.zeros((2, 3, N_CAUSES, N_EFFECTS)))
-    assert (kappa == USUAL[0]).all()
-    assert (alpha == USUAL[1]).all()
+def test_nothing_known_is_usual_and_an_impossible_effect_may_be_seen():
+    none = np.zeros((2, N_CAUSES, N_EFFECTS))
+    kappa, alpha = learnt_concentrations(Family(), none, none)
+    assert [*np.unique(kappa), *np.unique(alpha)] == [*USUAL]
+    family = Family()
+    family.possible = np.tile([1.0, 0.0, 0.0, 0.0], (N_CAUSES, 1))
+    none[0, 0, 1] = 1
+    assert np.isfinite(learnt_concentrations(family, none, none).kappa).all()
 
 
 def test_each_kind_of_cause_has_its_own():
@@ -65,7 +66,7 @@ def test_each_kind_of_cause_has_its_own():
 def test_effects_to_come_are_predicted_better(kappa):
     usual = np.full(N_CAUSES, USUAL[0]), np.full(N_CAUSES, USUAL[1])
     gains = []
-    for seed in range(20):
+    for seed in range(12):
         rng = np.random.default_rng(seed)
         counts = drawn_counts(rng, kappa, n_tasks=8)
         # Half of each type's tasks predict the other half.
@@ -86,13 +87,6 @@ def test_surprises_elsewhere_are_expected_here():
     surprised = learnt_concentrations(Family(), counts, counts).alpha
     assert surprised[0] > 2 * steady[0]
     assert surprised[3] == steady[3]
-
-
-def test_an_effect_that_a_family_calls_impossible_may_be_seen():
-    family, counts = Family(), np.zeros((2, N_CAUSES, N_EFFECTS))
-    family.possible = np.tile([1.0, 0.0, 0.0, 0.0], (N_CAUSES, 1))
-    counts[0, 0, 1] = 1
-    assert np.isfinite(learnt_concentrations(family, counts, counts).kappa).all()
 
 
 def test_the_law_of_a_group_leaves_own_counts_out():

@@ -8,10 +8,10 @@ from typing import Any
 import gymnasium
 
 from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent
-from lifelore.agent.any_tasks.one_task import AGENTS, episode_seed
-from lifelore.agent.external_world.life_summary import summarise_life
+from lifelore.agent.any_tasks.one_task import episode_seed
+from lifelore.agent.any_tasks.task_settings import AGENTS
+from lifelore.agent.external_world.life_summary import summarise_life, task_measures
 from lifelore.agent.external_world.own_agent import OwnAgent, WatchedWorld, check_own_agents, live_own
-from lifelore.agent.external_world.task import task_measures
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress
 
@@ -34,8 +34,8 @@ def compare_agents(
     contexts : sequence of hashable
         The context of each task.
     agents : sequence of str, or mapping
-        Names of `lifelore.agent.any_tasks.one_task.AGENTS`; in a mapping also agents of your own by name, called
-        as for `live_in`: ``mine(world, task, seeds, max_steps)``. The first is compared with the others.
+        Names of `lifelore.agent.any_tasks.task_settings.AGENTS`; in a mapping also agents of your own by name,
+        called as for `live_in`: ``mine(world, task, seeds, max_steps)``. The first is compared with the others.
     progress : callable, optional
         Called as ``progress(done, total, label)`` after each task.
     stop : threading.Event, optional

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.any_tasks.learners import Player
-from lifelore.agent.any_tasks.moves import Step
+from lifelore.agent.external_world.episode import Step
 
 RECENT = 3
 """Episodes whose mean return says how well a learner does now."""

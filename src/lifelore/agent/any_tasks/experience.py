@@ -4,6 +4,7 @@ Counts add up and the newest value of a policy's cell wins, so that robots can m
 that nothing tells apart are joined when experience is read, never in memory.
 """
 
+from collections import Counter
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -14,8 +15,8 @@ from numpy.typing import NDArray
 from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
 from lifelore.action.priors.action_prior import VERSION as PRIOR_VERSION
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.agent.any_tasks.moves import ONE, OutcomeCounts
-from lifelore.agent.any_tasks.policies import QTable, StoredPolicy, StoresItself, stored
+from lifelore.agent.any_tasks.moves import ONE, Counts, counts_of, counts_record
+from lifelore.agent.any_tasks.policies import StoredPolicy, StoresItself, stored, table_records, update_table
 from lifelore.agent.external_world.context_labels import KIND as LABELS
 from lifelore.agent.external_world.context_labels import VERSION as LABELS_VERSION
 from lifelore.agent.external_world.context_labels import ContextLabels, labels_record
@@ -35,8 +36,9 @@ class TypeExperience:
 
     Parameters
     ----------
-    moves : OutcomeCounts
-    sightings : dict of (int, int) to float
+    moves : Counts
+        Of causes and outcomes.
+    sightings : Counts
         Belief in the type at the end of tasks, by date and context.
     returns : dict of str to (3,) float64
         Number, sum and sum of squares of the returns of each policy, by name, in tasks of this type.
@@ -46,8 +48,8 @@ class TypeExperience:
         Tasks in a row in which learning brought no gain.
     """
 
-    moves: OutcomeCounts = field(default_factory=OutcomeCounts)
-    sightings: dict[tuple[int, int], float] = field(default_factory=dict)
+    moves: Counts = field(default_factory=Counter)
+    sightings: Counts = field(default_factory=Counter)
     returns: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     policy: Any = None
     idle: int = 0
@@ -68,7 +70,7 @@ class TaskNews(NamedTuple):
     date: int
     context: int
     belief: Mapping[str, float]
-    moves: OutcomeCounts
+    moves: Counts
     returns: Mapping[str, list[float]]
     prior: ActionPrior
     label: Hashable = None
@@ -94,7 +96,7 @@ class Experience:
         self.key, self.n_actions = key, n_actions
         self.types: dict[str, TypeExperience] = {}
         self.prior = ActionPrior(n_actions, alpha0, f"{key}/prior")
-        self.causes = OutcomeCounts()
+        self.causes: Counts = Counter()  # tasks that showed each cause, with outcome 0
         self.labels: dict[int, Any] = {}  # contexts of tasks as they were given, by code
         self.n_tasks = 0
         self.fresh = np.zeros(2)  # number and sum of last returns of learners that began with nothing
@@ -135,9 +137,9 @@ class Experience:
 
     def _records(self, news: TaskNews) -> Iterable[Record]:
         for name, belief in news.belief.items():
-            yield news.moves.scaled(belief).to_record(COUNTS, f"{self.key}/moves/{name}")
-            date = np.array([news.date << DATE_BITS | news.context], np.int64)
-            yield Record(COUNTS, f"{self.key}/sightings/{name}", VERSION, "add", date, _fixed([belief]))
+            yield counts_record(COUNTS, f"{self.key}/moves/{name}", news.moves, belief)
+            seen = Counter({(news.date, news.context): belief})
+            yield counts_record(COUNTS, f"{self.key}/sightings/{name}", seen, bits=DATE_BITS)
             for policy, values in news.returns.items():
                 sums = belief * np.array([len(values), np.sum(values), np.square(values).sum()])
                 key = f"{self.key}/returns/{name}/{policy}"
@@ -151,10 +153,7 @@ class Experience:
         if len(news.fresh):
             sums = _fixed([len(news.fresh), np.sum(news.fresh)])
             yield Record(COUNTS, f"{self.key}/fresh", VERSION, "add", np.arange(2), sums)
-        shown = OutcomeCounts()
-        for cause in news.moves.by_cause:
-            shown.add(cause, 0)
-        yield shown.to_record(COUNTS, f"{self.key}/causes")
+        yield counts_record(COUNTS, f"{self.key}/causes", Counter({(cause, 0) for cause, _ in news.moves}))
         one, about = np.ones(1, np.int64), {"n_actions": self.n_actions}
         yield Record(COUNTS, f"{self.key}/tasks", VERSION, "add", 0 * one, one, about)
         yield news.prior.to_record({"prior": "tasks", "means": self.key})
@@ -164,10 +163,10 @@ class Experience:
         yield labels_record(f"{self.key}/contexts", contexts, {})
 
     def _policy_records(self, name: str, policy: Any) -> Iterable[Record]:
-        if isinstance(policy, QTable):
+        if isinstance(policy, dict):
             before = self.types[name].policy if name in self.types else None
-            known = before if isinstance(before, QTable) else None
-            yield from policy.to_records(POLICIES, f"{self.key}/table/{name}", known)
+            known = before if isinstance(before, dict) else {}
+            yield from table_records(policy, POLICIES, f"{self.key}/table/{name}", known)
         elif isinstance(policy, StoresItself):
             yield stored(policy, POLICIES, f"{self.key}/bytes/{name}")
 
@@ -193,23 +192,20 @@ class Experience:
             case "fresh":
                 self.fresh += record.values / ONE
             case "causes":
-                self.causes.merge(OutcomeCounts.from_record(record))
+                self.causes.update(counts_of(record))
             case "moves":
-                self._type(name).moves.merge(OutcomeCounts.from_record(record))
+                self._type(name).moves.update(counts_of(record))
             case "sightings":
-                seen = self._type(name).sightings
-                for slot, value in zip(record.slots.tolist(), values, strict=True):
-                    when = divmod(slot, 1 << DATE_BITS)
-                    seen[when] = seen.get(when, 0.0) + value / ONE
+                self._type(name).sightings.update(counts_of(record, DATE_BITS))
             case "returns":
                 sums = self._type(name).returns.setdefault(policy, np.zeros(3))
                 sums += record.values / ONE
             case "idle":
                 self._type(name).idle = values[0]
             case "table":
-                if not isinstance(self._type(name).policy, QTable):
-                    self._type(name).policy = QTable()
-                self._type(name).policy.update(record, self.n_actions)
+                if not isinstance(self._type(name).policy, dict):
+                    self._type(name).policy = {}
+                update_table(self._type(name).policy, record, self.n_actions)
             case "bytes":
                 self._type(name).policy = StoredPolicy.from_record(record)
 

@@ -14,15 +14,16 @@ predicted from all others (leave one out).
 types, as far as causes are usually alike.
 """
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import gammaln
 
-from lifelore.agent.any_tasks.moves import OutcomeCounts
+from lifelore.agent.any_tasks.moves import Counts
 from lifelore.agent.any_tasks.novelty import log_odds
+from lifelore.agent.long_lived.same_type import joined_types, log_evidence
 
 Array = NDArray[np.float64]
 
@@ -48,7 +49,8 @@ class KnownMoves:
 
     Parameters
     ----------
-    types : sequence of OutcomeCounts
+    types : sequence of Counts
+        Of causes and outcomes, by type.
 
     Attributes
     ----------
@@ -61,14 +63,13 @@ class KnownMoves:
         The pseudo-observations b.
     """
 
-    def __init__(self, types: Sequence[OutcomeCounts]) -> None:
-        self.codes = sorted({cause for one in types for cause in one.by_cause})
+    def __init__(self, types: Sequence[Counts]) -> None:
+        self.codes = sorted({cause for one in types for cause, _ in one})
         self._places = {code: place for place, code in enumerate(self.codes)}
-        totals: list[dict[int, float]] = [{} for _ in self.codes]
+        totals: list[Counter[int]] = [Counter() for _ in self.codes]
         for one in types:
-            for cause, outcome, count in one.items():
-                row = totals[self._places[cause]]
-                row[outcome] = row.get(outcome, 0.0) + count
+            for (cause, outcome), count in one.items():
+                totals[self._places[cause]][outcome] += count
         self._effects = [_most(row) for row in totals]
         n_effects = 1 + max((len(row) for row in self._effects), default=0)
         self.counts = np.zeros((len(types), len(self.codes), n_effects))
@@ -95,10 +96,10 @@ class KnownMoves:
         place = self._places.get(cause)
         return None if place is None else (place, self._effects[place].get(outcome, -1))
 
-    def own(self, moves: OutcomeCounts, n_effects: int | None = None) -> Array:
+    def own(self, moves: Counts, n_effects: int | None = None) -> Array:
         """The counts of moves, (n_causes, n_effects); those of unknown causes are left out."""
         counts = np.zeros((self.n_causes, n_effects or self.counts.shape[2]))
-        for cause, outcome, count in moves.items():
+        for (cause, outcome), count in moves.items():
             found = self.place(cause, outcome)
             if found is not None:
                 counts[found] += count
@@ -144,7 +145,7 @@ class KnownMoves:
 
     # ---- types that are one, or another -----------------------------------------------------------------
 
-    def evidence_of_another(self, type_: int, moves: OutcomeCounts) -> float:
+    def evidence_of_another(self, type_: int, moves: Counts) -> float:
         """Log odds that the moves of a task are of a type of its own, and not of a known one."""
         own = self.own(moves)
         alike = self._log_dm(self.pooled + own) - self._log_dm(self.pooled)
@@ -154,35 +155,14 @@ class KnownMoves:
 
     def joined(self) -> list[list[int]]:
         """Groups of types that nothing tells apart, by number; each type is in one."""
-        groups = [[number] for number in range(len(self.counts))]
-        sums = list(self.counts)
-        pairs = {(i, j): self._apart(sums[i], sums[j]) for j in range(len(sums)) for i in range(j)}
-        while pairs:
-            i, j = min(pairs, key=pairs.__getitem__)
-            if pairs[i, j] >= ALIKE:
-                break
-            groups[i] += groups[j]
-            groups[j] = []
-            sums[i] = sums[i] + sums[j]
-            pairs = {
-                pair: self._apart(sums[pair[0]], sums[pair[1]]) if i in pair else found
-                for pair, found in pairs.items()
-                if j not in pair
-            }
-        return [sorted(group) for group in groups if group]
+        return joined_types(self.counts, self.base, self._log_odds, ALIKE)
 
-    def _apart(self, first: Array, second: Array) -> float:
-        """Log odds that counts (n_causes, n_effects) are of two types and not of one."""
-        common = first.any(axis=1) & second.any(axis=1)
-        evidence = self._log_dm(first) + self._log_dm(second) - self._log_dm(first + second)
-        return float(log_odds(evidence[common], self.kinds[common], self.known_apart[common]))
+    def _log_odds(self, evidence: Array) -> Array:
+        """Log odds of two types, (n,), from the evidence of causes, (n, n_causes)."""
+        return np.array([log_odds(row, self.kinds, self.known_apart) for row in evidence])
 
     def _log_dm(self, counts: Array) -> Array:
-        """Log probability of sequences with counts (..., n_causes, n_effects), (..., n_causes)."""
-        base = np.where(self.base > 0, self.base, 1.0)
-        gain = np.where(self.base > 0, gammaln(base + counts) - gammaln(base), 0.0).sum(axis=-1)
-        total = self.base.sum(axis=1)
-        return gain - (gammaln(total + counts.sum(axis=-1)) - gammaln(total))
+        return log_evidence(counts, self.base)
 
 
 def _most(row: Mapping[int, float]) -> dict[int, int]:

@@ -38,7 +38,10 @@ def known_returns(
     within = np.maximum(squares - number * mean**2, 0.0).sum() / max(number.sum() - ran.sum(), 1.0)
     scale = np.abs(mean[ran]).max(initial=1e-6)
     own = np.array([[policy in members for policy in policies] for members in types])
-    guess = np.minimum(_mean_of(mean, ran & ~own, 0)[None], _least_of(mean, ran & own)[:, None])
+    elsewhere, at_home = np.ma.array(mean, mask=~(ran & ~own)), np.ma.array(mean, mask=~(ran & own))
+    usual = elsewhere.mean(axis=0).filled(elsewhere.mean() if elsewhere.count() else 0.0)
+    least = at_home.min(axis=1).filled(at_home.min() if at_home.count() else 0.0)
+    guess = np.minimum(usual[None], least[:, None])
     number = np.where(ran, number, GUESS)
     return GaussianOutcomes(np.where(ran, mean, guess), max(np.sqrt(within), LEAST_DEVIATION * scale), number)
 
@@ -46,16 +49,3 @@ def known_returns(
 def _sums(experience: Experience, members: Sequence[str], policy: str) -> Array:
     rows = (experience.types[name].returns.get(policy) for name in members)
     return sum((row for row in rows if row is not None), start=np.zeros(3))
-
-
-def _mean_of(values: Array, chosen: NDArray[np.bool_], axis: int) -> Array:
-    """Means of the chosen values along an axis; of all chosen values, or 0, where there are none."""
-    number = chosen.sum(axis=axis)
-    usual = float(values[chosen].mean()) if chosen.any() else 0.0
-    return np.where(number > 0, np.where(chosen, values, 0.0).sum(axis=axis) / np.maximum(number, 1), usual)
-
-
-def _least_of(values: Array, chosen: NDArray[np.bool_]) -> Array:
-    """The least chosen value of each row; the least of all, or 0, where a row has none."""
-    least = np.where(chosen, values, np.inf).min(axis=1)
-    return np.where(np.isfinite(least), least, least.min() if np.isfinite(least.min()) else 0.0)

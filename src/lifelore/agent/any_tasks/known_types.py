@@ -1,31 +1,18 @@
 """The known types of a life as recognition reads them: alike ones joined, with what they have shown and where."""
 
+from collections import Counter
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.any_tasks.experience import Experience
 from lifelore.agent.any_tasks.known_moves import KnownMoves
-from lifelore.agent.any_tasks.moves import OutcomeCounts
+from lifelore.agent.any_tasks.moves import Counts
+from lifelore.agent.long_lived.same_type import JoinedType
 from lifelore.agent.long_lived.type_prior import TypePrior
 
 Array = NDArray[np.float64]
-
-
-class JoinedType(NamedTuple):
-    """Types that nothing tells apart.
-
-    members : their names in memory
-    """
-
-    members: tuple[str, ...]
-
-    @property
-    def name(self) -> str:
-        """The members' names."""
-        return "+".join(self.members)
 
 
 class KnownTypes:
@@ -52,23 +39,17 @@ class KnownTypes:
         self.types = [JoinedType(tuple(names[number] for number in group)) for group in apart.joined()]
         some_joined = len(self.types) < len(names)
         self.moves = KnownMoves([self._moves(one.members) for one in self.types]) if some_joined else apart
-        self.frequency = np.array([experience.causes.total(code) for code in self.moves.codes])
+        self.frequency = np.array([experience.causes[code, 0] for code in self.moves.codes])
 
     def __len__(self) -> int:
         return len(self.types)
 
-    def _moves(self, members: Sequence[str]) -> OutcomeCounts:
-        joined = OutcomeCounts()
-        for name in members:
-            joined.merge(self.experience.types[name].moves)
-        return joined
+    def _moves(self, members: Sequence[str]) -> Counts:
+        return sum((self.experience.types[name].moves for name in members), Counter())
 
     def type_prior(self) -> TypePrior:
         """The prior over types by context and date, learnt from the sightings."""
-        prior = TypePrior(np.full(len(self), 1 / len(self)))
-        for (date, context), belief in self.sighted().items():
-            prior.count(context, belief, date)
-        return prior
+        return TypePrior.of_sightings(len(self), self.sighted())
 
     def sighted(self) -> dict[tuple[int, int], Array]:
         """Belief in each type at the end of tasks, (n_types,), by date and context in their order."""

@@ -1,11 +1,11 @@
 """`LongLivedAgent`: an agent that lives in tasks of anyone's Gymnasium environments and becomes good at them."""
 
 from collections.abc import Callable, Hashable
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from threading import Event
-from types import TracebackType
-from typing import Any, NamedTuple, Self
+from typing import Any, NamedTuple
 
 import gymnasium
 
@@ -14,14 +14,15 @@ from lifelore.agent.any_tasks.experience import Experience
 from lifelore.agent.any_tasks.known_types import KnownTypes
 from lifelore.agent.any_tasks.learners import Learner, checked_learner
 from lifelore.agent.any_tasks.moves import MoveCodes
-from lifelore.agent.any_tasks.one_task import AGENTS, OneTask, TaskSettings
+from lifelore.agent.any_tasks.one_task import OneTask
 from lifelore.agent.any_tasks.reuse import SIGNALS
 from lifelore.agent.any_tasks.task_result import TaskResult
+from lifelore.agent.any_tasks.task_settings import AGENTS, TaskSettings
 from lifelore.agent.external_world.context_code import context_code
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld, ResetBy
 from lifelore.agent.life.loop import LivedTask, Stopped, run_life
 from lifelore.agent.live.life_settings import PriorSettings
-from lifelore.agent.long_lived.curiosity import curious_contexts
+from lifelore.agent.long_lived.curiosity import CuriousContext, curious_contexts
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.memory import open_memory
@@ -43,21 +44,7 @@ class TypeSummary(NamedTuple):
     returns: dict[str, float]
 
 
-class CuriousContext(NamedTuple):
-    """A context that the agent would rather meet next, see `lifelore.agent.long_lived.curiosity`.
-
-    entropy : of the types that the agent expects there, nats
-    frequency : share of all tasks
-    unsure : part of the entropy that more tasks would remove, nats
-    """
-
-    context: Any
-    entropy: float
-    frequency: float
-    unsure: float
-
-
-class LongLivedAgent:
+class LongLivedAgent(AbstractContextManager):
     """An agent over policies for tasks of your own environments (thesis chapter 5).
 
     A task is an environment whose hidden type stays for its episodes, in a context that the agent sees. The agent
@@ -92,7 +79,7 @@ class LongLivedAgent:
     false_alarm : float
         Probability of an alarm in a task of a known type, in (0, 1).
     agent : str
-        A name of `lifelore.agent.any_tasks.one_task.AGENTS`: ``"full"``, or an ablation.
+        A name of `lifelore.agent.any_tasks.task_settings.AGENTS`: ``"full"``, or an ablation.
     robot : str
         Name of the robot in memory.
     reset_by : {"episode", "task"}
@@ -157,8 +144,10 @@ class LongLivedAgent:
             checked_learner(learner),
             signals,
             false_alarm,
+            seed,
+            AGENTS[agent],
         )
-        self.key, self.robot, self.seed, self.abilities = key, robot, seed, AGENTS[agent]
+        self.key, self.robot, self.seed = key, robot, seed
         self._state, self._features = state, features
         self._reset_by: ResetBy = reset_by
         self._codes, self._contexts = MoveCodes(), dict[int, Hashable]()
@@ -168,12 +157,7 @@ class LongLivedAgent:
         self._lived = 0
         self._recall()
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
     def close(self) -> None:
@@ -232,8 +216,7 @@ class LongLivedAgent:
         learning = self.settings.learning
         settings = replace(self.settings, learning=replace(learning, episodes=episodes or learning.episodes))
         task = OneTask(
-            experience, world, self._codes, settings, self.abilities, TaskResult(self._lived, None), 0, self.seed,
-            Event(), name,
+            experience, world, self._codes, settings, TaskResult(self._lived, None), 0, Event(), name
         )  # fmt: skip
         task.live("")
         return task.result
@@ -296,10 +279,8 @@ class LongLivedAgent:
         """Contexts by how much the agent would rather meet them next: entropy × frequency, the largest first."""
         if self._experience is None:
             return []
-        return [
-            CuriousContext(self._label(one.context), one.entropy, one.frequency, one.unsure)
-            for one in curious_contexts(KnownTypes(self._experience))  # pyright: ignore[reportArgumentType]
-        ]
+        known = curious_contexts(KnownTypes(self._experience))
+        return [replace(one, context=self._label(one.context)) for one in known]
 
     def explain(self, result: TaskResult) -> str:
         """Why the agent acted as it did in a task, in a few lines."""
@@ -340,8 +321,7 @@ class _NextTask:
         number = number if agent._memory is not None else agent._lived
         experience, result = agent._recalled(self.world.n_actions), TaskResult(number, self.context)
         task = OneTask(
-            experience, self.world, agent._codes, agent.settings, agent.abilities, result,
-            agent._context_code(self.context), agent.seed, stop,
+            experience, self.world, agent._codes, agent.settings, result, agent._context_code(self.context), stop
         )  # fmt: skip
         news = task.live(f"{agent.robot}.{number}")
         records = [] if news is None else experience.learn(news)

@@ -5,12 +5,13 @@ episode ended, is all three. Where moves are noisy, rewards mostly are not: they
 """
 
 import hashlib
-from collections.abc import Hashable, Iterator, Sequence
-from typing import NamedTuple
+from collections import Counter
+from collections.abc import Hashable
 
 import numpy as np
 
 from lifelore.agent.external_world.context_code import ContextCodes
+from lifelore.agent.external_world.episode import Step
 from lifelore.core.protocols import Record
 
 OUTCOME_BITS = 16
@@ -21,20 +22,6 @@ MOST_REPEATS = 20
 """Most times that a task counts one cause: in a task the same cause is mostly answered alike."""
 ONE = 1_000_000
 """Fixed-point unit of counts in records."""
-
-
-class Step(NamedTuple):
-    """A step of an episode; states and contexts are codes.
-
-    ended : whether the world ended the episode
-    """
-
-    state: int
-    context: int
-    action: int
-    reward: float
-    following: int
-    ended: bool
 
 
 Pairs = tuple[tuple[int, int], tuple[int, int]]
@@ -73,70 +60,36 @@ class MoveCodes:
         return found
 
 
-class OutcomeCounts:
-    """Counts of outcomes by cause, of one type; they add up, so robots can share them."""
-
-    def __init__(self) -> None:
-        self.by_cause: dict[int, dict[int, float]] = {}
-
-    def add(self, cause: int, outcome: int, weight: float = 1.0) -> None:
-        """Count an outcome."""
-        row = self.by_cause.setdefault(cause, {})
-        row[outcome] = row.get(outcome, 0.0) + weight
-
-    def total(self, cause: int) -> float:
-        """Number of outcomes of a cause."""
-        return sum(self.by_cause.get(cause, {}).values())
-
-    def merge(self, other: "OutcomeCounts") -> None:
-        """Add all counts of another."""
-        for cause, outcome, count in other.items():
-            self.add(cause, outcome, count)
-
-    def items(self) -> Iterator[tuple[int, int, float]]:
-        """(cause, outcome, count) of each counted outcome."""
-        for cause, row in self.by_cause.items():
-            for outcome, count in row.items():
-                yield cause, outcome, count
-
-    def scaled(self, weight: float) -> "OutcomeCounts":
-        """The counts times a weight."""
-        scaled = OutcomeCounts()
-        for cause, outcome, count in self.items():
-            scaled.add(cause, outcome, weight * count)
-        return scaled
-
-    def to_record(self, kind: str, key: str) -> Record:
-        """The counts as a record that memory adds."""
-        cells = [(cause << OUTCOME_BITS | outcome, round(count * ONE)) for cause, outcome, count in self.items()]
-        slots, values = np.array(sorted(cells), np.int64).reshape(-1, 2).T
-        return Record(kind, key, 1, "add", slots.copy(), values.copy())
-
-    @classmethod
-    def from_record(cls, record: Record) -> "OutcomeCounts":
-        """The counts of a record."""
-        counts = cls()
-        for slot, value in zip(record.slots.tolist(), record.values.tolist(), strict=True):
-            counts.add(slot >> OUTCOME_BITS, slot & (1 << OUTCOME_BITS) - 1, value / ONE)
-        return counts
+Counts = Counter[tuple[int, int]]
+"""Number of times of each pair, such as a cause and its outcome; counts add up, so robots can share them."""
 
 
-def discounted(steps: Sequence[Step], discount: float) -> float:
-    """The return of an episode."""
-    return sum(discount**place * step.reward for place, step in enumerate(steps))
+def totals(counts: Counts) -> Counter[int]:
+    """Number of outcomes of each cause."""
+    found = Counter[int]()
+    for (cause, _), count in counts.items():
+        found[cause] += count
+    return found
 
 
-def counted(steps: list[Step], codes: MoveCodes) -> OutcomeCounts:
+def counts_record(kind: str, key: str, counts: Counts, weight: float = 1.0, bits: int = OUTCOME_BITS) -> Record:
+    """Counts times a weight as a record that memory adds; the second number of a pair has so many bits."""
+    cells = sorted((one << bits | two, round(weight * count * ONE)) for (one, two), count in counts.items())
+    slots, values = np.array(cells, np.int64).reshape(-1, 2).T
+    return Record(kind, key, 1, "add", slots.copy(), values.copy())
+
+
+def counts_of(record: Record, bits: int = OUTCOME_BITS) -> Counts:
+    """The counts in a record of `counts_record`."""
+    pairs = (divmod(slot, 1 << bits) for slot in record.slots.tolist())
+    return Counter(dict(zip(pairs, (record.values / ONE).tolist(), strict=True)))
+
+
+def counted(steps: list[Step], codes: MoveCodes) -> Counts:
     """Counts of the outcomes of a task's steps; a cause counts `MOST_REPEATS` times at most."""
-    counts = OutcomeCounts()
-    for step in steps:
-        for cause, outcome in codes.pairs(step):
-            counts.add(cause, outcome)
-    for row in counts.by_cause.values():
-        share = min(1.0, MOST_REPEATS / sum(row.values()))
-        for outcome in row:
-            row[outcome] *= share
-    return counts
+    counts = Counter(pair for step in steps for pair in codes.pairs(step))
+    most = totals(counts)
+    return Counter({pair: count * min(1.0, MOST_REPEATS / most[pair[0]]) for pair, count in counts.items()})
 
 
 def _hashed(text: str, bits: int) -> int:

@@ -10,10 +10,10 @@ for each episode:
 count moves, returns, useful actions, and the belief in this context                   remember
 """
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Sequence
 from threading import Event
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -21,18 +21,17 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.any_tasks.contest import Contest
 from lifelore.agent.any_tasks.experience import Experience, TaskNews
 from lifelore.agent.any_tasks.known_types import KnownTypes
-from lifelore.agent.any_tasks.learners import FixedPolicy, Player, TableLearner
-from lifelore.agent.any_tasks.moves import MoveCodes, OutcomeCounts, Step, counted, discounted
+from lifelore.agent.any_tasks.learners import FixedPolicy, Player
+from lifelore.agent.any_tasks.moves import Counts, MoveCodes, counted, totals
 from lifelore.agent.any_tasks.policies import QTable, StoredPolicy
 from lifelore.agent.any_tasks.recorded_env import RecordedEnv
 from lifelore.agent.any_tasks.reuse import TaskReuse
 from lifelore.agent.any_tasks.task_result import LEARNER, TaskResult
+from lifelore.agent.any_tasks.task_settings import TaskSettings
+from lifelore.agent.external_world.episode import Step, discounted, play, reached
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
-from lifelore.agent.external_world.task import STOP_CHECK, check_reward
-from lifelore.agent.life.loop import Stopped
-from lifelore.agent.live.life_settings import PriorSettings
+from lifelore.agent.external_world.table_learner import TableLearner
 from lifelore.core.errors import InputError
-from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.streams import stream
 
 NOWHERE = -1
@@ -51,46 +50,6 @@ STRANGE = 0.1
 """Share of steps in states that a policy does not know, above which it is explored again."""
 
 
-class Abilities(NamedTuple):
-    """Which parts of the agent work; ablations switch them off.
-
-    prior : the action prior guides exploration
-    reuse : types and their policies are remembered and reused
-    context : the context of a task tells which types to expect
-    memory : anything is carried from task to task
-    learner : name of a learner in place of the agent's own
-    """
-
-    prior: bool = True
-    reuse: bool = True
-    context: bool = True
-    memory: bool = True
-    learner: str | None = None
-
-
-AGENTS: Mapping[str, Abilities] = {
-    "full": Abilities(),
-    "no-prior": Abilities(prior=False),
-    "no-reuse": Abilities(reuse=False),
-    "no-context": Abilities(context=False),
-    "scratch": Abilities(prior=False, reuse=False, memory=False),
-    "textbook": Abilities(prior=False, reuse=False, memory=False, learner="textbook"),
-}
-"""The agent, its ablations, and a textbook's Q-learning with ε = 0.1 and no past."""
-
-
-@dataclass(frozen=True)
-class TaskSettings:
-    """How a task is lived; the fields as the arguments of `LongLivedAgent`."""
-
-    learning: QLearning
-    guidance: PriorSettings
-    discount: float
-    learner: Any
-    signals: str
-    false_alarm: float
-
-
 class OneTask:
     """A task in progress; `live` lives it.
 
@@ -102,11 +61,10 @@ class OneTask:
         Its hidden type stays.
     codes : MoveCodes
     settings : TaskSettings
-    abilities : Abilities
     result : TaskResult
         Filled in.
-    context, seed : int
-        Code of the task's context, and the agent's seed.
+    context : int
+        Code of the task's context.
     stop : threading.Event
         Set it to drop the task: `live` raises `Stopped`.
     given : str, optional
@@ -119,17 +77,15 @@ class OneTask:
         world: GymnasiumWorld,
         codes: MoveCodes,
         settings: TaskSettings,
-        abilities: Abilities,
         result: TaskResult,
         context: int,
-        seed: int,
         stop: Event,
         given: str | None = None,
     ) -> None:
         self.experience, self.world, self.codes, self.settings = experience, world, codes, settings
-        self.abilities, self.result, self.context, self.seed = abilities, result, context, seed
+        self.abilities, self.result, self.context = settings.abilities, result, context
         self.stop, self.given = stop, given
-        self.generator = stream(seed, "task", result.number, "own")
+        self.generator = stream(settings.seed, "task", result.number, "own")
         self.reuse: TaskReuse | None = None
         self.players: dict[str, Player] = {}  # policies that ran; each learns from the moves that it makes
         self.learner: Player | None = None  # explores, once the task is worth learning
@@ -137,6 +93,7 @@ class OneTask:
         self.steps: list[Step] = []
         self.ran: dict[str, list[float]] = {}  # returns of policies that ran from begin to end of an episode
         self.strange = 0  # steps in states that what acted did not know
+        self.whole = True  # whether the episode was played by what began it
 
     def live(self, name: str) -> TaskNews | None:
         """Live the task; `name` is that of the new type, if it has one."""
@@ -151,22 +108,14 @@ class OneTask:
 
     def recognise(self) -> None:
         """Which types does this context usually have?"""
-        experience, settings = self.experience, self.settings
+        experience = self.experience
         if not self.abilities.reuse or not experience.policies:
             return
         known = KnownTypes(experience)
         prior = known.type_prior().prior(self.context if self.abilities.context else NOWHERE, self.result.number)
         if self.given is not None:
             prior = np.array([float(self.given in one.members) for one in known.types])
-        self.reuse = TaskReuse(
-            experience,
-            known,
-            prior,
-            settings.signals,
-            settings.false_alarm,
-            settings.learning.episode_cap,
-            self.seed,
-        )
+        self.reuse = TaskReuse(experience, known, prior, self.settings)
         self.result.prior = self.reuse.by_name(prior)
 
     @property
@@ -179,25 +128,16 @@ class OneTask:
     def live_episode(self) -> None:
         """Play an episode by the learner, or by the policy that is worth most; take in each move."""
         number = self.result.number
-        seed = episode_seed(self.seed, number, len(self.result.returns))
+        seed = episode_seed(self.settings.seed, number, len(self.result.returns))
         began = self.reuse.begin_episode() if self.learner is None and self.reuse is not None else LEARNER
-        state, reward, steps, ended, whole = self.world.reset(number, seed), 0.0, list[Step](), False, True
-        for count in range(self.settings.learning.step_cap):
-            if count % STOP_CHECK == 0 and self.stop.is_set():
-                raise Stopped
-            code, context = self.codes.state(state), self.codes.states[self.world.context(state, reward)]
-            self.strange += not self.running.knows(code)
-            action = self.running.act(code, context, explore=self.learner is not None)
-            state, reward, ended, truncated = self.world.step(action)
-            check_reward(reward, action, number)
-            steps.append(Step(code, context, action, reward, self.codes.state(state), ended))
-            self.take_in(steps[-1])
-            whole = whole and (began == LEARNER or (self.learner is None and self.policy == began))
-            if ended or truncated:
-                break
+        self.whole = True
+        codes, most = self.codes, self.settings.learning.step_cap
+        steps = play(
+            self.world, number, seed, codes.states, most, self.stop, self.act, self.take_in, codes.state
+        )  # fmt: skip
         earned = discounted(steps, self.settings.discount)
-        self.running.end_episode(steps, earned, ended)
-        self.end_episode(steps, earned, began, whole)
+        self.running.end_episode(steps, earned, steps[-1].ended)
+        self.end_episode(steps, earned, began)
 
     @property
     def policy(self) -> str | None:
@@ -209,28 +149,36 @@ class OneTask:
         """What acts now: the learner, or the policy in reuse."""
         return self.learner if self.learner is not None else self.player(str(self.policy))
 
+    def act(self, state: int, context: int) -> int:
+        """The action of what acts now."""
+        self.strange += not self.running.knows(state)
+        return self.running.act(state, context, explore=self.learner is not None)
+
     def take_in(self, step: Step) -> None:
         """Learn from a move: its value, the belief in types, and whether any known type fits."""
-        self.running.observe(step)
+        before = self.running
+        before.observe(step)
         if self.reuse is not None:
             self.reuse.observe(self.codes.pairs(step))
             if self.learner is None and self.alarmed and not callable(self.settings.learner):
                 self.begin_learning()
+            self.whole = self.whole and self.running is before
 
-    def end_episode(self, steps: list[Step], earned: float, began: str, whole: bool) -> None:
+    def end_episode(self, steps: list[Step], earned: float, began: str) -> None:
         """Note what an episode has shown."""
         result = self.result
         self.steps += steps
-        if whole and began != LEARNER:
-            self.ran.setdefault(began, []).append(earned)
+        ran = began if self.whole and began != LEARNER else None
+        if ran is not None:
+            self.ran.setdefault(ran, []).append(earned)
         if self.reuse is not None:
-            self.reuse.end_episode(began if whole and began != LEARNER else None, earned, began != LEARNER)
+            self.reuse.end_episode(ran, earned, began != LEARNER)
             result.beliefs.append(self.reuse.by_name(self.reuse.belief))
         if self.alarmed and not result.alarm:
             result.alarm, result.alarm_episode = True, len(result.returns)
         result.returns.append(earned)
         result.policies.append(began)
-        result.reached = result.reached or (steps[-1].ended and steps[-1].reward > 0)
+        result.reached = result.reached or reached(steps)
 
     # ---- learn -------------------------------------------------------------------------------------
 
@@ -253,14 +201,14 @@ class OneTask:
         if callable(self.settings.learner) and self.abilities.learner is None:
             self.learner = self.taught(self.settings.learner, None if start is None else self.known_policy(start))
             return
-        fresh = self.table(None, None)
+        fresh = self.table({}, Counter())
         fresh.take_over(self.steps)
         if start is None:
             self.learner = fresh
             return
         seeded = self.player(start)
         if own is None:
-            seeded = self.table(self.experience.types[start].policy, None)
+            seeded = self.table(self.experience.types[start].policy, Counter())
             seeded.take_over(self.steps)
         patience = self.settings.learning.episode_cap // PATIENCE
         self.learner = Contest(seeded, fresh, self.experience.hope, patience)
@@ -269,23 +217,25 @@ class OneTask:
         """The policy of a name, which learns in this task from the moves that it makes."""
         if name not in self.players:
             known = self.experience.types[name]
-            if isinstance(known.policy, QTable):
+            if isinstance(known.policy, dict):
                 self.players[name] = self.table(known.policy, known.moves)
             else:
                 self.players[name] = self.fixed(self.known_policy(name))
         return self.players[name]
 
-    def table(self, start: QTable | None, moves: OutcomeCounts | None) -> TableLearner:
+    def table(self, start: QTable, moves: Counts) -> TableLearner:
         """A learner by table that starts from a policy, and from what its type has shown before."""
         settings, prior = self.settings, self.experience.prior if self.abilities.prior else None
         own = self.abilities.learner or (settings.learner if isinstance(settings.learner, str) else "q")
 
+        number = totals(moves)
+
         def met(state: int, action: int) -> float:
-            return 0.0 if moves is None else moves.total(self.codes.cause(state, action))
+            return number[self.codes.cause(state, action)]
 
         return TableLearner(
-            own, self.experience.n_actions, prior, settings.learning, settings.discount, settings.guidance,
-            self.generator, start, met,
+            self.experience.n_actions, prior, settings.learning, settings.discount, settings.guidance,
+            self.generator, own, cautious=True, start=start, met=met,
         )  # fmt: skip
 
     def taught(self, learner: Callable[..., Any], start: Any) -> FixedPolicy:
@@ -294,7 +244,7 @@ class OneTask:
 
         def record(steps: list[Step], earned: float, ended: bool) -> None:
             played.append((steps, earned, ended))
-            self.end_episode(steps, earned, LEARNER, whole=False)
+            self.end_episode(steps, earned, LEARNER)
 
         env = RecordedEnv(self.world, self.codes, self.result.number, self.settings.discount, record)
         made = self.fixed(learner(env, self.experience.prior, start))
@@ -327,7 +277,7 @@ class OneTask:
             return None
         result, experience = self.result, self.experience
         by_moves = self.settings.signals == "moves"
-        moves = counted(self.steps, self.codes) if by_moves else OutcomeCounts()
+        moves = counted(self.steps, self.codes) if by_moves else Counter()
         belief = self.learning_types(name, moves)
         if result.new and self.learner is None:
             self.begin_learning()
@@ -362,7 +312,7 @@ class OneTask:
         policy = self.learner.policy()
         return news._replace(returns=returns, learner=own, policy=policy, idle=idle, fresh=reached)
 
-    def learning_types(self, name: str, moves: OutcomeCounts) -> dict[str, float]:
+    def learning_types(self, name: str, moves: Counts) -> dict[str, float]:
         """How much each type learns from the task; a new one has the given name."""
         if not self.abilities.reuse:
             return {}

@@ -1,7 +1,7 @@
 """Policies of a library: tables of values learnt here, or functions of the observation by the user's learner."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -10,37 +10,28 @@ from numpy.typing import NDArray
 from lifelore.core.protocols import Record
 from lifelore.memory.byte_words import bytes_of, words_of
 
+QTable = dict[int, NDArray[np.float64]]
+"""Values of actions (n_actions,) by the code of each state that was met; the policy takes the best action."""
 
-@dataclass(eq=False)
-class QTable:
-    """Values of actions in the states that were met; the policy takes the best action.
 
-    Parameters
-    ----------
-    values : dict of int to (n_actions,) float64
-        By the code of the state.
-    """
+def table_records(table: QTable, kind: str, key: str, before: QTable) -> Iterator[Record]:
+    """The values that differ from those before, as a record of which the newest value wins."""
+    new = {
+        state: row
+        for state, row in sorted(table.items())
+        if state not in before or not np.array_equal(before[state], row)
+    }
+    if new:
+        rows = np.array(list(new.values()), np.float64)
+        codes = np.array(list(new), np.int64)[:, None] * rows.shape[1] + np.arange(rows.shape[1])
+        yield Record(kind, key, 1, "newest", codes.ravel(), rows.view(np.int64).ravel())
 
-    values: dict[int, NDArray[np.float64]] = field(default_factory=dict)
 
-    def to_records(self, kind: str, key: str, before: "QTable | None" = None) -> Iterator[Record]:
-        """The values that differ from those of `before`, as a record of which the newest value wins."""
-        old = {} if before is None else before.values
-        new = {
-            state: row
-            for state, row in sorted(self.values.items())
-            if state not in old or not np.array_equal(old[state], row)
-        }
-        if new:
-            rows = np.array(list(new.values()), np.float64)
-            codes = np.array(list(new), np.int64)[:, None] * rows.shape[1] + np.arange(rows.shape[1])
-            yield Record(kind, key, 1, "newest", codes.ravel(), rows.view(np.int64).ravel())
-
-    def update(self, record: Record, n_actions: int) -> None:
-        """Take the values of a record of `to_records`."""
-        for code, value in zip(record.slots.tolist(), record.values.view(np.float64).tolist(), strict=True):
-            state, action = divmod(code, n_actions)
-            self.values.setdefault(state, np.zeros(n_actions))[action] = value
+def update_table(table: QTable, record: Record, n_actions: int) -> None:
+    """Take the values of a record of `table_records`."""
+    for code, value in zip(record.slots.tolist(), record.values.view(np.float64).tolist(), strict=True):
+        state, action = divmod(code, n_actions)
+        table.setdefault(state, np.zeros(n_actions))[action] = value
 
 
 @runtime_checkable

@@ -5,9 +5,9 @@ from typing import Any
 
 import gymnasium
 
-from lifelore.agent.any_tasks.moves import MoveCodes, Step, discounted
+from lifelore.agent.any_tasks.moves import MoveCodes
+from lifelore.agent.external_world.episode import Step, check_reward, discounted
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
-from lifelore.agent.external_world.task import check_reward
 
 
 class RecordedEnv(gymnasium.Wrapper):

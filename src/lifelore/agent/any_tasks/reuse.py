@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from lifelore.agent.any_tasks.experience import Experience
 from lifelore.agent.any_tasks.known_returns import known_returns
 from lifelore.agent.any_tasks.known_types import KnownTypes
-from lifelore.agent.any_tasks.moves import OutcomeCounts, Pairs
+from lifelore.agent.any_tasks.moves import Counts, Pairs
 from lifelore.agent.any_tasks.novelty import NoveltyAlarm
+from lifelore.agent.any_tasks.task_settings import TaskSettings
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -44,27 +45,16 @@ class TaskReuse:
     known : KnownTypes
         Of the same experience.
     prior : (n_types,) float
-    signals : {"moves", "returns"}
-        Whether each move is a signal, or the return of each episode that one policy ran.
-    false_alarm : float
-        Probability of an alarm in a task of a known type, in (0, 1).
-    n_episodes, seed : int
+    settings : TaskSettings
+        Its ``signals`` say whether each move is a signal, or the return of each episode that one policy ran.
     """
 
-    def __init__(
-        self,
-        experience: Experience,
-        known: KnownTypes,
-        prior: Array,
-        signals: str,
-        false_alarm: float,
-        n_episodes: int,
-        seed: int,
-    ) -> None:
+    def __init__(self, experience: Experience, known: KnownTypes, prior: Array, settings: TaskSettings) -> None:
+        seed, false_alarm = settings.seed, settings.false_alarm
         self.known = known
         self.policies = experience.policies
         self.names = tuple(one.name for one in known.types)
-        self.by_moves = signals == "moves"
+        self.by_moves = settings.signals == "moves"
         likelihood = LikelihoodSignal(self._log_likelihood, len(known), len(self.policies))
         members = [one.members for one in known.types]
         library = PolicyLibrary(
@@ -86,8 +76,10 @@ class TaskReuse:
             )  # fmt: skip
         else:
             n_tasks = max(1000, int(np.ceil(LEAST_ALARMS / false_alarm)))
-            settings = {"horizon": n_episodes, "n_tasks": n_tasks, "seed": generator, "dynamics": static}
-            self.alarm = NoveltyDetector.calibrate(library, false_alarm=false_alarm, **settings)
+            self.alarm = NoveltyDetector.calibrate(
+                library, false_alarm=false_alarm, horizon=settings.learning.episode_cap, n_tasks=n_tasks,
+                seed=generator, dynamics=static,
+            )  # fmt: skip
         detector = self.alarm if isinstance(self.alarm, NoveltyDetector) else None
         self.agent = BayesianPolicyReuse(library, dynamics=static, seed=seed, novelty=detector)
         self._own: dict[int, Array] = {}  # outcomes of this task by cause
@@ -187,7 +179,7 @@ class TaskReuse:
             return self.policy
         return next((name for name in members if name in self.policies), None)
 
-    def differs(self, moves: OutcomeCounts) -> bool:
+    def differs(self, moves: Counts) -> bool:
         """Whether the moves of the task are better explained by a type of its own."""
         type_ = int(self.belief.argmax())
         return self.known.moves.evidence_of_another(type_, moves) + self.returns_against(type_) > 0

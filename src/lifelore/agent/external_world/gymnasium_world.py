@@ -10,8 +10,9 @@ import hashlib
 import inspect
 import textwrap
 from collections.abc import Callable, Hashable, Mapping
-from types import CodeType, TracebackType
-from typing import Any, Literal, Self, SupportsFloat, get_args
+from contextlib import AbstractContextManager
+from types import CodeType
+from typing import Any, Literal, SupportsFloat, get_args
 
 import gymnasium
 import numpy as np
@@ -23,7 +24,7 @@ from lifelore.core.streams import stream
 ResetBy = Literal["task", "episode"]
 
 
-class GymnasiumWorld:
+class GymnasiumWorld(AbstractContextManager):
     """An environment of the user as a world for `live_in`; implements `lifelore.core.protocols.World`.
 
     Parameters
@@ -85,12 +86,7 @@ class GymnasiumWorld:
         self.n_actions, self.first_action = _actions(self._env)
         self._current: tuple[Any, Hashable] | None = None
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.close()
 
     def close(self) -> None:

@@ -1,4 +1,4 @@
-"""Summary of a life in an external world: each agent over thirds of the tasks, and `lore` against every other."""
+"""Measures of a task in an external world, and the summary of a life: each agent over thirds of its tasks."""
 
 from collections.abc import Sequence
 
@@ -6,6 +6,26 @@ from lifelore.agent.live.summary import plain, third
 from lifelore.core.metrics import difference_estimate, mean_estimate
 
 MEASURES = ("first_return", "mean_return", "final_return")
+
+
+def task_measures(returns: Sequence[float], reached: bool) -> dict:
+    """The measures of an agent in a task as JSON data.
+
+    Parameters
+    ----------
+    returns : sequence of float
+        Discounted return of each episode, at least one.
+    reached : bool
+        Whether an episode was terminated with a positive reward.
+    """
+    last = returns[-max(1, len(returns) // 10) :]
+    return {
+        "first_return": returns[0],
+        "reached": reached,
+        "final_return": sum(last) / len(last),
+        "mean_return": sum(returns) / len(returns),
+        **dict.fromkeys(("collisions", "steps_to_80", "episodes_to_80")),
+    }
 
 
 def summarise_life(tasks: list[dict], agents: Sequence[str]) -> dict:

@@ -4,18 +4,19 @@ import time
 import warnings
 from collections.abc import Hashable, Mapping
 from contextlib import nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from threading import Event
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.external_world.context_code import MOST_ACTIONS, ContextCodes
 from lifelore.agent.external_world.context_labels import labels_record
-from lifelore.agent.external_world.life_summary import summarise_life
+from lifelore.agent.external_world.episode import discounted, play, reached
+from lifelore.agent.external_world.life_summary import summarise_life, task_measures
 from lifelore.agent.external_world.life_warnings import ContextNovelty, life_warnings
 from lifelore.agent.external_world.own_agent import OwnAgent, WatchedWorld, check_own_agents, live_own
 from lifelore.agent.external_world.stored_prior import recalled_prior
-from lifelore.agent.external_world.task import ExternalLearner, ExternalTask, task_measures
+from lifelore.agent.external_world.table_learner import TableLearner
 from lifelore.agent.external_world.task_differences import TaskDifferences
 from lifelore.agent.life.loop import LivedTask, opened_memory, run_life
 from lifelore.agent.live.life_settings import PriorSettings
@@ -143,67 +144,48 @@ def live_in(
     ['agents', 'lore_vs_scratch', 'lore_vs_textbook']
     """
     began = time.perf_counter()
-    _check_tasks(tasks)
     _check_world(world)
+    if not isinstance(tasks, int) or not 1 <= tasks <= 10**9:
+        raise InputError(f"tasks must be a whole number from 1 to 10^9, got {tasks}")
+    if not 0 <= discount <= 1:
+        raise InputError(f"discount must lie in [0, 1], got {discount}")
+    if not robot.strip():
+        raise InputError("robot must have a name, got an empty text; name the robot")
     own_agents = check_own_agents(agents or {}, AGENTS)
     learning = QLearning(episodes, max_steps, learning_rate, epsilon, epsilon_decay, epsilon_floor)
+    guidance = PriorSettings("observation", alpha0, weight, form, ties)
     key = _key_of(world, key, needed=memory is not None)
-    settings = _Settings(
-        tasks, robot, key, seed, discount, learning, PriorSettings("observation", alpha0, weight, form, ties)
-    )
+    names = [*AGENTS, *own_agents]
+    settings = {"tasks": tasks, "robot": robot, "key": key, "discount": discount}
+    settings |= asdict(learning) | asdict(guidance) | {"agents": names}
+    del settings["annealed"], settings["condition"]
     with (
         LongTable(csv, seed) if csv is not None else nullcontext() as table,
         opened_memory(memory) as opened,
     ):
-        life = _ExternalLife(world, settings, own_agents, opened, table)
+        life = _ExternalLife(world, learning, guidance, discount, seed, key, own_agents, opened, table)
+        before = opened.tasks(robot) if opened else 0
         run_life(life, tasks, memory=opened, robot=robot, progress=progress, stop=stop)
-        report = life.report(time.perf_counter() - began)
-    for sentence in report["warnings"]:
+    done = life.finished
+    summary = summarise_life(done, names) if done else {}
+    found = life_warnings(
+        life.name, len(done), len(life.prior), life.novelty.late, life.differences.one_task, summary
+    )  # fmt: skip
+    for sentence in found:
         warnings.warn(sentence, stacklevel=2)
-    return report
-
-
-@dataclass(frozen=True)
-class _Settings:
-    """Checked settings of a life."""
-
-    tasks: int
-    robot: str
-    key: str | None
-    seed: int
-    discount: float
-    learning: QLearning
-    guidance: PriorSettings
-
-    def __post_init__(self) -> None:
-        if not 0 <= self.discount <= 1:
-            raise InputError(f"discount must lie in [0, 1], got {self.discount}")
-        if not self.robot.strip():
-            raise InputError("robot must have a name, got an empty text; name the robot")
-
-    def to_dict(self) -> dict:
-        learning, guidance = self.learning, self.guidance
-        return {
-            "tasks": self.tasks,
-            "robot": self.robot,
-            "key": self.key,
-            "discount": self.discount,
-            "episodes": learning.episodes,
-            "max_steps": learning.max_steps,
-            "learning_rate": learning.learning_rate,
-            "epsilon": learning.epsilon,
-            "epsilon_decay": learning.epsilon_decay,
-            "epsilon_floor": learning.epsilon_floor,
-            "alpha0": guidance.alpha0,
-            "weight": guidance.weight,
-            "form": guidance.form,
-            "ties": guidance.ties,
-        }
-
-
-def _check_tasks(tasks: int) -> None:
-    if not isinstance(tasks, int) or not 1 <= tasks <= 10**9:
-        raise InputError(f"tasks must be a whole number from 1 to 10^9, got {tasks}")
+    return {
+        "domain": life.name,
+        "map": None,
+        "n_states": len(life.states),
+        "n_contexts": len(life.prior),
+        "seed": seed,
+        "settings": settings | {"memory": opened.location if opened else None},
+        "tasks": done,
+        "summary": summary,
+        "memory": {"tasks_before": before, "tasks_after": before + len(done)},
+        "warnings": found,
+        "seconds": round(time.perf_counter() - began, 3),
+    }
 
 
 def _check_world(world: World) -> None:
@@ -231,45 +213,71 @@ def _key_of(world: World, key: str | None, needed: bool) -> str | None:
     return key
 
 
+@dataclass(eq=False)
 class _ExternalLife:
     """A life in progress: its prior, and the memory that stores it."""
 
-    def __init__(
-        self,
-        world: World,
-        settings: _Settings,
-        own_agents: Mapping[str, OwnAgent],
-        memory: Memory | None,
-        table: LongTable | None,
-    ) -> None:
-        self.world, self.settings, self.own_agents = world, settings, own_agents
-        self.memory, self.table = memory, table
-        self.name = str(getattr(world, "name", type(world).__name__))
-        self.tasks_before = memory.tasks(settings.robot) if memory else 0
+    world: World
+    learning: QLearning
+    guidance: PriorSettings
+    discount: float
+    seed: int
+    key: str | None
+    own_agents: Mapping[str, OwnAgent]
+    memory: Memory | None
+    table: LongTable | None
+
+    def __post_init__(self) -> None:
+        self.name = str(getattr(self.world, "name", type(self.world).__name__))
         self.codes, self.states, self.finished = ContextCodes(), set[Hashable](), list[dict]()
         self.differences = TaskDifferences()
         self.labelled = set[int]()  # contexts whose features this life has stored
 
     def recall(self) -> None:
         """Read the prior of the key; an empty one without a memory."""
-        alpha0 = self.settings.guidance.alpha0
-        self.prior = recalled_prior(self.memory, self.settings.key, self.world.n_actions, alpha0)
+        self.prior = recalled_prior(self.memory, self.key, self.world.n_actions, self.guidance.alpha0)
         if not self.finished:
             self.novelty = ContextNovelty(self.prior.contexts.tolist())
 
     def live(self, number: int, seq: int, stop: Event) -> LivedTask:
         """Live a task with each agent."""
-        task = self._task(number, stop)
+        drawn = stream(self.seed, "task", number, "world").integers(2**31, size=self.learning.episode_cap)
+        seeds, agents, returns = drawn.tolist(), {}, {}
         learners = {name: self._learner(name, number) for name in AGENTS}
-        agents = {name: self._task_of(name, task).live(learner) for name, learner in learners.items()}
-        returns = {name: learner.returns.returns for name, learner in learners.items()}
+        for name, learner in learners.items():
+            ended_well = [self._episode(name, learner, number, seed, stop) for seed in seeds]
+            returns[name] = learner.returns.returns
+            agents[name] = task_measures(returns[name], any(ended_well))
         for name, agent in self.own_agents.items():
-            agents[name], returns[name] = self._live_own(name, agent, number, task.seeds, stop)
+            watched = WatchedWorld(name, self.world, number, seeds, self.learning.step_cap, self.discount, stop)
+            returns[name] = live_own(agent, watched)
+            agents[name] = task_measures(returns[name], watched.reached)
         self.differences.end_task()
-        self.novelty.end_task([code for _, code in learners["lore"].visited])
-        news = self._learn(learners["lore"])
+        lore = learners["lore"]
+        self.novelty.end_task([context for _, context in lore.visited])
+        # The policy of the finished task counts in the prior (Eq. 3.5, 3.7).
+        news = ActionPrior(self.prior.n_actions, self.prior.alpha0, self.prior.key)
+        news.update(*lore.best(), self.guidance.weight)
+        self.prior.merge(news)
         about = {"index": number, "world": self.name}
         return LivedTask(self._records(news), about, (number, agents, learners, returns, news.contexts.tolist()))
+
+    def _learner(self, name: str, number: int) -> TableLearner:
+        learning = replace(self.learning, **TEXTBOOK) if name == "textbook" else self.learning
+        prior = self.prior if name == "lore" else None
+        # Equal streams for all agents make their comparison paired.
+        own = stream(self.seed, "task", number, "own")
+        return TableLearner(self.world.n_actions, prior, learning, self.discount, self.guidance, own)
+
+    def _episode(self, name: str, learner: TableLearner, number: int, seed: int, stop: Event) -> bool:
+        """An episode of a learner; whether it was terminated with a positive reward."""
+        most = self.learning.step_cap
+        steps = play(self.world, number, seed, self.codes, most, stop, learner.act, learner.observe)
+        learner.end_episode(steps, discounted(steps, self.discount), steps[-1].ended)
+        # Transitions are compared where exploration is uniform.
+        for step in steps if name == "scratch" else ():
+            self.differences.see(step.state, step.action, step.following, step.reward, step.ended)
+        return reached(steps)
 
     def finish(self, lived: LivedTask) -> None:
         """Report a task, which memory has stored."""
@@ -281,67 +289,10 @@ class _ExternalLife:
         if self.table:
             self.table.add(self.finished[-1], {name: {"return": values} for name, values in returns.items()})
 
-    def _task(self, index: int, stop: Event) -> ExternalTask:
-        learning, discount = self.settings.learning, self.settings.discount
-        drawn = stream(self.settings.seed, "task", index, "world").integers(2**31, size=learning.episode_cap)
-        return ExternalTask(self.world, self.codes, learning, discount, index, drawn.tolist(), stop)
-
-    def _task_of(self, name: str, task: ExternalTask) -> ExternalTask:
-        """The task as an agent learns it; transitions are compared where exploration is uniform."""
-        if name == "textbook":
-            return replace(task, learning=replace(task.learning, **TEXTBOOK))
-        return replace(task, watch=self.differences.see) if name == "scratch" else task
-
-    def _learner(self, name: str, index: int) -> ExternalLearner:
-        # Equal streams for all agents make their comparison paired.
-        own = stream(self.settings.seed, "task", index, "own")
-        prior = self.prior if name == "lore" else None
-        return ExternalLearner(self.world.n_actions, prior, self.settings.guidance, own)
-
-    def _live_own(
-        self, name: str, agent: OwnAgent, index: int, seeds: list[int], stop: Event
-    ) -> tuple[dict, list[float]]:
-        max_steps, discount = self.settings.learning.step_cap, self.settings.discount
-        watched = WatchedWorld(name, self.world, index, seeds, max_steps, discount, stop)
-        returns = live_own(agent, watched)
-        return task_measures(returns, watched.reached), returns
-
-    def _learn(self, learner: ExternalLearner) -> ActionPrior:
-        """Count the policy of a finished task (Eq. 3.5, 3.7); return its own counts."""
-        news = ActionPrior(self.prior.n_actions, self.prior.alpha0, self.prior.key)
-        news.update(*learner.best(), self.settings.guidance.weight)
-        self.prior.merge(news)
-        return news
-
     def _records(self, news: ActionPrior) -> list[Record]:
         """A task's counts, and the features of contexts that this life has not stored."""
-        about = {"prior": "foreign", "world": self.name, "means": self.settings.key}
+        about = {"prior": "foreign", "world": self.name, "means": self.key}
         contexts = self.codes.contexts
         new = {code: contexts[code] for code in news.contexts.tolist() if code not in self.labelled}
         records = [news.to_record(about)] if len(news) else []
         return records + ([labels_record(news.key, new, about)] if new else [])
-
-    def report(self, seconds: float) -> dict:
-        location = self.memory.location if self.memory else None
-        names = [*AGENTS, *self.own_agents]
-        summary = summarise_life(self.finished, names) if self.finished else {}
-        return {
-            "domain": self.name,
-            "map": None,
-            "n_states": len(self.states),
-            "n_contexts": len(self.prior),
-            "seed": self.settings.seed,
-            "settings": self.settings.to_dict() | {"agents": names, "memory": location},
-            "tasks": self.finished,
-            "summary": summary,
-            "memory": {"tasks_before": self.tasks_before, "tasks_after": self.tasks_before + len(self.finished)},
-            "warnings": life_warnings(
-                self.name,
-                len(self.finished),
-                len(self.prior),
-                self.novelty.late,
-                self.differences.one_task,
-                summary,
-            ),
-            "seconds": round(seconds, 3),
-        }

@@ -4,7 +4,7 @@ from collections.abc import Callable, Hashable, Mapping, Sequence
 from threading import Event
 from typing import Any
 
-from lifelore.agent.external_world.task import check_reward
+from lifelore.agent.external_world.episode import check_reward
 from lifelore.agent.life.loop import Stopped
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import World

@@ -8,7 +8,7 @@ compared with those of the tasks before it, in the pairs of state and action tha
   anew between the task and its predecessors, with their numbers fixed. Small counts are no problem for it.
 """
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Hashable
 
 import numpy as np
@@ -68,19 +68,18 @@ class _Outcomes:
     """How often each pair of state and action had each outcome, in the current task and before it."""
 
     def __init__(self) -> None:
-        self.now: dict[Pair, dict[Hashable, int]] = defaultdict(dict)
-        self.before: dict[Pair, dict[Hashable, int]] = defaultdict(dict)
+        self.now: dict[Pair, Counter[Hashable]] = defaultdict(Counter)
+        self.before: dict[Pair, Counter[Hashable]] = defaultdict(Counter)
         self.uncertain = False
         """Whether a pair had two outcomes within a task."""
 
     def add(self, pair: Pair, outcome: Hashable) -> None:
-        own = self.now[pair]
-        own[outcome] = own.get(outcome, 0) + 1
-        self.uncertain = self.uncertain or len(own) > 1
+        self.now[pair][outcome] += 1
+        self.uncertain = self.uncertain or len(self.now[pair]) > 1
 
     def shared(self) -> int:
         """Transitions of the current task in pairs that were observed before."""
-        return sum(sum(own.values()) for pair, own in self.now.items() if pair in self.before)
+        return sum(own.total() for pair, own in self.now.items() if pair in self.before)
 
     def differ(self) -> bool:
         contested = [
@@ -90,22 +89,19 @@ class _Outcomes:
         ]
         if not contested or not self.uncertain:
             return bool(contested)
-        return homogeneity([_counts(own, before) for own, before in contested]) < CERTAIN
+        # Outcomes in the order in which they were met.
+        tables = [
+            np.array([[row[one] for one in now + before] for row in (now, before)]) for now, before in contested
+        ]
+        return homogeneity(tables) < CERTAIN
 
     def end_task(self, keep: bool) -> None:
         if keep:
             for pair, own in self.now.items():
-                total = self.before[pair]
-                for outcome, count in own.items():
-                    total[outcome] = total.get(outcome, 0) + count
+                self.before[pair].update(own)
         else:
             self.before.clear()
         self.now.clear()
-
-
-def _counts(own: dict[Hashable, int], before: dict[Hashable, int]) -> NDArray[np.int64]:
-    outcomes = list(dict.fromkeys([*own, *before]))
-    return np.array([[counts.get(outcome, 0) for outcome in outcomes] for counts in (own, before)], np.int64)
 
 
 def homogeneity(tables: list[NDArray[np.int64]]) -> float:

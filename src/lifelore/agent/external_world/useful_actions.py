@@ -13,6 +13,7 @@ from collections.abc import Hashable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.agent.external_world.episode import Step
 from lifelore.core.planning.planning import best_actions, learnt_best_actions
 
 BEST_SHARE = 10
@@ -27,17 +28,16 @@ class EpisodeReturns:
         self.returns: list[float] = []
         self._highest: dict[tuple[Hashable, int], NDArray[np.float64]] = {}
 
-    def add(self, steps: Sequence[tuple[Hashable, int, int]], earned: float, ended: bool) -> None:
-        """Add an episode of (state, context code, action) steps; `ended`: the world terminated it."""
+    def add(self, steps: Sequence[Step], earned: float, ended: bool) -> None:
+        """Add an episode; `ended`: the world terminated it."""
         self.returns.append(earned)
         if not ended:
             return
-        for state, code, action in steps:
-            highest = self._highest.get((state, code))
-            if highest is None:
-                highest = self._highest[state, code] = np.full(self.n_actions, -np.inf)
-            if earned > highest[action]:
-                highest[action] = earned
+        for step in steps:
+            pair = step.state, step.context
+            if pair not in self._highest:
+                self._highest[pair] = np.full(self.n_actions, -np.inf)
+            self._highest[pair][step.action] = max(self._highest[pair][step.action], earned)
 
     def taken_in_best(self, visited: Sequence[tuple[Hashable, int]]) -> NDArray[np.bool_]:
         """Actions taken in the best tenth of the episodes, (n, n_actions); all False if all returns are equal."""

@@ -9,10 +9,13 @@ Tasks that disagree stay so however much is seen; the other two fall with more e
 """
 
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.agent.long_lived.knowledge import Knowledge
+from lifelore.agent.long_lived.type_prior import TypePrior
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import entropy
 
@@ -23,7 +26,8 @@ class CuriousContext:
 
     Parameters
     ----------
-    context : int
+    context : int or hashable
+        Its code, or as it was given.
     entropy : float
         Of the prior over types for the next task there, nats.
     frequency : float
@@ -32,7 +36,7 @@ class CuriousContext:
         Part of the entropy that stays if every task's type is known, nats.
     """
 
-    context: int
+    context: Any
     entropy: float
     frequency: float
     disagreement: float
@@ -71,7 +75,19 @@ class CuriousType:
     n_tasks: float
 
 
-def curious_contexts(knowledge: Knowledge) -> list[CuriousContext]:
+class Sighted(Protocol):
+    """What has seen types in contexts."""
+
+    def sighted(self) -> dict[tuple[int, int], NDArray[np.float64]]:
+        """Belief in each known type at the end of tasks, (n_types,), by date and context."""
+        ...
+
+    def type_prior(self) -> TypePrior:
+        """The prior over the known types."""
+        ...
+
+
+def curious_contexts(knowledge: Sighted) -> list[CuriousContext]:
     """Contexts that were met, the most interesting first."""
     sighted = knowledge.sighted()
     if not sighted:
@@ -113,6 +129,7 @@ def curious_types(knowledge: Knowledge) -> list[CuriousType]:
     for number, one in enumerate(known.types):
         shown = known.counts[number].any(axis=1)
         untried = float(frequency[~shown].sum() / max(frequency.sum(), 1e-300))
-        codes = one.sightings.contexts
-        found.append(CuriousType(one.name, untried, float(one.sightings.counts(codes).sum())))
+        sightings = [knowledge.types[name].sightings for name in one.members]
+        n_tasks = sum(float(seen.counts(seen.contexts).sum()) for seen in sightings)
+        found.append(CuriousType(one.name, untried, n_tasks))
     return sorted(found, key=lambda one: (-one.untried, one.name))

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import KIND, ActionPrior
-from lifelore.agent.long_lived.known_types import Effects, KnownType, KnownTypes, effect_counts, merged_types
+from lifelore.agent.long_lived.known_types import Effects, KnownTypes, effect_counts
 from lifelore.agent.long_lived.task_family import SharedKnowledge, TaskFamily
 from lifelore.agent.long_lived.type_prior import TypePrior
 from lifelore.core.protocols import Record
@@ -58,6 +58,17 @@ class TaskNews:
     best: NDArray[np.bool_]
 
 
+class StoredType(NamedTuple):
+    """A type that was met.
+
+    effects : counts of effects by cause
+    sightings : belief in this type at the end of tasks, by date and context; of a single action
+    """
+
+    effects: ActionPrior
+    sightings: ActionPrior
+
+
 @dataclass(eq=False)
 class Knowledge:
     """Types by name, and what all types share.
@@ -65,12 +76,13 @@ class Knowledge:
     Parameters
     ----------
     family : TaskFamily
-    types : dict of str to KnownType
+    types : dict of str to StoredType
+        By a name that is unique in a fleet: ``"robot.number"``.
     shared : SharedKnowledge
     """
 
     family: TaskFamily
-    types: dict[str, KnownType]
+    types: dict[str, StoredType]
     shared: SharedKnowledge
     _view: KnownTypes | None = field(default=None, repr=False)
 
@@ -85,28 +97,28 @@ class Knowledge:
         return round(float(self.shared.causes.counts([self.family.n_causes])[0, 0]))
 
     def known_types(self) -> KnownTypes:
-        """The types, alike ones joined, in the order of their names; they follow what is learnt."""
+        """The types, alike ones joined, in the order of their names."""
         if self._view is None:
-            types = KnownTypes(self.family, [self.types[name] for name in sorted(self.types)])
-            self._view = merged_types(types) if len(types) > 1 else types
+            family, names = self.family, sorted(self.types)
+            causes = np.arange(family.n_causes)
+            rows = np.array([self.types[name].effects.counts(causes) for name in names])
+            counts = rows.reshape(len(names), family.n_causes, family.n_effects)
+            self._view = KnownTypes.joined(family, names, counts)
         return self._view
 
     def type_prior(self) -> TypePrior:
         """The prior over `known_types` by context and date, learnt from the sightings."""
-        n_types = len(self.known_types())
-        prior = TypePrior(np.full(n_types, 1 / n_types))
-        for (date, context), belief in self.sighted().items():
-            prior.count(context, belief, date)
-        return prior
+        return TypePrior.of_sightings(len(self.known_types()), self.sighted())
 
     def sighted(self) -> dict[tuple[int, int], Array]:
         """Belief in each of `known_types` at the end of tasks, (n_types,), by date and context in their order."""
         known = self.known_types()
         rows: dict[tuple[int, int], Array] = {}
         for number, one in enumerate(known.types):
-            codes = one.sightings.contexts
-            for code, count in zip(codes.tolist(), one.sightings.counts(codes)[:, 0], strict=True):
-                rows.setdefault(divmod(code, MOST_CONTEXTS), np.zeros(len(known)))[number] += count
+            for sightings in (self.types[name].sightings for name in one.members):
+                codes = sightings.contexts
+                for code, count in zip(codes.tolist(), sightings.counts(codes)[:, 0], strict=True):
+                    rows.setdefault(divmod(code, MOST_CONTEXTS), np.zeros(len(known)))[number] += count
         return {key: rows[key] for key in sorted(rows)}
 
     # ---- learning ----------------------------------------------------------------------------------
@@ -146,17 +158,9 @@ class Knowledge:
             if not type_name:
                 getattr(self.shared, kind).merge(part)
                 continue
-            if type_name not in self.types:
-                self.types[type_name] = KnownType.empty(self.family, type_name)
-                self._view = None
-            for one in {id(t): t for t in (self.types[type_name], *self._viewed(type_name))}.values():
-                (one.effects if kind == "type" else one.sightings).merge(part)
-        if self._view is not None:
-            self._view.forget_laws()
-
-    def _viewed(self, name: str) -> list[KnownType]:
-        """The joined type that a type belongs to; nothing where it has to be joined again."""
-        return [] if self._view is None else [one for one in self._view.types if name in one.members]
+            one = self.types.setdefault(type_name, StoredType(ActionPrior(self.family.n_effects), ActionPrior(1)))
+            (one.effects if kind == "type" else one.sightings).merge(part)
+        self._view = None
 
     @classmethod
     def from_records(cls, family: TaskFamily, records: Iterable[Record]) -> Self:

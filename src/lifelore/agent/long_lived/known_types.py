@@ -12,18 +12,18 @@ until its own task shows otherwise.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.long_lived.concentrations import Concentrations, group_laws, learnt_concentrations
+from lifelore.agent.long_lived.same_type import JoinedType, joined_types, log_evidence
 from lifelore.agent.long_lived.task_family import TaskFamily
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
-from lifelore.interaction.outcomes.special_functions import gammaln
 from lifelore.interaction.signals.category_signal import CategorySignal
 
 Array = NDArray[np.float64]
@@ -50,45 +50,31 @@ def effect_counts(family: TaskFamily, effects: Effects, weight: float = 1.0) -> 
     return counts
 
 
-@dataclass(eq=False)
-class KnownType:
-    """A type that was met.
-
-    Parameters
-    ----------
-    name : str
-        Unique in a fleet: ``"robot.number"``.
-    effects : ActionPrior
-        Counts of effects by cause.
-    sightings : ActionPrior
-        Belief in this type at the end of tasks, by date and context; of a single action.
-    members : tuple of str
-        Names of the types that are joined in it.
-    """
-
-    name: str
-    effects: ActionPrior
-    sightings: ActionPrior
-    members: tuple[str, ...]
-
-    @classmethod
-    def empty(cls, family: TaskFamily, name: str) -> "KnownType":
-        """A type without counts."""
-        return cls(name, ActionPrior(family.n_effects), ActionPrior(1), (name,))
-
-
-@dataclass(eq=False)
 class KnownTypes:
     """The known types of a family, and the laws of their effects.
 
     Parameters
     ----------
     family : TaskFamily
-    types : list of KnownType
+    types : list of JoinedType
+    counts : (n_types, n_causes, n_effects) float
+        Of effects, as counted.
     """
 
-    family: TaskFamily
-    types: list[KnownType] = field(default_factory=list)
+    def __init__(self, family: TaskFamily, types: list[JoinedType], counts: Array) -> None:
+        self.family, self.types, self._counted = family, types, counts
+
+    @classmethod
+    def joined(cls, family: TaskFamily, names: Sequence[str], counts: Array) -> Self:
+        """The types of some names, those joined that nothing tells apart; memory keeps each type's own counts."""
+        apart = cls(family, [JoinedType((name,)) for name in names], counts)
+        judges = family.judges
+        # Evidence 0: types without a common cause.
+        groups = joined_types(apart.counts[:, judges], apart._base[judges], evidence_for_two, 0.0)
+        if len(groups) == len(names):
+            return apart
+        types = [JoinedType(tuple(names[number] for number in group)) for group in groups]
+        return cls(family, types, np.stack([counts[group].sum(axis=0) for group in groups]))
 
     def __len__(self) -> int:
         return len(self.types)
@@ -97,12 +83,6 @@ class KnownTypes:
     def counts(self) -> Array:
         """(n_types, n_causes, n_effects) counts, after `TaskFamily.smoothed`."""
         return self.family.smoothed(self._counted)
-
-    @cached_property
-    def _counted(self) -> Array:
-        causes = np.arange(self.family.n_causes)
-        rows = [known.effects.counts(causes) for known in self.types]
-        return np.array(rows).reshape(len(rows), self.family.n_causes, self.family.n_effects)
 
     @cached_property
     def concentrations(self) -> Concentrations:
@@ -149,29 +129,27 @@ class KnownTypes:
         judges = self.family.judges
         own = effect_counts(self.family, effects).counts(np.arange(self.family.n_causes))
         own = self.family.smoothed(own[None])[0, judges]
-        return evidence_for_two(self.counts[number, judges], own, self._base[judges]) > 0
+        known, base = self.counts[number, judges], self._base[judges]
+        evidence = log_evidence(known, base) + log_evidence(own, base) - log_evidence(known + own, base)
+        return bool(evidence_for_two(evidence) > 0)
 
     @cached_property
     def judged(self) -> NDArray[np.int64]:
         """The causes that were tried and tell types apart, ascending."""
         return np.flatnonzero(self.counts.any(axis=(0, 2)) & self.family.judges)
 
+    @cached_property
+    def place_of(self) -> dict[int, int]:
+        """Place of each judged cause among them."""
+        return {cause: place for place, cause in enumerate(self.judged.tolist())}
+
     def library(self, prior: Array) -> PolicyLibrary:
         """A library whose policies are the judged causes, and whose signals are their effects."""
-        performance = GaussianOutcomes(np.zeros((len(self), len(self.judged))), 1.0)
-        return PolicyLibrary(performance, self._signal, tuple(known.name for known in self.types), prior=prior)
-
-    @cached_property
-    def _signal(self) -> CategorySignal:
-        """The effects of the judged causes; libraries share it, and so its spread is estimated once."""
         rows = self.counts[:, self.judged] + self._base[self.judged]
         count = rows.sum(axis=2)
-        return CategorySignal(rows / count[:, :, None], count=count)
-
-    def forget_laws(self) -> None:
-        """Compute the laws again: counts have changed."""
-        for name in ("_counted", "counts", "concentrations", "pooled", "_base", "judged", "_signal"):
-            self.__dict__.pop(name, None)
+        signal = CategorySignal(rows / count[:, :, None], count=count)
+        performance = GaussianOutcomes(np.zeros((len(self), len(self.judged))), 1.0)
+        return PolicyLibrary(performance, signal, tuple(known.name for known in self.types), prior=prior)
 
 
 def _drawn(counts: Array, generator: np.random.Generator) -> Array:
@@ -179,59 +157,10 @@ def _drawn(counts: Array, generator: np.random.Generator) -> Array:
     return generator.standard_gamma(counts) + 1e-12 * counts
 
 
-def evidence_for_two(first: Array, second: Array, prior: Array) -> float:
-    """Evidence in nats that counts (n_causes, n_effects) have two laws and not one; `prior` in observations.
+def evidence_for_two(evidence: Array) -> Array:
+    """Evidence in nats that counts have two laws and not one, (...), from that of each cause, (..., n_causes).
 
     It is that of all causes together, and infinite where a single cause gives more than `TELLING`: types may agree
     in nearly all they do.
     """
-    alone = _log_evidence(first, prior) + _log_evidence(second, prior)
-    for_two = alone - _log_evidence(first + second, prior)
-    return np.inf if for_two.max(initial=0.0) > TELLING else float(for_two.sum())
-
-
-def merged_types(known: KnownTypes) -> KnownTypes:
-    """Join types that nothing tells apart; merging is for reading, memory keeps each type's own counts."""
-    groups: list[list[int]] = [[number] for number in range(len(known))]
-    judges = known.family.judges
-    prior, sums = known._base[judges], list(known.counts[:, judges])
-
-    def apart(i: int, j: int) -> float:
-        return evidence_for_two(sums[i], sums[j], prior)
-
-    pairs = {(i, j): apart(i, j) for i in range(len(groups)) for j in range(i + 1, len(groups))}
-    while pairs:
-        i, j = min(pairs, key=pairs.__getitem__)
-        if pairs[i, j] >= 0:  # 0: types without a common cause
-            break
-        groups[i] += groups[j]
-        groups[j] = []
-        sums[i] = sums[i] + sums[j]
-        pairs = {pair: apart(*pair) if i in pair else found for pair, found in pairs.items() if j not in pair}
-    joined = [_joined([known.types[number] for number in sorted(group)]) for group in groups if group]
-    return KnownTypes(known.family, joined)
-
-
-def _joined(types: list[KnownType]) -> KnownType:
-    if len(types) == 1:
-        return types[0]
-    members = tuple(name for known in types for name in known.members)
-    effects, sightings = (
-        ActionPrior.merged(
-            ActionPrior.from_fixed_point_counts(*getattr(known, part).fixed_point_counts()) for known in types
-        )
-        for part in ("effects", "sightings")
-    )
-    return KnownType("+".join(members), effects, sightings, members)
-
-
-def _log_evidence(counts: Array, prior: Array) -> Array:
-    """Log probability of the counts of each cause under a Dirichlet law around `prior`, (n_causes,)."""
-    total, found = prior.sum(axis=1), np.zeros(len(prior))
-    seen = counts.sum(axis=1) > 0
-    counts, prior, total = counts[seen], prior[seen], total[seen]
-    possible = prior > 0
-    safe = np.where(possible, prior, 1.0)
-    gain = np.where(possible, gammaln(safe + counts) - gammaln(safe), 0.0).sum(axis=1)
-    found[seen] = gain - (gammaln(total + counts.sum(axis=1)) - gammaln(total))
-    return found
+    return np.where(evidence.max(axis=-1, initial=0.0) > TELLING, np.inf, evidence.sum(axis=-1))

@@ -12,7 +12,7 @@ an alarm, or effects that tell the task from its type: a new type; else as belie
 count the effects, the best acts, and the belief in this context                       remember
 keep the scenes in which acts have shown relations, as examples                         remember
 
-Where types may change between the episodes of a task, the belief follows them (`changing_recognition`), and types
+Where types may change between the episodes of a task, the belief follows them (`recognition`), and types
 learn by span: from the episodes between two changes.
 """
 
@@ -21,11 +21,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.long_lived.changing_recognition import ChangingRecognition
 from lifelore.agent.long_lived.check_family import checked_plan, checked_step
 from lifelore.agent.long_lived.knowledge import Knowledge, SpanNews, TaskNews
 from lifelore.agent.long_lived.known_types import Effects, KnownTypes
-from lifelore.agent.long_lived.recognition import Belief, Recognition, Span
+from lifelore.agent.long_lived.recognition import Recognition, Span
 from lifelore.agent.long_lived.task_family import Abilities, AgentTask, ShowsRelations
 from lifelore.agent.long_lived.task_log import Decision, TaskLog
 from lifelore.core.errors import InputError
@@ -122,7 +121,9 @@ def attempt_task(
     lived.prior = np.full(len(known), 1 / max(len(known), 1))
     if abilities.prior and len(known):
         lived.prior = knowledge.type_prior().prior(drawn.context, drawn.number)
-    recognition = recognition_of(knowledge, lived.prior, settings, seed)
+    recognition = Recognition(
+        knowledge, lived.prior, settings.false_alarm, settings.unknown, seed, settings.change, settings.n_episodes
+    )
     shared.guided = abilities.prior
 
     # Act: perceive, reuse the behaviours of the known types, and let every effect tell more of the type.
@@ -163,16 +164,6 @@ def attempt_task(
     return lived, TaskNews(drawn.context, drawn.number, tuple(taught), contexts, best)
 
 
-def recognition_of(
-    knowledge: Knowledge, prior: Array, settings: LivingSettings, seed: int
-) -> Recognition | ChangingRecognition:
-    """The recognition of a task whose type stays, or may change."""
-    given = knowledge, prior, settings.false_alarm, settings.unknown, seed
-    if not settings.change:
-        return Recognition(*given)
-    return ChangingRecognition(*given, settings.change, settings.n_episodes)
-
-
 def _learning(
     known: KnownTypes, span: Span, effects: Effects, name: str, abilities: Abilities
 ) -> dict[str, float]:
@@ -193,7 +184,7 @@ def _row(known: KnownTypes, name: str) -> int:
 def decide(
     knowledge: Knowledge,
     task: AgentTask,
-    recognition: Belief,
+    recognition: Recognition,
     generator: np.random.Generator | None = None,
     trying: bool = False,
 ) -> Decision:

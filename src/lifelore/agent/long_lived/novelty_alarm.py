@@ -10,26 +10,23 @@ from numpy.typing import NDArray
 
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.novelty.calibration import NoveltyCalibration
+from lifelore.interaction.reuse.novelty.calibration import LEAST_ALARMS, NoveltyCalibration
 from lifelore.interaction.reuse.novelty.known_tasks import known_tasks
 from lifelore.interaction.reuse.novelty.misfit import Misfit
-from lifelore.interaction.reuse.novelty.novelty_detector import MASS, NoveltyDetector
 from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
 
 N_TASKS = 400
 """Simulated tasks behind the threshold, at least; more cost time and state the rate more precisely."""
 
 
-def calibrated_alarm(
+def alarm_calibration(
     library: PolicyLibrary,
     frequency: NDArray[np.float64],
     horizon: int,
     false_alarm: float,
     generator: np.random.Generator,
-    mass: float = MASS,
-    n_tasks: int = N_TASKS,
-) -> NoveltyDetector:
-    """A detector for one task, whose type stays.
+) -> NoveltyCalibration:
+    """The calibration of a detector for one task, whose type stays.
 
     Parameters
     ----------
@@ -41,10 +38,8 @@ def calibrated_alarm(
         Number of different causes that the rate of false alarms is stated for; at most n_causes count.
     false_alarm : float
         Probability of an alarm in a task of a known type, in (0, 1).
-    n_tasks : int
-        Simulated tasks behind the threshold, at least 20 / false_alarm.
     """
-    n_causes = len(frequency)
+    n_causes, n_tasks = len(frequency), max(N_TASKS, int(np.ceil(LEAST_ALARMS / false_alarm)))
     horizon = min(horizon, n_causes)
     # The largest of log frequency + Gumbel noise come first: a draw without replacement, by frequency.
     noise = generator.gumbel(size=(n_tasks, n_causes))
@@ -56,5 +51,4 @@ def calibrated_alarm(
     for place, causes in enumerate(order.T):
         misfit.observe(every, causes, tasks(causes))
         found[:, place] = misfit.statistic(every)
-    known = NoveltyCalibration.of(found, false_alarm)
-    return NoveltyDetector(library, mass, dynamics=dynamics, calibration=known)
+    return NoveltyCalibration.of(found, false_alarm)

@@ -11,7 +11,7 @@ contexts compete by how well they predicted the dates that followed, and k = ∞
 dated and never decay in memory, so those of several robots merge by addition. Thesis: §5.2, with §3.2's class.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Self
 
 import numpy as np
@@ -19,7 +19,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
-from lifelore.core.protocols import Record
 
 Array = NDArray[np.float64]
 
@@ -40,8 +39,6 @@ class TypePrior:
     ----------
     library_prior : (n_types,) float
         G₀; sums to 1.
-    key : str
-        Meaning of the types and the contexts; priors of different keys do not merge.
     half_lives : sequence of float
         Half-lives h that compete, in dates, above 0; infinity never forgets.
 
@@ -60,16 +57,24 @@ class TypePrior:
     ([0.8, 0.2], [0.1, 0.9])
     """
 
-    def __init__(self, library_prior: ArrayLike, key: str = "", half_lives: Sequence[float] = HALF_LIVES) -> None:
+    def __init__(self, library_prior: ArrayLike, half_lives: Sequence[float] = HALF_LIVES) -> None:
         self.library_prior: Array = np.asarray(library_prior, np.float64)
         given = self.library_prior
         if given.ndim != 1 or not (len(given) and (given >= 0).all() and abs(given.sum() - 1) <= 1e-9):
             raise InputError(f"library_prior must be at least 0 and sum to 1, got shape {given.shape}")
         if not len(half_lives) or not all(half_life > 0 for half_life in half_lives):
             raise InputError(f"half_lives must be above 0, at least one, got {half_lives}")
-        self.key, self.half_lives = key, tuple(half_lives)
+        self.half_lives = tuple(half_lives)
         self.dates: dict[int, ActionPrior] = {}
         self._forget_past()
+
+    @classmethod
+    def of_sightings(cls, n_types: int, sighted: Mapping[tuple[int, int], ArrayLike]) -> Self:
+        """The prior with a uniform G₀ from counted beliefs over types (n_types,), by date and context."""
+        made = cls(np.full(n_types, 1 / n_types))
+        for (date, context), counts in sighted.items():
+            made.learn(context, counts, date)
+        return made
 
     @property
     def n_types(self) -> int:
@@ -79,60 +84,31 @@ class TypePrior:
     # ---- learning --------------------------------------------------------------------------------
 
     def learn(self, context: int, belief: ArrayLike, date: int) -> None:
-        """Count the belief over types (n_types,) at the end of a task.
+        """Count the belief over types (n_types,) at the end of a task, or the sum of those of several tasks.
 
         Parameters
         ----------
         context : int
-            Code of the task's context.
+            Code of the tasks' context.
         belief : (n_types,) float
-            Sums to 1.
+            At least 0; it sums to the number of tasks.
         date : int
             Number of the day, or of any other span in which types hardly drift; tasks may come in any order.
 
         Raises
         ------
         InputError
-            The belief is no distribution over the types.
+            The belief is not of the types, or below 0.
         """
         belief = np.asarray(belief, np.float64)
-        if belief.shape != (self.n_types,) or not ((belief >= 0).all() and abs(belief.sum() - 1) <= 1e-6):
-            raise InputError(f"belief must be ({self.n_types},), at least 0, and sum to 1, got {belief!r:.80}")
-        self.count(context, np.where(belief >= LEAST_BELIEF, belief, 0.0), date)
-
-    def count(self, context: int, counts: ArrayLike, date: int) -> None:
-        """Count beliefs of several tasks of a context and date, already added up, (n_types,).
-
-        Raises
-        ------
-        InputError
-            The counts are not of the types, or below 0.
-        """
-        counts = np.asarray(counts, np.float64)
-        if counts.shape != (self.n_types,) or not (counts >= 0).all():
-            raise InputError(f"counts must be ({self.n_types},) and at least 0, got {counts!r:.80}")
+        if belief.shape != (self.n_types,) or not (belief >= 0).all():
+            raise InputError(f"belief must be ({self.n_types},) and at least 0, got {belief!r:.80}")
+        counts = np.where(belief >= LEAST_BELIEF, belief, 0.0)
         if date not in self.dates:
-            self.dates[date] = ActionPrior(self.n_types, key=self.key)
+            self.dates[date] = ActionPrior(self.n_types)
         self.dates[date].update([context], counts[None] > 0, counts[None])
         if date < self._next_date:
             self._forget_past()
-
-    def merge(self, other: "TypePrior") -> None:
-        """Add another robot's counts; exact in any order and grouping.
-
-        Raises
-        ------
-        InputError
-            The priors differ in key or number of types.
-        """
-        if (other.n_types, other.key) != (self.n_types, self.key):
-            raise InputError(
-                f"priors must agree in types and key, got {self.n_types} '{self.key}' "
-                f"and {other.n_types} '{other.key}'"
-            )
-        for date, counts in other.dates.items():
-            self.dates[date] = ActionPrior.merged([self.dates[date], counts] if date in self.dates else [counts])
-        self._forget_past()
 
     # ---- reading ---------------------------------------------------------------------------------
 
@@ -202,36 +178,3 @@ class TypePrior:
             return np.zeros((len(self.half_lives), self.n_types))
         last, rows = self._past[context]
         return rows * 0.5 ** ((date - last) / np.array(self.half_lives))[:, None]
-
-    # ---- records ---------------------------------------------------------------------------------
-
-    def to_records(self) -> list[Record]:
-        """A record a date, which memory adds; without G₀, which the reader has from its library."""
-        return [self.record(date) for date in sorted(self.dates)]
-
-    def record(self, date: int) -> Record:
-        """The counts of one date."""
-        found = self.dates[date].to_record({"date": date})
-        return Record(
-            found.kind, f"{self.key}@{date}", found.version, found.merge, found.slots, found.values, found.about
-        )
-
-    @classmethod
-    def from_records(cls, records: Iterable[Record], library_prior: ArrayLike, key: str = "") -> Self:
-        """The prior in the records whose key is `key`; others are left out.
-
-        Raises
-        ------
-        InputError
-            The library's prior is no distribution, or a record is none of this class.
-        """
-        made = cls(library_prior, key)
-        for record in records:
-            own, _, date = record.key.rpartition("@")
-            if own == key:
-                made.dates[int(date)] = ActionPrior.from_record(
-                    Record(record.kind, key, record.version, record.merge, record.slots, record.values),
-                    made.n_types,
-                )
-        made._forget_past()
-        return made

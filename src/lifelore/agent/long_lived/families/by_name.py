@@ -1,8 +1,5 @@
 """The families of tasks by the names of `lifelore live --domain`, with the streams that they are lived in."""
 
-from collections.abc import Callable, Mapping
-from types import MappingProxyType
-
 from lifelore.agent.long_lived.task_family import TaskFamily
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.domains.task_stream import TaskStream
@@ -18,32 +15,7 @@ TABLETOP_TYPES = (
 """Hidden types of the default stream: each user and each way of gripping comes up, but not each pair."""
 
 
-def _tabletop(seed: int, labelled: bool, change: float) -> TaskFamily:
-    from lifelore.agent.long_lived.families.tabletop import TabletopFamily
-
-    return TabletopFamily(TaskStream(TABLETOP_TYPES, seed=seed), seed, labelled)
-
-
-def _factory_customers(seed: int, labelled: bool, change: float) -> TaskFamily:
-    from lifelore.agent.long_lived.families.factory_customers import FactoryFamily
-    from lifelore.domains.factory.customer_orders import CUSTOMERS
-
-    return FactoryFamily(TaskStream(tuple(CUSTOMERS), seed=seed, change=change), seed, changing=change > 0)
-
-
-def _building_days(seed: int, labelled: bool, change: float) -> TaskFamily:
-    from lifelore.agent.long_lived.families.building_days import BuildingFamily
-    from lifelore.domains.buildings.building_days import DAYS, BuildingDays
-    from lifelore.domains.worlds import WorldSettings, world_from_settings
-
-    world = world_from_settings(WorldSettings("building", seed=seed))
-    return BuildingFamily(BuildingDays(world, TaskStream(tuple(DAYS), seed=seed), seed))
-
-
-FAMILIES: Mapping[str, Callable[[int, bool, float], TaskFamily]] = MappingProxyType(
-    {"tabletop": _tabletop, "factory-customers": _factory_customers, "building-days": _building_days}
-)
-"""Name to a function of seed, `labelled` and `change`."""
+FAMILIES = ("tabletop", "factory-customers", "building-days")
 CHANGING = ("factory-customers",)
 """Families whose hidden type may change between the episodes of a task."""
 
@@ -73,4 +45,19 @@ def family_named(name: str, seed: int, *, labelled: bool = False, change: float 
             f"change must be 0 in domain {name}, whose types stay within a task, got {change}; leave it out, or "
             f"take domain {' or '.join(CHANGING)}"
         )
-    return FAMILIES[name](seed, labelled, change)
+    # A family is imported where it is used: the tabletop's simulator is an extra.
+    if name == "tabletop":
+        from lifelore.agent.long_lived.families.tabletop import TabletopFamily
+
+        return TabletopFamily(TaskStream(TABLETOP_TYPES, seed=seed), seed, labelled)
+    if name == "factory-customers":
+        from lifelore.agent.long_lived.families.factory_customers import FactoryFamily
+        from lifelore.domains.factory.customer_orders import CUSTOMERS
+
+        return FactoryFamily(TaskStream(tuple(CUSTOMERS), seed=seed, change=change), seed, changing=change > 0)
+    from lifelore.agent.long_lived.families.building_days import BuildingFamily
+    from lifelore.domains.buildings.building_days import DAYS, BuildingDays
+    from lifelore.domains.worlds import WorldSettings, world_from_settings
+
+    world = world_from_settings(WorldSettings("building", seed=seed))
+    return BuildingFamily(BuildingDays(world, TaskStream(tuple(DAYS), seed=seed), seed))

@@ -8,7 +8,8 @@ between episodes, answers are sure for one episode: every episode shows its effe
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,7 +36,7 @@ MOST_TABLES = 32
 """Tables of best acts that a family keeps, 6 MB each; that of an order not met for long is computed again."""
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class FactoryFamily(ChangingFamily):
     """Orders of factory customers; rewards are discounted, so that those of an episode add up to its return.
 
@@ -45,15 +46,12 @@ class FactoryFamily(ChangingFamily):
         Its types are keys of `customer_orders.CUSTOMERS`.
     seed : int
         Of the layouts.
-    tables : dict, optional
-        Best acts by number of the order, which agents share.
     changing : bool
         Whether the customer may change between the episodes of an order.
     """
 
     stream: TaskStream
     seed: int = 0
-    tables: dict[int, OrderTable] = field(default_factory=dict)
     changing: bool = False
 
     name = "factory-customers"
@@ -62,27 +60,23 @@ class FactoryFamily(ChangingFamily):
     n_effects = len(EFFECTS)
     groups = np.arange(len(ACTS)) // N_COMPONENTS
 
+    def __post_init__(self) -> None:
+        world = FactoryCustomers(self.stream, self.seed)
+        self.table = lru_cache(MOST_TABLES)(lambda number: OrderTable.of(world.layout(number)))
+        """Best acts in an order, by its number."""
+
     def order(self, number: int, context: int | None = None, episode: int = 0) -> tuple[DrawnTask, CustomerOrder]:
         """Order `number` in an episode, drawn and as the world has it."""
         return FactoryCustomers(self.stream, self.seed).task(number, context, episode)
 
     def meet(self, number: int, abilities: Abilities, context: int | None = None) -> "tuple[DrawnTask, OrderTask]":
         """Order `number`, drawn and met; there are no relations to perceive."""
-        table, drawn = self._table(number), self.stream.draw(number, context)
+        table, drawn = self.table(number), self.stream.draw(number, context)
 
         def in_episode(episode: int) -> CustomerOrder:
             return CustomerOrder(table.factory, self.stream.draw(number, context, episode).hidden_type)
 
         return drawn, OrderTask(in_episode(0), table, in_episode if self.changing else None)
-
-    def _table(self, number: int) -> OrderTable:
-        table = self.tables.pop(number, None)
-        if table is None:
-            table = OrderTable.of(FactoryCustomers(self.stream, self.seed).layout(number))
-        if len(self.tables) >= MOST_TABLES:
-            del self.tables[next(iter(self.tables))]
-        self.tables[number] = table  # the last: tables are in the order of their last use
-        return table
 
     def best_return(self, number: int, context: int | None = None) -> float:
         """The best discounted return, in the first episode."""

@@ -74,11 +74,6 @@ class OrderTable:
         """Number of the place at the start."""
         return 2 * self.factory.n_components
 
-    def best(self, wanted: NDArray[np.bool_]) -> float:
-        """The best discounted return of an order of the components `wanted` (n,)."""
-        stages = np.where(wanted, 0, N_STAGES - 1)
-        return float(self.values[stages @ N_STAGES ** np.arange(len(wanted)), self.start])
-
     def returns(self, now: "OrderState", planned: NDArray[np.bool_], order: Numbers, sets: Numbers) -> Array:
         """Returns from now on of tours, (n_tours, n_sets), if the wanted components are each of the sets.
 

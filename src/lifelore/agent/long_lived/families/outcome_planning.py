@@ -6,11 +6,10 @@ under the other types.
 The last act gives up: it ends the episode without reward. An episode has at most `steps_left` acts.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.agent.long_lived.families.tray_graph import TrayEdges
 from lifelore.agent.long_lived.task_family import Plan
 
 Array = NDArray[np.float64]
@@ -20,42 +19,22 @@ SETTLED = 1e-3
 """Points by which values still change when they count as found."""
 
 
-@dataclass(frozen=True, eq=False)
-class OutcomeModel:
-    """A decision process over n states for each type; an episode starts in state 0.
+class OutcomePlanner:
+    """Plans over what can be done in the states of a graph, for each type.
 
     Parameters
     ----------
-    available : (n, n_acts) bool
+    edges : TrayEdges
+        An episode starts in state 0.
+    n_acts : int
         The last act gives up and is always available.
-    results : (n_types, n, n_acts - 1, n_results) float64
-        P(result | state, act).
-    rewards : (n_types, n, n_acts - 1, n_results) float64
-        Expected reward of an act with a result.
-    following : (n, n_acts - 1, n_results) int64
-        The state after each result; n is the end.
-    tried : (n, n_acts - 1) bool
-        Whether anything is known of the results of an act.
+    results, rewards : (n_types, n_edges, n_results) float64
+        P(result) of what is done, and its expected reward with a result.
+    tried : (n_edges,) bool
+        Whether anything is known of the results.
     most : float
         No return is larger.
     steps_left : int
-    """
-
-    available: NDArray[np.bool_]
-    results: Array
-    rewards: Array
-    following: NDArray[np.int64]
-    tried: NDArray[np.bool_]
-    most: float
-    steps_left: int
-
-
-class OutcomePlanner:
-    """Plans of a model.
-
-    Parameters
-    ----------
-    model : OutcomeModel
     new : int, optional
         The type whose untried acts are taken to be worth `most`, so that they are tried.
     preferred : (n_acts,) float, optional
@@ -66,31 +45,35 @@ class OutcomePlanner:
 
     def __init__(
         self,
-        model: OutcomeModel,
+        edges: TrayEdges,
+        n_acts: int,
+        results: Array,
+        rewards: Array,
+        tried: NDArray[np.bool_],
+        most: float,
+        steps_left: int,
         new: int | None = None,
         preferred: Array | None = None,
         allowed: NDArray[np.bool_] | None = None,
     ) -> None:
-        self.model = model
-        n_types, n, n_acts, _ = model.results.shape
-        self._immediate = np.einsum("kfar,kfar->kfa", model.results, model.rewards)
-        self._bonus = np.zeros(n_acts + 1) if preferred is None else TIE * preferred
-        self._hopeful = np.zeros((n_types, n, n_acts), np.bool_)
+        self.edges, self.results, self.most, self.steps_left = edges, results, most, steps_left
+        self.immediate = np.einsum("ker,ker->ke", results, rewards)
+        self.bonus = np.zeros(n_acts) if preferred is None else TIE * preferred
+        self.hopeful = np.zeros(self.immediate.shape, np.bool_)
         if new is not None:
-            self._hopeful[new] = ~model.tried & model.available[:, :-1]
+            self.hopeful[new] = ~tried
             if allowed is not None:
-                self._hopeful[new, 0] &= allowed[:-1]
-        self.q = self._best_values()
+                self.hopeful[new] &= allowed[edges.act] | (edges.at > 0)
+        self.q = self._best_values(n_acts)
 
-    def _best_values(self) -> Array:
+    def _best_values(self, n_acts: int) -> Array:
         """Q, (n_types, n, n_acts); minus infinity where an act is not available."""
-        model = self.model
-        n_types, n, n_acts, _ = model.results.shape
-        value, q = np.zeros((n_types, n + 1)), np.zeros((n_types, n, n_acts + 1))
-        for _ in range(model.steps_left):
-            q[:, :, :-1] = self._immediate + np.einsum("kfar,kfar->kfa", model.results, value[:, model.following])
-            q[:, :, :-1][self._hopeful] = model.most
-            q[:, ~model.available] = -np.inf
+        edges, n_types = self.edges, len(self.results)
+        value, q = np.zeros((n_types, edges.n + 1)), np.full((n_types, edges.n, n_acts), -np.inf)
+        q[:, :, -1] = 0.0
+        for _ in range(self.steps_left):
+            worth = self.immediate + np.einsum("ker,ker->ke", self.results, value[:, edges.following])
+            q[:, edges.at, edges.act] = np.where(self.hopeful, self.most, worth)
             best = q.max(axis=2)
             if np.abs(best - value[:, :-1]).max(initial=0.0) < SETTLED:
                 break
@@ -99,22 +82,21 @@ class OutcomePlanner:
 
     def values(self) -> Array:
         """V_ij, (n_types, n_behaviours): the return of behaviour j from state 0 on in a task of type i."""
-        model = self.model
-        n_types, n, n_acts, _ = model.results.shape
-        acts, every = self.q.argmax(axis=2), np.arange(n)
-        acts[:, 0] = (self.q[:, 0] + self._bonus).argmax(axis=1)
-        gives_up = acts == n_acts
-        chosen = np.where(gives_up, 0, acts)
-        stop = gives_up | self._hopeful[np.arange(n_types)[:, None], every, chosen]
-        ends = np.where(gives_up, 0.0, model.most)
-        found = np.empty((n_types, n_types))
+        edges, n_types = self.edges, len(self.results)
+        found = np.zeros((n_types, n_types))
+        if not len(edges.at):
+            return found
+        acts, every = self.q.argmax(axis=2), np.arange(edges.n)
+        acts[:, 0] = (self.q[:, 0] + self.bonus).argmax(axis=1)
+        number = np.full(self.q.shape[1:], -1)
+        number[edges.at, edges.act] = np.arange(len(edges.at))
         for j in range(n_types):
-            results = model.results[:, every, chosen[j]]
-            immediate, following = self._immediate[:, every, chosen[j]], model.following[every, chosen[j]]
-            value = np.zeros((n_types, n + 1))
-            for _ in range(model.steps_left):
-                now = immediate + np.einsum("ifr,ifr->if", results, value[:, following])
-                now = np.where(stop[j], ends[j], now)
+            chosen = number[every, acts[j]]
+            stop, ends = (chosen < 0) | self.hopeful[j, chosen], np.where(chosen < 0, 0.0, self.most)
+            value = np.zeros((n_types, edges.n + 1))
+            for _ in range(self.steps_left):
+                after = np.einsum("ier,ier->ie", self.results[:, chosen], value[:, edges.following[chosen]])
+                now = np.where(stop, ends, self.immediate[:, chosen] + after)
                 if np.abs(now - value[:, :-1]).max(initial=0.0) < SETTLED:
                     break
                 value[:, :-1] = now
@@ -123,7 +105,7 @@ class OutcomePlanner:
 
     def plan(self) -> Plan:
         """The plan from state 0."""
-        q = self.q[:, 0] + self._bonus
+        q = self.q[:, 0] + self.bonus
         return Plan(self.values(), q.argmax(axis=1), q[:, :-1].argmax(axis=1))
 
     def best_acts(self, states: NDArray[np.int64]) -> NDArray[np.bool_]:

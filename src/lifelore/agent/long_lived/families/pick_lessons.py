@@ -10,7 +10,6 @@ corrects perception where that was wrong.
 
 from collections.abc import Container
 from dataclasses import dataclass
-from typing import NamedTuple
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import BOTH, ON, PairLabel
@@ -56,13 +55,6 @@ class TrayPairs:
             if other is not None and other not in knocked:
                 found.append(_label(belief, "" if other_first else REVERSED, other in fallen))
         return found
-
-
-class Lesson(NamedTuple):
-    """A tray as it was perceived, and the labels that picks have given its pairs."""
-
-    tray: TrayPairs
-    labels: tuple[PairLabel, ...]
 
 
 def _label(belief: PairBelief, order: str, fell: bool) -> PairLabel:

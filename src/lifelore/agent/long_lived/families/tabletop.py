@@ -85,15 +85,12 @@ class TabletopFamily(TaskFamily):
         Whether the points of the pictures carry the objects' labels; without, objects are cut automatically.
     trees : dict, optional
         Outcomes of (tray, gripper), shared between families that meet the same trays.
-    tray_numbers : sequence of int, optional
-        Number of the tray of each task; by default the task's own.
     """
 
     stream: TaskStream
     seed: int = 0
     labelled: bool = True
     trees: dict[tuple[int, str], OutcomeTree] = field(default_factory=dict)
-    tray_numbers: tuple[int, ...] | None = None
 
     name = "tabletop jobs"
     domain = "tabletop"
@@ -119,8 +116,7 @@ class TabletopFamily(TaskFamily):
         """Job `number`, with outcomes that equal actions share."""
         drawn = self.stream.draw(number, context)
         kind: JobType = job_type_named(drawn.hidden_type)
-        tray = number if self.tray_numbers is None else self.tray_numbers[number]
-        return drawn, JobReplay(self._tree(tray, kind.gripper), kind.user)
+        return drawn, JobReplay(self._tree(number, kind.gripper), kind.user)
 
     def _tree(self, tray: int, gripper: Gripper) -> OutcomeTree:
         key = tray, gripper.name

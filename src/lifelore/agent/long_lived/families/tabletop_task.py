@@ -12,17 +12,18 @@ in an earlier episode of the task, is remembered act by act.
 """
 
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.long_lived.families.outcome_planning import OutcomeModel, OutcomePlanner
-from lifelore.agent.long_lived.families.pick_lessons import LIVED, Lesson, TrayPairs
+from lifelore.agent.long_lived.families.outcome_planning import OutcomePlanner
+from lifelore.agent.long_lived.families.pick_lessons import LIVED, TrayPairs
 from lifelore.agent.long_lived.families.tray_features import (
     PerceivedTray,
     look_with_labels,
 )
-from lifelore.agent.long_lived.families.tray_graph import Answer, Done, TrayGraph
+from lifelore.agent.long_lived.families.tray_graph import UNKNOWN, Answer, Done, TrayGraph
 from lifelore.agent.long_lived.families.tray_states import (
     ACTS,
     KNOCK,
@@ -101,7 +102,7 @@ class TabletopTask:
     ) -> None:
         self.job, self._look = job, look
         self._graph = TrayGraph()
-        self._shown: dict[Done, tuple[TrayPairs, dict[frozenset[int], PairLabel]]] = {}
+        self._shown: dict[str, tuple[TrayPairs, dict[frozenset[int], PairLabel]]] = {}
         self.begin()
 
     # ---- the scene ----------------------------------------------------------------------------------
@@ -167,25 +168,17 @@ class TabletopTask:
 
     def _note_relations(self, lifted: int, events: Events) -> None:
         if self._seen is not None and self._seen.pairs is not None:
-            found = self._seen.pairs.shown_by(lifted, events.spilled, events.knocked)
-            _, labels = self._shown.setdefault(self._done, (self._seen.pairs, {}))
+            tray = self._seen.pairs
+            found = tray.shown_by(lifted, events.spilled, events.knocked)
+            _, labels = self._shown.setdefault(LabelledScene(tray.pairs, ()).digest, (tray, {}))
             labels |= {frozenset((label.a, label.b)): label for label in found}
-
-    def lessons(self) -> dict[Done, Lesson]:
-        """What picks have shown so far, by the actions that led to each tray."""
-        return {
-            done: Lesson(tray, tuple(labels.values())) for done, (tray, labels) in self._shown.items() if labels
-        }
 
     def relation_examples(self) -> list[Record]:
         """See `ShowsRelations`; a scene that came after several ways is one example, with the labels of all."""
-        scenes: dict[str, tuple[TrayPairs, dict[frozenset[int], PairLabel]]] = {}
-        for tray, labels in self.lessons().values():
-            _, joined = scenes.setdefault(LabelledScene(tray.pairs, ()).digest, (tray, {}))
-            joined |= {frozenset((label.a, label.b)): label for label in labels}
         return [
-            scene_record(LIVED, LabelledScene(tray.pairs, tuple(joined.values())))
-            for tray, joined in scenes.values()
+            scene_record(LIVED, LabelledScene(tray.pairs, tuple(labels.values())))
+            for tray, labels in self._shown.values()
+            if labels
         ]
 
     # ---- plans --------------------------------------------------------------------------------------
@@ -196,26 +189,24 @@ class TabletopTask:
         if shared.guided and len(shared.acts):
             context = np.array([self.context])
             preferred, allowed = shared.acts.probs(context)[0], shared.acts.mask(context, ALLOWED)[0]
-        return OutcomePlanner(self._model(self._done, laws, tried), new, preferred, allowed).plan()
+        return self._planner(self._done, laws, tried, new, preferred, allowed).plan()
 
     def best_acts(self, laws: Array, shared: SharedKnowledge) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """The best acts in the contexts of this task."""
-        planner = OutcomePlanner(self._model((), laws[None], np.ones(laws.shape[0], np.bool_)))
-        lived = self._graph.nodes(()).lived
-        first = {context_of(state): place for place, state in reversed(lived.items())}
+        planner = self._planner((), laws[None], np.ones(laws.shape[0], np.bool_))
+        first = {context_of(state): place for place, state in reversed(planner.edges.lived.items())}
         contexts = np.array(sorted(first), np.int64)
         return contexts, planner.best_acts(np.array([first[context] for context in contexts.tolist()], np.int64))
 
-    def _model(self, done: Done, laws: Array, tried: NDArray[np.bool_]) -> OutcomeModel:
-        nodes = self._graph.nodes(done)
-        rewards = laws[:, N_SITUATED:] @ BIN_MIDDLES
-        results = laws[:, nodes.causes, :N_RESULTS]
-        expected = rewards[:, nodes.payments]
-        results[:, nodes.answered] = nodes.answers
-        expected[:, nodes.answered] = nodes.paid[:, None]
-        known = tried[nodes.causes] | nodes.answered
-        left = LONGEST - len(done)
-        return OutcomeModel(nodes.available, results, expected, nodes.following, known, BRING, left)
+    def _planner(self, done: Done, laws: Array, tried: NDArray[np.bool_], *hints: Any) -> OutcomePlanner:
+        edges = self._graph.edges(done)
+        results = laws[:, edges.cause, :N_RESULTS]
+        rewards = (laws[:, N_SITUATED:] @ BIN_MIDDLES)[:, edges.payments]
+        known = edges.answer != UNKNOWN
+        results[:, known] = np.eye(N_RESULTS)[edges.answer[known]]
+        rewards[:, known] = edges.paid[known, None]
+        tried = tried[edges.cause] | known
+        return OutcomePlanner(edges, N_ACTS, results, rewards, tried, BRING, LONGEST - len(done), *hints)
 
 
 def context_of(state: TrayState) -> int:

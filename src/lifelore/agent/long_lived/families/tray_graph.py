@@ -12,8 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.long_lived.families.tray_states import (
-    ACTS,
-    GIVE_UP,
     IN_VAIN,
     MOST_FAILED,
     RESULTS,
@@ -28,8 +26,7 @@ Done = tuple[tuple[int, int], ...]
 Node = tuple[Done | None, TrayState]
 HARMLESS = frozenset(IN_VAIN) - frozenset(SPILLS)
 """Results that leave a scene about as it was."""
-_Row = tuple[int, int, int, list[int], list[int]]
-"""State, act, cause, and by result what it is paid for and the state that follows."""
+UNKNOWN = -1
 
 
 class Answer(NamedTuple):
@@ -40,42 +37,26 @@ class Answer(NamedTuple):
     ended: bool
 
 
-@dataclass(frozen=True, eq=False)
-class TrayNodes:
-    """States as arrays, the present one first; n is the end.
+class TrayEdges(NamedTuple):
+    """What can be done in the states of a tray, the present state first.
 
-    Parameters
-    ----------
-    available : (n, n_acts) bool
-    causes : (n, n_acts - 1) int64
-        0 where an act is not available.
-    payments, following : (n, n_acts - 1, n_results) int64
-    answered : (n, n_acts - 1) bool
-        Whether an act's answer is known, or expected from the same scene.
-    answers, paid : (n_answered, n_results) and (n_answered,) float64
-        The known results, of probability 1, and their rewards.
-    lived : dict of int to TrayState
-        The states that were lived, by number.
+    n : number of states; n itself is the end
+    at, act, cause : (n_edges,) int64, of everything but giving up
+    payments, following : (n_edges, n_results) int64, by result: what the user pays for, and the next state
+    answer : (n_edges,) int64, the result, where it is known or expected from the same scene; else `UNKNOWN`
+    paid : (n_edges,) float64, the reward of a known answer
+    lived : the states that were lived, by number
     """
 
-    available: NDArray[np.bool_]
-    causes: NDArray[np.int64]
+    n: int
+    at: NDArray[np.int64]
+    act: NDArray[np.int64]
+    cause: NDArray[np.int64]
     payments: NDArray[np.int64]
     following: NDArray[np.int64]
-    answered: NDArray[np.bool_]
-    answers: NDArray[np.float64]
+    answer: NDArray[np.int64]
     paid: NDArray[np.float64]
     lived: dict[int, TrayState]
-
-
-class _Way(NamedTuple):
-    """An act in a state: its cause, and by result what it is paid for and the states that follow."""
-
-    act: int
-    number: int
-    cause: int
-    payments: list[int]
-    after: list[TrayState | None]
 
 
 @dataclass(eq=False)
@@ -85,8 +66,8 @@ class TrayGraph:
     states: dict[Done, TrayState] = field(default_factory=dict)
     answers: dict[Done, Answer] = field(default_factory=dict)
     _alike: dict[Done, Done] = field(default_factory=dict)
-    _ways: dict[TrayState, list[_Way]] = field(default_factory=dict)
-    _made: dict[Done, TrayNodes] = field(default_factory=dict)
+    _ways: dict[TrayState, list[tuple]] = field(default_factory=dict)
+    _made: dict[Done, TrayEdges] = field(default_factory=dict)
 
     def saw(self, done: Done, state: TrayState) -> None:
         """After some actions, this is the state."""
@@ -119,27 +100,26 @@ class TrayGraph:
         lived = done if done in self.answers else self._alike.get(self._without_vain(done))
         return None if lived is None else (lived, self.answers[lived])
 
-    def ways(self, state: TrayState) -> list[_Way]:
-        """What can be done in a state, but giving up."""
+    def ways(self, state: TrayState) -> list[tuple[int, int, int, list[int], list[TrayState | None]]]:
+        """What can be done in a state: act, object, cause, and by result what is paid for and the next state."""
         if state not in self._ways:
             picks_left = len(state.failed) < MOST_FAILED
             self._ways[state] = [
-                _Way(act, number, state.cause(act, number), state.payments(act), state.after(act, number))
+                (act, number, state.cause(act, number), state.payments(act), state.after(act, number))
                 for act, number in state.named().items()
                 if picks_left or state.held is not None
             ]
         return self._ways[state]
 
-    def nodes(self, done: Done) -> TrayNodes:
-        """The states from the one after some actions on; that one was seen."""
+    def edges(self, done: Done) -> TrayEdges:
+        """What can be done from the state after some actions on; that one was seen."""
         if done not in self._made:
-            self._made[done] = self._nodes(done)
+            self._made[done] = self._edges(done)
         return self._made[done]
 
-    def _nodes(self, done: Done) -> TrayNodes:
-        first: Node = done, self.states[done]
-        number_of: dict[Node, int] = {first: 0}
-        order: list[Node] = [first]
+    def _edges(self, done: Done) -> TrayEdges:
+        number_of: dict[Node, int] = {(done, self.states[done]): 0}
+        order = list(number_of)
 
         def place(node: Node) -> int:
             if node not in number_of:
@@ -147,40 +127,21 @@ class TrayGraph:
                 order.append(node)
             return number_of[node]
 
-        rows: list[_Row] = []
-        known: list[tuple[int, int, Answer]] = []
+        rows = []
         for at, (lived, state) in enumerate(order):  # grows while it is read
-            for way in self.ways(state):
-                known_answer = None if lived is None else self._answer((*lived, (VERB[way.act], way.number)))
-                if known_answer is not None:
-                    then, answer = known_answer
-                    known.append((at, way.act, answer))
-                    after = -1 if answer.ended else place((then, self.states[then]))
-                    following = [after] * len(RESULTS)
+            for act, number, cause, payments, after in self.ways(state):
+                known = None if lived is None else self._answer((*lived, (VERB[act], number)))
+                if known is None:
+                    following = [-1 if one is None else place((None, one)) for one in after]
+                    rows.append((at, act, cause, payments, following, UNKNOWN, 0.0))
                 else:
-                    following = [-1 if after is None else place((None, after)) for after in way.after]
-                rows.append((at, way.act, way.cause, way.payments, following))
-        states = {place: state for place, (lived, state) in enumerate(order) if lived is not None}
-        return _as_arrays(len(order), rows, known, states)
-
-
-def _as_arrays(
-    n: int,
-    rows: list[_Row],
-    known: list[tuple[int, int, Answer]],
-    lived: dict[int, TrayState],
-) -> TrayNodes:
-    available = np.zeros((n, len(ACTS)), np.bool_)
-    available[:, GIVE_UP] = True
-    causes, payments = np.zeros((n, GIVE_UP), np.int64), np.zeros((n, GIVE_UP, len(RESULTS)), np.int64)
-    following = np.full((n, GIVE_UP, len(RESULTS)), n)
-    if rows:
-        at, act, cause, paid_for, after = (np.array(column) for column in zip(*rows, strict=True))
-        available[at, act], causes[at, act], payments[at, act] = True, cause, paid_for
-        following[at, act] = np.where(after < 0, n, after)
-    answered = np.zeros((n, GIVE_UP), np.bool_)
-    answers, paid = np.zeros((n, GIVE_UP, len(RESULTS))), np.zeros((n, GIVE_UP))
-    for place, act, answer in known:
-        answered[place, act] = True
-        answers[place, act, answer.result], paid[place, act] = 1, answer.reward
-    return TrayNodes(available, causes, payments, following, answered, answers[answered], paid[answered], lived)
+                    then, answer = known
+                    following = [-1 if answer.ended else place((then, self.states[then]))] * len(RESULTS)
+                    rows.append((at, act, cause, payments, following, answer.result, answer.reward))
+        n, columns = len(rows), zip(*rows, strict=True) if rows else [[]] * 7
+        at, act, cause, payments, following, answers, paid = (np.array(one) for one in columns)
+        payments, following = (one.reshape(n, len(RESULTS)).astype(np.int64) for one in (payments, following))
+        following[following < 0] = len(order)
+        states = {number: state for number, (lived, state) in enumerate(order) if lived is not None}
+        at, act, cause, answers = (one.astype(np.int64) for one in (at, act, cause, answers))
+        return TrayEdges(len(order), at, act, cause, payments, following, answers, paid, states)
