@@ -1,9 +1,12 @@
 """The gate: tokens and scopes, this machine alone without tokens, limits, one shape of errors, identifiers."""
 
+import asyncio
 import json
 import logging
 
 import pytest
+from fastapi.responses import StreamingResponse
+from starlette.websockets import WebSocketDisconnect
 
 from lifelore.app.service.limits import WINDOW, RateLimit
 from lifelore.app.service.tokens import add_token
@@ -234,3 +237,28 @@ def test_metrics_and_log_name_routes_and_not_users(serve, study, caplog):
     fields = [record.fields for record in caplog.records if record.name == "lifelore.service"]
     assert [one["status"] for one in fields] == [200, 200, 404]
     assert "zoe" not in json.dumps(fields)
+
+
+@pytest.mark.parametrize(("pause", "pieces"), [(0.15, 4), (5.0, 1)], ids=["steady", "stalled"])
+def test_the_time_of_a_long_answer_counts_between_its_pieces(serve, pause, pieces):
+    client = serve(seconds=0.4)
+
+    async def lines():
+        for _ in range(4):
+            yield b"line\n"
+            await asyncio.sleep(pause)
+
+    client.app.add_api_route("/lines", lambda: StreamingResponse(lines()))
+    assert client.get("/lines").content == b"line\n" * pieces
+
+
+def test_a_socket_of_another_page_is_refused(serve):
+    client = serve()
+    for origin in ("http://127.0.0.1:9999", "https://evil.example", "null"):
+        headers = {"Host": "127.0.0.1:8321", "Origin": origin}
+        with (
+            pytest.raises(WebSocketDisconnect) as refused,
+            client.websocket_connect("/v1/play/live", headers=headers),
+        ):
+            pass
+        assert refused.value.code == 1008

@@ -37,7 +37,22 @@ class LibraryDocument(BaseModel):
     )
 
 
-class StudyRequest(BaseModel):
+class StudyFields(BaseModel):
+    """How a study chooses."""
+
+    control: FiniteFloat = Field(0.1, description="Share of users in the control group, in [0, 1).")
+    incumbent: str | None = Field(None, description="Policy of the control group; left out: each policy alike.")
+    rule: str = Field("information-directed", description="Selection rule.", examples=["sampling"])
+    explore: FiniteFloat = Field(0.0, description="Share of choices that are drawn from all policies, in [0, 1].")
+    change: FiniteFloat | Literal["learnt"] = Field(
+        "learnt", description="Probability that a user's type changes between two choices, or how often is learnt."
+    )
+    models: Literal["uncertain", "plug-in"] = Field(
+        "uncertain", description="Whether models of few runs learn too."
+    )
+
+
+class StudyRequest(StudyFields):
     """A library and how to choose from it."""
 
     model_config = ConfigDict(
@@ -53,16 +68,6 @@ class StudyRequest(BaseModel):
         },
     )  # fmt: skip
     library: LibraryDocument
-    control: FiniteFloat = Field(0.1, description="Share of users in the control group, in [0, 1).")
-    incumbent: str | None = Field(None, description="Policy of the control group; left out: each policy alike.")
-    rule: str = Field("information-directed", description="Selection rule.", examples=["sampling"])
-    explore: FiniteFloat = Field(0.0, description="Share of choices that are drawn from all policies, in [0, 1].")
-    change: FiniteFloat | Literal["learnt"] = Field(
-        "learnt", description="Probability that a user's type changes between two choices, or how often is learnt."
-    )
-    models: Literal["uncertain", "plug-in"] = Field(
-        "uncertain", description="Whether models of few runs learn too."
-    )
 
 
 class PolicyState(BaseModel):
