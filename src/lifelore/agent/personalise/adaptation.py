@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.study import check_study_name, user_key
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
@@ -24,6 +23,7 @@ from lifelore.interaction.adaptation.beat import Beat, rule_at
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.memory import Memory
 from lifelore.memory.byte_words import bytes_of, words_of
+from lifelore.memory.record_rules import check_name
 
 LIBRARY, USER, VERSION = "adapt_library", "adapt_user", 1
 _HEADER = 3
@@ -173,7 +173,7 @@ def learn_moves(
 
 def forget_adaptation(memory: Memory, adaptation: Adaptation, user: str) -> int:
     """Forget a user; the number of contributions removed. NotFoundError where nothing is stored."""
-    check_word("user", user)
+    check_name("user", user)
     robot = f"adapt {adaptation.name}: {user_key(adaptation.name, user)}"
     if not memory.tasks(robot):
         raise NotFoundError(f"nothing is stored of user '{user}' in adaptation '{adaptation.name}'")
@@ -182,7 +182,7 @@ def forget_adaptation(memory: Memory, adaptation: Adaptation, user: str) -> int:
 
 def _beat(memory: Memory, adaptation: Adaptation, user: str) -> Beat:
     """The learner as the user's stored moves leave it."""
-    check_word("user", user)
+    check_name("user", user)
     beat = Beat(adaptation.library, epsilon=adaptation.epsilon)
     key = f"{adaptation.name}/{user_key(adaptation.name, user)}"
     record = memory.recall(USER, key, VERSION)

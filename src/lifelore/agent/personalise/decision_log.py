@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from lifelore.agent.personalise.identifiers import identifier, parse_identifier
-from lifelore.agent.personalise.log.log_columns import escaped
+from lifelore.agent.personalise.log.log_format import escaped
 from lifelore.agent.personalise.study import Study
 from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, StoreError

@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from lifelore.agent.personalise.beliefs import Beliefs, learn, open_beliefs, stored_beliefs
 from lifelore.agent.personalise.identifiers import identifier, new_ids, parse_identifier
-from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.policy_states import checked_available
 from lifelore.agent.personalise.study import Study, known_users, share_of
 from lifelore.core.errors import InputError, LifeloreError, NotFoundError
@@ -27,6 +26,7 @@ from lifelore.interaction.outcomes.outcome_model import LARGEST
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.reuse.user_beliefs import blocks
 from lifelore.memory import Memory
+from lifelore.memory.record_rules import check_name
 from lifelore.memory.refusal import RacedError
 from lifelore.memory.study_rows import DecisionRow, StudyRows, UserRow
 
@@ -63,10 +63,10 @@ class Request:
 
     def checked(self, study: Study) -> "Request":
         """The request with checked names; `InputError` or `NotFoundError` where one breaks its rule."""
-        check_word("user", self.user)
+        check_name("user", self.user)
         for name in ("context", "request"):
             if (word := getattr(self, name)) is not None:
-                check_word(name, word)
+                check_name(name, word)
         features, available = self.features, self.available
         if features is None and available is None:
             return self

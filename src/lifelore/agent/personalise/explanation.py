@@ -8,13 +8,13 @@ import numpy as np
 from lifelore.agent.personalise.beliefs import start_at_priors
 from lifelore.agent.personalise.decisions import Request, probabilities
 from lifelore.agent.personalise.identifiers import identifier
-from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.study import Study, known_users
 from lifelore.core.errors import NotFoundError
 from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, Evidence, relative_evidence
 from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.selection.choice import available_mask
 from lifelore.memory import Memory
+from lifelore.memory.record_rules import check_name
 from lifelore.memory.study_rows import DecisionRow, UserRow
 
 LAST_DECISIONS = 16
@@ -114,7 +114,7 @@ def novelty_of(memory: Memory, study: Study, user: str) -> float:
 
 def _read(memory: Memory, study: Study, user: str) -> tuple[UserRow, list[DecisionRow], list[tuple[str, float]]]:
     """A user, the decisions, and (policy, outcome) of all that the belief follows from."""
-    check_word("user", user)
+    check_name("user", user)
     with memory.studies.reading(study.number) as rows:
         known = known_users(rows, study, [user]).get(user)
         if known is None:

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import Any
 
 from lifelore.agent.personalise.library_document import described
-from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.study import (
     ACTIVE,
     LEARNT,
@@ -20,6 +19,7 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import DEFAULT_RULE
 from lifelore.interaction.signals.return_signal import ReturnSignal
 from lifelore.memory import Memory
+from lifelore.memory.record_rules import check_name
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ def register(memory: Memory, name: str, library: PolicyLibrary, settings: StudyS
     """
     check_study_name(name)
     for word in (*library.types, *library.policies):
-        check_word("name", word)
+        check_name("name", word)
     if not isinstance(library.signal, ReturnSignal):
         raise InputError(
             "library of a study must have the outcome as its signal; register a library with other signals for "

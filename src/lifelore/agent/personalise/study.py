@@ -13,7 +13,6 @@ from typing import Any, Literal, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.interaction.beliefs.feature_prior import FeaturePrior
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
@@ -21,6 +20,7 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.reuse_algorithm import Dynamics, ReuseAlgorithm
 from lifelore.interaction.selection import DEFAULT_RULE, SelectionRule, restored_rule, rule_named
 from lifelore.memory import Memory
+from lifelore.memory.record_rules import check_name
 from lifelore.memory.studies import ARCHIVED, StudyVersion
 from lifelore.memory.study_rows import StudyRows, UserRow
 
@@ -306,7 +306,7 @@ def study_states(memory: Memory) -> dict[str, str]:
 
 def check_study_name(name: str) -> str:
     """`name` itself, if it can name a study."""
-    check_word("name", name)
+    check_name("name", name)
     if len(name) > LONGEST_NAME or "/" in name:
         raise InputError(f"name must be at most {LONGEST_NAME} characters without '/', got {name[:80]!r}")
     return name

@@ -118,7 +118,7 @@ class Writer:
         """The result of each job or its error, from one transaction."""
         try:
             with self._memory.together(rows=rows):
-                results = self._stored(jobs) if rows else [_result(*job.rows) for job in jobs]
+                results = self._stored(jobs) if rows else [_result(job) for job in jobs]
         except Exception as error:
             self._undone()
             return [error] * len(jobs)
@@ -129,9 +129,9 @@ class Writer:
     def _stored(self, jobs: Sequence[_Job]) -> list[Any]:
         """Store the rows of jobs, those of a study and a kind as one batch."""
         answers: dict[Any, Iterator[Any]] = {}
-        for kind in dict.fromkeys(job.kind for job in jobs):
+        for kind in dict.fromkeys(job.kind for job in jobs if job.kind):
             rows = [row for job in jobs if job.kind == kind for row in job.rows]
-            answers[kind] = iter(self._answers(*kind, rows))  # pyright: ignore[reportOptionalIterable]
+            answers[kind] = iter(self._answers(*kind, rows))
         return [list(islice(answers[job.kind], len(job.rows))) for job in jobs]
 
     def _answers(self, kind: str, study: str, brief: bool, rows: list[Any]) -> list[Any]:
@@ -153,14 +153,15 @@ class Writer:
                     own = sums.setdefault((kind, study, answer["policy"], answer["control"]), [0, 0.0])
                     own[0] += 1
                     own[1] += row[1] if kind == "outcomes" else 0.0
-        for (kind, *arm), (n, total) in sums.items():
+        for (kind, study, policy, control), (n, total) in sums.items():
             if kind == "decisions":
-                self._metrics.decided(*arm, n)
+                self._metrics.decided(study, policy, control, n)
             else:
-                self._metrics.observed(*arm, n, total)
+                self._metrics.observed(study, policy, control, n, total)
 
 
-def _result(function: Callable[..., Any], *arguments: Any) -> Any:
+def _result(job: _Job) -> Any:
+    function, *arguments = job.rows
     try:
         return function(*arguments)
     except Exception as error:
