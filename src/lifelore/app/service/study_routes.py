@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 from lifelore.agent.personalise.explanation import stranger_table
 from lifelore.agent.personalise.library_document import library_of
 from lifelore.agent.personalise.policy_states import add, retire
-from lifelore.agent.personalise.registration import StudySettings, register, study_document
+from lifelore.agent.personalise.registration import register, study_document
 from lifelore.agent.personalise.study import study_states
 from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service
@@ -125,8 +125,7 @@ def router(service: Service) -> APIRouter:
     @routes.put("/{study}", summary="Register a policy library as a study")
     def put(study: Name, document: StudyRequest) -> dict[str, Any]:
         library = library_of(document.library.model_dump())
-        settings = StudySettings(**document.model_dump(exclude={"library"}))
-        registered = register(memory, study, library, settings)
+        registered = register(memory, study, library, **document.model_dump(exclude={"library"}))
         studies.drop(study)
         return study_document(registered)
 
