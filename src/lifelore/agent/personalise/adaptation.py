@@ -164,9 +164,9 @@ def learn_moves(
         if ends_episode:
             beat.end_episode()
         record = _record(adaptation, user, beat)
-        robot = f"adapt {adaptation.name}: {user_key(adaptation.name, user)}"
-        task = {"adaptation": adaptation.name, "moves": len(moves)}
-        if memory.contribute(robot, [record], process=adaptation.id, seq=step, task=task):
+        robot, task = _robot(adaptation, user), {"adaptation": adaptation.name, "moves": len(moves)}
+        process = _process(memory, adaptation, robot)
+        if memory.contribute(robot, [record], process=process, seq=step, task=task):
             return {"user": user, "taken": True, **_state(adaptation, beat)}
     raise StoreError(f"memory {memory.location}: too many programs move for one user at once; try again")
 
@@ -174,10 +174,23 @@ def learn_moves(
 def forget_adaptation(memory: Memory, adaptation: Adaptation, user: str) -> int:
     """Forget a user; the number of contributions removed. NotFoundError where nothing is stored."""
     check_name("user", user)
-    robot = f"adapt {adaptation.name}: {user_key(adaptation.name, user)}"
+    robot = _robot(adaptation, user)
     if not memory.tasks(robot):
         raise NotFoundError(f"nothing is stored of user '{user}' in adaptation '{adaptation.name}'")
     return memory.forget(robot)
+
+
+def _robot(adaptation: Adaptation, user: str) -> str:
+    return f"adapt {adaptation.name}: {user_key(adaptation.name, user)}"
+
+
+def _process(memory: Memory, adaptation: Adaptation, robot: str) -> str:
+    """A name for each time that a user was forgotten, since memory stores nothing forgotten again."""
+    process, number = adaptation.id, 0
+    while memory.times_forgotten(robot, process):
+        number += 1
+        process = f"{adaptation.id} {number}"
+    return process
 
 
 def _beat(memory: Memory, adaptation: Adaptation, user: str) -> Beat:

@@ -103,7 +103,7 @@ def test_a_rule_that_knows_types_beats_every_single_policy(log):
 
 @pytest.mark.slow
 def test_the_library_of_a_part_of_the_users_does_not_depend_on_their_outcomes(tmp_path):
-    log = read_decisions([simulated(tmp_path / "log.csv", n_users=20, n_decisions=4)]).log
+    log = read_decisions([simulated(tmp_path / "log.csv", n_users=10, n_decisions=4)]).log
     folds = user_folds(log.user.codes, np.random.default_rng(0))
     other = replace(log, outcomes=np.where(folds == 1, 1 - log.outcomes, log.outcomes))
     before, after = (
