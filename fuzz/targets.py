@@ -32,7 +32,7 @@ from lifelore.agent.advise.step_lines import read_steps
 from lifelore.agent.learn_from.run_log import read_runs
 from lifelore.agent.live.goals.job_list import read_jobs
 from lifelore.agent.personalise.log.log_format import LogFormat
-from lifelore.agent.personalise.log.log_lines import read_lines
+from lifelore.agent.personalise.log.log_reader import LogReader
 from lifelore.bridges.rosbag_poses import read_bag_log
 from lifelore.core.protocols import Record
 from lifelore.domains.buildings.occupancy_map import read_occupancy_map
@@ -245,7 +245,7 @@ def targets() -> dict[str, Target]:
         "map": Target(_map, [_map_seed()]),
         "jobs": Target(_of_file(read_jobs, "jobs.csv"), [b"time,name,x,y\n08:00,dock,1.0,2.0\n09:00,dock,,\n"]),
         "runs": Target(_of_file(read_runs, "runs.csv"), [b"time,x,y,outcome\n0,1,1,\n1,1.2,1,goal\n"]),
-        "log": Target(lambda content: read_lines(content, "log", LogFormat()), [log]),
+        "log": Target(lambda content: LogReader().read(content, "log", LogFormat()), [log]),
         "memory": Target(_memory, [_memory_seed()]),
         "prior": Target(_zipped(prior_from_bytes), [_members(_prior_seed())]),
         "library": Target(_zipped(PolicyLibrary.from_bytes), [_members(library.to_bytes())]),

@@ -94,7 +94,7 @@ def test_an_interrupt_changes_nothing(memory, monkeypatch):
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr("lifelore.memory.memory.cache.add", interrupt)
+        patch.setattr("lifelore.memory.memory.cache.write", interrupt)
         with pytest.raises(KeyboardInterrupt):
             memory.contribute("a", [noise(0)], process="p", seq=0, task={})
     assert memory.tasks("a") == 0

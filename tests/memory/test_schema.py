@@ -22,10 +22,6 @@ def first_schema():
             fill(memory)
             with memory._store.writing() as conn:
                 for statement in (
-                    "INSERT INTO lifelore_mentions SELECT number, lore FROM lifelore_contributions"
-                    " WHERE lore IS NOT NULL",
-                    "DROP INDEX lifelore_contributions_lore",
-                    "ALTER TABLE lifelore_contributions DROP COLUMN lore",
                     "DROP TABLE lifelore_forgotten_records",
                     "DROP TABLE lifelore_leases",
                     *(f"DROP TABLE {table}" for table in STUDIES),
@@ -123,6 +119,23 @@ def test_a_memory_of_the_sixth_schema_is_read_as_it_is(file, monkeypatch):
         assert memory.recall("prior", "b7", 1).values.tolist() == [30, 10]
         assert memory.check() == []
     assert file.read_bytes() == content
+
+
+def test_keys_beside_contributions_are_read_and_become_mentions(file, monkeypatch):
+    """Schemas 4 to 8 kept the key of a contribution's only record beside the contribution."""
+    with monkeypatch.context() as before:
+        before.setattr(schema, "MIGRATIONS", {number: schema.MIGRATIONS[number] for number in range(1, 9)})
+        before.setattr(schema, "LATEST", 8)
+        with open_memory(file) as memory:
+            fill(memory)
+            with memory._store.writing() as conn:
+                conn.execute("UPDATE lifelore_contributions SET lore = (SELECT number FROM lifelore_lore)")
+                conn.execute("DELETE FROM lifelore_mentions")
+    with open_memory(file, read_only=True) as memory:
+        assert (memory.check(), memory.show()["schema"]) == ([], 8)
+    with open_memory(file) as memory:
+        assert (memory.check(), steps(memory)) == ([], NOW)
+        assert memory.forget_records([("prior", "b7", 1)]) == 1
 
 
 def test_a_memory_of_the_first_schema_is_read_and_checked_as_it_is(file, first_schema):

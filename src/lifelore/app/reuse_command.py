@@ -225,7 +225,7 @@ def update(
 ) -> None:
     """Store the outcome of a decision, once, at any later time."""
     from lifelore.agent.personalise.decisions import update as updated
-    from lifelore.agent.personalise.log.log_columns import read_outcome
+    from lifelore.agent.personalise.log.log_format import read_outcome
 
     value = read_outcome(outcome)
     with _opened(name, where) as (memory, study):

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from lifelore.core.errors import StoreError
-from lifelore.memory import cache, ledger, schema
+from lifelore.memory import cache, ledger
 from lifelore.memory.connection import Connection
 from lifelore.memory.folding import Folded, LoreKey, fold
 
@@ -69,8 +69,7 @@ def _cache_problems(conn: Connection, numbers: list[int]) -> Iterator[str]:
 
 
 def _orphans(conn: Connection) -> Iterator[str]:
-    tables = ["cells", "mentions", *(["contributions"] if schema.version(conn) >= schema.BESIDE else [])]
-    for table in tables:
+    for table in ("cells", "mentions"):
         # In an older memory that is only read, the state of a key has the negative of its number.
         known = "ABS(lore) IN (SELECT number FROM lifelore_lore)"
         if count := conn.value(f"SELECT COUNT(*) FROM lifelore_{table} WHERE lore IS NOT NULL AND NOT {known}"):

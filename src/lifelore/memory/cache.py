@@ -15,8 +15,6 @@ from lifelore.memory.folding import Folded, LoreKey, fold, require_one_merge
 from lifelore.memory.record_rules import described
 
 _ROWS_AT_ONCE = 10_000
-_FEW_ROWS = 16
-"""Cells that are written by one statement; a statement of more would be too long for more speed."""
 EVERY_SLOT = -(2**63), 2**63 - 1
 
 # "The contribution of the new row is later than that of the row in place."
@@ -25,20 +23,16 @@ _LATER = """EXISTS (
     WHERE new.number = excluded.origin AND old.number = {table}.origin
     AND (new.stamp, new.robot, new.process, new.seq) > (old.stamp, old.robot, old.process, old.seq))"""
 
-# "No contribution that has its key beside it is later than the new row."
-_NEWEST = """NOT EXISTS (
-    SELECT 1 FROM lifelore_contributions AS new, lifelore_contributions AS other
-    WHERE new.number = excluded.origin AND other.lore = lifelore_lore.number
-    AND (other.stamp, other.robot, other.process, other.seq) > (new.stamp, new.robot, new.process, new.seq))"""
-
 _NOTE = (
     "INSERT INTO lifelore_lore (kind, key, version, merge, about, origin)"
     " VALUES (:kind, :key, :version, :merge, :about, :origin) ON CONFLICT (kind, key, version)"
     " DO UPDATE SET about = excluded.about, origin = excluded.origin"
-    f" WHERE {_LATER.format(table='lifelore_lore')} AND {_NEWEST}"
+    f" WHERE {_LATER.format(table='lifelore_lore')}"
 )
-_CELLS = "INSERT INTO lifelore_cells (lore, slot, value, origin) VALUES {} ON CONFLICT (lore, slot) DO UPDATE SET "
-_CELL = "(?, ?, ?, ?)"
+_CELLS = (
+    "INSERT INTO lifelore_cells (lore, slot, value, origin) VALUES (?, ?, ?, ?)"
+    " ON CONFLICT (lore, slot) DO UPDATE SET "
+)
 _UPSERT = {
     "add": _CELLS + "value = lifelore_cells.value + excluded.value",
     "union": _CELLS + "value = excluded.value WHERE excluded.value > lifelore_cells.value",
@@ -50,25 +44,8 @@ _MENTION = "INSERT INTO lifelore_mentions (contribution, lore) VALUES (?, ?)"
 _MENTIONS = "SELECT contribution FROM lifelore_mentions WHERE lore = :lore"
 _BESIDE = " UNION SELECT number FROM lifelore_contributions WHERE lore = :lore"
 _NAMED = "kind = ? AND key = ? AND version = ?"
-# Cells of the newest contribution.
-_REPLACE = _CELLS + "value = excluded.value, origin = excluded.origin"
 _FIND = f"SELECT number, merge, about FROM lifelore_lore WHERE {_NAMED}"
 _READ = "SELECT slot, value FROM lifelore_cells WHERE lore = ? AND slot BETWEEN ? AND ? ORDER BY slot"
-
-
-def add(conn: Connection, parts: dict[LoreKey, Folded], lore: int | None = None) -> None:
-    """Merge the newest contribution into the cache; the ledger must hold it already.
-
-    `lore` is the number of its only key, see `ledger.Inserted`.
-    """
-    (part, *others) = parts.values() or [None]
-    if lore is None or part is None or others or len(part.slots) > _FEW_ROWS:
-        return write(conn, parts)
-    cells = zip(part.slots.tolist(), part.values.tolist(), strict=True)
-    rows = [(lore, slot, value, part.origin) for slot, value in cells]
-    if rows:
-        conn.execute(_REPLACE.format(", ".join([_CELL] * len(rows))), list(chain.from_iterable(rows)))
-    return None
 
 
 def write(conn: Connection, folded: dict[LoreKey, Folded]) -> None:
@@ -92,12 +69,8 @@ def _write_cells(conn: Connection, lore: int, part: Folded) -> None:
     origins = part.origins if part.merge == "newest" else np.zeros_like(part.origins)
     slots, values = part.slots.tolist(), part.values.tolist()
     rows = list(zip([lore] * len(slots), slots, values, origins.tolist(), strict=True))
-    upsert = _UPSERT[part.merge]
-    if 0 < len(rows) <= _FEW_ROWS:
-        conn.execute(upsert.format(", ".join([_CELL] * len(rows))), list(chain.from_iterable(rows)))
-        return
     for batch in ledger.in_batches(rows, _ROWS_AT_ONCE):
-        conn.execute_many(upsert.format(_CELL), batch)
+        conn.execute_many(_UPSERT[part.merge], batch)
 
 
 def read(conn: Connection, name: LoreKey, within: tuple[int, int] = EVERY_SLOT) -> Record | None:
@@ -124,12 +97,7 @@ def mentioned(conn: Connection, contributions: Iterable[int]) -> set[LoreKey]:
         "SELECT kind, key, version FROM lifelore_lore JOIN lifelore_mentions"
         " ON lore = lifelore_lore.number WHERE contribution = ?"
     )
-    beside = (
-        "SELECT kind, key, version FROM lifelore_lore JOIN lifelore_contributions AS own"
-        " ON own.lore = lifelore_lore.number WHERE own.number = ?"
-    )
-    found = (conn.execute(sql, (number,)) for number in contributions for sql in (query, beside))
-    return {(row[0], row[1], row[2]) for rows in found for row in rows}
+    return {(row[0], row[1], row[2]) for number in contributions for row in conn.execute(query, (number,))}
 
 
 def mentions(conn: Connection, name: LoreKey) -> set[int]:
@@ -140,7 +108,7 @@ def mentions(conn: Connection, name: LoreKey) -> set[int]:
 
 def mentions_of(conn: Connection, lore: int) -> set[int]:
     """`mentions` by the number of the key."""
-    sql = _MENTIONS + (_BESIDE if schema.version(conn) >= schema.BESIDE else "")
+    sql = _MENTIONS + (_BESIDE if schema.version(conn) in schema.BESIDE else "")
     return {row[0] for row in conn.execute(sql, {"lore": lore})}
 
 
@@ -149,7 +117,6 @@ def rebuild(conn: Connection, only: set[LoreKey] | None = None) -> None:
     if only is None:
         for table in ("cells", "mentions", "lore"):
             conn.execute(f"DELETE FROM lifelore_{table}")
-        conn.execute("UPDATE lifelore_contributions SET lore = NULL WHERE lore IS NOT NULL")
         touched = None
     else:
         touched = _clear(conn, only)
@@ -165,7 +132,6 @@ def _clear(conn: Connection, only: set[LoreKey]) -> set[int]:
             raise StoreError(f"cache of {name[0]}/{name[1]} version {name[2]} is missing; rebuild the memory")
         lore = found[:1]
         numbers |= mentions_of(conn, found[0])
-        conn.execute("UPDATE lifelore_contributions SET lore = NULL WHERE lore = ?", lore)
         conn.execute("DELETE FROM lifelore_cells WHERE lore = ?", lore)
         conn.execute("DELETE FROM lifelore_mentions WHERE lore = ?", lore)
         conn.execute("DELETE FROM lifelore_lore WHERE number = ?", lore)

@@ -9,7 +9,7 @@ from typing import Any
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
 from lifelore.memory.record_blob import compress, decompress, pack, unpack
-from lifelore.memory.record_rules import canonical_json, check_name, check_whole, checked_records, described
+from lifelore.memory.record_rules import canonical_json, check_name, check_whole, checked_records
 
 Identity = tuple[str, str, int]
 Order = tuple[int, str, str, int]
@@ -88,14 +88,6 @@ class Offer:
     task: str
     records: list[Record]
     payload: bytes
-
-    @property
-    def only(self) -> dict[str, Any]:
-        """Kind, key, version and description of a single record that merges as *newest*; else None for each."""
-        one = self.records[0] if len(self.records) == 1 and self.records[0].merge == "newest" else None
-        if one is None:
-            return dict.fromkeys(("kind", "key", "version", "about"))
-        return {"kind": one.kind, "key": one.key, "version": one.version, "about": described(one.about)}
 
     def stamped(self, stamp: int) -> Contribution:
         """The contribution with this stamp."""

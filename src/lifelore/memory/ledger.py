@@ -4,7 +4,7 @@ import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 from lifelore.core.errors import StoreError
 from lifelore.memory import schema
@@ -18,9 +18,12 @@ Item = TypeVar("Item")
 BATCH = 100
 
 _IDENTITY = "robot = :robot AND process = :process AND seq = :seq"
+# Inserts nothing where the contribution is stored already, or was forgotten.
 _INSERT = (
     "INSERT INTO lifelore_contributions (robot, process, seq, stamp, task, blob, digest)"
-    " VALUES (:robot, :process, :seq, :stamp, :task, :blob, :digest)"
+    " SELECT :robot, :process, :seq, :stamp, :task, :blob, :digest"
+    f" WHERE NOT EXISTS (SELECT 1 FROM lifelore_tombstones WHERE {_IDENTITY})"
+    " ON CONFLICT (robot, process, seq) DO NOTHING"
 )
 _LAST = "SELECT COALESCE(MAX(number), 0) FROM lifelore_contributions"
 _SINCE = "SELECT number, robot, process, seq, stamp, digest FROM lifelore_contributions WHERE number > :last"
@@ -32,15 +35,6 @@ _KNOWN = (
 _LARGEST_STAMP = (
     "SELECT COALESCE(MAX(stamp), 0) FROM (SELECT MAX(stamp) AS stamp FROM lifelore_contributions"
     " UNION ALL SELECT MAX(stamp) FROM lifelore_forgotten_records) AS stamps"
-)
-# Inserts nothing unless the row is new and the newest. The row gets the number of its key where the cache has that
-# key with the same description.
-_INSERT_NEWEST = (
-    "INSERT INTO lifelore_contributions (robot, process, seq, stamp, task, blob, digest, lore)"
-    " SELECT :robot, :process, :seq, :stamp, :task, :blob, :digest, (SELECT number FROM lifelore_lore"
-    " WHERE kind = :kind AND key = :key AND version = :version AND merge = 'newest' AND about = :about)"
-    f" WHERE :stamp > ({_LARGEST_STAMP}) AND NOT EXISTS (SELECT 1 FROM lifelore_tombstones WHERE {_IDENTITY})"
-    " ON CONFLICT (robot, process, seq) DO NOTHING RETURNING number, lore"
 )
 _FORGET_RECORD = (
     "INSERT INTO lifelore_forgotten_records (kind, key, version, stamp) VALUES (:kind, :key, :version, :stamp)"
@@ -91,26 +85,10 @@ def next_stamp(conn: Connection) -> int:
     return max(time.time_ns(), int(largest) + 1)
 
 
-class Inserted(NamedTuple):
-    """The row of a new contribution.
-
-    number : of the row
-    lore : number of the key of its only record where the cache needs no change but in cells; else None
-    """
-
-    number: int
-    lore: int | None
-
-
-def insert(conn: Connection, offer: Offer) -> Inserted | None:
-    """Insert a contribution as the newest; None where it is stored already or was forgotten."""
-    found = conn.first(_INSERT_NEWEST, vars(offer.stamped(time.time_ns())) | offer.only)
-    if found is not None:
-        return Inserted(*found)
-    if is_known(conn, offer.identity):
-        return None
-    # A stamp in this memory is ahead of the clock.
-    return Inserted(conn.value(_INSERT + " RETURNING number", vars(offer.stamped(next_stamp(conn)))), None)
+def insert(conn: Connection, offer: Offer) -> int | None:
+    """Insert a contribution as the newest; its row number, or None where it is stored already or was forgotten."""
+    found = conn.first(_INSERT + " RETURNING number", vars(offer.stamped(next_stamp(conn))))
+    return None if found is None else int(found[0])
 
 
 def insert_many(conn: Connection, contributions: Iterable[Contribution]) -> list[ContributionRow]:

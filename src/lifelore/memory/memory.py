@@ -165,10 +165,10 @@ class Memory:
         with self._store.writing() as conn:
             if taken is not None and not leases.finish(conn, offer.identity, taken):
                 return False
-            row = ledger.insert(conn, offer)
-            if row is not None:
-                cache.add(conn, lift(row.number, offer.records), row.lore)
-        return row is not None
+            number = ledger.insert(conn, offer)
+            if number is not None:
+                cache.write(conn, lift(number, offer.records))
+        return number is not None
 
     def take_task(self, robot: str, *, process: str, seconds: int = leases.LEASE_SECONDS) -> int:
         """Take the next task of a robot that is neither finished nor at work in another process.

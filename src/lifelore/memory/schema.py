@@ -102,6 +102,13 @@ DELETE FROM lifelore_cells WHERE lore < 0;
 ALTER TABLE lifelore_cells DROP COLUMN state
 """
 
+_MENTIONED = """
+INSERT INTO lifelore_mentions (contribution, lore)
+    SELECT number, lore FROM lifelore_contributions WHERE lore IS NOT NULL;
+DROP INDEX lifelore_contributions_lore;
+ALTER TABLE lifelore_contributions DROP COLUMN lore
+"""
+
 MIGRATIONS = {
     1: ("contributions, tombstones and cache", _FIRST),
     2: ("forgotten records", _SECOND),
@@ -111,12 +118,13 @@ MIGRATIONS = {
     6: ("the last stamp of forgotten records without a look at all of them", _STAMPS),
     7: ("studies: library versions, users, their past, decisions with outcomes", _STUDIES),
     8: ("no states beside the cells, which only users of studies had", _NO_STATES),
+    9: ("no key of a contribution beside it, which only users of studies needed", _MENTIONED),
 }
 LATEST = max(MIGRATIONS)
 FORGOTTEN_RECORDS = 2
 """The first schema that knows forgotten records."""
-BESIDE = 4
-"""The first schema with keys beside contributions."""
+BESIDE = range(4, 9)
+"""The schemas with keys beside contributions."""
 READABLE = 1
 """The oldest schema whose contributions, tombstones and cells are as now: such a source is read as it is."""
 

@@ -66,16 +66,6 @@ class Store:
             conn.control("ROLLBACK")
 
     @contextmanager
-    def looking(self) -> Iterator[Connection]:
-        """A connection to read by a single statement, which is its own snapshot of the database."""
-        if (joint := self._joint) is not None:
-            with one_line_refusals(self.location):
-                yield joint
-            return
-        with one_line_refusals(self.location), self.pool.connection() as conn:
-            yield conn
-
-    @contextmanager
     def writing(self, *, rows: bool = False) -> Iterator[Connection]:
         """A writing transaction; it is committed completely, or after an error not at all.
 

@@ -61,13 +61,13 @@ class Studies:
 
     def states(self) -> dict[str, str]:
         """The state of each study by its name, sorted."""
-        with self._store.looking() as conn:
+        with self._store.reading() as conn:
             found: list[tuple[str, str]] = conn.execute("SELECT name, state FROM lifelore_studies").fetchall()
         return dict(sorted(found))
 
     def revision(self, name: str) -> int | None:
         """A number that differs after each change of a study by any process; None where there is no such study."""
-        with self._store.looking() as conn:
+        with self._store.reading() as conn:
             found = conn.first("SELECT revision FROM lifelore_studies WHERE name = ?", (name,))
         return None if found is None else int(found[0])
 
@@ -77,7 +77,7 @@ class Studies:
             "SELECT number, state, s.version, about, content FROM lifelore_studies s"
             " JOIN lifelore_study_versions v ON v.study = number AND v.version = s.version WHERE name = ?"
         )
-        with self._store.looking() as conn:
+        with self._store.reading() as conn:
             found = conn.first(query, (name,))
         if found is None:
             return None
@@ -87,7 +87,7 @@ class Studies:
     def settings(self, number: int) -> dict[int, dict[str, Any]]:
         """The settings of each version of a study."""
         query = "SELECT version, about FROM lifelore_study_versions WHERE study = ?"
-        with self._store.looking() as conn:
+        with self._store.reading() as conn:
             return {version: json.loads(about) for version, about in conn.execute(query, (number,)).fetchall()}
 
     def keep(

@@ -295,15 +295,13 @@ class StudyRows:
             found.setdefault(person, []).append((policy, outcome))
         return found
 
-    def add_past(self, lines: Iterable[PastRow]) -> int:
-        """Store lines of the past, each identity once; the number of new lines."""
+    def add_past(self, lines: Iterable[PastRow]) -> None:
+        """Store lines of the past, each identity once."""
         statement = (
             "INSERT INTO lifelore_study_past (study, id, person, policy, outcome, time, fitted)"
             " VALUES (?, ?, ?, ?, ?, ?, ?) ON CONFLICT (study, id) DO NOTHING"
         )
-        before = self.n_past()
         self._conn.execute_many(statement, [(self._study, *line[:5], int(line.fitted)) for line in sorted(lines)])
-        return self.n_past() - before
 
     def n_past(self) -> int:
         """Number of lines of the past."""

@@ -6,7 +6,7 @@ import json
 
 import pytest
 
-from lifelore.agent.personalise.decision_log import COLUMNS, log_parts, write_log
+from lifelore.agent.personalise.decision_log import COLUMNS, log_parts
 from lifelore.agent.personalise.decisions import choose, forget, update
 from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.registration import register
@@ -87,7 +87,7 @@ def test_a_fit_reads_the_names_of_a_log_as_they_were(memory, clock, tmp_path):
         clock[0] = (START + number) * SECOND
         made = choose(memory, study, user, context="-DE")
         update(memory, study, made["decision"], float(number % 7))
-    write_log(memory, study, tmp_path / "log.csv")
+    (tmp_path / "log.csv").write_bytes(b"".join(log_parts(memory, study)))
     assert (tmp_path / "log.csv").read_bytes() == text(memory, study, "csv").encode()
     fit([tmp_path / "log.csv"], memory, FitSettings("again", control=0.0, types=2))
     again = open_study(memory, "again")

@@ -98,14 +98,3 @@ def test_deleting_a_study_leaves_no_byte_and_no_other_study_loses_one(lived):
         assert traces(lived, USERS)["name"] > 0
         assert (other.studies.states(), memory.studies.newest("s")) == ({"kept": "active"}, None)
         assert not memory.studies.delete("s")
-
-
-def test_deleting_a_study_leaves_no_row(memory):
-    study = study_of().keep(memory)
-    choose(memory, study, "eva")
-    add_lines(memory, study, [Line("eva", "big", 1.0)])
-    assert memory.studies.delete("s")
-    with memory.studies.reading(study.number) as rows:
-        assert (rows.users(["eva"]), rows.n_past()) == ({}, 0)
-    again = study_of().keep(memory)
-    assert (again.number != study.number, again.version) == (True, 1)

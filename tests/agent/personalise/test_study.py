@@ -1,14 +1,12 @@
 """A study in memory: it comes back bit for bit, is listed, archived, deleted, and refused where it is damaged."""
 
-from contextlib import closing
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from lifelore.agent.personalise.decisions import Request, choose, decide, forget, update
+from lifelore.agent.personalise.decisions import choose
 from lifelore.agent.personalise.open_studies import OpenStudies
-from lifelore.agent.personalise.past import Line, add_lines
 from lifelore.agent.personalise.study import open_study, study_names, study_states
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -115,42 +113,8 @@ def test_bad_settings(settings, said):
         study_of(**settings)
 
 
-# ---- what deleted rows leave behind ----------------------------------------------------------------------------
-
-MARKS = ("Zebulon Quartermaine", "context-7f3a9c", "request-5be2d1")
-
-
-def traces(place):
-    """How often marks of a user occur in a file and its side files."""
-    files = [side for side in place.parent.iterdir() if side.name.startswith(place.name)]
-    content = b"".join(side.read_bytes() for side in files)
-    return [content.count(mark.encode()) for mark in MARKS]
-
-
-@pytest.mark.parametrize("how", ["forget", "delete"])
-def test_no_byte_of_a_user_is_left_in_file_and_log(how, tmp_path):
-    place = tmp_path / "m.db"
-    with open_memory(place) as memory, open_memory(place) as other:
-        study = study_of().keep(memory)
-        others = [Request(f"user {i}") for i in range(300)]
-        for turn in range(8):
-            user, context, request = MARKS
-            made = decide(memory, study, [*others, Request(user, context, request=f"{request} {turn}")])
-            update(memory, study, made[-1]["decision"], 3.25)
-            add_lines(memory, study, [Line(user, "big", 3.25, turn + 1)])
-        assert choose(other, study, "another")["policy"]
-        assert min(traces(place)) > 0
-        if how == "forget":
-            assert forget(memory, study, MARKS[0]) == 16
-        else:
-            memory.studies.delete("s")
-        assert traces(place) == [0, 0, 0]
-        with closing(open_memory(place)) as third:
-            assert third.check() == []
-
-
-def test_a_larger_library_before_leaves_nothing_in_a_later_study(memory):
+def test_a_larger_library_before_leaves_nothing_in_a_later_study(file_memory):
     large = PolicyLibrary.from_means(np.random.default_rng(0).normal(size=(9, 30)), 1.0)
-    replace(study_of(), library=large, states=dict.fromkeys(large.policies, "active")).keep(memory)
-    assert study_of().keep(memory).version == 2
-    assert open_study(memory, "s").library.policies == study_of().library.policies
+    replace(study_of(), library=large, states=dict.fromkeys(large.policies, "active")).keep(file_memory)
+    assert study_of().keep(file_memory).version == 2
+    assert open_study(file_memory, "s").library.policies == study_of().library.policies

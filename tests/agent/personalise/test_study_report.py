@@ -16,13 +16,11 @@ from lifelore.agent.personalise.study_report import report
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.figures.reuse_report import draw_reuse_report
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.memory import open_memory
 
 
 @pytest.fixture
-def memory(tmp_path):
-    with open_memory(tmp_path / "m.db") as opened:
-        yield opened
+def memory(file_memory):
+    return file_memory
 
 
 @pytest.fixture
@@ -111,13 +109,6 @@ def test_the_folder_and_the_log(memory, study, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_decision_is_a_whole_number_on_the_axis(memory, study):
-    lived(memory, study)
-    ticks = draw_reuse_report(report(memory, study)).axes[0].get_xticks()
-    assert ticks.tolist() == [round(tick) for tick in ticks]
-
-
-@pytest.mark.slow
 def test_names_are_drawn_as_they_are(memory, tmp_path):
     """Neither a formula, which may be a wrong one, nor a warning about letters that the font has not."""
     names = ["$\\nothing$", "用户"]
@@ -126,8 +117,9 @@ def test_names_are_drawn_as_they_are(memory, tmp_path):
     lived(memory, odd)
     document = report(memory, odd, tmp_path)
     assert (tmp_path / "report.png").exists()
-    labels = [label.get_text() for label in draw_reuse_report(document).axes[1].get_yticklabels()]
-    assert set(names) < set(labels)
+    curve, bars = draw_reuse_report(document).axes[:2]
+    assert set(names) < {label.get_text() for label in bars.get_yticklabels()}
+    assert all(tick == round(tick) for tick in curve.get_xticks()), "a decision is a whole number"
 
 
 @pytest.mark.slow

@@ -1,7 +1,6 @@
 """Traffic of a study counted by hand, in both back ends, and each alarm where it should be and where not."""
 
 from collections import defaultdict
-from collections.abc import Iterator
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,17 +12,11 @@ from lifelore.agent.personalise.explanation import explain, novelty_of
 from lifelore.agent.personalise.study import Study
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.novelty.novelty_detector import MASS
-from lifelore.memory import Memory, open_memory
+from lifelore.memory import Memory
 
 DAY, HOUR = traffic.DAY, traffic.HOUR
 NOW = 20_000 * DAY + 5 * HOUR
 MEANS = [[8.0, 2.0], [3.0, 9.0]]
-
-
-@pytest.fixture(params=["sqlite", "postgresql"])
-def memory(request, new_place) -> Iterator[Memory]:
-    with open_memory(new_place(request.param)) as opened:
-        yield opened
 
 
 def registered(memory: Memory, control: float = 0.3, name: str = "s") -> Study:
@@ -93,56 +86,60 @@ def test_counts_are_those_of_a_plain_loop(memory, monkeypatch):
         assert found["drift"][group]["ci95"] == pytest.approx([welch.low, welch.high])
 
 
-def test_two_days_come_by_hour(memory, monkeypatch):
-    study = registered(memory)
-    lines = live(memory, study, monkeypatch, days=1)
-    found = traffic.traffic(memory, study, 2, NOW)
+def test_two_days_come_by_hour(file_memory, monkeypatch):
+    study = registered(file_memory)
+    lines = live(file_memory, study, monkeypatch, days=1)
+    found = traffic.traffic(file_memory, study, 2, NOW)
     shown = [point for point in found["points"] if point["personal"]["decisions"]]
     assert len(found["points"]) == 48
     assert [point["time"] for point in shown] == [lines[0][0] // HOUR * 3600]
 
 
-def test_beliefs_are_those_of_each_user_alone(memory, monkeypatch):
-    study = registered(memory)
-    live(memory, study, monkeypatch, users=12, outcome=40.0)  # no type brings 40
-    found = traffic.traffic(memory, study, 14, NOW)
+def test_beliefs_are_those_of_each_user_alone(file_memory, monkeypatch):
+    study = registered(file_memory)
+    live(file_memory, study, monkeypatch, users=12, outcome=40.0)  # no type brings 40
+    found = traffic.traffic(file_memory, study, 14, NOW)
     names = [f"u{user}" for user in range(12)]
-    shares = [list(explain(memory, study, name)["belief"].values()) for name in names]
+    shares = [list(explain(file_memory, study, name)["belief"].values()) for name in names]
     entropy = [-sum(share * np.log(share) for share in own if share > 0) for own in shares]
     assert found["beliefs"]["users"] == 12
     assert found["beliefs"]["entropy"] == pytest.approx(np.mean(entropy))
-    assert found["beliefs"]["unknown"] == np.mean([novelty_of(memory, study, name) > 0.5 for name in names]) == 1.0
+    assert (
+        found["beliefs"]["unknown"]
+        == np.mean([novelty_of(file_memory, study, name) > 0.5 for name in names])
+        == 1.0
+    )
     assert [alarm["kind"] for alarm in found["alarms"]] == ["beliefs"]
     assert 0 < MASS < 0.5
 
 
-def test_each_alarm_is_raised_alone(memory, monkeypatch):
-    study = registered(memory)
-    live(memory, study, monkeypatch, users=60)
-    assert traffic.traffic(memory, study, 14, NOW)["alarms"] == []
-    lossy = registered(memory, name="lossy")
-    live(memory, lossy, monkeypatch, users=60, lost=0.3)
-    assert [one["kind"] for one in traffic.traffic(memory, lossy, 14, NOW)["alarms"]] == ["missing"]
-    worse = registered(memory, name="worse")
-    live(memory, worse, monkeypatch, users=60, change=-3.0)
-    alarms = [one for one in traffic.traffic(memory, worse, 14, NOW)["alarms"] if one["kind"] == "drift"]
+def test_each_alarm_is_raised_alone(file_memory, monkeypatch):
+    study = registered(file_memory)
+    live(file_memory, study, monkeypatch, users=60)
+    assert traffic.traffic(file_memory, study, 14, NOW)["alarms"] == []
+    lossy = registered(file_memory, name="lossy")
+    live(file_memory, lossy, monkeypatch, users=60, lost=0.3)
+    assert [one["kind"] for one in traffic.traffic(file_memory, lossy, 14, NOW)["alarms"]] == ["missing"]
+    worse = registered(file_memory, name="worse")
+    live(file_memory, worse, monkeypatch, users=60, change=-3.0)
+    alarms = [one for one in traffic.traffic(file_memory, worse, 14, NOW)["alarms"] if one["kind"] == "drift"]
     assert [("personal" in one["message"], "control" in one["message"]) for one in alarms] == [
         (True, False),
         (False, True),
     ]
 
 
-def test_a_control_group_of_the_wrong_size_is_noticed(memory, monkeypatch):
+def test_a_control_group_of_the_wrong_size_is_noticed(file_memory, monkeypatch):
     """The group is drawn with 0.3 and the study says 0.6 without another version: as if half of it were lost."""
     from dataclasses import replace
 
-    study = registered(memory)
-    lines = live(memory, study, monkeypatch, users=60)
+    study = registered(file_memory)
+    lines = live(file_memory, study, monkeypatch, users=60)
     held = len({name for _, name, _, control, _ in lines if control})
-    found = traffic.traffic(memory, replace(study, control=0.6), 14, NOW)
+    found = traffic.traffic(file_memory, replace(study, control=0.6), 14, NOW)
     assert (found["ratio"]["users"], found["ratio"]["control"]) == (60, held)
     assert found["alarms"][0]["kind"] == "ratio"
-    assert traffic.traffic(memory, replace(study, version=study.version + 1), 14, NOW)["ratio"] is None
+    assert traffic.traffic(file_memory, replace(study, version=study.version + 1), 14, NOW)["ratio"] is None
 
 
 @pytest.mark.parametrize(
@@ -167,11 +164,11 @@ def test_a_study_without_decisions_has_nothing_to_test(memory):
     assert [one["share"] for one in found["policies"]] == [None, None]
 
 
-def test_a_part_of_the_users_stands_for_all(memory, monkeypatch):
-    study = registered(memory)
-    live(memory, study, monkeypatch)
-    whole = traffic.traffic(memory, study, 14, NOW)
+def test_a_part_of_the_users_stands_for_all(file_memory, monkeypatch):
+    study = registered(file_memory)
+    live(file_memory, study, monkeypatch)
+    whole = traffic.traffic(file_memory, study, 14, NOW)
     monkeypatch.setattr(traffic, "MOST", 60)  # 187 decisions: every third user
-    part = traffic.traffic(memory, study, 14, NOW)
+    part = traffic.traffic(file_memory, study, 14, NOW)
     assert part["points"] == whole["points"]
     assert part["beliefs"]["users"] in (13, 14)

@@ -22,7 +22,7 @@ STUDY = {"library": LIBRARY, "control": 0.0, "rule": "greedy"}
 Places = Callable[[str], str]
 
 
-@pytest.fixture(params=["sqlite", "postgresql"])
+@pytest.fixture(scope="module", params=["sqlite", "postgresql"])
 def back_end(request: pytest.FixtureRequest) -> str:
     return request.param
 
@@ -33,16 +33,24 @@ def where(back_end: str, new_place: Places) -> str:
     return new_place(back_end)
 
 
+def opened(memory: str, base: str = "http://127.0.0.1:8321", **settings: Any) -> TestClient:
+    """The application with these settings, not yet started."""
+    app = create_app(ServiceSettings(memory, **settings))
+    return TestClient(app, base_url=base, raise_server_exceptions=False)
+
+
 @pytest.fixture
 def serve(new_place: Places) -> Iterator[Callable[..., TestClient]]:
     """Start the application with these settings; by default over a fresh SQLite memory."""
     with ExitStack() as stack:
+        yield lambda memory=None, **own: stack.enter_context(opened(memory or new_place("sqlite"), **own))
 
-        def serve(memory: str | None = None, base: str = "http://127.0.0.1:8321", **settings: Any) -> TestClient:
-            app = create_app(ServiceSettings(memory or new_place("sqlite"), **settings))
-            return stack.enter_context(TestClient(app, base_url=base, raise_server_exceptions=False))
 
-        yield serve
+@pytest.fixture(scope="module")
+def shared(new_place: Places) -> Iterator[TestClient]:
+    """A service over one SQLite memory for the tests of a module that do not mind what others have stored."""
+    with opened(new_place("sqlite")) as client:
+        yield client
 
 
 @pytest.fixture
@@ -51,9 +59,21 @@ def study() -> dict[str, Any]:
     return STUDY
 
 
+@pytest.fixture(scope="module")
+def place(back_end: str, new_place: Places) -> str:
+    """The place of the memory of `client` in each back end."""
+    return new_place(back_end)
+
+
+@pytest.fixture(scope="module")
+def running(place: str) -> Iterator[TestClient]:
+    with opened(place) as client:
+        yield client
+
+
 @pytest.fixture
-def client(serve: Callable[..., TestClient], where: str) -> TestClient:
-    """A client of a service in each back end, with the study `s`."""
-    client = serve(where)
-    assert client.put("/v1/studies/s", json=STUDY).status_code == 200
-    return client
+def client(running: TestClient) -> TestClient:
+    """A client of a service in each back end, with the new study `s`; the tests of a module share the service."""
+    running.delete("/v1/studies/s")
+    assert running.put("/v1/studies/s", json=STUDY).status_code == 200
+    return running

@@ -17,8 +17,9 @@ USER = "/v1/adaptations/game/user?user=ada"
 
 
 @pytest.fixture
-def game(client):
+def game(serve, where):
     """A client of a service with the adaptation `game`."""
+    client = serve(where)
     answer = client.put("/v1/adaptations/game", json={"library": LIBRARY})
     assert answer.status_code == 200, answer.text
     return client
@@ -82,7 +83,8 @@ def test_exploration_has_its_probability(game):
 
 
 def test_a_forgotten_user_starts_from_the_prior(game):
-    move(game, 0, MOVES)
-    assert game.delete(USER).json()["forgotten"] == 1
-    assert game.delete(USER).status_code == 404
-    assert game.get(USER).json()["step"] == 0
+    for _ in range(2):
+        assert [move(game, step, [one]).json()["taken"] for step, one in enumerate(MOVES)] == [True] * 4
+        assert game.delete(USER).json()["forgotten"] == 4
+        assert game.delete(USER).status_code == 404
+        assert game.get(USER).json()["step"] == 0

@@ -1,9 +1,12 @@
 """The gate: tokens and scopes, this machine alone without tokens, limits, one shape of errors, identifiers."""
 
+import asyncio
 import json
 import logging
 
 import pytest
+from fastapi.responses import StreamingResponse
+from starlette.websockets import WebSocketDisconnect
 
 from lifelore.app.service.limits import WINDOW, RateLimit
 from lifelore.app.service.tokens import add_token
@@ -28,8 +31,8 @@ def bearer(token):
     return {"Authorization": f"Bearer {token}"}
 
 
-def test_errors_of_every_kind_have_one_shape(serve, study):
-    client = serve()
+def test_errors_of_every_kind_have_one_shape(shared, study):
+    client = shared
     put = client.put("/v1/studies/s", json=study | {"control": 2.0})
     assert error_of(put, 422, "input") == "control must lie between 0 and 1, 1 left out, got 2.0"
     assert "no study 'nobody' in the memory" in error_of(client.get("/v1/studies/nobody"), 404, "not found")
@@ -41,8 +44,8 @@ def test_errors_of_every_kind_have_one_shape(serve, study):
     error_of(client.post("/v1/studies/s/decisions", json={"user": "ada", "usr": 1}), 422, "input")
 
 
-def test_a_defect_shows_no_traceback_and_logs_it(serve, monkeypatch, caplog):
-    client = serve()
+def test_a_defect_shows_no_traceback_and_logs_it(shared, monkeypatch, caplog):
+    client = shared
 
     def broken(memory):
         raise ZeroDivisionError("secret of the inside")
@@ -62,11 +65,11 @@ def test_errors_name_no_file_of_the_server(serve, tmp_path):
     assert "secret-folder" not in client.get("/v1/studies/nobody").text
 
 
-@pytest.mark.parametrize("given", ["mine-1", "", "with space", "a" * 101, "line\tbreak"])
-def test_a_request_has_an_identifier(serve, given):
-    found = serve().get("/healthz", headers={"X-Request-ID": given}).headers["x-request-id"]
-    assert (found == given) == (given == "mine-1")
-    assert found
+def test_a_request_has_an_identifier(shared):
+    for given in ("mine-1", "", "with space", "a" * 101, "line\tbreak"):
+        found = shared.get("/healthz", headers={"X-Request-ID": given}).headers["x-request-id"]
+        assert (found == given) == (given == "mine-1")
+        assert found
 
 
 def test_tokens_have_scopes(serve, study, tmp_path):
@@ -133,8 +136,8 @@ def test_wrong_tokens_are_limited_and_right_ones_are_not(serve, tmp_path):
     assert client.get("/v1/studies", headers=bearer(token)).status_code == 200
 
 
-def test_without_tokens_only_this_machine_is_answered(serve):
-    client = serve()
+def test_without_tokens_only_this_machine_is_answered(shared):
+    client = shared
     for host in ("evil.example", "evil.example:8321", "127.0.0.1.evil.example", "localhost.evil.example", ""):
         error_of(client.get("/healthz", headers={"Host": host}), 403, "scope")
     for host in ("127.0.0.1", "localhost:8321", "[::1]:8321", "127.0.0.2"):
@@ -151,25 +154,21 @@ def test_without_tokens_only_this_machine_is_answered(serve):
         error_of(refused, 403, "scope")
 
 
-@pytest.mark.parametrize("kind", ["text/plain", "application/x-www-form-urlencoded", "multipart/form-data", None])
-@pytest.mark.parametrize(
-    "path", ["/v1/memory/merge", "/v1/perceive/cloud", "/v1/evaluate", "/v1/studies/s/decisions"]
-)
-def test_a_form_of_another_page_stores_nothing(serve, path, kind):
-    answer = serve().post(path, content=b"{}", headers={"Content-Type": kind} if kind else {})
-    assert "content-type must be" in error_of(answer, 415, "input")
+def test_a_form_of_another_page_stores_nothing_and_a_file_comes_as_a_file(shared):
+    kinds = ("text/plain", "application/x-www-form-urlencoded", "multipart/form-data", None)
+    files = ("/v1/memory/merge", "/v1/perceive/cloud")
+    for path in (*files, "/v1/evaluate", "/v1/studies/s/decisions"):
+        for kind in kinds:
+            answer = shared.post(path, content=b"{}", headers={"Content-Type": kind} if kind else {})
+            assert "content-type must be" in error_of(answer, 415, "input")
+    for path in files:
+        answer = shared.post(path, content=b"{}", headers=JSON)
+        assert "application/octet-stream" in error_of(answer, 415, "input")
 
 
-@pytest.mark.parametrize("path", ["/v1/memory/merge", "/v1/perceive/cloud"])
-def test_a_file_comes_as_a_file(serve, path):
-    answer = serve().post(path, content=b"{}", headers=JSON)
-    assert "application/octet-stream" in error_of(answer, 415, "input")
-
-
-def test_an_address_names_all_its_methods(serve):
-    client = serve()
-    assert client.patch("/v1/studies/s").headers["allow"] == "GET, PUT, DELETE"
-    assert client.post("/healthz", json={}).headers["allow"] == "GET, HEAD"
+def test_an_address_names_all_its_methods(shared):
+    assert shared.patch("/v1/studies/s").headers["allow"] == "GET, PUT, DELETE"
+    assert shared.post("/healthz", json={}).headers["allow"] == "GET, HEAD"
 
 
 def test_a_large_body_is_refused_with_and_without_its_length(serve, study):
@@ -234,3 +233,28 @@ def test_metrics_and_log_name_routes_and_not_users(serve, study, caplog):
     fields = [record.fields for record in caplog.records if record.name == "lifelore.service"]
     assert [one["status"] for one in fields] == [200, 200, 404]
     assert "zoe" not in json.dumps(fields)
+
+
+@pytest.mark.parametrize(("pause", "pieces"), [(0.15, 4), (5.0, 1)], ids=["steady", "stalled"])
+def test_the_time_of_a_long_answer_counts_between_its_pieces(serve, pause, pieces):
+    client = serve(seconds=0.4)
+
+    async def lines():
+        for _ in range(4):
+            yield b"line\n"
+            await asyncio.sleep(pause)
+
+    client.app.add_api_route("/lines", lambda: StreamingResponse(lines()))
+    assert client.get("/lines").content == b"line\n" * pieces
+
+
+def test_a_socket_of_another_page_is_refused(shared):
+    client = shared
+    for origin in ("http://127.0.0.1:9999", "https://evil.example", "null"):
+        headers = {"Host": "127.0.0.1:8321", "Origin": origin}
+        with (
+            pytest.raises(WebSocketDisconnect) as refused,
+            client.websocket_connect("/v1/play/live", headers=headers),
+        ):
+            pass
+        assert refused.value.code == 1008

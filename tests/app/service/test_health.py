@@ -15,8 +15,8 @@ def always(monkeypatch):
     monkeypatch.setattr(health_routes, "EVERY", 0.0)
 
 
-def test_a_memory_that_stores_is_well_and_unchanged(client, where):
-    with open_memory(where) as memory:
+def test_a_memory_that_stores_is_well_and_unchanged(client, place):
+    with open_memory(place) as memory:
         before = memory.show() | {"revision": memory.revision()}
         assert [client.get("/healthz").json()["status"] for _ in range(3)] == ["ok"] * 3
         assert memory.show() | {"revision": memory.revision()} == before

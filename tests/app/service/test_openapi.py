@@ -15,7 +15,7 @@ from lifelore.app.service.application import create_app
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.tokens import add_token
 
-EXAMPLES = 15
+EXAMPLES = 6
 """Requests for each route."""
 
 

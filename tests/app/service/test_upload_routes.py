@@ -52,16 +52,16 @@ def ask(client, content, **options):
     )  # fmt: skip
 
 
-def test_a_cloud_becomes_a_scene_with_pddl(serve, cloud, tmp_path):
+def test_a_cloud_becomes_a_scene_with_pddl(shared, cloud, tmp_path):
     content, _ = cloud
-    answer = ask(serve(), content, format="npy")
+    answer = ask(shared, content, format="npy")
     assert answer.status_code == 200, answer.text
     document = answer.json()
     (tmp_path / "cloud.npy").write_bytes(content)
     from lifelore.agent.perceive.perceive import PerceiveSettings
 
     own = perceive(str(tmp_path / "cloud.npy"), PerceiveSettings(up="z"))
-    masked = ask(serve(), content, format="npy", with_masks=True).json()
+    masked = ask(shared, content, format="npy", with_masks=True).json()
     assert all(len(one["points"]) == one["n_points"] for one in masked["objects"])
     for key in own.keys() - {"seconds", "source"}:
         assert document[key] == own[key], key
@@ -79,8 +79,8 @@ def pile(cloud):
 
 
 @pytest.mark.planning
-def test_a_goal_is_planned_for(serve, pile):
-    client = serve()
+def test_a_goal_is_planned_for(shared, pile):
+    client = shared
     plan = ask(client, pile, format="npy", goal="holding(o2)", plan=True).json()["plan"]
     named = [(step["action"], step["objects"][0]["id"]) for step in plan["steps"]]
     assert (named[0], named[-1], len(named)) == (("pick-up", 3), ("pick-up", 2), 3)
@@ -90,8 +90,8 @@ def test_a_goal_is_planned_for(serve, pile):
     assert "plan (--plan) needs a goal" in refused.text
 
 
-def test_up_is_a_direction(serve, pile):
-    client = serve()
+def test_up_is_a_direction(shared, pile):
+    client = shared
     stated = {
         up: {(r["relation"], r["a"], r["b"]) for r in ask(client, pile, format="npy", up=up).json()["relations"]}
         for up in ("z", "0,0,2")
@@ -103,8 +103,8 @@ def test_up_is_a_direction(serve, pile):
         assert "up must be" in refused.text
 
 
-def test_a_region_is_cut_out(serve, pile):
-    client = serve()
+def test_a_region_is_cut_out(shared, pile):
+    client = shared
     (only,) = ask(client, pile, format="npy", roi="-1,1,-1,1,-1,0.09").json()["objects"]
     assert only["id"] == 2
     refused = ask(client, pile, format="npy", roi="1,2")
@@ -130,8 +130,8 @@ def encoded(image):
     return base64.b64encode(file.getvalue()).decode()
 
 
-def test_a_depth_image_becomes_a_scene(serve, depth):
-    client = serve()
+def test_a_depth_image_becomes_a_scene(shared, depth):
+    client = shared
     answer = client.post("/v1/perceive/depth", json=depth)
     assert answer.status_code == 200, answer.text
     assert len(answer.json()["objects"]) == 1
@@ -146,8 +146,8 @@ def test_a_depth_image_becomes_a_scene(serve, depth):
         assert "/tmp" not in refused.text
 
 
-def test_a_depth_image_comes_with_the_file_of_its_camera_and_masks(serve, depth):
-    client = serve()
+def test_a_depth_image_comes_with_the_file_of_its_camera_and_masks(shared, depth):
+    client = shared
     camera = "image_width: 160\nimage_height: 120\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
     camera += "  data: [130.0, 0, 79.5, 0, 130.0, 59.5, 0, 0, 1]\n"
     masks = np.zeros((120, 160), np.uint8)
@@ -171,11 +171,11 @@ def test_a_depth_image_comes_with_the_file_of_its_camera_and_masks(serve, depth)
         assert behind[key] == document[key], key
 
 
-def test_damaged_clouds_are_refused_in_one_line(serve, cloud, tmp_path):
+def test_damaged_clouds_are_refused_in_one_line(shared, cloud, tmp_path):
     """Bytes changed, cut and made up at random, in every format: 4xx in the library's words, no path, no crash."""
-    client, draw = serve(), random.Random(7)
+    client, draw = shared, random.Random(7)
     content = cloud[0]
-    for number in range(60):
+    for number in range(40):
         damaged = bytearray(content[:128] if number % 2 else content)
         for _ in range(draw.randrange(1, 20)):
             damaged[draw.randrange(min(len(damaged), 200))] = draw.randrange(256)
@@ -190,14 +190,11 @@ def test_damaged_clouds_are_refused_in_one_line(serve, cloud, tmp_path):
     assert ask(client, content, format="npy").status_code == 200
 
 
-@pytest.mark.parametrize(
-    ("name", "value"),
-    [("format", "/etc/passwd"), ("up", "../x"), ("units", "/"), ("goal", "/etc/passwd"), ("model", "/etc/passwd")],
-)
-def test_no_parameter_names_a_file(serve, cloud, name, value):
-    answer = ask(serve(), cloud[0], **({"format": "npy"} | {name: value}))
-    assert answer.status_code == 422
-    assert "root:" not in answer.text
+def test_no_parameter_names_a_file(shared, cloud):
+    paths = {"format": "/etc/passwd", "up": "../x", "units": "/", "goal": "/etc/passwd", "model": "/etc/passwd"}
+    for name, value in paths.items():
+        answer = ask(shared, cloud[0], **({"format": "npy"} | {name: value}))
+        assert (answer.status_code, "root:" in answer.text) == (422, False), name
 
 
 def contribute(memory, robot):

@@ -5,8 +5,6 @@ import io
 import json
 import math
 
-import pytest
-
 from lifelore.agent.personalise.decisions import choose
 from lifelore.agent.personalise.study import open_study
 from lifelore.interaction.beliefs.learnt_dynamics import HAZARD_WEIGHTS, HAZARDS
@@ -44,39 +42,13 @@ def test_an_outcome_moves_the_belief_by_bayes_rule(client):
     assert math.isclose(after["belief"]["calm"], belief_after(policy, 8.0), abs_tol=1e-12)
 
 
-def test_the_same_request_gets_the_same_decision_and_is_stored_once(client, where):
-    first = decide(client, request="monday")
-    again = decide(client, request="monday")
-    other = decide(client, request="tuesday")
-    assert (first["repeated"], again["repeated"], other["repeated"]) == (False, True, False)
-    for key in ("decision", "policy", "probability", "available", "control"):
-        assert again[key] == first[key]
-    assert other["decision"] != first["decision"]
-    assert client.get("/v1/studies/s/user?name=ada").json()["decisions"] == 2
-    # Another user may use the same identifier.
-    assert not decide(client, "ben", request="monday")["repeated"]
-
-
-def test_a_request_keeps_its_decision_after_a_restart_and_after_others(client, serve, where):
+def test_a_request_keeps_its_decision_after_a_restart_and_after_others(client, serve, place):
     first = decide(client, request="monday", available=["fast"])
     assert first["policy"] == "fast"
     decide(client)
-    again = decide(serve(where), request="monday", available=["fast"])
+    again = decide(serve(place), request="monday", available=["fast"])
     assert again["repeated"]
     assert (again["decision"], again["policy"], again["available"]) == (first["decision"], "fast", ["fast"])
-
-
-def test_a_late_outcome_counts_once(client):
-    first, second = decide(client), decide(client)
-    assert observe(client, second["decision"], 3.0).json()["taken"]
-    late = observe(client, first["decision"], 8.0).json()
-    assert late["taken"]
-    again = observe(client, first["decision"], 8.0).json()
-    assert not again["taken"]
-    assert again["belief"] == late["belief"]
-    refused = observe(client, first["decision"], 7.0)
-    assert refused.status_code == 422
-    assert "ended with 8 already" in refused.json()["error"]["message"]
 
 
 def test_only_available_policies_are_chosen(client):
@@ -88,10 +60,10 @@ def test_only_available_policies_are_chosen(client):
     assert "brisk" in refused.json()["error"]["message"]
 
 
-def test_the_command_line_sees_the_same_user(client, where):
+def test_the_command_line_sees_the_same_user(client, place):
     made = decide(client)
     observe(client, made["decision"], 8.0)
-    with open_memory(where) as memory:
+    with open_memory(place) as memory:
         choose(memory, open_study(memory, "s"), "ada")
     assert client.get("/v1/studies/s/user?name=ada").json()["decisions"] == 2
 
@@ -122,19 +94,13 @@ def test_the_explanation_names_evidence_and_next_choice(client):
     assert shown["last"][0]["outcome"] == 8.0
 
 
-def test_a_forgotten_user_is_a_stranger(client):
-    observe(client, decide(client, request="monday")["decision"], 8.0)
-    assert client.delete("/v1/studies/s/user?name=ada").json() == {"user": "ada", "forgotten": 1}
-    assert client.get("/v1/studies/s/user?name=ada").status_code == 404
-    assert decide(client, request="monday")["belief"] == {"calm": 0.5, "lively": 0.5}
-
-
-@pytest.mark.parametrize("name", ["google-oauth2/117", "50% off", "ада ☃", "a&b=c?#", "../x"])
-def test_names_of_any_characters_can_be_read_and_forgotten(client, name):
-    decide(client, name)
-    assert client.get("/v1/studies/s/user", params={"name": name}).json()["decisions"] == 1
-    assert client.delete("/v1/studies/s/user", params={"name": name}).json()["forgotten"] == 1
-    assert client.get("/v1/studies/s/user", params={"name": name}).status_code == 404
+def test_names_of_any_characters_can_be_read_and_forgotten(client):
+    for name in ("google-oauth2/117", "50% off", "ада ☃", "a&b=c?#", "../x"):
+        decide(client, name)
+        assert client.get("/v1/studies/s/user", params={"name": name}).json()["decisions"] == 1
+        forgotten = client.delete("/v1/studies/s/user", params={"name": name}).json()
+        assert forgotten == {"user": name, "forgotten": 1}
+        assert client.get("/v1/studies/s/user", params={"name": name}).status_code == 404
 
 
 def test_policies_of_any_name_can_be_retired(client):
@@ -146,22 +112,14 @@ def test_policies_of_any_name_can_be_retired(client):
     assert made["policy"] == "fast"
 
 
-@pytest.mark.parametrize("outcome", ["7", True, None, [1], 1e200])
-def test_only_numbers_are_outcomes(client, outcome):
-    refused = client.post(
-        "/v1/studies/s/outcomes", json={"decision": decide(client)["decision"], "outcome": outcome}
-    )
-    assert refused.status_code == 422
-    assert "outcome" in refused.json()["error"]["message"]
-
-
-def test_the_same_request_with_other_policies_is_refused(client):
-    decide(client, request="monday", available=["fast"])
-    refused = client.post(
-        "/v1/studies/s/decisions", json={"user": "ada", "request": "monday", "available": ["slow"]}
-    )
-    assert refused.status_code == 422
-    assert "other available policies" in refused.json()["error"]["message"]
+def test_only_numbers_are_outcomes_and_only_one_is_taken(client):
+    made = decide(client)["decision"]
+    for outcome in ("7", True, None, [1], 1e200):
+        refused = observe(client, made, outcome)
+        assert (refused.status_code, "outcome" in refused.json()["error"]["message"]) == (422, True), outcome
+    assert [observe(client, made, 8.0).json()["taken"] for _ in range(2)] == [True, False]
+    refused = observe(client, made, 7.0)
+    assert (refused.status_code, "ended with 8 already" in refused.json()["error"]["message"]) == (422, True)
 
 
 def test_outcomes_of_another_system_count_once(client):
@@ -200,7 +158,7 @@ def test_the_log_pages_by_a_cursor(client):
 def test_an_archived_study_takes_no_decisions_and_a_deleted_one_is_gone(client):
     made = decide(client)
     assert client.put("/v1/studies/s/state", json={"state": "archived"}).json()["state"] == "archived"
-    assert client.get("/v1/studies").json() == {"studies": [{"name": "s", "state": "archived"}]}
+    assert {"name": "s", "state": "archived"} in client.get("/v1/studies").json()["studies"]
     assert client.post("/v1/studies/s/decisions", json={"user": "ada"}).status_code == 422
     assert observe(client, made["decision"], 8.0).json()["taken"]
     assert client.delete("/v1/studies/s").status_code == 200
@@ -208,11 +166,13 @@ def test_an_archived_study_takes_no_decisions_and_a_deleted_one_is_gone(client):
 
 
 def test_metrics_count_by_study_and_policy(client):
-    made = decide(client)
-    observe(client, made["decision"], 8.0)
-    observe(client, made["decision"], 8.0)
+    client.put("/v1/studies/counted", json={"library": LIBRARY | {"policies": ["slow", "fast"]}, "control": 0.0})
+    made = client.post("/v1/studies/counted/decisions", json={"user": "ada"}).json()
+    for _ in range(2):
+        outcome = {"decision": made["decision"], "outcome": 8.0}
+        assert client.post("/v1/studies/counted/outcomes", json=outcome).status_code == 200
     text = client.get("/metrics").text
-    labels = f'{{group="treated",policy="{made["policy"]}",study="s"}}'
+    labels = f'{{group="treated",policy="{made["policy"]}",study="counted"}}'
     assert f"lifelore_study_decisions_total{labels} 1.0" in text
     assert f"lifelore_study_outcomes_total{labels} 1.0" in text
     assert f"lifelore_study_outcome_sum{labels} 8.0" in text

@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.study import check_study_name, user_key
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
@@ -24,6 +23,7 @@ from lifelore.interaction.adaptation.beat import Beat, rule_at
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.memory import Memory
 from lifelore.memory.byte_words import bytes_of, words_of
+from lifelore.memory.record_rules import check_name
 
 LIBRARY, USER, VERSION = "adapt_library", "adapt_user", 1
 _HEADER = 3
@@ -164,25 +164,38 @@ def learn_moves(
         if ends_episode:
             beat.end_episode()
         record = _record(adaptation, user, beat)
-        robot = f"adapt {adaptation.name}: {user_key(adaptation.name, user)}"
-        task = {"adaptation": adaptation.name, "moves": len(moves)}
-        if memory.contribute(robot, [record], process=adaptation.id, seq=step, task=task):
+        robot, task = _robot(adaptation, user), {"adaptation": adaptation.name, "moves": len(moves)}
+        process = _process(memory, adaptation, robot)
+        if memory.contribute(robot, [record], process=process, seq=step, task=task):
             return {"user": user, "taken": True, **_state(adaptation, beat)}
     raise StoreError(f"memory {memory.location}: too many programs move for one user at once; try again")
 
 
 def forget_adaptation(memory: Memory, adaptation: Adaptation, user: str) -> int:
     """Forget a user; the number of contributions removed. NotFoundError where nothing is stored."""
-    check_word("user", user)
-    robot = f"adapt {adaptation.name}: {user_key(adaptation.name, user)}"
+    check_name("user", user)
+    robot = _robot(adaptation, user)
     if not memory.tasks(robot):
         raise NotFoundError(f"nothing is stored of user '{user}' in adaptation '{adaptation.name}'")
     return memory.forget(robot)
 
 
+def _robot(adaptation: Adaptation, user: str) -> str:
+    return f"adapt {adaptation.name}: {user_key(adaptation.name, user)}"
+
+
+def _process(memory: Memory, adaptation: Adaptation, robot: str) -> str:
+    """A name for each time that a user was forgotten, since memory stores nothing forgotten again."""
+    process, number = adaptation.id, 0
+    while memory.times_forgotten(robot, process):
+        number += 1
+        process = f"{adaptation.id} {number}"
+    return process
+
+
 def _beat(memory: Memory, adaptation: Adaptation, user: str) -> Beat:
     """The learner as the user's stored moves leave it."""
-    check_word("user", user)
+    check_name("user", user)
     beat = Beat(adaptation.library, epsilon=adaptation.epsilon)
     key = f"{adaptation.name}/{user_key(adaptation.name, user)}"
     record = memory.recall(USER, key, VERSION)

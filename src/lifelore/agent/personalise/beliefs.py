@@ -6,13 +6,15 @@ the order in which they came. An outcome that comes late is thus learnt when it 
 """
 
 from collections.abc import Iterable, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.personalise.study import Study
+from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
+from lifelore.interaction.reuse.user_beliefs import blocks
 from lifelore.memory.study_rows import StudyRows, UserRow
 
 Numbers = NDArray[np.int64]
@@ -103,3 +105,42 @@ def stored_beliefs(beliefs: Beliefs, numbers: Iterable[int]) -> list[tuple[int, 
         return []
     packed = beliefs.algorithm.packed(np.array([beliefs.row[number] for number in listed])).astype("<f8")
     return [(number, row.tobytes()) for number, row in zip(listed, packed, strict=True)]
+
+
+def probabilities(
+    study: Study, algorithm: ReuseAlgorithm, rows: Numbers, may: NDArray[np.bool_] | None = None
+) -> NDArray[np.float64]:
+    """Probabilities of the policies in use, (n, n_active), with the share of exploration mixed in; rows sum to 1.
+
+    Parameters
+    ----------
+    rows : (n,) int64
+        Of the algorithm.
+    may : (n, n_active) bool, optional
+        Which policies each user can get, at least one; by default all.
+    """
+    active, library = study.active_numbers, study.library
+    may = np.ones((len(rows), len(active)), bool) if may is None else may
+    mask = np.zeros((len(rows), library.n_policies), bool)
+    mask[:, active] = may
+    probs = np.empty(may.shape)
+    for part in blocks(len(rows), library, study.selection):
+        probs[part] = algorithm.propensities(rows[part], study.selection, mask[part])[:, active]
+    probs = (1 - study.explore) * probs + study.explore * may / may.sum(axis=1, keepdims=True)
+    return probs / probs.sum(axis=1, keepdims=True)
+
+
+def unknown_log_odds(
+    study: Study, users: Sequence[UserRow], evidence: Iterable[tuple[int, str, float]]
+) -> NDArray[np.float64]:
+    """Evidence in nats that no known type fits, of each user; InputError where no broad law is known."""
+    models: Any = study.models
+    found = UnknownEvidence(study.library, len(users), dynamics=study.dynamics, models=models)
+    start_at_priors(found.types, study, users)
+    row = {user.number: place for place, user in enumerate(users)}
+    for rows, policies, outcomes in turns(study, [(row[number], *pair) for number, *pair in evidence]):
+        known = policies >= 0
+        if known.any():
+            found.observe(rows[known], policies[known], outcomes[known])
+        found.end_episode(rows)
+    return found.log_odds

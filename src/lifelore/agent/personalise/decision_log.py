@@ -8,14 +8,12 @@ import csv
 import io
 import json
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from pathlib import Path
 from typing import Any, Literal
 
 from lifelore.agent.personalise.identifiers import identifier, parse_identifier
-from lifelore.agent.personalise.log.log_columns import escaped
+from lifelore.agent.personalise.log.log_format import escaped
 from lifelore.agent.personalise.study import Study
-from lifelore.core.atomic_write import atomic_write
-from lifelore.core.errors import InputError, StoreError
+from lifelore.core.errors import InputError
 from lifelore.memory import Memory
 from lifelore.memory.study_totals import first_id
 
@@ -71,18 +69,6 @@ def log_parts(
         after = max(after, parse_identifier(cursor))
     before = None if until is None else first_id(int(1000 * until))
     return _parts(memory, study, form, after, before, limit)
-
-
-def write_log(memory: Memory, study: Study, path: Path) -> None:
-    """Write the log as CSV into a file, the whole or nothing; StoreError where the disk refuses."""
-    try:
-        with atomic_write(path) as file:
-            for part in log_parts(memory, study):
-                file.write(part)
-    except OSError as error:
-        if isinstance(error, StoreError):
-            raise
-        raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None
 
 
 def _parts(

@@ -17,16 +17,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.beliefs import Beliefs, learn, open_beliefs, stored_beliefs
+from lifelore.agent.personalise.beliefs import Beliefs, learn, open_beliefs, probabilities, stored_beliefs
 from lifelore.agent.personalise.identifiers import identifier, new_ids, parse_identifier
-from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.policy_states import checked_available
 from lifelore.agent.personalise.study import Study, known_users, share_of
 from lifelore.core.errors import InputError, LifeloreError, NotFoundError
 from lifelore.interaction.outcomes.outcome_model import LARGEST
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
-from lifelore.interaction.reuse.user_beliefs import blocks
 from lifelore.memory import Memory
+from lifelore.memory.record_rules import check_name
 from lifelore.memory.refusal import RacedError
 from lifelore.memory.study_rows import DecisionRow, StudyRows, UserRow
 
@@ -68,10 +67,10 @@ class Request:
 
     def checked(self, study: Study) -> "Request":
         """The request with checked names; `InputError` or `NotFoundError` where one breaks its rule."""
-        check_word("user", self.user)
+        check_name("user", self.user)
         for name in ("context", "request"):
             if (word := getattr(self, name)) is not None:
-                check_word(name, word)
+                check_name(name, word)
         features, available = self.features, self.available
         if features is None and available is None:
             return self
@@ -197,14 +196,16 @@ def _decided(
     with memory.studies.writing(study.number) as rows:
         users = _users(memory, rows, study, checked)
         own = [users[request.user] for request in checked]
-        made = _made(rows, own, checked)
+        keys = [(user.number, request.request) for user, request in zip(own, checked, strict=True)]
+        asked = [key for key in keys if key[1] is not None]
+        made = rows.requested(asked) if asked else {}
         beliefs = open_beliefs(rows, study, list(users.values()))
         if beliefs.replayed:
             rows.keep_beliefs(stored_beliefs(beliefs, beliefs.replayed), study.version)
         row = np.array([beliefs.row[user.number] for user in own], np.int64)
-        probs = probabilities(study, beliefs.algorithm, row, checked)
-        keys = [(user.number, request.request) for user, request in zip(own, checked, strict=True)]
-        new = _new(keys, made)
+        probs = probabilities(study, beliefs.algorithm, row, _may(study, checked))
+        first = {key: at for at, key in reversed([*enumerate(keys)])}
+        new = [at for at, key in enumerate(keys) if key[1] is None or (key not in made and first[key] == at)]
         drawn = _drawn(study, [own[at] for at in new], [checked[at] for at in new], probs[new], seed)
         rows.add_decisions(drawn)
     by_place = dict(zip(new, drawn, strict=True))
@@ -223,79 +224,42 @@ def _users(memory: Memory, rows: StudyRows, study: Study, requests: Sequence[Req
     told = {request.user: request for request in requests if request.context or request.features}
     if len(users) < len(names):
         new = [name for name in names if name not in users]
-        rows.add_users([(name, *_told(told.get(name))) for name in new], study.version)
+        strangers = [told.get(name, Request(name)) for name in new]
+        rows.add_users([(one.user, one.context, one.features) for one in strangers], study.version)
         users |= rows.users(new, lock=True)
         if len(users) < len(names):
             raise RacedError(f"memory {memory.location}: a user was forgotten at this moment; try again")
-    touched = [users[name].number for name, request in told.items() if _tells(request, users[name])]
+    touched = [users[name].number for name in _news(told, users)]
     touched += [user.number for user in users.values() if user.version != study.version]
     if touched:  # their beliefs will be computed again, so nobody may add to the evidence in the meantime
         for user in rows.numbered(touched, lock=True).values():
             users[user.name] = user._replace(n_decisions=users[user.name].n_decisions)
-    changed = [
-        (users[name], request.context or users[name].context, request.features or users[name].features)
-        for name, request in told.items()
-        if _tells(request, users[name])
-    ]
-    if changed:
-        rows.describe((user.number, context, features, user.type) for user, context, features in changed)
-        for user, context, features in changed:
-            users[user.name] = user._replace(context=context, features=dict(features or {}) or None, version=0)
-    return users
+    if news := _news(told, users):
+        rows.describe((user.number, user.context, user.features, user.type) for user in news.values())
+    return users | news
 
 
-def _tells(request: Request, user: UserRow) -> bool:
-    """Whether a request tells of its user what is not stored."""
-    now = request.context or user.context, request.features or user.features
-    return now != (user.context, user.features)
+def _news(told: Mapping[str, Request], users: Mapping[str, UserRow]) -> dict[str, UserRow]:
+    """The users of whom requests tell what is not stored, with what they tell."""
+    found = {}
+    for name, request in told.items():
+        user = users[name]
+        now = user._replace(
+            context=request.context or user.context, features=dict(request.features or user.features or {}) or None
+        )
+        if now != user:
+            found[name] = now._replace(version=0)
+    return found
 
 
-def _told(request: Request | None) -> tuple[str | None, Mapping[str, float] | None]:
-    return (None, None) if request is None else (request.context, request.features)
-
-
-def _made(
-    rows: StudyRows, users: Sequence[UserRow], requests: Sequence[Request]
-) -> dict[tuple[int, str | None], DecisionRow]:
-    """The decisions that were made for the same requests before."""
-    pairs: list[tuple[int, str | None]] = [
-        (user.number, request.request)
-        for user, request in zip(users, requests, strict=True)
-        if request.request is not None
-    ]
-    return rows.requested(pairs) if pairs else {}
-
-
-def _new(keys: Sequence[tuple[int, str | None]], made: Mapping[tuple[int, str | None], DecisionRow]) -> list[int]:
-    """Places of the requests that need a decision: of equal ones the first."""
-    first: dict[tuple[int, str | None], int] = {}
-    return [
-        at
-        for at, key in enumerate(keys)
-        if key[1] is None or (key not in made and first.setdefault(key, at) == at)
-    ]
-
-
-def probabilities(
-    study: Study, algorithm: ReuseAlgorithm, rows: NDArray[np.int64], requests: Sequence[Request]
-) -> NDArray[np.float64]:
-    """Probabilities of the policies in use, (n, n_active), with the share of exploration mixed in; rows sum to 1.
-
-    Of users who can get no policy in use, those of all policies.
-    """
-    active, library = study.active_numbers, study.library
-    may = np.ones((len(rows), len(active)), bool)
+def _may(study: Study, requests: Sequence[Request]) -> NDArray[np.bool_]:
+    """Which policies in use each user can get, (n, n_active); all where it is none, as in the control group."""
+    may = np.ones((len(requests), len(study.active)), bool)
     for row, request in enumerate(requests):
         if request.available is not None:
             may[row] = [policy in request.available for policy in study.active]
     may[~may.any(axis=1)] = True
-    mask = np.zeros((len(rows), library.n_policies), bool)
-    mask[:, active] = may
-    probs = np.empty(may.shape)
-    for part in blocks(len(rows), library, study.selection):
-        probs[part] = algorithm.propensities(rows[part], study.selection, mask[part])[:, active]
-    probs = (1 - study.explore) * probs + study.explore * may / may.sum(axis=1, keepdims=True)
-    return probs / probs.sum(axis=1, keepdims=True)
+    return may
 
 
 def _drawn(

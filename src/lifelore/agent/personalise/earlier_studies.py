@@ -21,14 +21,12 @@ import numpy as np
 
 from lifelore.agent.personalise.identifiers import parse_identifier
 from lifelore.agent.personalise.past import Line, identities
-from lifelore.agent.personalise.study import Study, earlier_name
-from lifelore.core.errors import InputError, StoreError
+from lifelore.agent.personalise.study import ACTIVE, Study, earlier_name, study_of
+from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
-from lifelore.interaction.beliefs.feature_prior import FeaturePrior
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection import restored_rule
 from lifelore.memory import Memory
 from lifelore.memory.byte_words import bytes_of
+from lifelore.memory.studies import StudyVersion
 from lifelore.memory.study_rows import DecisionRow, PastRow, StudyRows
 
 STUDY, USER, AVAILABLE, PAST, PANEL, VERSION = (
@@ -76,23 +74,8 @@ def _wrote(robot: str, study: str) -> bool:
 
 
 def _study(name: str, record: Record) -> Study:
-    about: Mapping[str, Any] = record.about
-    try:
-        library = PolicyLibrary.from_bytes(bytes_of(record.values, about["bytes"]), f"study '{name}'")
-    except InputError as error:
-        raise StoreError(f"{error}; fit the study anew") from None
-    learnt = about.get("feature_prior")
-    return Study(
-        name,
-        library,
-        dict(about["states"]),
-        {context: np.array(prior) for context, prior in about["contexts"].items()},
-        **{key: about[key] for key in ("control", "incumbent", "rule", "explore", "change", "fitted")},
-        models=about.get("models", "plug-in"),
-        rule_settings=vars(restored_rule(about["rule"], about.get("rule_settings", {}))),
-        feature_prior=None if learnt is None else FeaturePrior.from_dict(learnt),
-        earlier=True,
-    )
+    about = {"models": "plug-in", "rule_settings": {}, "feature_prior": None, **record.about, "earlier": True}
+    return study_of(name, StudyVersion(0, ACTIVE, 0, about, bytes_of(record.values, about["bytes"])))
 
 
 def _person(people: People, key: str) -> dict[str, Any]:

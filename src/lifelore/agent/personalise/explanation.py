@@ -4,17 +4,16 @@ from collections import deque
 from typing import Any
 
 import numpy as np
+from scipy.special import expit, logit
 
-from lifelore.agent.personalise.beliefs import start_at_priors
-from lifelore.agent.personalise.decisions import Request, probabilities
+from lifelore.agent.personalise.beliefs import probabilities, start_at_priors, unknown_log_odds
 from lifelore.agent.personalise.identifiers import identifier
-from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.study import Study, known_users
 from lifelore.core.errors import NotFoundError
 from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, Evidence, relative_evidence
-from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
-from lifelore.interaction.selection.choice import available_mask
+from lifelore.interaction.reuse.novelty.novelty_detector import MASS
 from lifelore.memory import Memory
+from lifelore.memory.record_rules import check_name
 from lifelore.memory.study_rows import DecisionRow, UserRow
 
 LAST_DECISIONS = 16
@@ -51,8 +50,7 @@ def explain(memory: Memory, study: Study, user: str) -> dict[str, Any]:
             evidence.append(Evidence(number, found.log_likelihood, float(found.log_evidence)))
             surprise += evidence[-1].surprise
         algorithm.end_episode(0)
-    mask = available_mask(study.active, study.library.policies)
-    odds = study.explored(algorithm.propensities(0, study.selection, mask)[mask])
+    odds = probabilities(study, algorithm, np.zeros(1, np.int64))[0]
     belief = algorithm.belief(0)
     expected = algorithm.known(0).performance.expected(belief)[study.active_numbers]
     relative = relative_evidence(list(evidence), study.library.n_types)
@@ -92,9 +90,8 @@ def stranger_table(study: Study) -> dict[str, Any]:
     algorithm = study.algorithm.new_rows(len(contexts))
     strangers = [UserRow(0, "", context, None, None, False, study.version, None) for context in contexts]
     start_at_priors(algorithm, study, strangers)
-    rows = np.arange(len(contexts))
-    found = probabilities(study, algorithm, rows, [Request("stranger")] * len(contexts)).tolist()
-    tables = [dict(zip(study.active, row, strict=True)) for row in found]
+    found = probabilities(study, algorithm, np.arange(len(contexts)))
+    tables = [dict(zip(study.active, row, strict=True)) for row in found.tolist()]
     by_context = dict(zip(study.contexts, tables[1:], strict=True))
     return {"study": study.name, "version": study.version, "default": tables[0], "contexts": by_context}
 
@@ -102,19 +99,13 @@ def stranger_table(study: Study) -> dict[str, Any]:
 def novelty_of(memory: Memory, study: Study, user: str) -> float:
     """The probability that no type of the library fits a user; InputError where no broad law is known."""
     known, _, shown = _read(memory, study, user)
-    prior = study.prior_of(known.context, known.features, known.type)
-    models: Any = study.models
-    detector = NoveltyDetector(study.library, prior=prior, dynamics=study.dynamics, models=models)
-    for policy, outcome in shown:
-        if policy in study.library.policies:
-            detector.observe(study.library.index_of_policy(policy), outcome)
-        detector.end_episode()
-    return detector.probability
+    (log_odds,) = unknown_log_odds(study, [known], [(known.number, *pair) for pair in shown])
+    return float(expit(log_odds + logit(MASS)))
 
 
 def _read(memory: Memory, study: Study, user: str) -> tuple[UserRow, list[DecisionRow], list[tuple[str, float]]]:
     """A user, the decisions, and (policy, outcome) of all that the belief follows from."""
-    check_word("user", user)
+    check_name("user", user)
     with memory.studies.reading(study.number) as rows:
         known = known_users(rows, study, [user]).get(user)
         if known is None:

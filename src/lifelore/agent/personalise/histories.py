@@ -1,11 +1,12 @@
 """Users of a study with all that happened to them, or a random sample of so many that a report takes seconds."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.personalise.study import Study
+from lifelore.core.intervals import welch_interval
 from lifelore.memory import Memory
 from lifelore.memory.study_rows import DecisionRow, UserRow
 
@@ -54,3 +55,12 @@ def sampled_histories(
         for number, user in users.items()
     ]
     return sorted((one for one in found if one.decisions), key=lambda one: one.user.name)
+
+
+def difference(first: NDArray[np.float64], second: NDArray[np.float64]) -> dict[str, Any] | None:
+    """Difference of means of users with Welch's interval, if there are users and spread enough for one."""
+    if not len(first) or not len(second):
+        return None
+    ci95 = welch_interval(first, second)  # pyright: ignore[reportArgumentType]
+    value = float(np.mean(first) - np.mean(second))
+    return {"value": value, "ci95": list(ci95) if ci95 else None, "n": [len(first), len(second)]}

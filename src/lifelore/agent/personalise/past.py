@@ -15,11 +15,11 @@ import numpy as np
 
 from lifelore.agent.personalise.identifiers import parse_identifier
 from lifelore.agent.personalise.log.log import ReuseLog, read_log
-from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.study import Study, known_users, user_key
 from lifelore.core.errors import InputError
 from lifelore.memory import Memory
+from lifelore.memory.record_rules import check_name
 from lifelore.memory.study_rows import PastRow, StudyRows
 
 LARGEST_SECONDS = 1e11
@@ -81,7 +81,7 @@ def add_lines(memory: Memory, study: Study, lines: Sequence[Line]) -> dict[str, 
     """
     for name in ("user", "policy", "context"):
         for word in {getattr(line, name) for line in lines} - {None}:
-            check_word(name, word)
+            check_name(name, word)
     with memory.studies.writing(study.number) as rows:
         counts = _stored(rows, study, lines, fitted=False)
     policies, types = study.library.policies, study.library.types

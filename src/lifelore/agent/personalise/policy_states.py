@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.study import ACTIVE, PILOT, RETIRED, Study
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import Memory
+from lifelore.memory.record_rules import check_name
 
 
 def retire(memory: Memory, study: Study, policy: str) -> Study:
@@ -35,7 +35,7 @@ def add(memory: Memory, study: Study, policy: str) -> Study:
     InputError
         It is there already; or it is new and there is no control group that draws at random.
     """
-    check_word("policy", policy)
+    check_name("policy", policy)
     state = study.states.get(policy)
     if state in (ACTIVE, PILOT):
         raise InputError(f"'{policy}' is there already ({state})")

@@ -1,15 +1,11 @@
 """Registration of a policy library as a study, beside `reuse fit`, which learns the library from a log."""
 
 import time
-from dataclasses import dataclass
 from typing import Any
 
 from lifelore.agent.personalise.library_document import described
-from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.agent.personalise.study import (
     ACTIVE,
-    LEARNT,
-    Change,
     Study,
     check_study_name,
     newest_version,
@@ -17,27 +13,20 @@ from lifelore.agent.personalise.study import (
 )
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection import DEFAULT_RULE
 from lifelore.interaction.signals.return_signal import ReturnSignal
 from lifelore.memory import Memory
+from lifelore.memory.record_rules import check_name
 
 
-@dataclass(frozen=True)
-class StudySettings:
-    """How a registered library chooses; fields as in `Study`."""
-
-    control: float = 0.1
-    incumbent: str | None = None
-    rule: str = DEFAULT_RULE
-    explore: float = 0.0
-    change: Change = LEARNT
-    models: str = "uncertain"
-
-
-def register(memory: Memory, name: str, library: PolicyLibrary, settings: StudySettings | None = None) -> Study:
+def register(memory: Memory, name: str, library: PolicyLibrary, **choosing: Any) -> Study:
     """Store a library as the study of a name, in place of an earlier study of that name.
 
     Decisions for users stay; their beliefs follow the new library. A retired policy stays retired.
+
+    Parameters
+    ----------
+    **choosing
+        How it chooses, as fields of `Study`: control, incumbent, rule, explore, change, models.
 
     Raises
     ------
@@ -47,7 +36,7 @@ def register(memory: Memory, name: str, library: PolicyLibrary, settings: StudyS
     """
     check_study_name(name)
     for word in (*library.types, *library.policies):
-        check_word("name", word)
+        check_name("name", word)
     if not isinstance(library.signal, ReturnSignal):
         raise InputError(
             "library of a study must have the outcome as its signal; register a library with other signals for "
@@ -63,7 +52,7 @@ def register(memory: Memory, name: str, library: PolicyLibrary, settings: StudyS
     getattr(library.performance, "spread", None)
     fitted = {"rows": 0, "users": 0, "found": False, "time": int(time.time())}
     by_key = bool(earlier and earlier.about["earlier"])
-    study = Study(name, library, states, fitted=fitted, earlier=by_key, **vars(settings or StudySettings()))
+    study = Study(name, library, states, fitted=fitted, earlier=by_key, **choosing)
     return study.keep(memory)
 
 
@@ -73,11 +62,6 @@ def study_document(study: Study) -> dict[str, Any]:
         "study": study.name,
         **described(study.library),
         "states": dict(sorted(study.states.items())),
-        "control": study.control,
-        "incumbent": study.incumbent,
-        "rule": study.rule,
-        "explore": study.explore,
-        "change": study.change,
-        "models": study.models,
+        **study.choosing,
         "fitted": study.fitted,
     }

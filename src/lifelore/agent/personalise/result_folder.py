@@ -2,7 +2,7 @@
 
 import json
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +31,8 @@ def write_result(folder: Path, name: str, document: dict[str, Any], draw: Callab
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise StoreError(f"cannot write {folder}: {error.strerror}; choose another place") from None
-    write_text(folder / f"{name}.json", json.dumps(document, indent=2, allow_nan=False) + "\n")
+    text = json.dumps(document, indent=2, allow_nan=False) + "\n"
+    write_file(folder / f"{name}.json", [text.encode()])
     write_picture(folder / f"{name}.png", document, draw)
 
 
@@ -45,10 +46,12 @@ def write_picture(path: Path, document: dict[str, Any], draw: Callable[[dict[str
         save_figure(draw(document), path)
 
 
-def write_text(path: Path, text: str) -> None:
+def write_file(path: Path, parts: Iterable[bytes]) -> None:
     """Write the whole file or nothing; StoreError where the disk refuses."""
     try:
         with atomic_write(path) as file:
-            file.write(text.encode())
+            file.writelines(parts)
     except OSError as error:
+        if isinstance(error, StoreError):
+            raise
         raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None

@@ -13,7 +13,6 @@ from typing import Any, Literal, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.log.log_columns import check_word
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.interaction.beliefs.feature_prior import FeaturePrior
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
@@ -21,6 +20,7 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.reuse_algorithm import Dynamics, ReuseAlgorithm
 from lifelore.interaction.selection import DEFAULT_RULE, SelectionRule, restored_rule, rule_named
 from lifelore.memory import Memory
+from lifelore.memory.record_rules import check_name
 from lifelore.memory.studies import ARCHIVED, StudyVersion
 from lifelore.memory.study_rows import StudyRows, UserRow
 
@@ -35,7 +35,9 @@ MODELS = ("uncertain", "plug-in")
 """Whether models of few runs are known to be uncertain, or taken for the truth."""
 NAMED_TYPE = 0.99
 """Belief in the type that a log names for a user; at 1, no outcome could correct a wrong name."""
-SETTINGS = ("control", "incumbent", "rule", "explore", "change", "models", "fitted", "earlier")
+CHOOSING = ("control", "incumbent", "rule", "explore", "change", "models")
+"""Settings that say how a study chooses."""
+SETTINGS = (*CHOOSING, "fitted", "earlier")
 """Settings that are stored as they are."""
 
 
@@ -142,6 +144,11 @@ class Study:
         """Algorithm 7 with this library; `new_rows` gives users rows of their own."""
         return ReuseAlgorithm(self.library, dynamics=self.dynamics, models=self.models)  # pyright: ignore
 
+    @property
+    def choosing(self) -> dict[str, Any]:
+        """The settings that say how it chooses, by name."""
+        return {name: getattr(self, name) for name in CHOOSING}
+
     def expected(self, policy: str) -> float | None:
         """Expected outcome of a policy for a user of whom nothing is known; None where the library lacks it."""
         if policy not in self.library.policies:
@@ -151,8 +158,7 @@ class Study:
     @property
     def best_single(self) -> str:
         """The policy in use that is expected to serve all users best, by the users of the fit alone."""
-        expected = self.library.prior @ self.library.performance.mean
-        return max(self.active, key=lambda policy: expected[self.library.index_of_policy(policy)])
+        return max(self.active, key=lambda policy: self.expected(policy) or 0.0)
 
     def prior_of(
         self, context: str | None, features: Mapping[str, float] | None = None, type_: str | None = None
@@ -178,11 +184,6 @@ class Study:
         A larger share holds out the same users and more.
         """
         return share_of(self.name, user) < self.control
-
-    def explored(self, probs: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The rule's probabilities of policies (..., n) with the share of exploration mixed in; rows sum to 1."""
-        mixed = (1 - self.explore) * probs + self.explore / probs.shape[-1]
-        return mixed / mixed.sum(axis=-1, keepdims=True)
 
     def with_state(self, policy: str, state: str) -> "Study":
         """The study with another state of one policy."""
@@ -257,7 +258,7 @@ def open_study(memory: Memory, name: str = "default") -> Study:
     found = newest_version(memory, name)
     if found is None:
         _refuse_unknown(memory, name)
-    return _study_of(name, found)
+    return study_of(name, found)
 
 
 def newest_version(memory: Memory, name: str) -> StudyVersion | None:
@@ -281,7 +282,8 @@ def states_after(policies: Sequence[str], earlier: Mapping[str, str]) -> dict[st
     return known | {policy: PILOT if state == PILOT else RETIRED for policy, state in gone.items()}
 
 
-def _study_of(name: str, found: StudyVersion) -> Study:
+def study_of(name: str, found: StudyVersion) -> Study:
+    """The study of a stored version; StoreError where it is damaged."""
     about = found.about
     try:
         library = PolicyLibrary.from_bytes(found.content, f"study '{name}'")
@@ -317,7 +319,7 @@ def study_states(memory: Memory) -> dict[str, str]:
 
 def check_study_name(name: str) -> str:
     """`name` itself, if it can name a study."""
-    check_word("name", name)
+    check_name("name", name)
     if len(name) > LONGEST_NAME or "/" in name:
         raise InputError(f"name must be at most {LONGEST_NAME} characters without '/', got {name[:80]!r}")
     return name

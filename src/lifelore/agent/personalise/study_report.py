@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 
 from lifelore.agent.personalise.beliefs import learn
 from lifelore.agent.personalise.calibration import after_past, calibration, outcomes_of
-from lifelore.agent.personalise.decision_log import write_log
-from lifelore.agent.personalise.histories import History, sampled_histories
-from lifelore.agent.personalise.result_folder import write_picture, write_result
+from lifelore.agent.personalise.decision_log import log_parts
+from lifelore.agent.personalise.histories import History, difference, sampled_histories
+from lifelore.agent.personalise.result_folder import write_file, write_picture, write_result
 from lifelore.agent.personalise.study import Study
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.core.intervals import LEAST_VALUES, t_interval, welch_interval
+from lifelore.core.intervals import LEAST_VALUES, t_interval
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.memory import Memory
 
@@ -95,7 +95,7 @@ def report(
         raise NotFoundError(f"incumbent must be a policy of the study, got '{incumbent}'")
     document = _document(memory, study, incumbent, split)
     if log is not None:
-        write_log(memory, study, Path(log))
+        write_file(Path(log), log_parts(memory, study))
     if out is not None:
         from lifelore.figures.reuse_calibration import draw_calibration
         from lifelore.figures.reuse_report import draw_reuse_report
@@ -135,7 +135,7 @@ def _document(memory: Memory, study: Study, incumbent: str | None, split: str | 
         "personal": _estimate(personal),
         "control": _estimate(control),
         "control_gets": study.incumbent or "each policy alike",
-        "uplift": _difference(personal, control),
+        "uplift": difference(personal, control),
         "best_single": _beside(study.best_single, personal, by_policy),
         "incumbent": None if incumbent is None else _beside(incumbent, personal, by_policy),
         "policies": [
@@ -165,22 +165,10 @@ def _estimate(values: Sequence[float] | Array) -> dict[str, Any] | None:
     return Estimate(mean, float(np.median(values)), (low, high) if error > 0 else None, len(values)).to_dict()
 
 
-def _difference(first: Array, second: Array) -> dict[str, Any] | None:
-    """Difference of means with Welch's interval, if there are users and spread enough for one."""
-    if not len(first) or not len(second):
-        return None
-    ci95 = welch_interval(first, second)  # pyright: ignore[reportArgumentType]
-    return {
-        "value": float(np.mean(first) - np.mean(second)),
-        "ci95": list(ci95) if ci95 else None,
-        "n": [len(first), len(second)],
-    }
-
-
 def _beside(policy: str, personal: Array, by_policy: dict[str, Array]) -> dict[str, Any]:
     """A single policy's outcome in the control group, and what those chosen for by belief have more."""
     means = by_policy[policy]
-    return {"name": policy, "outcome": _estimate(means), "uplift": _difference(personal, means)}
+    return {"name": policy, "outcome": _estimate(means), "uplift": difference(personal, means)}
 
 
 def _regret(study: Study, histories: Sequence[History]) -> dict[str, Any]:

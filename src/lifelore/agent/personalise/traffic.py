@@ -17,14 +17,12 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.agent.personalise.beliefs import open_beliefs, start_at_priors, turns
+from lifelore.agent.personalise.beliefs import open_beliefs, unknown_log_odds
+from lifelore.agent.personalise.histories import difference
 from lifelore.agent.personalise.study import Study
 from lifelore.core.errors import InputError
-from lifelore.core.intervals import welch_interval
 from lifelore.interaction.reuse.novelty.novelty_detector import MASS
-from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
 from lifelore.memory import Memory
-from lifelore.memory.study_rows import UserRow
 from lifelore.memory.study_totals import UserHalves
 
 HOUR, DAY = 3_600_000, 86_400_000
@@ -143,15 +141,8 @@ def _drift(halves: UserHalves, control: int) -> dict[str, Any] | None:
     """Mean over users of a group after the middle less that before, with Welch's interval."""
     own = halves.control == control
     before, after = own & (halves.before > 0), own & (halves.after > 0)
-    if not before.any() or not after.any():
-        return None
     means = halves.after_sum[after] / halves.after[after], halves.before_sum[before] / halves.before[before]
-    ci95 = welch_interval(*means)  # pyright: ignore[reportArgumentType]
-    return {
-        "value": float(means[0].mean() - means[1].mean()),
-        "ci95": list(ci95) if ci95 else None,
-        "n": [len(one) for one in means],
-    }
+    return difference(*means)
 
 
 def _beliefs(memory: Memory, study: Study, halves: UserHalves) -> dict[str, Any] | None:
@@ -168,22 +159,8 @@ def _beliefs(memory: Memory, study: Study, halves: UserHalves) -> dict[str, Any]
     entropy = -np.where(np.isfinite(log_belief), np.exp(log_belief) * log_belief, 0.0).sum(axis=1)
     unknown = None
     with suppress(InputError):  # there is no broad type for such signals
-        unknown = float((_log_odds(study, users, evidence) > np.log((1 - MASS) / MASS)).mean())
+        unknown = float((unknown_log_odds(study, users, evidence) > np.log((1 - MASS) / MASS)).mean())
     return {"users": len(users), "entropy": float(entropy.mean()), "unknown": unknown}
-
-
-def _log_odds(study: Study, users: Sequence[UserRow], evidence: Sequence[tuple[int, str, float]]) -> np.ndarray:
-    """Evidence in nats that no known type fits, of each user."""
-    found = UnknownEvidence(study.library, len(users), dynamics=study.dynamics, models=study.models)  # pyright: ignore
-    start_at_priors(found.types, study, users)
-    row = {user.number: place for place, user in enumerate(users)}
-    own = [(row[number], policy, outcome) for number, policy, outcome in evidence]
-    for places, policies, outcomes in turns(study, own):
-        known = policies >= 0
-        if known.any():
-            found.observe(places[known], policies[known], outcomes[known])
-        found.end_episode(places)
-    return found.log_odds
 
 
 def _alarms(checks: dict[str, Any]) -> Iterator[tuple[str, str]]:

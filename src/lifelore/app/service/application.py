@@ -54,7 +54,6 @@ def create_app(settings: ServiceSettings, open_paths: Collection[str] = ()) -> F
         memory_routes,
         perceive_routes,
         study_routes,
-        traffic_routes,
         user_routes,
     )
 
@@ -83,7 +82,6 @@ def create_app(settings: ServiceSettings, open_paths: Collection[str] = ()) -> F
         ("personalise", study_routes),
         ("personalise", adaptation_routes),
         ("personalise", log_routes),
-        ("personalise", traffic_routes),
         ("perceive", perceive_routes),
         ("advise", advice_routes),
         ("memory", memory_routes),

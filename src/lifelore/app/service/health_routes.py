@@ -6,13 +6,13 @@ import time
 from typing import Literal
 
 from fastapi import APIRouter, Response
+from prometheus_client import CONTENT_TYPE_LATEST
 from pydantic import BaseModel
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 
 from lifelore import __version__
 from lifelore.app.service.service_state import Service
-from lifelore.app.service.telemetry import CONTENT_TYPE_LATEST
 from lifelore.core.errors import StoreError
 from lifelore.memory import Memory
 

@@ -1,4 +1,4 @@
-"""Routes over logs: learn a study from a log, report what a study achieved, evaluate other policies off-policy."""
+"""Routes over logs: learn a study from a log, report what a study achieved and decides, evaluate others."""
 
 from dataclasses import fields
 from pathlib import Path
@@ -16,17 +16,18 @@ from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.study_report import report
 from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service
-from lifelore.app.service.study_routes import Name
+from lifelore.app.service.study_routes import Name, StudyFields
 from lifelore.app.service.worker_process import over_memory
 from lifelore.memory import Memory
 
 KINDS = {"csv": "text/csv; charset=utf-8", "ndjson": "application/x-ndjson"}
 """Media types of logs."""
+Days = Annotated[int, Query(ge=2, le=90, description="Window; 2 days come by hour, more by day.")]
 EXAMPLE = "user,policy,outcome\nada,slow,8\nada,fast,2\nben,slow,3\nben,fast,9\n"
 LOGGED = "user,policy,outcome,probability\nada,slow,8,0.5\nada,fast,2,0.5\nben,slow,3,0.5\nben,fast,9,0.5\n"
 
 
-class FitRequest(BaseModel):
+class FitRequest(StudyFields):
     """A log of choices and outcomes, and how to learn from it."""
 
     model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"log": EXAMPLE, "types": 2}})
@@ -36,16 +37,6 @@ class FitRequest(BaseModel):
     )
     types: int | None = Field(
         None, ge=1, le=100, description="Number of types; left out: selected by the outcomes."
-    )
-    control: FiniteFloat = Field(0.1, description="Share of users in the control group, in [0, 1).")
-    incumbent: str | None = Field(None, description="Policy of the control group; left out: each policy alike.")
-    rule: str = Field("information-directed", description="Selection rule.")
-    explore: FiniteFloat = Field(0.0, description="Share of choices that are drawn from all policies, in [0, 1].")
-    change: FiniteFloat | Literal["learnt"] = Field(
-        "learnt", description="Probability that a user's type changes between two choices, or how often is learnt."
-    )
-    models: Literal["uncertain", "plug-in"] = Field(
-        "uncertain", description="Whether models of few runs learn too."
     )
     features: list[str] = Field([], description="Columns of numbers that are known of a user beforehand.")
     columns: dict[str, str] = Field({}, description="The log's own names of columns, by ours.")
@@ -99,6 +90,13 @@ def router(service: Service) -> APIRouter:
         study: Name, split: Annotated[Literal["user", "time", "both"] | None, Query()] = None
     ) -> dict[str, Any]:
         return report(memory, studies.get(study), split=split)
+
+    @routes.get(
+        "/studies/{study}/traffic",
+        summary="Decisions and outcomes of the last days, and alarms; at most a minute old",
+    )
+    def traffic(study: Name, days: Days = 14) -> dict[str, Any]:
+        return service.watch.traffic(study, days)
 
     @routes.post("/evaluate", summary="What other policies would have achieved, from a log with probabilities")
     async def evaluate_log(request: Request, document: EvaluateRequest) -> dict[str, Any]:

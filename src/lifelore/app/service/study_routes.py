@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 from lifelore.agent.personalise.explanation import stranger_table
 from lifelore.agent.personalise.library_document import library_of
 from lifelore.agent.personalise.policy_states import add, retire
-from lifelore.agent.personalise.registration import StudySettings, register, study_document
+from lifelore.agent.personalise.registration import register, study_document
 from lifelore.agent.personalise.study import study_states
 from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service
@@ -37,7 +37,22 @@ class LibraryDocument(BaseModel):
     )
 
 
-class StudyRequest(BaseModel):
+class StudyFields(BaseModel):
+    """How a study chooses."""
+
+    control: FiniteFloat = Field(0.1, description="Share of users in the control group, in [0, 1).")
+    incumbent: str | None = Field(None, description="Policy of the control group; left out: each policy alike.")
+    rule: str = Field("information-directed", description="Selection rule.", examples=["sampling"])
+    explore: FiniteFloat = Field(0.0, description="Share of choices that are drawn from all policies, in [0, 1].")
+    change: FiniteFloat | Literal["learnt"] = Field(
+        "learnt", description="Probability that a user's type changes between two choices, or how often is learnt."
+    )
+    models: Literal["uncertain", "plug-in"] = Field(
+        "uncertain", description="Whether models of few runs learn too."
+    )
+
+
+class StudyRequest(StudyFields):
     """A library and how to choose from it."""
 
     model_config = ConfigDict(
@@ -53,16 +68,6 @@ class StudyRequest(BaseModel):
         },
     )  # fmt: skip
     library: LibraryDocument
-    control: FiniteFloat = Field(0.1, description="Share of users in the control group, in [0, 1).")
-    incumbent: str | None = Field(None, description="Policy of the control group; left out: each policy alike.")
-    rule: str = Field("information-directed", description="Selection rule.", examples=["sampling"])
-    explore: FiniteFloat = Field(0.0, description="Share of choices that are drawn from all policies, in [0, 1].")
-    change: FiniteFloat | Literal["learnt"] = Field(
-        "learnt", description="Probability that a user's type changes between two choices, or how often is learnt."
-    )
-    models: Literal["uncertain", "plug-in"] = Field(
-        "uncertain", description="Whether models of few runs learn too."
-    )
 
 
 class PolicyState(BaseModel):
@@ -120,8 +125,7 @@ def router(service: Service) -> APIRouter:
     @routes.put("/{study}", summary="Register a policy library as a study")
     def put(study: Name, document: StudyRequest) -> dict[str, Any]:
         library = library_of(document.library.model_dump())
-        settings = StudySettings(**document.model_dump(exclude={"library"}))
-        registered = register(memory, study, library, settings)
+        registered = register(memory, study, library, **document.model_dump(exclude={"library"}))
         studies.drop(study)
         return study_document(registered)
 

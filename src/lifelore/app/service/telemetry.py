@@ -4,18 +4,12 @@ import json
 import logging
 import sys
 import time
-from bisect import bisect_left
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cache
 from math import nan
 from typing import Any
 
-from prometheus_client import CollectorRegistry, Counter, Gauge, generate_latest
-from prometheus_client.exposition import CONTENT_TYPE_LATEST
-from prometheus_client.metrics_core import CounterMetricFamily, HistogramMetricFamily
-from prometheus_client.registry import Collector
-
-__all__ = ["CONTENT_TYPE_LATEST", "Metrics", "log_request", "log_to_stderr"]
+from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 
 log = logging.getLogger("lifelore.service")
 MOST_ARMS = 2000
@@ -32,44 +26,15 @@ _SECONDS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10
 _ARM = ("study", "policy", "group")
 
 
-class _Requests(Collector):
-    """Counts and times of requests; the event loop alone adds to them, so they need no locks."""
-
-    def __init__(self) -> None:
-        self.counts: dict[tuple[str, str, int], int] = {}
-        self.times: dict[str, list[float]] = {}
-
-    def add(self, method: str, route: str, status: int, seconds: float) -> None:
-        key = (method, route, status)
-        self.counts[key] = self.counts.get(key, 0) + 1
-        # A count for each bucket and one for longer times, and last the sum.
-        times = self.times.get(route) or self.times.setdefault(route, [0.0] * (len(_SECONDS) + 2))
-        times[bisect_left(_SECONDS, seconds)] += 1
-        times[-1] += seconds
-
-    def collect(self) -> Iterator[CounterMetricFamily | HistogramMetricFamily]:
-        requests = CounterMetricFamily("lifelore_requests", "Requests.", labels=("method", "route", "status"))
-        for (method, route, status), count in list(self.counts.items()):
-            requests.add_metric((method, route, str(status)), count)
-        yield requests
-        seconds = HistogramMetricFamily("lifelore_request_seconds", "Time of a request.", labels=("route",))
-        for route, times in list(self.times.items()):
-            below, buckets = 0.0, []
-            for bound, count in zip((*map(float, _SECONDS), "+Inf"), times, strict=False):
-                below += count
-                buckets.append((str(bound), below))
-            seconds.add_metric((route,), buckets, times[-1])
-        yield seconds
-
-
 class Metrics:
     """Counters of one application; labels are route templates, studies and policies, and never users."""
 
     def __init__(self) -> None:
         self.registry = CollectorRegistry()
-        self._requests = _Requests()
-        self.registry.register(self._requests)
-        self.count = self._requests.add
+        requests = Counter("lifelore_requests", "Requests.", ("method", "route", "status"), registry=self.registry)
+        times = Histogram(
+            "lifelore_request_seconds", "Time of a request.", ("route",), buckets=_SECONDS, registry=self.registry
+        )
         self.running = Gauge("lifelore_requests_running", "Requests in progress.", registry=self.registry)
         self._decided = Counter(
             "lifelore_study_decisions", "Stored decisions of a study.", _ARM, registry=self.registry
@@ -87,21 +52,25 @@ class Metrics:
         }
         self._arms: set[tuple[str, str]] = set()
         # To look up the children of labels takes longer than to count.
+        self._requests, self._times = cache(requests.labels), cache(times.labels)
         self._children = cache(
             lambda *arm: (self._decided.labels(*arm), self._observed.labels(*arm), self._total.labels(*arm))
         )
 
-    def decided(self, study: str, policy: str, control: bool, n: int = 1) -> None:
+    def count(self, method: str, route: str, status: int, seconds: float) -> None:
+        """Count a request and its time."""
+        self._requests(method, route, status).inc()
+        self._times(route).observe(seconds)
+
+    def decided(self, study: str, policy: str, control: bool, n: float = 1) -> None:
         """Count stored decisions of a policy in the control group or in the treated one."""
         self._arm(study, policy, control)[0].inc(n)
 
-    def observed(
-        self, study: str, policy: str, outcome_sum: float, n: int = 1, *, control: bool | None = None
-    ) -> None:
-        """Count stored outcomes of a policy and add their sum; without `control` the group is "all"."""
-        _, outcomes, total = self._arm(study, policy, control)
+    def observed(self, study: str, policy: str, control: bool, n: float, total: float) -> None:
+        """Count stored outcomes of a policy, and add their sum."""
+        _, outcomes, sums = self._arm(study, policy, control)
         outcomes.inc(n)
-        total.inc(outcome_sum)
+        sums.inc(total)
 
     def watched(self, study: str, numbers: Mapping[str, float | None]) -> None:
         """Set the numbers of the alarms of a study, by the names of `WATCHED`."""
@@ -112,14 +81,12 @@ class Metrics:
         """All metrics in the text format of Prometheus."""
         return generate_latest(self.registry)
 
-    def _arm(self, study: str, policy: str, control: bool | None) -> Any:
+    def _arm(self, study: str, policy: str, control: bool) -> Any:
         arm = (study, policy)
-        if arm not in self._arms:
-            if len(self._arms) >= MOST_ARMS:
-                arm = ("other", "other")
-            else:
-                self._arms.add(arm)
-        return self._children(*arm, "all" if control is None else "control" if control else "treated")
+        if arm not in self._arms and len(self._arms) >= MOST_ARMS:
+            arm = ("other", "other")
+        self._arms.add(arm)
+        return self._children(*arm, "control" if control else "treated")
 
 
 class _JsonLines(logging.Formatter):

@@ -8,13 +8,15 @@ import asyncio
 import multiprocessing
 import os
 import resource
+import signal
 import threading
 import traceback
 from collections.abc import Callable
-from multiprocessing.connection import Connection
-from typing import Any
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
+from typing import Any, NamedTuple
 
-from anyio import to_thread
 from starlette.requests import Request
 
 from lifelore.core.errors import InputError, LifeloreError
@@ -30,13 +32,25 @@ class ClientLeft(Exception):
     """The client closed its connection before the answer."""
 
 
+class _Worker(NamedTuple):
+    """A process, and the executor that has this one alone, so that its end ends no other call."""
+
+    executor: ProcessPoolExecutor
+    pid: int
+
+    def kill(self) -> None:
+        with suppress(ProcessLookupError):
+            os.kill(self.pid, signal.SIGKILL)
+        self.executor.shutdown(wait=False)
+
+
 class WorkerProcess:
     """Processes that start at the first call, and again after a call that crashed or ended early."""
 
     def __init__(self, processes: int = PROCESSES) -> None:
         self._free = asyncio.Semaphore(processes)
-        self._idle: list[_Process] = []
-        self._busy: set[_Process] = set()
+        self._idle: list[_Worker] = []
+        self._busy: set[_Worker] = set()
 
     async def run(self, request: Request, function: Callable[..., Any], *arguments: Any) -> Any:
         """The result of a function of a module in a process, which is killed if the request ends before.
@@ -75,64 +89,37 @@ class WorkerProcess:
     async def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
         """As `run`, where no client waits."""
         async with self._free:
-            process = self._idle.pop() if self._idle else _Process()
-            self._busy.add(process)
+            worker = self._idle.pop() if self._idle else await _started()
+            self._busy.add(worker)
             try:
-                result, error = await to_thread.run_sync(process.ask, function, arguments, abandon_on_cancel=True)
-            except BaseException:
-                process.kill()
+                result, error = await asyncio.wrap_future(worker.executor.submit(_answer, function, arguments))
+            except BaseException as ended:
+                worker.kill()
+                if isinstance(ended, BrokenProcessPool):
+                    message = "the request crashed the process that worked on it; check what it sends"
+                    raise InputError(message) from None
                 raise
             finally:
-                self._busy.discard(process)
-            self._idle.append(process)
-        if isinstance(error, str):
-            raise RuntimeError(error)
+                self._busy.discard(worker)
+            self._idle.append(worker)
         if error is not None:
             raise error
         return result
 
     def stop(self) -> None:
         """End all processes; the next call starts another."""
-        for process in (*self._idle, *self._busy):
-            process.kill()
+        for worker in (*self._idle, *self._busy):
+            worker.kill()
         self._idle.clear()
 
 
-class _Process:
-    """A process that answers one call after the other."""
-
-    def __init__(self) -> None:
-        self._context = multiprocessing.get_context("spawn")
-        self._lock = threading.Lock()
-        self._process: Any = None
-        self._pipe: Any = None
-        self._killed = False
-
-    def ask(self, function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, Any]:
-        """The result of a function and its error; InputError where the process crashed."""
-        try:
-            self._start()
-            self._pipe.send((function, arguments))
-            return self._pipe.recv()
-        except (EOFError, OSError):
-            raise InputError("the request crashed the process that worked on it; check what it sends") from None
-
-    def kill(self) -> None:
-        """End the process, whatever it does; a thread that waits for its answer gets an error."""
-        with self._lock:
-            self._killed = True
-            if self._process is not None:
-                self._process.kill()
-
-    def _start(self) -> None:
-        with self._lock:
-            if self._killed:
-                raise EOFError
-            if self._process is None:
-                self._pipe, theirs = self._context.Pipe()
-                self._process = self._context.Process(target=_answer_calls, args=(theirs,), daemon=True)
-                self._process.start()
-                theirs.close()
+async def _started() -> _Worker:
+    executor = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _limit_process)
+    try:
+        return _Worker(executor, await asyncio.wrap_future(executor.submit(os.getpid)))
+    except BaseException:
+        executor.shutdown(wait=False)
+        raise
 
 
 async def _left(request: Request) -> None:
@@ -153,23 +140,9 @@ def over_memory(where: str | None, function: Callable[..., Any], *arguments: Any
         return function(memory, *arguments)
 
 
-def _answer_calls(pipe: Connection) -> None:
-    threading.Thread(target=_end_with_service, daemon=True).start()
+def _limit_process() -> None:
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-    while True:
-        try:
-            function, arguments = pipe.recv()
-        except (EOFError, KeyboardInterrupt):
-            return
-        try:
-            answer = function(*arguments), None
-        except LifeloreError as error:
-            answer = None, type(error)(str(error))
-        except MemoryError:
-            answer = None, InputError("the request needs too much memory; send less")
-        except Exception:
-            answer = None, traceback.format_exc()
-        pipe.send(answer)
+    threading.Thread(target=_end_with_service, daemon=True).start()
 
 
 def _end_with_service() -> None:
@@ -178,3 +151,15 @@ def _end_with_service() -> None:
     if service is not None:
         service.join()
         os._exit(1)
+
+
+def _answer(function: Callable[..., Any], arguments: tuple[Any, ...]) -> tuple[Any, Exception | None]:
+    """The result of a function and its error, in a form that travels."""
+    try:
+        return function(*arguments), None
+    except LifeloreError as error:
+        return None, type(error)(str(error))
+    except MemoryError:
+        return None, InputError("the request needs too much memory; send less")
+    except Exception:
+        return None, RuntimeError(traceback.format_exc())

@@ -8,8 +8,8 @@ so that many users cost little more than one.
 import asyncio
 import queue
 import threading
-from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from itertools import islice
 from typing import Any, NamedTuple
 
 from lifelore.agent.personalise.decisions import Request, decide, observe
@@ -27,13 +27,15 @@ PART = 500
 
 
 class _Job(NamedTuple):
-    """A function to run, or rows of a study: `kind` is then "decisions" or "outcomes" and `function` None."""
+    """Rows of a study to store, or a function and its arguments to run.
 
-    function: Callable[..., Any] | None
-    arguments: tuple[Any, ...]
+    kind : "decisions" or "outcomes", the study, and whether answers are brief; None for a function
+    """
+
+    kind: tuple[str, str, bool] | None
+    rows: tuple[Any, ...]
     loop: asyncio.AbstractEventLoop
     future: asyncio.Future[Any]
-    kind: tuple[str, str, bool] = ("", "", False)
 
 
 class Writer:
@@ -62,28 +64,29 @@ class Writer:
 
     async def run(self, function: Callable[..., Any], *arguments: Any) -> Any:
         """The result of a function, once all that it stored is committed; its errors as it raised them."""
-        loop = asyncio.get_running_loop()
-        job = _Job(function, arguments, loop, loop.create_future())
-        self._jobs.put(job)
-        return await job.future
+        return await self._put(None, (function, *arguments))
 
     async def decide(self, study: str, requests: Sequence[Request], *, brief: bool = False) -> list[Any]:
         """The answers of `decisions.decide`, once the decisions are committed; a long batch in parts."""
-        return await self._rows("decisions", study, requests, brief)
+        return await self._in_parts(("decisions", study, brief), requests)
 
     async def observe(
         self, study: str, outcomes: Sequence[tuple[str, float]], *, brief: bool = False
     ) -> list[Any]:
         """The answers of `decisions.observe`, once the outcomes are committed; a long batch in parts."""
-        return await self._rows("outcomes", study, outcomes, brief)
+        return await self._in_parts(("outcomes", study, brief), outcomes)
 
-    async def _rows(self, kind: str, study: str, rows: Sequence[Any], brief: bool) -> list[Any]:
-        loop, answers = asyncio.get_running_loop(), []
+    async def _in_parts(self, kind: tuple[str, str, bool], rows: Sequence[Any]) -> list[Any]:
+        answers: list[Any] = []
         for at in range(0, len(rows), PART):
-            job = _Job(None, tuple(rows[at : at + PART]), loop, loop.create_future(), (kind, study, brief))
-            self._jobs.put(job)
-            answers += await job.future
+            answers += await self._put(kind, tuple(rows[at : at + PART]))
         return answers
+
+    def _put(self, kind: tuple[str, str, bool] | None, rows: tuple[Any, ...]) -> asyncio.Future[Any]:
+        loop = asyncio.get_running_loop()
+        job = _Job(kind, rows, loop, loop.create_future())
+        self._jobs.put(job)
+        return job.future
 
     def stop(self) -> None:
         """Finish the waiting requests and end the thread."""
@@ -93,21 +96,20 @@ class Writer:
     def _work(self) -> None:
         patience = 0.0
         while (first := self._jobs.get()) is not None:
-            jobs, last, n_rows = [first], False, len(first.arguments)
+            jobs, n_rows, last = [first], len(first.rows), False
             while len(jobs) < MOST and n_rows < PART and not last:
                 try:
                     following = self._jobs.get(timeout=patience) if patience else self._jobs.get_nowait()
                 except queue.Empty:
                     break
-                last = following is None
-                if following is not None:
+                if following is None:
+                    last = True
+                else:
                     jobs.append(following)
-                    n_rows += len(following.arguments)
+                    n_rows += len(following.rows)
             patience = PATIENCE if len(jobs) > 1 else 0.0
-            of_rows = [job for job in jobs if job.function is None]
-            others = [job for job in jobs if job.function is not None]
-            for group, rows in ((of_rows, True), (others, False)):
-                if group:
+            for rows in (True, False):
+                if group := [job for job in jobs if (job.kind is not None) == rows]:
                     _deliver(group, self._results(group, rows))
             if last:
                 return
@@ -126,49 +128,42 @@ class Writer:
 
     def _stored(self, jobs: Sequence[_Job]) -> list[Any]:
         """Store the rows of jobs, those of a study and a kind as one batch."""
-        results: list[Any] = [None] * len(jobs)
-        for kind in dict.fromkeys(job.kind for job in jobs):
-            own = [place for place, job in enumerate(jobs) if job.kind == kind]
-            rows = [row for place in own for row in jobs[place].arguments]
-            try:
-                answers = self._answers(*kind, rows)
-            except LifeloreError as error:
-                answers = [error] * len(rows)
-            at = 0
-            for place in own:
-                n = len(jobs[place].arguments)
-                results[place] = answers[at : at + n]
-                at += n
-        return results
+        answers: dict[Any, Iterator[Any]] = {}
+        for kind in dict.fromkeys(job.kind for job in jobs if job.kind):
+            rows = [row for job in jobs if job.kind == kind for row in job.rows]
+            answers[kind] = iter(self._answers(*kind, rows))
+        return [list(islice(answers[job.kind], len(job.rows))) for job in jobs]
 
     def _answers(self, kind: str, study: str, brief: bool, rows: list[Any]) -> list[Any]:
-        opened = self._studies.get(study)
-        if kind == "decisions":
-            return decide(self._memory, opened, rows, seed=self._seed, brief=brief)
-        return observe(self._memory, opened, rows, brief=brief)
+        try:
+            opened = self._studies.get(study)
+            if kind == "decisions":
+                return decide(self._memory, opened, rows, seed=self._seed, brief=brief)
+            return observe(self._memory, opened, rows, brief=brief)
+        except LifeloreError as error:
+            return [error] * len(rows)
 
     def _count(self, jobs: Sequence[_Job], results: Sequence[Any]) -> None:
-        decided: Counter[tuple[str, str, bool]] = Counter()
-        taken: dict[tuple[str, str, bool], list[float]] = {}
+        """Count new decisions and outcomes, by arm and not by row."""
+        sums: dict[tuple[str, str, str, bool], list[float]] = {}
         for job, answers in zip(jobs, results, strict=True):
-            kind, study, _ = job.kind
-            for row, answer in zip(job.arguments, answers, strict=True):
-                if isinstance(answer, LifeloreError):
-                    continue
-                if kind == "decisions" and not answer["repeated"]:
-                    decided[study, answer["policy"], answer["control"]] += 1
-                elif kind == "outcomes" and answer["taken"]:
-                    taken.setdefault((study, answer["policy"], answer["control"]), []).append(row[1])
-        for (study, policy, control), n in decided.items():
-            self._metrics.decided(study, policy, control, n)
-        for (study, policy, control), outcomes in taken.items():
-            self._metrics.observed(study, policy, sum(outcomes), len(outcomes), control=control)
+            kind, study, _ = job.kind or ("", "", False)
+            for row, answer in zip(job.rows, answers, strict=True):
+                if not isinstance(answer, LifeloreError) and answer.get("taken", not answer.get("repeated")):
+                    own = sums.setdefault((kind, study, answer["policy"], answer["control"]), [0, 0.0])
+                    own[0] += 1
+                    own[1] += row[1] if kind == "outcomes" else 0.0
+        for (kind, study, policy, control), (n, total) in sums.items():
+            if kind == "decisions":
+                self._metrics.decided(study, policy, control, n)
+            else:
+                self._metrics.observed(study, policy, control, n, total)
 
 
 def _result(job: _Job) -> Any:
-    assert job.function is not None
+    function, *arguments = job.rows
     try:
-        return job.function(*job.arguments)
+        return function(*arguments)
     except Exception as error:
         return error
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lifelore.agent.personalise.log import log_lines
-from lifelore.agent.personalise.log.log import read_log, read_outcome
-from lifelore.agent.personalise.log.log_format import LogFormat, parse_columns
+from lifelore.agent.personalise.log import log_reader
+from lifelore.agent.personalise.log.log import read_log
+from lifelore.agent.personalise.log.log_format import LogFormat, parse_columns, read_outcome
 from lifelore.core.errors import InputError, NotFoundError
 
 HEAD = "user,policy,outcome\n"
@@ -217,7 +217,7 @@ def test_as_many_policies_as_lines_look_like_the_wrong_column(written):
 def test_chunks_make_no_difference(written, monkeypatch):
     path = written(HEAD + "".join(f"u{i % 7},p{i % 3},{i / 4 if i % 5 else ''}\n" for i in range(50)))
     whole = read_log([path])
-    monkeypatch.setattr(log_lines, "CHUNK", 7)
+    monkeypatch.setattr(log_reader, "CHUNK", 7)
     parts = read_log([path])
     assert (parts.users, parts.policies, parts.pending) == (whole.users, whole.policies, whole.pending)
     assert np.array_equal(parts.outcomes, whole.outcomes)

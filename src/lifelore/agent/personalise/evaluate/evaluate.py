@@ -12,14 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.agent.personalise.evaluate.cross_fitted import (
+from lifelore.agent.personalise.evaluate.logged_decisions import CERTAIN, LoggedDecisions, read_decisions
+from lifelore.agent.personalise.evaluate.replayed_choices import (
     choices_of_rule,
     expected_by_library,
-    expected_by_means,
+    replayed_choices,
     studies_of_others,
 )
-from lifelore.agent.personalise.evaluate.logged_decisions import CERTAIN, LoggedDecisions, read_decisions
-from lifelore.agent.personalise.evaluate.replayed_choices import replayed_choices
 from lifelore.agent.personalise.evaluate.target_estimates import target_estimates
 from lifelore.agent.personalise.evaluate.target_policies import (
     TargetPolicy,
@@ -34,7 +33,7 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.evaluation.estimators import logged_value
 from lifelore.interaction.evaluation.propensity_weights import decision_numbers
-from lifelore.interaction.evaluation.reward_models import RewardModel, user_folds
+from lifelore.interaction.evaluation.reward_models import RewardModel, policy_means, user_folds
 from lifelore.interaction.selection import rule_named
 from lifelore.memory import Memory
 
@@ -206,7 +205,7 @@ def _targets(
 ) -> tuple[list[TargetPolicy], RewardModel]:
     log = decisions.log
     folds = user_folds(log.user.codes, stream(settings.seed, "reuse evaluate", "folds"))
-    model = expected_by_means(log, folds)
+    model = policy_means(log.outcomes, log.policy.codes, len(log.policy.names), folds)
     studies = []
     if settings.rules or settings.model == "library":
         studies = studies_of_others(log, folds, settings.types, settings.seed)

@@ -1,14 +1,24 @@
-"""A study replayed on logged decisions: before each, the policies' expected outcomes and their probabilities."""
+"""Studies replayed on logged decisions: before each, the policies' expected outcomes and their probabilities.
 
+A study of memory is replayed on all; those that are fitted to the log itself each on users whom it has not seen.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.agent.personalise.beliefs import probabilities, start_at_priors
+from lifelore.agent.personalise.fitting.fit import FitSettings, study_of_log
 from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.agent.personalise.study import Study
+from lifelore.interaction.evaluation.propensity_weights import decision_numbers
+from lifelore.interaction.evaluation.reward_models import RewardModel
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection.choice import available_mask
+from lifelore.memory.study_rows import UserRow
 
 Array = NDArray[np.float64]
 
@@ -51,7 +61,7 @@ def replayed_choices(
     to_library = np.array([numbers.get(policy, -1) for policy in log.policy.names], np.int64)
     usable = available_mask(study.active, study.library.policies)
     users, user_of = np.unique(log.user.codes[rows], return_inverse=True)
-    policies, outcomes, turn = to_library[log.policy.codes[rows]], log.outcomes[rows], turns(user_of)
+    policies, outcomes, turn = to_library[log.policy.codes[rows]], log.outcomes[rows], decision_numbers(user_of)
     # By policy of the library; users take their turns side by side.
     expected, probs = np.zeros((2, len(rows), study.library.n_policies))
     for first in range(0, len(users), USERS_AT_ONCE):
@@ -62,8 +72,7 @@ def replayed_choices(
             own, known = user_of[at] - first, policies[at] >= 0
             expected[at] = algorithm.known(own).performance.expected(algorithm.belief(own))
             if choose:
-                chosen = algorithm.propensities(own, study.selection, usable)[:, usable]
-                probs[np.ix_(at, usable)] = study.explored(chosen)
+                probs[np.ix_(at, study.active_numbers)] = probabilities(study, algorithm, own)
             if known.any():
                 algorithm.observe(own[known], policies[at[known]], outcomes[at[known]])
             algorithm.end_episode(own)
@@ -86,18 +95,9 @@ def _by_policy_of_log(expected: Array, probs: Array, to_library: NDArray[np.int6
 def _strangers(study: Study, log: ReuseLog, users: list[int]) -> ReuseAlgorithm:
     """Rows of users of whom only context and features are known."""
     algorithm = study.algorithm.new_rows(len(users))
-    for row, user in enumerate(users):
-        algorithm.log_belief[row] = algorithm.start(study.prior_of(_context(log, user), _features(log, user)))
+    strangers = [UserRow(0, "", _context(log, user), _features(log, user), None, False, 0, None) for user in users]
+    start_at_priors(algorithm, study, strangers)
     return algorithm
-
-
-def turns(user_of: NDArray[np.int64]) -> NDArray[np.int64]:
-    """The number of rows of the same user before each row, (n,)."""
-    order = np.argsort(user_of, kind="stable")
-    count = np.bincount(user_of)
-    turns = np.empty_like(order)
-    turns[order] = np.arange(len(order)) - np.repeat(count.cumsum() - count, count)
-    return turns
 
 
 def _context(log: ReuseLog, user: int) -> str | None:
@@ -111,3 +111,48 @@ def _features(log: ReuseLog, user: int) -> dict[str, float] | None:
     if not row.size or np.isnan(row).any():
         return None
     return dict(zip(log.feature_names, row.tolist(), strict=True))
+
+
+def studies_of_others(log: ReuseLog, folds: NDArray[np.int64], types: int | None, seed: int) -> list[Study]:
+    """For each part of the users, a study fitted to all other parts.
+
+    Parameters
+    ----------
+    folds : (n,) int64
+        Part of the users of each row.
+    types : int, optional
+        Number of types; default: selected by the outcomes.
+    """
+    settings = FitSettings(types=types, seed=seed)
+    parts = range(int(folds.max()) + 1)
+    return [study_of_log(log.take(np.flatnonzero(folds != part)), settings)[0] for part in parts]
+
+
+def expected_by_library(
+    log: ReuseLog, folds: NDArray[np.int64], studies: Sequence[Study], means: RewardModel
+) -> RewardModel:
+    """Each policy's expected outcome under the user's belief, by the library of the user's part.
+
+    Policies that the library does not know have their expectation in `means`.
+    """
+    expected = _replayed(log, folds, studies, choose=False).expected
+    table = np.where(np.isnan(expected), means.table[means.row], expected)
+    return RewardModel(table, np.arange(len(log)))
+
+
+def choices_of_rule(
+    log: ReuseLog, folds: NDArray[np.int64], studies: Sequence[Study], rule: str, explore: float
+) -> ReplayedChoices:
+    """The choices of a rule, each by the library of the user's part; `explore` of them from all policies."""
+    return _replayed(
+        log, folds, [replace(study, rule=rule, rule_settings={}, explore=explore) for study in studies]
+    )
+
+
+def _replayed(
+    log: ReuseLog, folds: NDArray[np.int64], studies: Sequence[Study], choose: bool = True
+) -> ReplayedChoices:
+    rows = [np.flatnonzero(folds == part) for part in range(len(studies))]
+    parts = [replayed_choices(study, log, own, choose=choose) for study, own in zip(studies, rows, strict=True)]
+    order = np.argsort(np.concatenate(rows))
+    return ReplayedChoices(*(np.concatenate(column)[order] for column in zip(*parts, strict=True)))

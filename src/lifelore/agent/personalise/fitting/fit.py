@@ -19,6 +19,7 @@ from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.past import keep_fitted_past
 from lifelore.agent.personalise.study import (
     ACTIVE,
+    CHOOSING,
     LEARNT,
     Change,
     Study,
@@ -34,8 +35,6 @@ from lifelore.interaction.selection.rule import check_variant
 from lifelore.memory import Memory
 
 MODELS = ("auto", "gaussian", "student-t", "categorical", "joint-normal")
-KEPT_SETTINGS = ("control", "incumbent", "rule", "explore", "change", "models")
-"""Settings of a study that a new fit sets anew; where one is another than before, the fit says so."""
 
 
 @dataclass(frozen=True)
@@ -195,9 +194,9 @@ def _study(log: ReuseLog, found: Fitted, settings: FitSettings, earlier: dict[st
     fitted["time"] = int(time.time())
     rule = printed_rule(settings.rule) if settings.variant == "thesis" else rule_named(settings.rule)
     return Study(
-        settings.name, library, states, priors_by_context(log, found), settings.control,
-        settings.incumbent, settings.rule, settings.explore, settings.change, settings.models, fitted,
-        asdict(rule),  # pyright: ignore[reportArgumentType]
+        settings.name, library, states, priors_by_context(log, found), fitted=fitted,
+        **{name: getattr(settings, name) for name in CHOOSING},
+        rule_settings=asdict(rule),  # pyright: ignore[reportArgumentType]
         feature_prior=_feature_prior(log, typed, library.prior, settings.seed),
     )  # fmt: skip
 
@@ -232,8 +231,7 @@ def _kept(memory: Memory, study: Study, past: Mapping[str, int]) -> dict[str, in
 
 def _changed(study: Study, earlier: Mapping[str, Any]) -> dict[str, Any]:
     """Settings that are another than before, and what they were."""
-    names = [name for name in KEPT_SETTINGS if name in earlier]
-    return {name: earlier[name] for name in names if earlier[name] != getattr(study, name)}
+    return {name: earlier[name] for name, now in study.choosing.items() if earlier.get(name, now) != now}
 
 
 def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.float64]) -> dict[str, Any]:
@@ -271,12 +269,7 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
         "borrowed": int((counts == 0).sum()),
         "contexts": sorted(study.contexts),
         "features": _features(study, log),
-        "control": study.control,
-        "incumbent": study.incumbent,
-        "rule": study.rule,
-        "explore": study.explore,
-        "change": study.change,
-        "models": study.models,
+        **study.choosing,
     }
 
 

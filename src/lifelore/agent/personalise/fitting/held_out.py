@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.evaluate.replayed_choices import turns
 from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.evaluation.propensity_weights import decision_numbers
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.prediction import Prediction
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
@@ -64,7 +64,7 @@ class HeldOut:
     """
 
     def __init__(self, log: ReuseLog) -> None:
-        self.log, user, turn = log, log.user.codes, turns(log.user.codes)
+        self.log, user, turn = log, log.user.codes, decision_numbers(log.user.codes)
         rows, shape = turn < MOST_SHOWN, (len(log.user.names), MOST_SHOWN)
         self.policies, self.outcomes = np.full(shape, -1), np.zeros(shape)
         at = user[rows], turn[rows]

@@ -1,17 +1,18 @@
 """Logs of choices and their outcomes: CSV with a header and one choice a line.
 
-    user      who it was for; any text policy    what was chosen: a configuration, a variant, a behaviour outcome
-    how well it went, a number, larger is better; empty: not yet known, the line is left out and counted type
-    optional: what kind of user it is, if known; may be empty on some lines, and is the same on all others
-    context   optional: what is known of a user before the first choice (device, country, shop) decision
-    optional: the identifier of the line, such as what `reuse choose` printed time      optional: when it was, as
-    seconds since 1970 or an ISO date
+    user      who it was for; any text
+    policy    what was chosen: a configuration, a variant, a behaviour
+    outcome   how well it went, a number, larger is better; empty: not yet known, the line is left out and counted
+    type      optional: what kind of user it is, if known; may be empty on some lines, the same on all others
+    context   optional: what is known of a user before the first choice (device, country, shop)
+    decision  optional: the identifier of the line, such as what `reuse choose` printed
+    time      optional: when it was, as seconds since 1970 or an ISO date
 
 Commas, semicolons or tabs lie between columns, as the header has them; capitals in column names do not matter.
 Other columns are ignored. Several logs are read as one. `LogFormat` reads logs that are written otherwise.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
@@ -21,14 +22,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.log.log_columns import COUNTED, WORDS, Lines, check_word, read_outcome
 from lifelore.agent.personalise.log.log_format import WEIGHT, LogFormat
 from lifelore.agent.personalise.log.log_frame import NAME, frame_content, frame_format
-from lifelore.agent.personalise.log.log_lines import read_lines
+from lifelore.agent.personalise.log.log_reader import WORDS, LogReader
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.interaction.outcomes.frame_columns import is_frame
-
-__all__ = ["Column", "ReuseLog", "check_word", "read_log", "read_outcome"]
 
 MANY_POLICIES = 20
 """Number of policies up to which a log may have few lines of each; beyond, it looks like the wrong column."""
@@ -185,14 +183,13 @@ def read_log(sources: Any, form: LogFormat | None = None) -> ReuseLog:
         if places[number] == places[other] or contents[number] == contents[other]:
             given = "is given twice" if paths[number] == paths[other] else f"and '{paths[other]}' are equal"
             raise InputError(f"log '{paths[number]}' {given}; its lines would count twice, leave one out")
-    lines = [
-        read_lines(content, path, frame_format(form) if is_frame(source) else form)
-        for source, path, content in zip(sources, paths, contents, strict=True)
-    ]
-    log = _joined(lines, form)
+    reader = LogReader()
+    for source, path, content in zip(sources, paths, contents, strict=True):
+        reader.read(content, path, frame_format(form) if is_frame(source) else form)
+    log = _log(reader, form)
     if not len(log):
         raise InputError(f"{', '.join(paths)} must hold at least one line with an outcome, got none")
-    _check_types(lines, paths)
+    _check_types(log, paths)
     _check_policies(log, paths)
     return log
 
@@ -207,60 +204,45 @@ def _content(path: Path) -> bytes:
         raise StoreError(f"cannot read {path}: {error.strerror}") from None
 
 
-def _joined(lines: Sequence[Lines], form: LogFormat) -> ReuseLog:
-    user, policy, type_, context, decision, time, probability, group = (
-        _column([part.names[place] for part in lines], [part.codes[place] for part in lines])
-        for place in range(len(WORDS))
-    )
-    counts = {name: sum(part.counts[name] for part in lines) for name in COUNTED}
-    numbers = [np.concatenate(column) for column in zip(*(part.numbers for part in lines), strict=True)]
+def _log(reader: LogReader, form: LogFormat) -> ReuseLog:
+    outcomes, file, line, words, numbers = reader.columns()
+    columns = {name: _column(reader.codes[name], codes) for name, codes in zip(WORDS, words, strict=True)}
     weights = numbers.pop(0) if WEIGHT in form.columns else None
-    n_rows = sum(len(part.outcomes) for part in lines)
     return ReuseLog(
-        user=user, policy=policy, type=type_, context=context, decision=decision, time=time,
-        probability=probability, group=group,
-        outcomes=np.concatenate([part.outcomes for part in lines]),
-        file=np.repeat(np.arange(len(lines)), [len(part.outcomes) for part in lines]),
-        line=np.concatenate([part.line for part in lines]),
-        **counts, weights=weights, feature_names=tuple(name.strip() for name in form.features),
-        features=np.stack(numbers, axis=1) if numbers else np.empty((n_rows, 0)),
+        **columns, outcomes=outcomes, file=file, line=line, **reader.counts, weights=weights,
+        feature_names=tuple(name.strip() for name in form.features),
+        features=np.stack(numbers, axis=1) if numbers else np.empty((len(outcomes), 0)),
     )  # fmt: skip
 
 
-def _column(names: Sequence[tuple[str, ...]], codes: Sequence[NDArray[np.int64]]) -> Column:
-    """One column of several files', its names sorted."""
-    used = [(own, np.unique(code, return_inverse=True)) for own, code in zip(names, codes, strict=True)]
-    every: list[str] = sorted({own[code] for own, (seen, _) in used for code in seen.tolist()})
-    place = {name: number for number, name in enumerate(every)}
-    moved = [np.array([place[own[code]] for code in seen.tolist()], np.int64)[rows] for own, (seen, rows) in used]
-    return Column(tuple(every), np.concatenate(moved))
+def _column(codes: Mapping[str, int], rows: NDArray[np.int64]) -> Column:
+    """The column of the words that rows have, sorted."""
+    words, (used, rows) = list(codes), np.unique(rows, return_inverse=True)
+    names = [words[code] for code in used.tolist()]
+    place = {name: number for number, name in enumerate(sorted(names))}
+    return Column(tuple(place), np.array([place[name] for name in names], np.int64)[rows])
 
 
-def _check_types(lines: Sequence[Lines], paths: Sequence[str | Path]) -> None:
+def _check_types(log: ReuseLog, paths: Sequence[str]) -> None:
     """Refuse a user with two types, and name the lines."""
-    first: dict[str, tuple[str, str]] = {}
-    for part, path in zip(lines, paths, strict=True):
-        users, types = part.names[0], part.names[2]
-        said = np.flatnonzero(np.array([bool(name) for name in types], bool)[part.codes[2]])
-        if not said.size:
-            continue
-        pair = part.codes[0][said] * len(types) + part.codes[2][said]
-        _, at = np.unique(pair, return_index=True)
-        for row in np.sort(said[at]).tolist():
-            user, type_ = users[part.codes[0][row]], types[part.codes[2][row]]
-            where = f"{path} line {part.line[row]}"
-            earlier = first.setdefault(user, (type_, where))
-            if earlier[0] != type_:
-                raise InputError(
-                    f"{where}: a user must have one type, got '{type_}' for '{user}', who is '{earlier[0]}' in "
-                    f"{earlier[1]}; leave the type empty, or make two users of them"
-                )
+    said = np.flatnonzero(np.array([bool(name) for name in log.type.names])[log.type.codes])
+    _, at = np.unique(np.stack([log.user.codes, log.type.codes])[:, said], axis=1, return_index=True)
+    first: dict[int, int] = {}
+    for row in np.sort(said[at]).tolist():
+        earlier = first.setdefault(int(log.user.codes[row]), row)
+        if earlier != row:
+            user, type_, before = log.users[row], log.type.words[row], log.type.words[earlier]
+            where = [f"{paths[log.file[one]]} line {log.line[one]}" for one in (row, earlier)]
+            raise InputError(
+                f"{where[0]}: a user must have one type, got '{type_}' for '{user}', who is '{before}' in "
+                f"{where[1]}; leave the type empty, or make two users of them"
+            )
 
 
-def _check_policies(log: ReuseLog, paths: Sequence[str | Path]) -> None:
+def _check_policies(log: ReuseLog, paths: Sequence[str]) -> None:
     n_policies, n_lines = len(np.unique(log.policy.codes)), len(log)
     if n_policies > MANY_POLICIES and 2 * n_policies > n_lines:
         raise InputError(
-            f"{', '.join(map(str, paths))}: policy must name a configuration that recurs; {n_policies:,} policies "
+            f"{', '.join(paths)}: policy must name a configuration that recurs; {n_policies:,} policies "
             f"in {n_lines:,} lines looks like the wrong column, give the right one with --columns policy=NAME"
         )

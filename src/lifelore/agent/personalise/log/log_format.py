@@ -1,11 +1,13 @@
-"""How the CSV of a log is written: columns, separator, decimals, encoding, and what a missing value means."""
+"""How the CSV of a log is written: columns, separator, decimals, encoding, missing values, words and numbers."""
 
 import codecs
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from lifelore.core.errors import InputError, NotFoundError
+from lifelore.interaction.outcomes.outcome_model import LARGEST
 
 NEEDED = ("user", "policy", "outcome")
 OPTIONAL = ("type", "context", "decision", "time")
@@ -15,6 +17,8 @@ WEIGHT = "weight"
 """Column of weights; read only where `columns` names it, because a log may have a column of that name."""
 SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t"}
 LEAVE_OUT, REFUSE = "leave-out", "refuse"
+FORMULAS = "=+-@\t\r"
+"""First characters of what a spreadsheet takes for a formula."""
 
 
 @dataclass(frozen=True)
@@ -138,3 +142,31 @@ def parse_columns(
             raise InputError(f"{rule}, got {part!r}")
         columns[ours] = theirs
     return columns
+
+
+def escaped(word: str | None) -> str | None:
+    """The word behind ``'`` where a spreadsheet would take it for a formula."""
+    return "'" + word if word and word[0] in FORMULAS else word
+
+
+def unescaped(word: str) -> str:
+    """The word of `escaped`."""
+    return word[1:] if word[:1] == "'" and len(word) > 1 and word[1] in FORMULAS else word
+
+
+def read_outcome(
+    text: str, where: str = "", hint: str = "", *, decimal_comma: bool = False, name: str = "outcome"
+) -> float:
+    """A finite number of at most `LARGEST` in size; InputError, which names the column, for anything else."""
+    if decimal_comma and "." in text:
+        raise InputError(f"{where}{name} must have a comma before its decimals, got {text[:60]!r}")
+    try:
+        outcome = float(text.replace(",", ".") if decimal_comma else text)
+    except ValueError:
+        outcome = math.nan
+    if not math.isfinite(outcome):
+        hint = "; write decimals with a point, or say --decimal-comma" if "," in text else hint
+        raise InputError(f"{where}{name} must be a finite number, got {text[:60]!r}{hint}")
+    if abs(outcome) > LARGEST:
+        raise InputError(f"{where}{name} must be at most {LARGEST:g} in size, got {text[:60]!r}")
+    return outcome
