@@ -22,7 +22,6 @@ from typing import Any
 import numpy as np
 
 from lifelore.agent.advise.advise import AdviceSession, AdviseSettings
-from lifelore.agent.advise.expert_trajectories import state_after
 from lifelore.agent.advise.step_lines import StepLine, read_steps
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
@@ -113,33 +112,20 @@ class AdviceDesk:
             f"memory {self._memory.location}: too many programs step for one agent at once; try again"
         )
 
-    def retrace(self, agent: str) -> list[tuple[int, dict[str, Any]]]:
-        """The stored steps of an agent from the first on: the state after each, and the advice there.
-
-        Advice is as in `answer`. The list is empty where the agent has made no step.
-        """
-        with self._lock:
-            self._known.pop(agent, None)
-            return self._replay(agent)
-
-    def _take(self, agent: str, steps: Sequence[StepLine]) -> list[tuple[int, dict[str, Any]]]:
-        taken = []
+    def _take(self, agent: str, steps: Sequence[StepLine]) -> None:
         for step in steps:
-            self._latest[agent] = advice = self.session.answer(step)
-            taken.append((state_after(self.session.world, step), advice))
+            self._latest[agent] = self.session.answer(step)
         self._known[agent] = self._known.get(agent, 0) + len(steps)
-        return taken
 
-    def _replay(self, agent: str) -> list[tuple[int, dict[str, Any]]]:
+    def _replay(self, agent: str) -> None:
         """Take in the stored steps of an agent who has not been seen since the desk was opened."""
         if agent in self._known:
-            return []
+            return
         self.session.forget(agent)
         self._known[agent], self._latest[agent] = 0, None
         record = self._memory.recall(STEPS, self._key(agent), VERSION)
-        if record is None or not record.slots.size or record.about["id"] != self.id:
-            return []
-        return self._take(agent, [self._step_of(agent, value) for value in record.values.tolist()])
+        if record is not None and record.slots.size and record.about["id"] == self.id:
+            self._take(agent, [self._step_of(agent, value) for value in record.values.tolist()])
 
     def _store(self, agent: str, number: int, steps: Sequence[StepLine]) -> bool:
         values = np.array([self._value_of(step) for step in steps], np.int64)
