@@ -169,7 +169,7 @@ class Walk:
             ``shape`` (rows, columns), ``goal`` (name of the place to find), ``shortest`` (moves), ``steps``;
             ``at``, the person's cell (row, column); ``open``, names of the moves that lead on; ``seen``, (row,
             column, bits) of the cells in sight, where bit k is set if the move k leads on; ``places`` in sight:
-            {"name", "at"}; ``reached``; ``advise``, ``theta`` (probability of each move; None where no expert was),
+            {"name", "at"}; ``reached``; ``advise``, ``theta`` (of each move; None where no expert was),
             ``p_normal``, ``gain`` and ``kappa`` in nats.
         """
         building, world, advice = self.building, self.building.world, self._advice
