@@ -1,8 +1,8 @@
 """Whatever a person may get wrong: exit 2, one line that names what was wrong, and nothing lost.
 
 Each case is a command and what its line must say. `{new}` is a memory not yet there, `{known}` one of two tasks,
-`{text}` a text file, `{folder}` a folder with the one cloud that `{truth}` speaks of, `{map}` a sound map of a
-small room, `{cloud}` a labelled cloud, `{bag}` a rosbag that is not called one.
+`{text}` a text file, `{folder}` an empty folder, `{map}` a sound map of a small room, `{cloud}` a labelled cloud,
+`{bag}` a rosbag that is not called one.
 """
 
 import os
@@ -144,17 +144,11 @@ PLACES = {
     "memory merge missing.db --memory {known}": "does not exist",
 }
 LOOK = "perceive {cloud} --up z"
-LEARN = "learn-relations {folder} --truth {truth}"
 SCENES = {
     f"{LOOK} --model nobody --memory {{known}}": "memory has no relation model 'nobody': it has none",
     f"{LOOK} --model nobody --memory {{damaged}}": "is damaged",
     f"{LOOK} --dot {{cloud}}": "would be overwritten",
     "perceive {bag}": "is a rosbag, not a cloud",
-    f"{LEARN} --out {{folder}}/m.foo": "out must end in .npz",
-    f"{LEARN} --name m.npz": "name must not end in .npz",
-    f"{LEARN} --labels odd": "labels must be one of",
-    f"{LEARN} --units feet --memory {{new}}": "units must be m, cm, mm or inch",
-    f"{LEARN} --up 1,2": "up must be three finite numbers",
 }
 CASES = ASKED_WRONGLY | NUMBERS | NAMES | MAPS | PLACES | SCENES
 
@@ -173,7 +167,7 @@ def make_things(folder: Path, two_tasks: Path) -> dict[str, Path]:
         name: folder / f"{name}{ending}"
         for ending, names in {
             ".txt": ["text"], "": ["folder"], ".db": ["new", "known", "foreign", "damaged", "newer"],
-            ".yaml": ["map", "broken", "imageless", "spoilt", "walled"], ".npz": ["cloud"], ".csv": ["truth"],
+            ".yaml": ["map", "broken", "imageless", "spoilt", "walled"], ".npz": ["cloud"],
             ".dat": ["bag"],
         }.items()
         for name in names
@@ -193,8 +187,6 @@ def make_things(folder: Path, two_tasks: Path) -> dict[str, Path]:
         room(things[name], 0)
     room(things["walled"], 1)
     np.savez(things["cloud"], points=np.eye(3), labels=np.array([2, 2, 3]))
-    shutil.copy(things["cloud"], things["folder"])
-    things["truth"].write_text("scene,a,b,relation,confidence\ncloud,2,3,on,3\n")
     things["bag"].write_bytes(b"#ROSBAG V2.0\n")
     things["broken"].write_text("image: [map.pgm\n")
     things["imageless"].write_text(things["map"].read_text().replace("map.pgm", "gone.pgm"))

@@ -15,8 +15,6 @@ import threading
 import time
 import zlib
 from collections.abc import Mapping, Sequence
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -85,7 +83,7 @@ class AdviceDesk:
         InputError
             A step breaks its rule, or steps before `number` are missing; nothing is stored.
         """
-        lines = (json.dumps({"agent": agent, **step}) for step in steps)
+        lines = ({"agent": agent, **step} for step in steps)
         read = list(read_steps(lines, self.session.world, "steps", self.session.classes))
         if not read:
             raise InputError("steps must hold at least one step, got none")
@@ -196,11 +194,8 @@ def _session(document: Mapping[str, Any], maps: Mapping[str, str]) -> AdviceSess
     if cell is not None and not SMALLEST_CELL <= cell <= LARGEST_CELL:
         raise InputError(f"cell must lie in [{SMALLEST_CELL}, {LARGEST_CELL}] metres, got {cell:g}")
     options["world"] = _world(options["world"], maps)
-    with TemporaryDirectory() as folder:
-        options["experts"] = _lines(folder, "experts", document["experts"])
-        if document.get("goals"):
-            options["goals"] = _lines(folder, "goals", [{"state": state} for state in document["goals"]])
-        return AdviceSession(AdviseSettings(**options))
+    goals = [{"state": state} for state in document.get("goals") or ()] or None
+    return AdviceSession(AdviseSettings(experts=document["experts"], goals=goals, **options))
 
 
 def _world(name: str, maps: Mapping[str, str]) -> str:
@@ -211,12 +206,6 @@ def _world(name: str, maps: Mapping[str, str]) -> str:
         served = ", ".join(sorted(maps)) or "none"
         raise NotFoundError(f"world must be a map that is served, or NAME:SEED such as advice:3; maps: {served}")
     return name
-
-
-def _lines(folder: str, name: str, rows: Sequence[Mapping[str, Any]]) -> str:
-    path = Path(folder) / name
-    path.write_text("".join(json.dumps(row) + "\n" for row in rows), encoding="utf-8")
-    return str(path)
 
 
 def _digest(agent: str) -> str:
