@@ -29,6 +29,7 @@ FLAGS = [
     "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage", "--use-gl=angle",
     "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
 ]  # fmt: skip
+PICTURES = Path(os.environ["LIFELORE_PICTURES"]).absolute() if os.environ.get("LIFELORE_PICTURES") else None
 MOST_BYTES = 300_000
 """Bytes of the largest picture of the documentation."""
 DESKTOP, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
@@ -108,7 +109,7 @@ def check_page(tmp_path: Path) -> Callable[..., None]:
 
     `LIFELORE_PICTURES=docs/pictures python -m pytest tests/app/pages` makes the pictures again.
     """
-    folder = Path(os.environ.get("LIFELORE_PICTURES") or tmp_path).absolute()
+    folder = PICTURES or tmp_path
 
     def check_page(page: Page, picture: str | None = None, height: int = 0) -> None:
         wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
