@@ -1,5 +1,6 @@
 """`lifelore doctor --warm`: what it promises about the kernels of the verbs, and what it refuses."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -15,10 +16,13 @@ from lifelore.core.compiled.kernel_cache import cache_folder
 JIT_OFF = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 
 
-def shell(*arguments: object, **environment: str) -> subprocess.CompletedProcess:
-    """A process of its own, so that only kernels on disk are at hand."""
-    command = [sys.executable, "-m", "lifelore.app.command_line", *map(str, arguments)]
-    return subprocess.run(command, env=os.environ | environment, capture_output=True, text=True, check=False)
+VERBS = """
+import json, sys
+from lifelore.app.command_line import run
+for arguments in json.loads(sys.argv[1]):
+    assert run(arguments) == 0, arguments
+"""
+"""Runs verbs in a process of its own, so that only kernels on disk are at hand."""
 
 
 def compiled(folder: Path) -> set[Path]:
@@ -41,28 +45,18 @@ def test_after_the_warm_up_verbs_compile_nothing(ask, tmp_path):
     np.savez(tmp_path / "cloud.npz", points=points, labels=np.repeat([1, 2], [4000, 900]))
     log = "user,policy,outcome\n" + "".join(f"u{i % 5},p{i % 3},{random.random()}\n" for i in range(60))
     (tmp_path / "log.csv").write_text(log)
-    for arguments in (
-        ("live", "--seed", 9, "--tasks", 2, "--agent", "all", "--memory", tmp_path / "m.db"),
-        (
-            "live",
-            "--domain",
-            "noise",
-            "--set",
-            "learner=q",
-            "--set",
-            "episodes=5",
-            "--tasks",
-            1,
-            "--memory",
-            tmp_path / "q.db",
-        ),
-        ("perceive", tmp_path / "cloud.npz", "--json"),
-        ("reuse", "fit", tmp_path / "log.csv", "--memory", tmp_path / "r.db"),
-        ("reuse", "choose", "--user", "ann", "--memory", tmp_path / "r.db"),
-    ):
-        done = shell(*arguments, NUMBA_CACHE_DIR=str(tmp_path / "cache"))
-        assert done.returncode == 0, done.stderr
-        assert compiled(folder) == before, arguments
+    q_learning = ("--domain", "noise", "--set", "learner=q", "--set", "episodes=5")
+    verbs = (
+        ("live", "--seed", "9", "--tasks", "2", "--agent", "all", "--memory", "m.db"),
+        ("live", *q_learning, "--tasks", "1", "--memory", "q.db"),
+        ("perceive", "cloud.npz", "--json"),
+        ("reuse", "fit", "log.csv", "--memory", "r.db"),
+        ("reuse", "choose", "--user", "ann", "--memory", "r.db"),
+    )
+    command = [sys.executable, "-c", VERBS, json.dumps(verbs)]
+    environment = os.environ | {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, check=True)
+    assert compiled(folder) == before
 
 
 WARMED_BY_NO_KERNEL = """

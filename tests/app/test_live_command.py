@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from lifelore.agent.long_lived.long_life import live_long
-from lifelore.app.live_command import OPTIONS, setting_keys
+from lifelore.app.live_command import setting_keys
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.domains.buildings.office import office_map
 from lifelore.memory import open_memory
@@ -116,21 +116,6 @@ def test_the_contract(options, names, ask, tmp_path):
     assert life["seconds"] > 0
 
 
-def test_settings_in_the_report_are_those_that_were_told(ask, tmp_path):
-    told = {
-        "domain": "noise", "tasks": 1, "destinations": 3, "learner": "q", "prior": "state", "agent": "lore",
-        "robot": "rosie", "episodes": 20, "max_steps": 50, "seed": 9, "jobs": 1, "density": 0.6,
-        "discount": 0.9, "goal_reward": 50.0, "wall_reward": -2.0, "alpha0": 0.5, "weight": 2.0,
-        "form": "softmax", "ties": "prior", "learning_rate": 0.3, "epsilon": 0.8, "epsilon_decay": 0.9,
-        "epsilon_floor": 0.1, "sensor": "touch",
-    }  # fmt: skip
-    options = [f"--{name}={told[name]}" for name in OPTIONS if name in told]
-    options += changed(**{name: value for name, value in told.items() if name not in OPTIONS})
-    settings = ask("live", *options, "--memory", tmp_path / "life.db", "--json").document["settings"]
-    unused = dict.fromkeys(("map", "start", "cell", "robot_radius", "range"))
-    assert settings == told | unused | {"memory": str(tmp_path / "life.db"), "annealed": False}
-
-
 def test_the_report_names_the_defaults_a_building_was_made_with(ask, tmp_path):
     settings = ask("live", "--tasks", 1, "--memory", tmp_path / "life.db", "--json").document["settings"]
     assert (settings["cell"], settings["robot_radius"], settings["episodes"]) == (0.5, 0.2, 100)
@@ -143,24 +128,16 @@ def repeatable(life: dict) -> dict:
 
 
 @pytest.mark.parametrize("learner", ["model", "q"])
-def test_the_same_seed_is_the_same_life_for_any_number_of_threads(learner, ask, tmp_path):
-    lives = [
-        ask(*LATTICE, "--tasks", 3, *changed(learner=learner, episodes=60, jobs=jobs), "--memory", f"{i}.db")
-        for i, jobs in enumerate((1, 3, 1))
-    ]
-    first, *others = [repeatable(life.document) for life in lives]
-    assert others == [first, first]
+def test_the_same_seed_is_the_same_life_for_any_number_of_threads_and_in_another_process(
+    learner, ask, start, answer, tmp_path
+):
+    """Other hash seeds, other addresses: nothing of a process may enter a life."""
+    life = (*LATTICE, "--tasks", 3, *changed(learner=learner, episodes=60))
+    first = repeatable(ask(*life, "--set", "jobs=1", "--memory", "1.db").document)
+    again = answer(start(*life, "--set", "jobs=3", "--memory", "3.db"))
+    assert repeatable(again.document) == first
     other = ask(*LATTICE, "--tasks", 3, "--set", "episodes=60", "--seed", 1, "--memory", "other.db").document
     assert [task["goal"] for task in other["tasks"]] != [task["goal"] for task in first["tasks"]]
-
-
-def test_processes_repeat_a_life_too(start, answer):
-    """Other hash seeds, other addresses: nothing of a process may enter a life."""
-    children = [
-        start(*LATTICE, "--tasks", 3, "--set", f"jobs={jobs}", "--memory", f"{jobs}.db") for jobs in (1, 3)
-    ]  # fmt: skip
-    one, three = (repeatable(answer(child).document) for child in children)
-    assert one == three
 
 
 def test_a_second_life_goes_on(ask, tmp_path):

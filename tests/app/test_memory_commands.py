@@ -11,6 +11,7 @@ import pytest
 import typer
 
 from lifelore.app import reproduce_command
+from lifelore.app.command_line import run
 from lifelore.app.memory_table import print_memory
 from lifelore.core.errors import InputError
 from lifelore.memory import open_memory
@@ -18,12 +19,6 @@ from lifelore.memory import open_memory
 ROOT = Path(__file__).parents[2]
 OVERVIEW = {"location", "schema", "robots", "lore", "forgotten", "forgotten_records", "buildings"}
 REPORT = {"lifelore", "python", "system", "cores", "packages", "checks"}
-
-
-def lived(ask, memory: Path, robot: str, tasks: int, seed: int) -> Path:
-    options = ("--domain", "lattice", "--tasks", tasks, "--robot", robot, "--seed", seed, "--memory", memory)
-    assert ask("live", *options).status == 0
-    return memory
 
 
 def recalls(path: Path) -> dict:
@@ -46,87 +41,53 @@ def robots(path: Path) -> dict[str, int]:
         return {robot: memory.tasks(robot) for robot in memory.robots()}
 
 
-def test_what_is_exported_here_is_known_there(ask, tmp_path):
-    home = lived(ask, tmp_path / "home.db", "rosie", 3, 1)
-    away = lived(ask, tmp_path / "away.db", "wally", 2, 2)
-    file = tmp_path / "home.lore"
-    assert ask("memory", "export", file, "--memory", home, "--json").document == {
-        "exported": 3, "file": str(file)
-    }  # fmt: skip
-    assert recalls(file) == recalls(home) != recalls(away)
-    new = tmp_path / "new.db"
-    counts = {"added": 3, "already_there": 0, "forgotten": 0}
-    assert ask("memory", "import", file, "--memory", new, "--json").document == counts
-    assert recalls(new) == recalls(home)
-    assert ask("memory", "import", file, "--memory", away, "--json").document == counts
-    # Once more changes nothing, and merging the other way round ends at the same lore.
-    again = ask("memory", "import", file, "--memory", away, "--json").document
-    assert again == {"added": 0, "already_there": 3, "forgotten": 0}
-    merged = ask("memory", "merge", away, "--memory", home, "--json").document
-    assert merged == {"added": 2, "already_there": 3, "forgotten": 0}
-    assert recalls(home) == recalls(away)
-    assert robots(home) == robots(away) == {"rosie": 3, "wally": 2}
-
-
-def test_several_memories_come_in_at_once(ask, tmp_path):
+@pytest.fixture(scope="module")
+def homes(tmp_path_factory) -> Path:
+    """A folder with the memories of two robots, of two and three tasks; read only."""
+    folder = tmp_path_factory.mktemp("homes")
     for seed, robot in enumerate(("rosie", "wally")):
-        lived(ask, tmp_path / f"{robot}.db", robot, 2 + seed, seed)
-    both = ask("memory", "merge", "rosie.db", "wally.db", "--memory", "both.db", "--json").document
+        options = ["--tasks", str(2 + seed), "--robot", robot, "--seed", str(seed)]
+        assert run(["live", "--domain", "lattice", *options, "--memory", str(folder / f"{robot}.db")]) == 0
+    return folder
+
+
+def test_what_is_exported_here_is_known_there(ask, homes, tmp_path):
+    home, file = homes / "rosie.db", tmp_path / "home.lore"
+    exported = ask("memory", "export", file, "--memory", home, "--json").document
+    assert exported == {"exported": 2, "file": str(file)}
+    counts = {"added": 2, "already_there": 0, "forgotten": 0}
+    assert ask("memory", "import", file, "--memory", "new.db", "--json").document == counts
+    assert recalls(tmp_path / "new.db") == recalls(home)
+    again = ask("memory", "import", file, "--memory", "new.db", "--json").document
+    assert again == {"added": 0, "already_there": 2, "forgotten": 0}
+
+
+def test_several_memories_come_in_at_once(ask, homes, tmp_path):
+    names = [homes / f"{robot}.db" for robot in ("rosie", "wally")]
+    both = ask("memory", "merge", *names, "--memory", "both.db", "--json").document
     assert both == {
         "added": 5, "already_there": 0, "forgotten": 0,
         "sources": [
-            {"source": str(tmp_path / "rosie.db"), "added": 2, "already_there": 0, "forgotten": 0},
-            {"source": str(tmp_path / "wally.db"), "added": 3, "already_there": 0, "forgotten": 0},
+            {"source": str(names[0]), "added": 2, "already_there": 0, "forgotten": 0},
+            {"source": str(names[1]), "added": 3, "already_there": 0, "forgotten": 0},
         ],
     }  # fmt: skip
-    said = ask("memory", "import", "rosie.db", "wally.db", "rosie.db", "--memory", "other.db").out
+    said = ask("memory", "import", *names, names[0], "--memory", "other.db").out
     assert said == "contributions: 5 added, 2 already there, 0 forgotten, from 3 memories\n"
     assert recalls(tmp_path / "other.db") == recalls(tmp_path / "both.db")
-    ask("memory", "merge", "rosie.db", "--memory", "one.db")
-    ask("memory", "merge", "wally.db", "--memory", "one.db")
-    assert recalls(tmp_path / "one.db") == recalls(tmp_path / "both.db")
+    # Who forgets forgets for good, and the tombstone travels.
+    said = ask("memory", "forget", "wally", "--memory", "both.db", "--json").document
+    assert said == {"forgotten": 3, "robot": "wally"}
+    assert recalls(tmp_path / "both.db") == recalls(names[0])
+    assert ask("memory", "merge", names[1], "--memory", "both.db", "--json").document["forgotten"] == 3
+    assert ask("memory", "merge", "both.db", "--memory", "other.db", "--json").document["forgotten"] == 3
+    assert robots(tmp_path / "other.db") == {"rosie": 2}
 
 
-def test_one_missing_memory_among_several_refuses_all(ask, tmp_path):
-    lived(ask, tmp_path / "rosie.db", "rosie", 2, 1)
-    refusal = ask("memory", "merge", "rosie.db", "nobody.db", "--memory", "both.db").refusal
+def test_one_missing_memory_among_several_refuses_all(ask, homes, tmp_path):
+    refusal = ask("memory", "merge", homes / "rosie.db", "nobody.db", "--memory", "both.db").refusal
     assert "nobody.db does not exist" in refusal
     assert robots(tmp_path / "both.db") == {}
-
-
-def test_a_life_begins_with_what_was_imported(ask, tmp_path):
-    lived(ask, tmp_path / "home.db", "rosie", 4, 1)
-    ask("memory", "export", "home.lore", "--memory", "home.db")
-    ask("memory", "import", "home.lore", "--memory", "new.db")
-    here, there = (
-        ask("live", "--domain", "lattice", "--tasks", 2, "--robot", "new", "--memory", memory, "--json").document
-        for memory in ("home.db", "new.db")
-    )
-    assert here["tasks"] == there["tasks"]
-    agents = there["tasks"][0]["agents"]
-    assert agents["lore"]["collisions"] < agents["scratch"]["collisions"]
-
-
-def test_forgetting_is_for_good(ask, tmp_path):
-    home = lived(ask, tmp_path / "home.db", "rosie", 3, 1)
-    only_rosie = recalls(home)
-    lived(ask, home, "wally", 2, 2)
-    ask("memory", "export", "both.lore", "--memory", home)
-    said = ask("memory", "forget", "wally", "--memory", home, "--json").document
-    assert said == {"forgotten": 2, "robot": "wally"}
-    assert recalls(home) == only_rosie
-    back = ask("memory", "import", "both.lore", "--memory", home, "--json").document
-    assert back == {"added": 0, "already_there": 3, "forgotten": 2}
-    assert recalls(home) == only_rosie
-    assert robots(home) == {"rosie": 3}
-    # The tombstone travels: who merges this memory forgets too.
-    ask("memory", "import", "both.lore", "--memory", "new.db")
-    assert robots(tmp_path / "new.db") == {"rosie": 3, "wally": 2}
-    assert ask("memory", "merge", home, "--memory", "new.db", "--json").document["forgotten"] == 2
-    assert recalls(tmp_path / "new.db") == only_rosie
-    # And the forgotten may start afresh.
-    lived(ask, home, "wally", 1, 3)
-    assert robots(home) == {"rosie": 3, "wally": 1}
 
 
 def test_show(ask, known):
@@ -230,9 +191,8 @@ def test_the_list_of_claims(ask):
     assert all(entry["claim"] in said.out for entry in entries)
 
 
-@pytest.mark.parametrize("name", ["C3.1", "3.1"])
-@pytest.mark.parametrize("as_json", [True, False])
-def test_a_claim_from_the_command_line(as_json, name, ask, tmp_path):
+@pytest.mark.parametrize(("name", "as_json"), [("C3.1", True), ("3.1", False)])
+def test_a_claim_from_the_command_line(name, as_json, ask, tmp_path):
     options = ("--set", "mazes=2", "--set", "tasks=3", "--out", "results", "--jobs", 1)
     said = ask("reproduce", name, *options, *(["--json"] if as_json else []))
     assert (said.status, said.err) == (0, "")

@@ -1,8 +1,8 @@
 """Whatever a person may get wrong: exit 2, one line that names what was wrong, and nothing lost.
 
 Each case is a command and what its line must say. `{new}` is a memory not yet there, `{known}` one of two tasks,
-`{text}` a text file, `{folder}` a folder with the one cloud that `{truth}` speaks of, `{map}` a sound map of a
-small room, `{cloud}` a labelled cloud, `{bag}` a rosbag that is not called one.
+`{text}` a text file, `{folder}` an empty folder, `{map}` a sound map of a small room, `{cloud}` a labelled cloud,
+`{bag}` a rosbag that is not called one.
 """
 
 import os
@@ -29,83 +29,42 @@ LONG = "x" * 300
 ASKED_WRONGLY = {
     "nonsense": "No such command 'nonsense'",
     "--nonsense": "No such option: --nonsense",
-    "live --nonsense": "No such option: --nonsense",
     "live --tasks": "--tasks",
     "live extra": "extra",
     "memory nonsense": "No such command 'nonsense'",
     "memory export": "Missing argument",
     "memory forget --memory {known}": "forget needs a robot, --source RUNS (of one robot or of all) or --building",
-    "version extra": "extra",
-    "doctor --nonsense": "--nonsense",
 }
+# A case for each setting, so that its rule is known to be asked; the rules have their own tests.
 NUMBERS = {
     f"{LATTICE} --tasks x": "'--tasks'",
-    f"{LATTICE} --tasks 1.5": "'--tasks'",
-    f"{LATTICE} --tasks nan": "'--tasks'",
     f"{LATTICE} --tasks 0": "tasks must be a whole number from 1 to 1,000,000, got 0",
-    f"{LATTICE} --tasks -3": "got -3",
     f"{LATTICE} --tasks {10**24}": "tasks must be",
     f"{LATTICE} --seed x": "'--seed'",
     f"{LATTICE} --set jobs=0": "jobs must be",
-    f"{LATTICE} --set jobs=100000": "jobs must be",
-    f"{LATTICE} --set episodes=0": "episodes must be",
     f"{LATTICE} --set episodes={10**10}": "episodes must be",
     f"{LATTICE} --set max_steps=0": "max_steps must be",
-    f"{LATTICE} --set max_steps={10**20}": "max_steps must be",
-    f"{LATTICE} --set destinations=-1": "destinations must be",
     f"{LATTICE} --set destinations=342": "at most the 341 free places",
-    f"{LATTICE} --set destinations={10**12}": "destinations must be",
     f"{LATTICE} --set discount=x": "discount must be a number, got 'x'",
     f"{LATTICE} --set discount=nan": "discount must",
-    f"{LATTICE} --set discount=1": "discount must lie in (0, 1)",
-    f"{LATTICE} --set discount=-0.1": "discount must lie in (0, 1)",
-    f"{LATTICE} --set discount=0 --set start=1,1": "discount",
     f"{Q} --set discount=0 --set start=1,1": "discount",
-    f"{LATTICE} --set goal_reward=nan": "goal_reward must be",
     f"{LATTICE} --set goal_reward=inf": "goal_reward must be",
-    f"{LATTICE} --set goal_reward=0": "goal_reward must be",
-    f"{LATTICE} --set goal_reward=1e300": "goal_reward must be",
     f"{Q} --set goal_reward=1e300": "goal_reward must be",
     f"{LATTICE} --set wall_reward=nan": "wall_reward must be",
-    f"{LATTICE} --set wall_reward=-inf": "wall_reward must be",
-    f"{LATTICE} --set wall_reward=-1e300": "wall_reward must be",
-    f"{Q} --set wall_reward=1e300": "wall_reward must be",
-    f"{LATTICE} --set alpha0=nan": "alpha0 must be",
-    f"{LATTICE} --set alpha0=inf": "alpha0 must be",
     f"{LATTICE} --set alpha0=0": "alpha0 must be",
-    f"{LATTICE} --set alpha0=-1": "alpha0 must be",
-    f"{LATTICE} --set alpha0=1e308": "alpha0 must be",
-    f"{LATTICE} --set prior=none --set alpha0=nan --json": "alpha0 must be",
-    f"{LATTICE} --set weight=nan": "weight must lie in",
     f"{LATTICE} --set weight=-1": "weight must",
-    f"{LATTICE} --set weight=1e300": "weight must",
     f"{LATTICE} --set density=0.5": "density",
-    f"{BUILDING} --set density=0.5": "density",
-    f"{NOISE} --set density=nan": "density must",
     f"{NOISE} --set density=1.5": "density must",
-    f"{NOISE} --set density=-0.1": "density must",
     f"{NOISE} --set density=0.999": "obstacles",
-    f"{Q} --set epsilon=nan": "epsilon must lie in [0, 1]",
-    f"{Q} --set epsilon=-0.1": "epsilon must lie in [0, 1]",
     f"{Q} --set epsilon_decay=2": "epsilon_decay must lie in [0, 1]",
     f"{Q} --set epsilon_floor=inf": "epsilon_floor must lie in [0, 1]",
-    f"{Q} --set learning_rate=nan": "learning_rate must lie in [0, 1]",
     # The same for settings that this life has no use for: they would stand in its report.
-    f"{LATTICE} --set epsilon=nan --json": "epsilon must lie in [0, 1]",
     f"{LATTICE} --set epsilon=7 --json": "epsilon must lie in [0, 1]",
     f"{LATTICE} --set learning_rate=inf --json": "learning_rate must lie in [0, 1]",
     f"{LATTICE} --set cell=nan --json": "cell must be",
-    f"{LATTICE} --set robot_radius=inf --json": "robot_radius must be",
-    f"{BUILDING} --set cell=nan": "cell must",
-    f"{BUILDING} --set cell=inf": "cell must",
-    f"{BUILDING} --set cell=0": "cell must",
-    f"{BUILDING} --set cell=-1": "cell must",
     f"{BUILDING} --set cell=1e-300": "cell must",
-    f"{BUILDING} --set cell=1e300": "cell must",
     f"{BUILDING} --set cell=100": "only one cell",
-    f"{BUILDING} --set robot_radius=nan": "robot_radius must",
     f"{BUILDING} --set robot_radius=-0.1": "robot_radius must",
-    f"{BUILDING} --set robot_radius=1e9": "robot_radius must",
     f"{BUILDING} --set robot_radius=50": "no free cell is left",
 }
 NAMES = {
@@ -116,19 +75,12 @@ NAMES = {
     f"{LATTICE} --set prior=feelings": "prior must be one of observation, state, none",
     f"{LATTICE} --set form=triangle": "form must be one of proportion",
     f"{LATTICE} --set ties=last": "ties must be one of uniform, prior",
-    f"{LATTICE} --robot ''": "robot must",
-    f"{LATTICE} --robot '   '": "robot must",
-    f"{LATTICE} --robot {LONG}": "robot must",
     f"{LATTICE} --robot 'two\nlines'": "robot must",
     f"{LATTICE} --set start=0,0": "start must be a free cell ROW,COL of this world (23 rows, 23 columns), got 0,0",
-    f"{LATTICE} --set start=-1,-1": "start must be a free cell",
     f"{LATTICE} --set start={10**20},1": "start must be a free cell",
     f"{LATTICE} --goal 0,0": "the nearest free cell is 1,1",
     f"{LATTICE} --goal dock": "goal must be ROW,COL",
     f"{LATTICE} --set start=3": "start must be ROW,COL",
-    f"{LATTICE} --set start=1,2,3": "start must be ROW,COL",
-    f"{LATTICE} --set start=a,b": "start must be ROW,COL",
-    f"{LATTICE} --set start=nan,1": "start must be ROW,COL",
     "memory forget nobody --memory {known}": "robot 'nobody' has contributed nothing here; known robots: robot",
     "memory forget --source none.csv --memory {known}": "has taught nothing here; known sources: none",
     "reproduce C9.9": "no claim or figure 'C9.9'",
@@ -145,12 +97,9 @@ NAMES = {
 MAPS = {
     f"{LATTICE} --map {{map}}": "map does not apply to domain",
     f"{BUILDING} --map missing.yaml": "no such file: missing.yaml",
-    f"{BUILDING} --map ''": "no such file",
-    f"{BUILDING} --map {{folder}}": "no such file",
     f"{BUILDING} --map {LONG}": "no such file",
     f"{BUILDING} --map {{text}}": "is not a map YAML",
     f"{BUILDING} --map {{broken}}": "is not YAML",
-    f"{BUILDING} --map {{known}}": "map: ",
     f"{BUILDING} --map {{imageless}}": "image 'gone.pgm' not found",
     f"{BUILDING} --map {{spoilt}}": "it is damaged or no image",
     f"{BUILDING} --map {{walled}}": "no free cell is left",
@@ -171,67 +120,35 @@ PLACES = {
     "memory nav2 {map} --memory {known} --out {folder}": "memory knows no place of the map",
     f"{LATTICE} --out ''": "out must name a folder",
     f"{LATTICE} --out {{text}}": "out must name a folder",
-    f"{LATTICE} --out {{text}}/below": "out must name a folder",
     f"{LATTICE} --out /proc/nowhere": "cannot write into /proc/nowhere",
-    f"{LATTICE} --out {LONG}": "cannot write into",
     f"{LATTICE} --memory ''": "memory must name a file",
     f"{LATTICE} --memory {{text}}": "is not a Lifelore memory",
-    f"{LATTICE} --memory {{folder}}": "is a folder",
     f"{LATTICE} --memory {{foreign}}": "belongs to another program",
     f"{LATTICE} --memory {{damaged}}": "is damaged",
     f"{LATTICE} --memory {{newer}}": "newer Lifelore",
     f"{LATTICE} --memory {{text}}/life.db": "check the path",
-    f"{LATTICE} --memory /proc/nowhere/life.db": "check the path",
     f"{LATTICE} --memory {LONG}": "memory ",
     f"{LATTICE} --memory mysql://u:secret@h/d": "memory takes a file or a postgresql:// URL, got mysql://",
-    f"{LATTICE} --memory sqlite:///life.db": "got sqlite://",
     f"{LATTICE} --memory 'postgresql://u:secret@[::1/d'": "this postgresql:// URL cannot be read",
     f"{LATTICE} --memory postgresql://u:secret@127.0.0.1:1/d": "the server cannot be reached",
-    "memory show --memory {text}": "is not a Lifelore memory",
     "memory show --memory {damaged}": "is damaged",
-    "memory show --memory {newer}": "newer Lifelore",
     "memory export '' --memory {known}": "memory must name a file",
-    "memory export {folder} --memory {known}": "is a folder",
-    "memory export {text} --memory {known}": "is not a Lifelore memory",
     "memory export {known} --memory {known}": "is a memory in use",
     "memory export {foreign} --memory {known}": "belongs to another program",
-    "memory export {text}/below --memory {known}": "check the path",
     "memory export /proc/nowhere/x --memory {known}": "check the path",
     "memory export postgresql://h/d --memory {known}": "path must be a file",
     "memory import missing.db --memory {known}": "does not exist",
     "memory import {text} --memory {known}": "is not a Lifelore memory",
-    "memory import {folder} --memory {known}": "is a folder",
     "memory import {damaged} --memory {known}": "is damaged",
-    "memory import {newer} --memory {known}": "newer Lifelore",
-    "memory import {foreign} --memory {known}": "belongs to another program",
     "memory merge mysql://h/d --memory {known}": "got mysql://",
     "memory merge missing.db --memory {known}": "does not exist",
 }
 LOOK = "perceive {cloud} --up z"
-LEARN = "learn-relations {folder} --truth {truth}"
 SCENES = {
-    f"{LOOK} --model nobody": "memory has no relation model 'nobody': there is no memory at",
-    f"{LOOK} --model nobody --memory {{new}}": "memory has no relation model 'nobody': there is no memory at",
-    f"{LOOK} --model nobody --memory {{folder}}/below/m.db": "there is no memory at",
-    f"{LOOK} --model nobody --memory {LONG}": "there is no memory at",
     f"{LOOK} --model nobody --memory {{known}}": "memory has no relation model 'nobody': it has none",
     f"{LOOK} --model nobody --memory {{damaged}}": "is damaged",
-    f"{LOOK} --model nobody --memory {{foreign}}": "belongs to another program",
-    f"{LOOK} --memory {{known}}": "leave memory out",
-    f"{LOOK} --topic /camera": "topic and index choose a cloud of a rosbag",
-    f"{LOOK} --index 1": "topic and index choose a cloud of a rosbag",
-    f"{LOOK} --colours 4": "colours belongs to --segment colour",
-    f"{LOOK} --segment clusters": "needs a cloud without labels",
-    f"{LOOK} --plot {{folder}}/scene.svg": "plot must name a PNG file",
     f"{LOOK} --dot {{cloud}}": "would be overwritten",
-    f"{LOOK} --pddl {{folder}}/a --dot {{folder}}/a-domain.pddl": "would be overwritten",
     "perceive {bag}": "is a rosbag, not a cloud",
-    f"{LEARN} --out {{folder}}/m.foo": "out must end in .npz",
-    f"{LEARN} --name m.npz": "name must not end in .npz",
-    f"{LEARN} --labels odd": "labels must be one of",
-    f"{LEARN} --units feet --memory {{new}}": "units must be m, cm, mm or inch",
-    f"{LEARN} --up 1,2": "up must be three finite numbers",
-    f"{LEARN} --up 1,2,x": "up must be table, z or X,Y,Z",
 }
 CASES = ASKED_WRONGLY | NUMBERS | NAMES | MAPS | PLACES | SCENES
 
@@ -250,7 +167,7 @@ def make_things(folder: Path, two_tasks: Path) -> dict[str, Path]:
         name: folder / f"{name}{ending}"
         for ending, names in {
             ".txt": ["text"], "": ["folder"], ".db": ["new", "known", "foreign", "damaged", "newer"],
-            ".yaml": ["map", "broken", "imageless", "spoilt", "walled"], ".npz": ["cloud"], ".csv": ["truth"],
+            ".yaml": ["map", "broken", "imageless", "spoilt", "walled"], ".npz": ["cloud"],
             ".dat": ["bag"],
         }.items()
         for name in names
@@ -270,8 +187,6 @@ def make_things(folder: Path, two_tasks: Path) -> dict[str, Path]:
         room(things[name], 0)
     room(things["walled"], 1)
     np.savez(things["cloud"], points=np.eye(3), labels=np.array([2, 2, 3]))
-    shutil.copy(things["cloud"], things["folder"])
-    things["truth"].write_text("scene,a,b,relation,confidence\ncloud,2,3,on,3\n")
     things["bag"].write_bytes(b"#ROSBAG V2.0\n")
     things["broken"].write_text("image: [map.pgm\n")
     things["imageless"].write_text(things["map"].read_text().replace("map.pgm", "gone.pgm"))
@@ -303,11 +218,6 @@ def test_the_cases_name_only_what_is_made(things):
     assert named <= set(things)
     with open_memory(things["known"]) as memory:
         assert (memory.tasks("robot"), memory.check()) == (2, [])
-
-
-@pytest.mark.parametrize("case", ["--tasks nan", "--domain moon", "--set start=0,0", "--memory ''", "--agent bob"])
-def test_a_mistake_in_a_process_of_its_own(case, start, answer):
-    assert answer(start("live", "--domain", "lattice", "--json", *shlex.split(case))).refusal
 
 
 def test_odd_bytes_in_an_argument(start, answer):

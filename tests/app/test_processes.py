@@ -79,13 +79,13 @@ def test_ctrl_c_is_heard_within_a_task(start, answer, ask, tmp_path):
 
 def killed_life(start, memory: Path, seconds: float, after: int | None, wait_for_tasks) -> None:
     """Start a life and kill it: `seconds` after its start, or after there are more than `after` tasks."""
-    child = start("live", "--tasks", 1_000_000, "--set", "jobs=1", "--memory", memory)
+    child = start(*LATTICE, "--tasks", 1_000_000, "--set", "jobs=1", "--memory", memory)
     if after is not None:
         wait_for_tasks(child, memory, after + 1)
     time.sleep(seconds)
     child.kill()
     assert (child.wait(), child.stdout.read()) == (-signal.SIGKILL, "")
-    assert re.fullmatch(r"(1,890 places; about .* takes less\n)?", child.stderr.read())
+    assert re.fullmatch(r"(341 places; about .*\n)?", child.stderr.read())
 
 
 def kill_loop(start, ask, wait_for_tasks, memory: Path, kills: int, seed: int) -> None:
@@ -103,14 +103,14 @@ def kill_loop(start, ask, wait_for_tasks, memory: Path, kills: int, seed: int) -
         tasks = sound_tasks(memory)
         assert tasks > before if kill % 4 else tasks >= before
         before = tasks
-    life = ask("live", "--tasks", 2, "--memory", memory, "--json").document
+    life = ask(*LATTICE, "--tasks", 2, "--memory", memory, "--json").document
     assert life["memory"] == {"tasks_before": before, "tasks_after": before + 2}
     # No task was lived twice, none was left out, and none was stored by halves.
     assert task_indices(memory) == list(range(before + 2))
 
 
 def test_kills_lose_at_most_the_task_in_progress(start, ask, wait_for_tasks, tmp_path):
-    kill_loop(start, ask, wait_for_tasks, tmp_path / "life.db", kills=8, seed=20)
+    kill_loop(start, ask, wait_for_tasks, tmp_path / "life.db", kills=4, seed=20)
 
 
 @pytest.mark.soak
@@ -120,7 +120,7 @@ def test_soak_kills(start, ask, wait_for_tasks, tmp_path):
 
 FIXED = changed(learner="q", epsilon=0, epsilon_floor=0, episodes=60)
 """Never exploring, a Q-learner never asks the prior: what a task teaches depends on seed and task number only."""
-SHARED = 10
+SHARED = 5
 SLOTS = 2**18
 """More than there are percepts times actions."""
 
@@ -146,18 +146,13 @@ def taught(tmp_path_factory) -> list[np.ndarray]:
     return [after - before for before, after in pairwise(known)]
 
 
-@pytest.mark.parametrize("robots", [("rosie", "wally"), ("rosie", "rosie")], ids=["two robots", "one robot"])
-def test_two_lives_on_one_memory_add_up(robots, start, answer, taught, tmp_path):
+def test_two_lives_of_one_robot_add_up(start, answer, taught, tmp_path):
     """Both begin where no memory is yet. Which task is lived by whom is a matter of time; what it adds is not."""
     memory, tasks = tmp_path / "life.db", SHARED
-    children = [
-        start(*LATTICE, *FIXED, "--tasks", tasks, "--robot", robot, "--memory", memory, "--json")
-        for robot in robots
-    ]
+    children = [start(*LATTICE, *FIXED, "--tasks", tasks, "--memory", memory, "--json") for _ in range(2)]
     lives = [answer(child) for child in children]
     assert [(life.status, life.err) for life in lives] == [(0, ""), (0, "")]
-    for robot in set(robots):
-        assert sound_tasks(memory, robot) == tasks * robots.count(robot)
+    assert sound_tasks(memory) == 2 * tasks
     lived = [task["index"] for life in lives for task in life.document["tasks"]]
     assert len(lived) == 2 * tasks
     expected = sum(taught[index] for index in lived)
@@ -169,16 +164,16 @@ def test_two_lives_that_remember_everything(start, answer, tmp_path):
     """The whole agent; memory is the sum of its robots, and one's part is what forgetting the other leaves."""
     memory = tmp_path / "life.db"
     robots = ("rosie", "wally")
-    options = ("--tasks", 30, "--memory", memory, "--json", "--robot")
+    options = ("--tasks", 8, "--memory", memory, "--json", "--robot")
     children = [start(*LATTICE, *options, robot) for robot in robots]
     assert [answer(child).status for child in children] == [0, 0]
     parts = []
     for robot in robots:
-        assert sound_tasks(memory, robot) == 30
+        assert sound_tasks(memory, robot) == 8
         part = tmp_path / f"without-{robot}.db"
         with open_memory(part) as other:
-            assert other.merge_from(memory) == {"added": 60, "already_there": 0, "forgotten": 0}
-            assert other.forget(robot) == 30
+            assert other.merge_from(memory) == {"added": 16, "already_there": 0, "forgotten": 0}
+            assert other.forget(robot) == 8
         parts.append(prior_counts(part))
     assert all(part.sum() > 0 for part in parts)
     assert np.array_equal(prior_counts(memory), sum(parts))

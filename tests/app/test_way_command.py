@@ -7,24 +7,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lifelore.app.command_line import run
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 
 JOBS = "time,name,x,y\n10:00,lab,5.05,3.05\n09:00,dock,0.55,0.55\n11:00,lab,,\n"
 
 
-@pytest.fixture
-def lived(ask, tmp_path: Path) -> list[object]:
+@pytest.fixture(scope="module")
+def lived(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     """Options that name a room of 6 x 4 m and the memory of a life there."""
+    folder = tmp_path_factory.mktemp("room")
     state = np.zeros((42, 62), np.uint8)
     state[[0, -1], :] = state[:, [0, -1]] = 1
-    write_occupancy_map(tmp_path / "room.yaml", OccupancyMap(state, 0.1))
-    (tmp_path / "jobs.csv").write_text(JOBS)
-    options = ["--map", tmp_path / "room.yaml", "--memory", tmp_path / "life.db"]
-    assert ask("live", *options, "--tasks", 4).status == 0  # searches, which see the whole room
-    said = ask("live", *options, "--goals", "jobs.csv")
-    assert (said.status, said.err) == (0, "")
-    assert re.search(r"09:00\S* dock 0\.55,0\.55: driven", said.out)
-    assert re.search(r"11:00\S* lab 5\.05,3\.05: driven", said.out)
+    write_occupancy_map(folder / "room.yaml", OccupancyMap(state, 0.1))
+    (folder / "jobs.csv").write_text(JOBS)
+    options = ["--map", str(folder / "room.yaml"), "--memory", str(folder / "life.db")]
+    assert run(["live", *options, "--tasks", "4"]) == 0  # searches, which see the whole room
+    assert run(["live", *options, "--goals", str(folder / "jobs.csv")]) == 0
     return options
 
 

@@ -1,7 +1,8 @@
-"""C4.14: sessions of people in a memory, and of scripted players. Thesis: §4.8.5.2, Figures 4.18 to 4.20.
+"""C4.14: recorded sessions of people, and of scripted players. Thesis: §4.8.5.2, Figures 4.18 to 4.20.
 
-The memory is one that `lifelore serve` has recorded on the page /play (docs/pages.md). Fewer than three people,
-the thesis's number, are not measured.
+`python -m examples.pages.play.serve --out FILE` records people, `--set people=FILE` reads them (see `records`).
+Fewer than three people, the thesis's number, are not measured. Read in this order: `study_plan`, `ball_round`,
+`training_models`, `study_session`, `scripted_player`, `records`, `losses`.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,17 +11,25 @@ from pathlib import Path
 
 import numpy as np
 
-from lifelore.agent.play_study.round_result import RoundResult
-from lifelore.agent.play_study.scripted_player import play_next_round, scripted_others
-from lifelore.agent.play_study.study_plan import BEAT, METHODS, STATIC, TEST, TRAINING
-from lifelore.agent.play_study.study_records import SESSION, stored_results
-from lifelore.agent.play_study.study_results import losses_by_diversity, losses_by_speed, ratio_by_move
-from lifelore.agent.play_study.study_session import StudySession
-from lifelore.agent.play_study.study_settings import PERSON, PLAYERS, SCRIPTED, StudySettings
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.domains.ball_game.ball_game import SIZES
-from lifelore.memory import open_memory
+from reproduction.chapter4.c4_14_people.ball_round import column
+from reproduction.chapter4.c4_14_people.losses import losses_by_diversity, losses_by_speed, ratio_by_move
+from reproduction.chapter4.c4_14_people.records import recorded_sessions
+from reproduction.chapter4.c4_14_people.scripted_player import play_session, scripted_others
+from reproduction.chapter4.c4_14_people.study_plan import (
+    BEAT,
+    METHODS,
+    PERSON,
+    PLAYERS,
+    SCRIPTED,
+    STATIC,
+    TEST,
+    TRAINING,
+    StudySettings,
+)
+from reproduction.chapter4.c4_14_people.study_session import StudySession
 from reproduction.engine.estimates import exact_value
 
 COLUMNS = ("phase", "size", "speed", "method", "loss")
@@ -31,7 +40,7 @@ WORDS = {PERSON: "people", SCRIPTED: "scripted"}
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """One cell for each scripted session, and one for the memory of people, if the settings name it."""
+    """One cell for each scripted session, and one for the file of people, if the settings name it."""
     found: list[dict] = [{"player": SCRIPTED, "session": k} for k in range(settings["sessions"])]
     if settings["people"]:
         found.append({"player": PERSON, "changed": Path(settings["people"]).stat().st_mtime_ns})
@@ -39,7 +48,7 @@ def cells(settings: Mapping) -> list[dict]:
 
 
 def check(settings: Mapping) -> None:
-    """Refuse settings of no session, and a memory that is no file."""
+    """Refuse settings of no session, and people in no file."""
     study_settings(settings, SCRIPTED)
     if len(settings["sizes"]) < 2 or len(settings["speeds"]) < 2:
         raise InputError(
@@ -47,7 +56,7 @@ def check(settings: Mapping) -> None:
         )
     if settings["people"] and not Path(settings["people"]).is_file():
         raise NotFoundError(
-            f"people '{settings['people']}' is not a file; name a memory in which people have played"
+            f"people '{settings['people']}' is not a file; name one in which people's rounds are recorded"
         )
 
 
@@ -64,42 +73,35 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         return {"player": PERSON, "sessions": _recorded(settings)}
     number, own = cell["session"], study_settings(settings, SCRIPTED)
     others, first = scripted_others(settings["layout"]), number % len(METHODS)
-    session = StudySession(f"C4.14 {number}", own, others, first=first, seed=seed)
-    while session.next_round is not None:
-        session.accept(play_next_round(session))
+    session = play_session(StudySession(f"C4.14 {number}", own, others, first=first, seed=seed))
     return {"player": SCRIPTED, "sessions": [_summary(session.done)]}
 
 
 def _recorded(settings: Mapping) -> list[dict]:
     """The finished sessions of people at the pace, with the sizes and the speeds of the settings."""
-    own, found = study_settings(settings, PERSON), []
-    with open_memory(settings["people"]) as memory:
-        for name, _, about in memory.keys(SESSION):
-            theirs = StudySettings.from_document(about["settings"])
-            if _design(theirs) == _design(own):
-                done = stored_results(memory, name)
-                found += [_summary(done)] if len(done) == theirs.rounds else []
-    return found
+    own = _design(study_settings(settings, PERSON))
+    sessions = recorded_sessions(settings["people"])
+    return [_summary(one.rows) for one in sessions if one.finished and _design(one.settings) == own]
 
 
 def _design(settings: StudySettings) -> tuple:
     return settings.player, settings.pace, sorted(settings.sizes), sorted(settings.speeds)
 
 
-def _summary(done: Sequence[RoundResult]) -> dict:
-    firsts: dict[int, RoundResult] = {}
-    for result in done:
-        if result.planned.method == BEAT:
-            firsts.setdefault(result.planned.block, result)
+def _summary(done: Sequence[dict]) -> dict:
+    firsts: dict[int, dict] = {}
+    for row in done:
+        if row["method"] == BEAT:
+            firsts.setdefault(row["block"], row)
     return {
-        "rounds": [[result.row[name] for name in COLUMNS] for result in done],
+        "rounds": [[row[name] for name in COLUMNS] for row in done],
         "named": [
             {
-                "size": result.planned.size,
-                "last": SIZES[int(result.column("named")[-1])],
-                "ratio": ratio_by_move(result).round(3).tolist(),
+                "size": row["size"],
+                "last": SIZES[int(column(row, "named")[-1])],
+                "ratio": ratio_by_move(row).round(3).tolist(),
             }
-            for result in firsts.values()
+            for row in firsts.values()
         ],
     }
 

@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from lifelore.app.options import AsJson, Cell, RobotRadius
+
 Option = typer.Option
 
 
@@ -47,9 +49,9 @@ def advise(
     share: Annotated[
         float | None, Option(help="Largest share of an agent's steps that are advised [0.4; thesis: 1].")
     ] = None,
-    cell: Annotated[float | None, Option(help="Side of a grid cell in metres [map: 0.5].")] = None,
-    robot_radius: Annotated[float | None, Option(help="Radius of the robot in metres [map: 0.2].")] = None,
-    as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
+    cell: Cell = None,
+    robot_radius: RobotRadius = None,
+    as_json: AsJson = False,
 ) -> None:
     """Advise agents that seem lost, step by step.
 

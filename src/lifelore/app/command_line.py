@@ -12,6 +12,7 @@ import sys
 import typer
 
 from lifelore.app.console import INTERRUPTED, print_json
+from lifelore.app.options import AsJson
 from lifelore.core.errors import LifeloreError
 
 DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -85,7 +86,7 @@ def lifelore(
 
 
 @app.command()
-def version(as_json: bool = typer.Option(False, "--json", help="One JSON document on stdout.")) -> None:
+def version(as_json: AsJson = False) -> None:
     """Print the version."""
     from lifelore import __version__
 

@@ -4,18 +4,18 @@ from typing import Annotated
 
 import typer
 
+from lifelore.app.options import AsJson, Where
+
 
 def doctor(
-    memory: Annotated[
-        str | None, typer.Option(metavar="FILE|URL", help="Memory to examine; default: your own.")
-    ] = None,
+    memory: Where = None,
     warm: Annotated[
         bool,
         typer.Option(
             "--warm", help="Compile the kernels of live, perceive and reuse now instead of at their first use."
         ),
     ] = False,
-    as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
+    as_json: AsJson = False,
 ) -> int:
     """Examine the installation and a memory.
 
@@ -54,13 +54,12 @@ def _print(report: dict) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    console = Console()
+    console = Console(highlight=False)
     console.print(
-        f"lifelore {report['lifelore']}, Python {report['python']}, {report['cores']} cores, {report['system']}",
-        highlight=False,
+        f"lifelore {report['lifelore']}, Python {report['python']}, {report['cores']} cores, {report['system']}"
     )
     always = [f"{one['name']} {one['version'] or 'missing'}" for one in report["packages"] if not one["extra"]]
-    console.print(", ".join(always), highlight=False)
+    console.print(", ".join(always))
     optional = [entry for entry in report["packages"] if entry["extra"]]
     extras = Table("extra", "here", "needed for")
     for entry in optional:
@@ -69,6 +68,6 @@ def _print(report: dict) -> None:
     if missing := sorted(entry["extra"] for entry in optional if not entry["version"]):
         console.print(f"For what is missing: pip install 'lifelore[{','.join(missing)}]'", markup=False)
     for entry in report["checks"]:
-        console.print(f"{'ok  ' if entry['ok'] else 'BAD '} {entry['what']}: {entry['finding']}", highlight=False)
+        console.print(f"{'ok  ' if entry['ok'] else 'BAD '} {entry['what']}: {entry['finding']}")
         if entry["advice"]:
-            console.print(f"     To repair it: {entry['advice']}", highlight=False)
+            console.print(f"     To repair it: {entry['advice']}")

@@ -4,6 +4,8 @@ from typing import Annotated
 
 import typer
 
+from lifelore.app.options import AsJson, Building, Cell, Robot, RobotRadius, Where
+
 Option = typer.Option
 
 
@@ -28,15 +30,13 @@ def learn_from(
     out: Annotated[
         str | None, Option(metavar="DIR", help="Folder for nav2's masks and route graph of all that is known.")
     ] = None,
-    cell: Annotated[float | None, Option(help="Side of a grid cell in metres [0.5].")] = None,
-    robot_radius: Annotated[float | None, Option(help="Radius of the robot in metres [0.2].")] = None,
+    cell: Cell = None,
+    robot_radius: RobotRadius = None,
     weight: Annotated[float, Option(help="Weight w(π) of a run by a robot that makes no detours.")] = 1.0,
-    building: Annotated[str | None, Option(help="Name of the building; default: recognise it.")] = None,
-    robot: Annotated[str, Option(help="Name of the robot in memory.")] = "robot",
-    memory: Annotated[
-        str | None, Option(metavar="FILE|URL", help="Memory: SQLite file or postgresql:// URL; default: your own.")
-    ] = None,
-    as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
+    building: Building = None,
+    robot: Robot = "robot",
+    memory: Where = None,
+    as_json: AsJson = False,
 ) -> None:
     """Learn moves and a prior from runs of a real robot.
 

@@ -5,6 +5,8 @@ from typing import Annotated
 
 import typer
 
+from lifelore.app.options import AsJson, Labels, Units
+
 Option = typer.Option
 
 
@@ -45,8 +47,8 @@ def learn_relations(
             " Default: inferred from the labels.",
         ),
     ] = None,
-    labels: Annotated[str, Option(help="Label field: plain ids, parts (20–29 are one object), or auto.")] = "auto",
-    units: Annotated[str, Option(help="Unit of the coordinates: m, cm, mm or inch.")] = "m",
+    labels: Labels = "auto",
+    units: Units = "m",
     up: Annotated[
         str | None,
         Option(
@@ -54,7 +56,7 @@ def learn_relations(
             help="Upward direction in every cloud [from planes.csv, else the table's normal].",
         ),
     ] = None,
-    as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Train a model of spatial relations on labelled scenes.
 
@@ -64,8 +66,7 @@ def learn_relations(
     from lifelore.agent.perceive.learn_relations import LearnRelationsSettings
     from lifelore.agent.perceive.learn_relations import learn_relations as learn
     from lifelore.agent.perceive.perceive import read_up
-    from lifelore.app.console import print_json, progress_bar
-    from lifelore.app.perceive_command import to_stderr
+    from lifelore.app.console import print_json, progress_bar, to_stderr
 
     upwards = None if up is None else read_up(up)
     declared = None if symmetric is None else tuple(symmetric)

@@ -23,49 +23,44 @@ LISTED = 20
 def print_life(report: dict, written: list[str]) -> None:
     """Print means of each agent over the first and last third of the tasks, then the ratios to scratch."""
     # A pipe or file has no width, and four intervals in a row need a hundred columns.
-    console = Console() if sys.stdout.isatty() else Console(width=110)
+    width = None if sys.stdout.isatty() else 110
+    console = Console(width=width)
     tasks, memory = report["tasks"], report["memory"]
     place = report["map"] or report["domain"]
     noun, verb = ("job", "driven") if report["how"] == "driven" else ("goal", "searched")
     console.print(
         f"{len(tasks)} {noun}{'s' * (len(tasks) != 1)} {verb} in {place}, {report['n_states']:,} places, "
         f"{report['seconds']:.1f} s; "
-        f"this robot has finished {memory['tasks_after']} tasks in all",
-        highlight=False,
-        soft_wrap=True,
+        f"this robot has finished {memory['tasks_after']} tasks in all"
     )
     if report["building"]:
-        console.print(_building_line(report["building"]), highlight=False, soft_wrap=True)
+        console.print(_building_line(report["building"]))
     if tasks and report["how"] == "driven":
         _print_driven(console, report)
     elif tasks:
         shown = SHOWN if report["settings"]["sensor"] == "touch" else SHOWN_BY_SIGHT
-        console.print(_thirds(report["summary"]["agents"], shown))
+        console.print(_thirds(report["summary"]["agents"], shown), soft_wrap=False)
         for name, ratios in report["summary"].items():
             if name != "agents":
-                console.print(_ratio_line(name, ratios), highlight=False, soft_wrap=True)
+                console.print(_ratio_line(name, ratios))
     for path in written:
-        console.print(f"wrote {path}", highlight=False)
+        console.print(f"wrote {path}")
 
 
 def _print_driven(console: Console, report: dict) -> None:
     """The last jobs, then means of each agent, and memory compared with the map alone."""
     if not report["settings"]["busy"]:
-        console.print(
-            "in simulation, nothing slows or blocks the robot; --set busy=true changes that", soft_wrap=True
-        )
+        console.print("in simulation, nothing slows or blocks the robot; --set busy=true changes that")
     for task in report["tasks"][-LISTED:]:
-        console.print(_job_line(task), highlight=False, soft_wrap=True)
-    console.print(_thirds(report["summary"]["agents"], SHOWN_DRIVEN))
+        console.print(_job_line(task))
+    console.print(_thirds(report["summary"]["agents"], SHOWN_DRIVEN), soft_wrap=False)
     compared = report["summary"].get("lore_vs_map_only", {}).get("all")
     if compared:
         own, other = compared["seconds"].values()
         refused, others = compared["refusals"].values()
         console.print(
             f"all jobs: {own:,.0f} s with memory, {other:,.0f} s on the map alone "
-            f"({_ratio(compared['seconds_ratio'])}); refusals {refused:,} and {others:,}",
-            highlight=False,
-            soft_wrap=True,
+            f"({_ratio(compared['seconds_ratio'])}); refusals {refused:,} and {others:,}"
         )
 
 

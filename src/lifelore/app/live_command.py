@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from lifelore.app.options import AsJson, MapFile, Where
+
 if TYPE_CHECKING:
     from lifelore.agent.live.goals.job_list import Job
     from lifelore.agent.live.life_settings import Place
@@ -29,9 +31,7 @@ def live(
             "tabletop, factory-customers, building-days."
         ),
     ] = "building",
-    map: Annotated[
-        str | None, Option(metavar="YAML", help="ROS map of the building; default: a generated office.")
-    ] = None,
+    map: MapFile = None,
     tasks: Annotated[int | None, Option(help="Tasks to live through now [30; hidden types: 20].")] = None,
     goal: Annotated[
         str | None,
@@ -54,9 +54,7 @@ def live(
     robot: Annotated[
         str, Option(help="Name of the robot in memory; processes of one name take different tasks.")
     ] = "robot",
-    memory: Annotated[
-        str | None, Option(metavar="FILE|URL", help="SQLite file or postgresql:// URL; default: your own memory.")
-    ] = None,
+    memory: Where = None,
     out: Annotated[
         str | None, Option(metavar="DIR", help="Folder for summary.json, pictures and exports.")
     ] = None,
@@ -81,7 +79,7 @@ def live(
     settings: Annotated[
         bool, Option("--settings", help="List what --set takes in this domain, and live no life.")
     ] = False,
-    as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
+    as_json: AsJson = False,
 ) -> int:
     """Live through tasks in one world and learn from each.
 

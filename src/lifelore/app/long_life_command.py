@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from lifelore.app.options import AsJson, Robot, Where
+
 if TYPE_CHECKING:
     from lifelore.app.setting_keys import SettingKeys
 
@@ -45,36 +47,29 @@ def _print_report(report: dict[str, Any], robot: str) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    console = Console()
+    console = Console(highlight=False)
     table = Table("task", "context", "first return", "last return", "best possible", "learnt by", "")
     for task in report["tasks"]:
-        returns = [f"{task[name]:.2f}" for name in ("best_return",)]
         new = ", ".join(["spare time"] * task["spare"] + ["a new type"] * task["new_type"])
         if changes := [str(episode + 1) for episode, _ in task.get("changes", [])]:
             new += f"{', ' if new else ''}another type from episode {', '.join(changes)}"
-        row = (str(task["task"]), str(task["context"]), f"{task['returns'][0]:.2f}", f"{task['returns'][-1]:.2f}")
-        table.add_row(*row, *returns, task["learnt"], new)
+        returns = (f"{value:.2f}" for value in (task["returns"][0], task["returns"][-1], task["best_return"]))
+        table.add_row(str(task["task"]), str(task["context"]), *returns, task["learnt"], new)
     console.print(table)
     for half, found in report["summary"].items():
         console.print(
             f"{half}: {found['first_episode_below_best']:.2f} points below the best possible return in first "
-            f"episodes, {found['last_episode_below_best']:.2f} in last ones; {found['new_types']} new types",
-            highlight=False,
+            f"episodes, {found['last_episode_below_best']:.2f} in last ones; {found['new_types']} new types"
         )
     if report["tasks"] and report["agent"] == "full":
-        console.print(
-            f"lifelore explain {report['tasks'][-1]['task']} --robot {robot} says why it acted so",
-            highlight=False,
-        )
+        console.print(f"lifelore explain {report['tasks'][-1]['task']} --robot {robot} says why it acted so")
 
 
 def explain(
     task: Annotated[int, typer.Argument(help="Number of the task.")],
-    robot: Annotated[str, Option(help="Name of the robot in memory.")] = "robot",
-    memory: Annotated[
-        str | None, Option(metavar="FILE|URL", help="Memory: SQLite file or postgresql:// URL; default: your own.")
-    ] = None,
-    as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
+    robot: Robot = "robot",
+    memory: Where = None,
+    as_json: AsJson = False,
 ) -> None:
     """Say why the agent acted as it did in a task.
 

@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from lifelore.app.options import AsJson, Building, Cell, RobotRadius, Where
+
 if TYPE_CHECKING:
     from lifelore.memory import Memory
 
@@ -11,9 +13,6 @@ memory = typer.Typer(
     help="Show, export, import, merge or forget memories.",
     no_args_is_help=True,
 )
-
-Where = Annotated[str | None, typer.Option("--memory", metavar="FILE|URL", help="Memory; default: your own.")]
-AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")]
 
 
 @memory.command()
@@ -51,13 +50,9 @@ def nav2(
     map: Annotated[str, typer.Argument(metavar="YAML", help="ROS map of the building.")],
     out: Annotated[str, typer.Option(metavar="DIR", help="Folder for the files.")],
     where: Where = None,
-    cell: Annotated[float | None, typer.Option(help="Side of a grid cell in metres, as in `live` [0.5].")] = None,
-    robot_radius: Annotated[
-        float | None, typer.Option(help="Radius of the robot in metres, as in `live` [0.2].")
-    ] = None,
-    building: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Name of the building; default: recognise it by its map.")
-    ] = None,
+    cell: Cell = None,
+    robot_radius: RobotRadius = None,
+    building: Building = None,
     as_json: AsJson = False,
 ) -> None:
     """Write nav2's masks and route graph of a building.

@@ -1,13 +1,13 @@
 """`lifelore perceive`: objects, contact points and spatial relations in point clouds."""
 
 import os
-import sys
 from collections.abc import Callable, Mapping
 from contextlib import nullcontext
 from typing import Annotated, Any
 
 import typer
 
+from lifelore.app.options import Labels, Units
 from lifelore.bridges.rosbag import is_bag
 
 Option = typer.Option
@@ -23,8 +23,8 @@ def perceive(
     up: Annotated[
         str, Option(metavar="table|z|X,Y,Z", help="Upward direction: the table's normal, +z, or a vector.")
     ] = "table",
-    units: Annotated[str, Option(help="Unit of the coordinates: m, cm, mm or inch.")] = "m",
-    labels: Annotated[str, Option(help="Label field: plain ids, parts (20–29 are one object), or auto.")] = "auto",
+    units: Units = "m",
+    labels: Labels = "auto",
     topic: Annotated[str | None, Option(help="Topic of a rosbag's clouds; needed if it has several.")] = None,
     index: Annotated[int | None, Option(help="Number of a rosbag's cloud, from 0 [0].")] = None,
     segment: Annotated[
@@ -137,7 +137,8 @@ def perceive(
             "--watch perceives the new clouds of a folder: leave the clouds out" if clouds else
             "give one or more clouds, or --watch FOLDER"
         )  # fmt: skip
-    _one_thread_for_matrices()
+    # Before NumPy is loaded: for matrices of three columns more threads of BLAS are slower.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     from lifelore.agent.perceive.perceive import PerceiveSettings, read_region, read_up
     from lifelore.agent.perceive.source_files import SourceFiles
 
@@ -166,99 +167,73 @@ def perceive(
         raise typer.BadParameter("--watch perceives each cloud alone: leave --poses and --register out")
     if poses is not None and register:
         raise typer.BadParameter("--register finds the poses that --poses gives: leave one of them out")
-    for cloud in [watch] if watch is not None else clouds or []:
+    for cloud in clouds or [str(watch)]:
         _check_bag_options(cloud, topic, index)
-    if watch is not None:
-        return _watched(watch, settings, files, as_json)
+    if clouds is None or not clouds:
+        return _watched(str(watch), settings, files, as_json)
 
-    def source(cloud: str):
+    def source(cloud: str) -> Any:
         return _out_of_bag(cloud, topic, index or 0, units, labels) if is_bag(cloud) else cloud
 
-    if poses is not None or register:
-        return _views(clouds or [], source, settings, files, poses, as_json)
-    if clouds and len(clouds) > 1:
+    views = poses is not None or register
+    if len(clouds) > 1 and not views:
         return _several(clouds, source, settings, files, as_json)
-    return _one(clouds[0], source, settings, files, as_json) if clouds else 0
-
-
-def _one_thread_for_matrices() -> None:
-    """Limit BLAS to one thread, before NumPy is loaded: for matrices of three columns more threads are slower."""
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-
-
-def _one(cloud: str, source: Callable[[str], Any], settings: Any, files: Files, as_json: bool) -> int:
     from lifelore.agent.perceive.perceive import perceive as look
-    from lifelore.app.console import print_json, progress_bar
+    from lifelore.agent.perceive.scene_files import SceneFiles
+    from lifelore.app.console import print_json, progress_bar, to_stderr
 
     with progress_bar("perceiving") as progress:
-        document = look(source(cloud), settings, progress=progress, notice=to_stderr, **_named(cloud, files))
-    print_json(document) if as_json else _print_scene(cloud, document, files)
+        further: dict[str, Any] = vars(SceneFiles(**files).of(clouds[0]))
+        further |= {"progress": progress, "notice": to_stderr}
+        if views:
+            from lifelore.agent.perceive.views import perceive_views
+
+            document = perceive_views(clouds, settings, poses=poses, read=source, **further)
+        else:
+            document = look(source(clouds[0]), settings, **further)
+    print_json(document) if as_json else _print_scene(clouds[0], document, files)
     return 0
 
 
 def _several(clouds: list[str], source: Callable[[str], Any], settings: Any, files: Files, as_json: bool) -> int:
     from lifelore.agent.perceive.perceive_many import perceive_many, scenes_document
-    from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
+    from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt, to_stderr
 
-    entries = []
     # Without --json each scene is printed at once; a progress bar would draw over it.
     with stop_on_interrupt() as stop, progress_bar("perceiving") if as_json else nullcontext() as progress:
-        for entry in perceive_many(
+        entries = perceive_many(
             clouds, settings, **files, read=source, stop=stop, progress=progress, notice=to_stderr
-        ):
-            entries.append(entry)
-            _print_entry(entry, files, None if as_json else _print_titled)
-    document = scenes_document(entries)
+        )
+        document = scenes_document(_printed(entry, files, as_json) for entry in entries)
     if as_json:
         print_json(document)
     return INTERRUPTED if stop.is_set() else 2 if document["failed"] else 0
 
 
-def _views(
-    clouds: list[str],
-    source: Callable[[str], Any],
-    settings: Any,
-    files: Files,
-    poses: str | None,
-    as_json: bool,
-) -> int:
-    from lifelore.agent.perceive.views import perceive_views
-    from lifelore.app.console import print_json, progress_bar
-
-    named = _named(clouds[0], files)
-    with progress_bar("perceiving") as progress:
-        document = perceive_views(
-            clouds, settings, poses=poses, read=source, progress=progress, notice=to_stderr, **named
-        )
-    print_json(document) if as_json else _print_scene(clouds[0], document, files)
-    return 0
-
-
 def _watched(folder: str, settings: Any, files: Files, as_json: bool) -> int:
     from lifelore.agent.perceive.perceive_many import perceive_folder
-    from lifelore.app.console import INTERRUPTED, print_json_line, stop_on_interrupt
+    from lifelore.app.console import INTERRUPTED, print_json_line, stop_on_interrupt, to_stderr
 
     with stop_on_interrupt() as stop:
         entries = perceive_folder(folder, settings, **files, stop=stop, notice=to_stderr)
         to_stderr(f"watching {folder} for new clouds; Ctrl-C stops")
         for entry in entries:
-            _print_entry(entry, files, None if as_json else _print_titled)
+            _printed(entry, files, as_json)
             if as_json:
                 print_json_line(entry)
     return INTERRUPTED
 
 
-def _print_entry(entry: Mapping[str, Any], files: Files, show: Callable[..., None] | None) -> None:
-    """Print a failure as one line on stderr, a scene by `show`."""
+def _printed(entry: dict[str, Any], files: Files, as_json: bool) -> dict[str, Any]:
+    """The entry, after a failure is printed as one line on stderr, and a scene as a table unless as JSON."""
+    from lifelore.app.console import to_stderr
+
     if "error" in entry:
         to_stderr(f"{entry['source']}: {entry['error']}")
-    elif show is not None:
-        show(entry["source"], entry, files)
-
-
-def _print_titled(cloud: str, document: Mapping[str, Any], files: Files) -> None:
-    print(f"{cloud}:", flush=True)
-    _print_scene(cloud, document, files)
+    elif not as_json:
+        print(f"{entry['source']}:", flush=True)
+        _print_scene(entry["source"], entry, files)
+    return entry
 
 
 def _print_scene(cloud: str, document: Mapping[str, Any], files: Files) -> None:
@@ -266,18 +241,6 @@ def _print_scene(cloud: str, document: Mapping[str, Any], files: Files) -> None:
     from lifelore.app.scene_table import print_scene
 
     print_scene(document, list(SceneFiles(**files).of(cloud).options.values()))
-
-
-def _named(cloud: str, files: Files) -> Files:
-    """The files of a cloud, with its name in theirs."""
-    from lifelore.agent.perceive.scene_files import SceneFiles
-
-    return vars(SceneFiles(**files).of(cloud))
-
-
-def to_stderr(line: str) -> None:
-    """Print a note for the user on stderr."""
-    print(f"lifelore: {line}", file=sys.stderr)
 
 
 def _cut(segment: str | None, colours: int | None):

@@ -4,6 +4,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from lifelore.app.options import AsJson, Cell, RobotRadius, Where
+
 if TYPE_CHECKING:
     from lifelore.agent.recognise import Recognition
 
@@ -19,20 +21,16 @@ def recognise(
     out: Annotated[
         str | None, Option(metavar="CSV", help="File for the job list with coordinates of the new map.")
     ] = None,
-    memory: Annotated[
-        str | None, Option(metavar="FILE|URL", help="Memory: SQLite file or postgresql:// URL; default: your own.")
-    ] = None,
+    memory: Where = None,
     old: Annotated[
         str | None, Option(metavar="OLD.yaml", help="Compare with this earlier map in place of memory.")
     ] = None,
     building: Annotated[
         str | None, Option(metavar="NAME", help="Name of the building: compare with this one, less strictly.")
     ] = None,
-    cell: Annotated[float | None, Option(help="Side of a grid cell in metres, as in `live` [0.5].")] = None,
-    robot_radius: Annotated[
-        float | None, Option(help="Radius of the robot in metres, as in `live` [0.2].")
-    ] = None,
-    as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
+    cell: Cell = None,
+    robot_radius: RobotRadius = None,
+    as_json: AsJson = False,
 ) -> None:
     """Find your waypoints in a new map.
 

@@ -1,17 +1,13 @@
 """Prints the relations of a perceived scene as a table."""
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Mapping, Sequence
 
-if TYPE_CHECKING:
-    from rich.console import Console
+from rich.console import Console
+from rich.table import Table
 
 
 def print_scene(document: Mapping, written: Sequence[str]) -> None:
     """Print the document of a perceived scene, without pairs that have relation *none*."""
-    from rich.console import Console
-    from rich.table import Table
-
     stated = [relation for relation in document["relations"] if relation["relation"] != "none"]
     table = Table("a", "relation", "b", "confidence", "gap, mm")
     for relation in stated:
@@ -19,35 +15,32 @@ def print_scene(document: Mapping, written: Sequence[str]) -> None:
         table.add_row(
             str(relation["a"]), relation["relation"], str(relation["b"]), f"{relation['confidence']:.2f}", gap
         )
-    console = Console()
+    console = Console(highlight=False, soft_wrap=True, markup=False)
     if stated:
-        console.print(table)
+        console.print(table, soft_wrap=False)
     n_objects, n_holes = len(document["objects"]), len(document["holes"])
     console.print(f"{_many(n_objects, 'object')}, {_many(n_holes, 'hole')}, {document['seconds']:.2f} s")
     hidden = [one["fact"] for one in document["unknown"] if one["reason"] == "hidden"]
     if hidden:
-        text = f"unknown, since other objects hide a part of the top: {', '.join(hidden)}"
-        console.print(text, highlight=False, soft_wrap=True)
-    if "plan" in document:
-        _print_plan(document["plan"], console)
+        console.print(f"unknown, since other objects hide a part of the top: {', '.join(hidden)}")
+    for line in _plan_lines(document["plan"]) if "plan" in document else ():
+        console.print(line)
     for warning in document["warnings"]:
-        console.print(f"warning: {warning['message']}", highlight=False, soft_wrap=True, markup=False)
+        console.print(f"warning: {warning['message']}")
     for path in written:
-        console.print(f"written: {path}", highlight=False, soft_wrap=True)
+        console.print(f"written: {path}")
 
 
-def _print_plan(plan: Mapping, console: "Console") -> None:
+def _plan_lines(plan: Mapping) -> Iterator[str]:
     if plan["reason"] is not None:
-        lines = [f"no plan: {plan['reason']}"]
+        yield f"no plan: {plan['reason']}"
     elif not plan["steps"]:
-        lines = ["no step is needed: the goal holds already"]
+        yield "no step is needed: the goal holds already"
     else:
-        lines = [f"plan with a confidence of {plan['confidence']:.2f}; places of the centres as x, y, z in m:"]
+        yield f"plan with a confidence of {plan['confidence']:.2f}; places of the centres as x, y, z in m:"
         for number, step in enumerate(plan["steps"], start=1):
             objects = ", ".join(_placed(one) for one in step["objects"])
-            lines.append(f"{number}. {step['action']} {objects}: confidence {step['confidence']:.2f}")
-    for line in lines:
-        console.print(line, highlight=False, soft_wrap=True, markup=False)
+            yield f"{number}. {step['action']} {objects}: confidence {step['confidence']:.2f}"
 
 
 def _placed(one: Mapping) -> str:

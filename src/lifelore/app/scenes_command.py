@@ -4,6 +4,8 @@ from typing import Annotated
 
 import typer
 
+from lifelore.app.options import AsJson
+
 Option = typer.Option
 
 
@@ -26,7 +28,7 @@ def scenes(
         list[str] | None, Option(metavar="FILE", help="Your own mesh in metres; may be repeated.")
     ] = None,
     jobs: Annotated[int, Option(help="Processes; the files do not depend on their number.")] = 1,
-    as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Simulate scenes of objects on a table (extra: sim).
 
@@ -35,8 +37,7 @@ def scenes(
     all scenes as relations.csv, planes.csv and gaps.csv.
     """
     from lifelore.agent.perceive.scenes import make_scenes
-    from lifelore.app.console import print_json, progress_bar
-    from lifelore.app.perceive_command import to_stderr
+    from lifelore.app.console import print_json, progress_bar, to_stderr
 
     shares = _mix(mix)
     with progress_bar("drawing") as progress:

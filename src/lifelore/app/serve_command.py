@@ -55,9 +55,9 @@ def serve(
 ) -> None:
     """Answer over HTTP, and show pages in a browser.
 
-    Use it when programs in other languages or on other machines need the memory, or to play, teach, walk and see
-    in a browser. The memory is that of the command line. Ctrl-C stops it: every answered request is stored. The
-    addresses are listed under /openapi.json.
+    Use it when programs in other languages or on other machines need the memory, or to see scenes, lives and
+    studies in a browser. The memory is that of the command line. Ctrl-C stops it: every answered request is
+    stored. The addresses are listed under /openapi.json.
     """
     from lifelore.app.console import print_json_line
     from lifelore.core.errors import InputError, MissingExtraError
@@ -75,7 +75,6 @@ def serve(
         import httptools  # noqa: F401
         import prometheus_client  # noqa: F401
         import uvicorn  # noqa: F401
-        import websockets  # noqa: F401
     except ImportError as error:
         raise MissingExtraError(
             f"serve needs {error.name}, which is not installed; pip install 'lifelore[web]'"

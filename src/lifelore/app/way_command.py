@@ -4,6 +4,8 @@ from typing import Annotated
 
 import typer
 
+from lifelore.app.options import AsJson, Building, Cell, MapFile, RobotRadius, Where
+
 Option = typer.Option
 
 
@@ -14,12 +16,8 @@ def way(
     goal: Annotated[
         str, Option("--to", metavar="X,Y|NAME", help="Destination: metres in the map's frame, or a known name.")
     ],
-    map: Annotated[
-        str | None, Option(metavar="YAML", help="ROS map of the building; default: the generated office.")
-    ] = None,
-    memory: Annotated[
-        str | None, Option(metavar="FILE|URL", help="Memory: SQLite file or postgresql:// URL; default: your own.")
-    ] = None,
+    map: MapFile = None,
+    memory: Where = None,
     csv: Annotated[
         str | None, Option("--csv", metavar="FILE", help="File for the path: x, y (metres), heading (radians).")
     ] = None,
@@ -30,26 +28,21 @@ def way(
         str | None,
         Option(metavar="TIME", help="Start by the robot's clock, 2024-05-13T08:30; default: the newest drive."),
     ] = None,
-    cell: Annotated[float | None, Option(help="Side of a grid cell in metres, as in `live` [0.5].")] = None,
-    robot_radius: Annotated[
-        float | None, Option(help="Radius of the robot in metres, as in `live` [0.2].")
-    ] = None,
+    cell: Cell = None,
+    robot_radius: RobotRadius = None,
     footprint: Annotated[
         str | None,
         Option(metavar="[[X,Y],…]", help="Outline of the robot in metres, as in nav2; default: a disc."),
     ] = None,
-    building: Annotated[
-        str | None, Option(metavar="NAME", help="Name of the building; default: recognise it by its map.")
-    ] = None,
+    building: Building = None,
     seed: Annotated[int, Option(help="Without a map: seed of the generated office.")] = 0,
-    as_json: Annotated[
-        bool, Option("--json", help="One JSON document on stdout, with the keys of nav_msgs/Path.")
-    ] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Find the quickest clear path between two places.
 
     Use it after `live` or `learn-from`. The way leads over remembered moves only, and around those that were slow
-    or refused at this time. The path keeps the robot's radius from all that the map does not show as free.
+    or refused at this time. The path keeps the robot's radius from all that the map does not show as free. The
+    document of --json has the keys of nav_msgs/Path.
     """
     from lifelore.agent.live.goals.destinations import destination_from_text
     from lifelore.agent.way import clock_from_text, write_poses

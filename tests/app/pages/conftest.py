@@ -1,12 +1,11 @@
-"""The pages in a real Chromium, served by a process of their own over a fresh memory."""
+"""The pages in a real Chromium, served by a thread of this process; a module shares one server over one memory."""
 
-import json
 import os
 import shutil
-import subprocess
-import sys
+import socket
+import threading
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 import pytest
@@ -14,7 +13,12 @@ import pytest
 pytest.importorskip("fastapi", reason="needs the extra web")
 pytest.importorskip("playwright", reason="needs the extra browser")
 
+import uvicorn
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, expect, sync_playwright
+
+from lifelore.app.pages.mount import app_with_pages
+from lifelore.app.service.settings import ServiceSettings
 
 # A page on a loaded machine may take long to draw; a passing test waits no longer than before.
 expect.set_options(timeout=60_000)
@@ -25,6 +29,9 @@ FLAGS = [
     "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage", "--use-gl=angle",
     "--use-angle=swiftshader", "--enable-unsafe-swiftshader",
 ]  # fmt: skip
+PICTURES = Path(os.environ["LIFELORE_PICTURES"]).absolute() if os.environ.get("LIFELORE_PICTURES") else None
+MOST_BYTES = 300_000
+"""Bytes of the largest picture of the documentation."""
 DESKTOP, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
 
 
@@ -41,24 +48,33 @@ def browser() -> Iterator[Browser]:
         found.close()
 
 
+@contextmanager
+def served(memory: Path, **settings: str) -> Iterator[str]:
+    """Serve the pages over a memory; their address."""
+    listening = socket.create_server(("127.0.0.1", 0))
+    app = app_with_pages(ServiceSettings(str(memory), rate=0.0, **settings))  # pyright: ignore[reportArgumentType]
+    server = uvicorn.Server(uvicorn.Config(app, log_level="error"))
+    thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
+    thread.start()
+    try:
+        yield f"http://127.0.0.1:{listening.getsockname()[1]}"
+    finally:
+        server.should_exit = True
+        thread.join()
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Pages over an empty memory that no test changes."""
+    with served(tmp_path_factory.mktemp("pages") / "m.db") as found:
+        yield found
+
+
 @pytest.fixture
-def serve_pages(tmp_path: Path) -> Iterator[Callable[..., str]]:
-    """Start `lifelore serve` with further arguments over a fresh memory; the address of its pages."""
+def serve_pages() -> Iterator[Callable[..., str]]:
+    """Serve the pages over a memory of the test's own; their address."""
     with ExitStack() as stack:
-
-        def serve_pages(*arguments: str, memory: Path | None = None) -> str:
-            where = memory or tmp_path / "pages.db"
-            command = [
-                sys.executable, "-m", "lifelore.app.command_line", "serve", "--json", "--port", "0", "--rate", "0",
-                "--memory", str(where), *arguments,
-            ]  # fmt: skip
-            log = stack.enter_context((tmp_path / "serve.log").open("w"))
-            process = stack.enter_context(subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True))
-            stack.callback(process.terminate)
-            assert process.stdout is not None
-            return json.loads(process.stdout.readline())["url"]
-
-        yield serve_pages
+        yield lambda memory, **settings: stack.enter_context(served(memory, **settings))
 
 
 @pytest.fixture
@@ -85,3 +101,24 @@ def open_page(browser: Browser) -> Iterator[Callable[..., Page]]:
 def _note_strangers(url: str, host: str, defects: list[str]) -> None:
     if not url.startswith((host, host.replace("http", "ws", 1), "data:", "blob:")):
         defects.append(f"asked {url}")
+
+
+@pytest.fixture
+def check_page(tmp_path: Path) -> Callable[..., None]:
+    """Check that a page fits its window and is accessible; with a name, draw the picture of the page guide.
+
+    `LIFELORE_PICTURES=docs/pictures python -m pytest tests/app/pages` makes the pictures again.
+    """
+    folder = PICTURES or tmp_path
+
+    def check_page(page: Page, picture: str | None = None, height: int = 0) -> None:
+        wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
+        assert wide <= 0, f"{page.url} is {wide} px too wide"
+        found = Axe().run(page)
+        assert found.violations_count == 0, f"{page.url}: {found.generate_report()}"
+        if picture is not None:
+            page.set_viewport_size({"width": 1280, "height": height})
+            page.screenshot(path=folder / f"page_{picture}.png")
+            assert (folder / f"page_{picture}.png").stat().st_size < MOST_BYTES
+
+    return check_page

@@ -1,15 +1,11 @@
 """All pages share one frame; they ask their own service alone, by keyboard and on a phone."""
 
-from collections.abc import Callable
-
 import pytest
 
 pytest.importorskip("fastapi", reason="needs the extra web")
 pytest.importorskip("playwright", reason="needs the extra browser")
 
-from axe_playwright_python.sync_playwright import Axe
 from fastapi.testclient import TestClient
-from playwright.sync_api import Page
 
 from lifelore.app.pages.mount import app_with_pages
 from lifelore.app.pages.shell.page_shell import HOME, PAGES
@@ -22,21 +18,20 @@ DESKTOP, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
 
 
 @pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
-def test_every_page_is_accessible_and_fits(
-    serve_pages: Callable[..., str], open_page: Callable[..., Page], size: dict[str, int]
-):
-    address = serve_pages()
-    for shown in (HOME, *PAGES):
-        page = open_page(address + shown.path, size)
-        page.wait_for_load_state("networkidle")
-        found = Axe().run(page)
-        assert found.violations_count == 0, f"{shown.path}: {found.generate_report()}"
-        wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
-        assert wide <= 0, f"{shown.path} is {wide} px too wide"
+def test_the_first_page_leads_to_all_others(address, open_page, check_page, size: dict[str, int]):
+    page = open_page(address, size)
+    cards = page.get_by_role("main").get_by_role("link")
+    assert cards.all_inner_texts() == [one.title for one in PAGES]
+    check_page(page)
+    for one in PAGES:
+        page.goto(address)
+        page.get_by_role("navigation").get_by_role("link", name=one.title).click()
+        page.wait_for_url(f"**{one.path}")
+        check_page(page)  # as it is without any data, too
 
 
-def test_the_keyboard_reaches_the_content(serve_pages: Callable[..., str], open_page: Callable[..., Page]):
-    page = open_page(serve_pages() + "/")
+def test_the_keyboard_reaches_the_content(address, open_page):
+    page = open_page(address)
     page.keyboard.press("Tab")
     assert page.evaluate("document.activeElement.textContent") == "Skip to the content"
     page.keyboard.press("Enter")

@@ -58,19 +58,13 @@ def test_a_large_body_is_decoded_on_another_thread():
     assert not asyncio.run(found(bodies.LARGE + 1))
 
 
-@pytest.mark.parametrize(
-    "module",
-    [
-        *(f"service.{name}_routes" for name in ("adaptation", "advice", "log", "perceive")),
-        *(f"pages.{name}.routes" for name in ("life", "play", "teach", "walk")),
-    ],
-)
-def test_all_routes_with_documents_take_large_ones(serve, module):
+@pytest.mark.parametrize("name", ["adaptation", "advice", "log", "perceive"])
+def test_all_routes_with_documents_take_large_ones(serve, name):
     service = serve().app.state.service
-    routes = import_module(f"lifelore.app.{module}").router(service).routes
+    routes = import_module(f"lifelore.app.service.{name}_routes").router(service).routes
     with_documents = [route for route in routes if getattr(route, "body_field", None)]
     assert all(isinstance(route, JsonRoute) for route in with_documents)
-    assert with_documents or module == "pages.life.routes"
+    assert with_documents
 
 
 @pytest.mark.parametrize(

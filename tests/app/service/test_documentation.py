@@ -21,7 +21,6 @@ OWN = (
 GROUP_OF = {
     "/v1/studies": "personalise", "/v1/adaptations/{name}": "personalise", "/v1/evaluate": "personalise",
     "/v1/perceive/cloud": "perceive", "/v1/advice/{name}": "advise", "/v1/memory": "memory", "/v1/lives": "pages",
-    "/v1/walks": "pages",
 }  # fmt: skip
 
 
@@ -63,7 +62,7 @@ def test_a_group_can_be_served_alone(tmp_path, group):
             path for path, its in GROUP_OF.items() if its == group
         }
         assert {"/healthz", "/metrics"} <= set(paths)
-        assert (client.get("/walk").status_code == 200) == (group == "pages")
+        assert (client.get("/life").status_code == 200) == (group == "pages")
 
 
 def test_an_unknown_group_is_refused():

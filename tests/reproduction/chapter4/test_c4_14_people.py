@@ -2,12 +2,11 @@
 
 import pytest
 
-from lifelore.agent.play_study.scripted_player import play_next_round
-from lifelore.agent.play_study.study_plan import BEAT, STATIC, TEST, TRAINING
-from lifelore.agent.play_study.study_records import open_new_session, store_round
-from lifelore.agent.play_study.study_settings import PERSON, SCRIPTED
-from lifelore.memory import open_memory
+from lifelore.core.errors import InputError, NotFoundError
+from reproduction.chapter4.c4_14_people.records import new_session, store_round
 from reproduction.chapter4.c4_14_people.run import cells, measure, run_cell, study_settings
+from reproduction.chapter4.c4_14_people.scripted_player import play_session
+from reproduction.chapter4.c4_14_people.study_plan import BEAT, PERSON, SCRIPTED, STATIC, TEST, TRAINING
 from reproduction.engine.registry import claim_of
 from reproduction.engine.reproduce import judged
 from reproduction.engine.statement import DIRECTION, REPRODUCED, UNTESTED
@@ -65,18 +64,24 @@ def test_measures_by_hand():
     assert "scripted_beat_less_static" not in found
 
 
-def test_finished_sessions_of_people_are_read_from_a_memory(tmp_path):
-    where = tmp_path / "people.db"
-    with open_memory(where) as memory:
-        for player, rounds in ((PERSON, None), (PERSON, None), (PERSON, 3), (SCRIPTED, None)):
-            session = open_new_session(memory, study_settings(QUICK, player), consent=True)
-            while session.next_round is not None and len(session.done) != rounds:
-                result = play_next_round(session)
-                store_round(memory, session, result)
-                session.accept(result)
+def test_finished_sessions_of_people_are_read_from_a_file(tmp_path):
+    where = tmp_path / "people.jsonl"
+    for player, rounds in ((PERSON, None), (PERSON, None), (PERSON, 3), (SCRIPTED, None)):
+        session = play_session(new_session(where, study_settings(QUICK, player), "consent"))
+        for row in session.done[:rounds]:
+            store_round(where, session, row)
     settings = CLAIM.settings("quick", {"people": str(where)})
     *scripted, recorded = cells(settings)
     assert [cell["player"] for cell in scripted] == 3 * [SCRIPTED]
     result = run_cell(settings, recorded, 0)
     assert (result["player"], len(result["sessions"])) == (PERSON, 2)
-    assert all(len(one["rounds"]) == session.settings.rounds for one in result["sessions"])
+    assert all(len(one["rounds"]) == study_settings(QUICK, PERSON).rounds for one in result["sessions"])
+
+
+def test_settings_that_are_no_session_are_refused(tmp_path):
+    with pytest.raises(NotFoundError, match="is not a file"):
+        CLAIM.settings("quick", {"people": str(tmp_path / "none.jsonl")})
+    with pytest.raises(InputError, match="at least two each"):
+        CLAIM.settings("quick", {"speeds": [30]})
+    with pytest.raises(InputError, match="sizes must be distinct"):
+        CLAIM.settings("quick", {"sizes": [2, 2]})

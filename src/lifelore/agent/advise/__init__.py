@@ -1,5 +1,4 @@
 """The verb `advise`: steps of agents with unknown goals in, advice out.
 
-Read in this order: `advise`, `step_lines`, `expert_trajectories`, `advice_desk`; then `walk_building` and
-`guided_walk`, for a person who walks through a building.
+Read in this order: `advise`, `step_lines`, `expert_trajectories`, `advice_desk` (advice over HTTP).
 """

@@ -15,14 +15,11 @@ import threading
 import time
 import zlib
 from collections.abc import Mapping, Sequence
-from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
 from lifelore.agent.advise.advise import AdviceSession, AdviseSettings
-from lifelore.agent.advise.expert_trajectories import state_after
 from lifelore.agent.advise.step_lines import StepLine, read_steps
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
@@ -86,7 +83,7 @@ class AdviceDesk:
         InputError
             A step breaks its rule, or steps before `number` are missing; nothing is stored.
         """
-        lines = (json.dumps({"agent": agent, **step}) for step in steps)
+        lines = ({"agent": agent, **step} for step in steps)
         read = list(read_steps(lines, self.session.world, "steps", self.session.classes))
         if not read:
             raise InputError("steps must hold at least one step, got none")
@@ -113,33 +110,20 @@ class AdviceDesk:
             f"memory {self._memory.location}: too many programs step for one agent at once; try again"
         )
 
-    def retrace(self, agent: str) -> list[tuple[int, dict[str, Any]]]:
-        """The stored steps of an agent from the first on: the state after each, and the advice there.
-
-        Advice is as in `answer`. The list is empty where the agent has made no step.
-        """
-        with self._lock:
-            self._known.pop(agent, None)
-            return self._replay(agent)
-
-    def _take(self, agent: str, steps: Sequence[StepLine]) -> list[tuple[int, dict[str, Any]]]:
-        taken = []
+    def _take(self, agent: str, steps: Sequence[StepLine]) -> None:
         for step in steps:
-            self._latest[agent] = advice = self.session.answer(step)
-            taken.append((state_after(self.session.world, step), advice))
+            self._latest[agent] = self.session.answer(step)
         self._known[agent] = self._known.get(agent, 0) + len(steps)
-        return taken
 
-    def _replay(self, agent: str) -> list[tuple[int, dict[str, Any]]]:
+    def _replay(self, agent: str) -> None:
         """Take in the stored steps of an agent who has not been seen since the desk was opened."""
         if agent in self._known:
-            return []
+            return
         self.session.forget(agent)
         self._known[agent], self._latest[agent] = 0, None
         record = self._memory.recall(STEPS, self._key(agent), VERSION)
-        if record is None or not record.slots.size or record.about["id"] != self.id:
-            return []
-        return self._take(agent, [self._step_of(agent, value) for value in record.values.tolist()])
+        if record is not None and record.slots.size and record.about["id"] == self.id:
+            self._take(agent, [self._step_of(agent, value) for value in record.values.tolist()])
 
     def _store(self, agent: str, number: int, steps: Sequence[StepLine]) -> bool:
         values = np.array([self._value_of(step) for step in steps], np.int64)
@@ -210,11 +194,8 @@ def _session(document: Mapping[str, Any], maps: Mapping[str, str]) -> AdviceSess
     if cell is not None and not SMALLEST_CELL <= cell <= LARGEST_CELL:
         raise InputError(f"cell must lie in [{SMALLEST_CELL}, {LARGEST_CELL}] metres, got {cell:g}")
     options["world"] = _world(options["world"], maps)
-    with TemporaryDirectory() as folder:
-        options["experts"] = _lines(folder, "experts", document["experts"])
-        if document.get("goals"):
-            options["goals"] = _lines(folder, "goals", [{"state": state} for state in document["goals"]])
-        return AdviceSession(AdviseSettings(**options))
+    goals = [{"state": state} for state in document.get("goals") or ()] or None
+    return AdviceSession(AdviseSettings(experts=document["experts"], goals=goals, **options))
 
 
 def _world(name: str, maps: Mapping[str, str]) -> str:
@@ -225,12 +206,6 @@ def _world(name: str, maps: Mapping[str, str]) -> str:
         served = ", ".join(sorted(maps)) or "none"
         raise NotFoundError(f"world must be a map that is served, or NAME:SEED such as advice:3; maps: {served}")
     return name
-
-
-def _lines(folder: str, name: str, rows: Sequence[Mapping[str, Any]]) -> str:
-    path = Path(folder) / name
-    path.write_text("".join(json.dumps(row) + "\n" for row in rows), encoding="utf-8")
-    return str(path)
 
 
 def _digest(agent: str) -> str:

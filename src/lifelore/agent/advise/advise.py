@@ -4,7 +4,7 @@ Thesis: §3.7.
 """
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,6 +17,7 @@ from lifelore.action.advice.goal_model import GoalModel, Trajectory, extend_goal
 from lifelore.agent.advise.expert_trajectories import goal_models, goals_of_ends, state_after, trajectories
 from lifelore.agent.advise.step_lines import (
     NO_ACTION,
+    Lines,
     StepLine,
     read_classes,
     read_objects,
@@ -29,6 +30,8 @@ from lifelore.domains.grids.grid_world import MOVES, GridWorld
 from lifelore.domains.worlds import WorldSettings, domain_names, world_from_settings
 
 METHODS = ("better", "thesis", "classes")
+Source = str | Sequence[Mapping[str, Any]]
+"""A file of JSON lines, or their objects."""
 
 
 @dataclass(frozen=True)
@@ -39,10 +42,11 @@ class AdviseSettings:
     ----------
     world : str
         A ROS map (YAML), or a world's name and seed, ``"advice:3"``.
-    experts : str
-        File of JSON lines, see `step_lines`.
-    goals : str, optional
-        File of JSON lines ``{"state": …}``; default: the ends of the experts' walks, near ends joined.
+    experts : str or sequence of dict
+        File of JSON lines, see `step_lines`, or their objects.
+    goals : str or sequence of dict, optional
+        File of JSON lines ``{"state": …}``, or their objects; default: the ends of the experts' walks, near
+        ends joined.
     method : {"better", "thesis", "classes"}
         One goal at a time, dropping goals that the agent has passed; one prior over all goals (§3.7.1); or one
         goal at a time by class of agent, which the lines of the experts name (``"class": "staff"``).
@@ -54,22 +58,19 @@ class AdviseSettings:
         Largest share of an agent's steps that are advised; default 0.4, and no limit for ``thesis``.
     cell, robot_radius : float, optional
         Metres, for maps: 0.5 and 0.2.
-    burst : float, optional
-        With a share below 1: number of saved steps at which advice begins; default 120.
     shown : str, optional
         Method ``classes``: the class of agents whose lines show none, by a uniform or a name tag.
     """
 
     world: str
-    experts: str
-    goals: str | None = None
+    experts: Source
+    goals: Source | None = None
     method: str = "better"
     kappa: float = 0.5
     window: int = 300
     share: float | None = None
     cell: float | None = None
     robot_radius: float | None = None
-    burst: float | None = None
     shown: str | None = None
 
     def __post_init__(self) -> None:
@@ -109,9 +110,10 @@ class AdviceSession:
 
     def __init__(self, settings: AdviseSettings) -> None:
         self.world = world_of(settings)
-        walks = trajectories(read_steps(_lines_of(settings.experts), self.world, settings.experts), self.world)
+        name = _name_of(settings.experts, "experts")
+        walks = trajectories(read_steps(_lines_of(settings.experts), self.world, name), self.world)
         if not walks:
-            raise InputError(f"{settings.experts} must hold at least one step with an action, got none")
+            raise InputError(f"{name} must hold at least one step with an action, got none")
         self.n_experts = len(walks)
         self.goals = _goals(settings, walks, self.world)
         self.classes: tuple[str, ...] = ()
@@ -152,7 +154,7 @@ class AdviceSession:
         self._agents.pop(agent, None)
 
 
-def advise(lines: Iterable[str], settings: AdviseSettings, name: str = "input") -> Iterator[dict[str, Any]]:
+def advise(lines: Lines, settings: AdviseSettings, name: str = "input") -> Iterator[dict[str, Any]]:
     """Advice for each line ``{"agent", "state", "action"}``, as soon as the line arrives.
 
     With method ``classes`` a line may show the agent's ``class``, which holds until it shows another.
@@ -200,7 +202,15 @@ def world_settings(settings: AdviseSettings) -> WorldSettings:
     return WorldSettings(domain, None, settings.cell, settings.robot_radius, seed=int(seed or 0))
 
 
-def _lines_of(path: str) -> Iterator[str]:
+def _name_of(source: Source, name: str) -> str:
+    """What messages call a source: its file, or `name`."""
+    return source if isinstance(source, str) else name
+
+
+def _lines_of(path: Source) -> Iterator[Any]:
+    if not isinstance(path, str):
+        yield from path
+        return
     if not Path(path).is_file():
         raise NotFoundError(f"file '{path}' does not exist; give a file of JSON lines")
     try:
@@ -213,14 +223,14 @@ def _lines_of(path: str) -> Iterator[str]:
 def _goals(settings: AdviseSettings, walks: list[Trajectory], world: GridWorld) -> list[int]:
     if settings.goals is None:
         return goals_of_ends(walks, world)
-    goals = []
-    for number, document in read_objects(_lines_of(settings.goals), settings.goals):
+    goals, name = [], _name_of(settings.goals, "goals")
+    for number, document in read_objects(_lines_of(settings.goals), name):
         try:
             goals.append(state_number(document, world))
         except InputError as error:
-            raise InputError(f"{settings.goals} line {number}: {error}") from None
+            raise InputError(f"{name} line {number}: {error}") from None
     if not goals:
-        raise InputError(f"{settings.goals} must name at least one goal, got none")
+        raise InputError(f"{name} must name at least one goal, got none")
     return sorted(set(goals))
 
 
@@ -234,8 +244,9 @@ def _advisor(settings: AdviseSettings, walks: list[Trajectory], goals: list[int]
 
 def _class_advisor(settings: AdviseSettings, goals: list[int], world: GridWorld) -> ClassAdvisor:
     """Goal models of each class, classes by name."""
-    class_of = read_classes(_lines_of(settings.experts), settings.experts)
-    steps = list(read_steps(_lines_of(settings.experts), world, settings.experts))
+    name = _name_of(settings.experts, "experts")
+    class_of = read_classes(_lines_of(settings.experts), name)
+    steps = list(read_steps(_lines_of(settings.experts), world, name))
     names = sorted(set(class_of.values()))
     if settings.shown is not None and settings.shown not in names:
         raise NotFoundError(f"shown must be a class of the experts, {', '.join(names)}, got '{settings.shown}'")
@@ -253,8 +264,6 @@ def _advice_settings(settings: AdviseSettings) -> AdviceSettings:
     chosen = replace(base, kappa=settings.kappa, window=settings.window)
     if settings.share is not None:
         chosen = replace(chosen, share=settings.share)
-    if settings.burst is not None:
-        chosen = replace(chosen, burst=settings.burst)
     return chosen
 
 

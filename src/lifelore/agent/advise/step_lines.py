@@ -1,4 +1,4 @@
-"""Reads steps of agents from JSON lines: ``{"agent": …, "state": …, "action": …}``, one step a line.
+"""Reads steps of agents from JSON lines, or their objects: ``{"agent": …, "state": …, "action": …}``, a step each.
 
 ``state`` is the number of a state or its cell ``[row, column]``. ``action`` is the number or name of the move that
 the agent tried in that state, or null: the agent has reached its goal, or asks for advice before it moves.
@@ -6,7 +6,7 @@ the agent tried in that state, or null: the agent has reached its goal, or asks 
 """
 
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +15,8 @@ from lifelore.core.errors import InputError
 from lifelore.domains.grids.grid_world import MOVE_NAMES, GridWorld
 
 NO_ACTION = -1
+Lines = Iterable[str | Mapping[str, Any]]
+"""Lines of JSON, or the objects that they would hold."""
 
 
 class StepLine(NamedTuple):
@@ -26,9 +28,7 @@ class StepLine(NamedTuple):
     shown: str | None = None
 
 
-def read_steps(
-    lines: Iterable[str], world: GridWorld, name: str, classes: Sequence[str] = ()
-) -> Iterator[StepLine]:
+def read_steps(lines: Lines, world: GridWorld, name: str, classes: Sequence[str] = ()) -> Iterator[StepLine]:
     """The steps in order; empty lines are skipped.
 
     Parameters
@@ -49,7 +49,7 @@ def read_steps(
             raise InputError(f"{name} line {number}: {error}") from None
 
 
-def read_classes(lines: Iterable[str], name: str) -> dict[str | int, str]:
+def read_classes(lines: Lines, name: str) -> dict[str | int, str]:
     """The ``class`` of each agent, such as staff or visitor.
 
     Raises
@@ -70,9 +70,12 @@ def read_classes(lines: Iterable[str], name: str) -> dict[str | int, str]:
     return found
 
 
-def read_objects(lines: Iterable[str], name: str) -> Iterator[tuple[int, dict[str, Any]]]:
+def read_objects(lines: Lines, name: str) -> Iterator[tuple[int, dict[str, Any]]]:
     """The number of each line, from 1, and its object."""
     for number, line in enumerate(_decoded(lines, name), 1):
+        if isinstance(line, Mapping):
+            yield number, dict(line)
+            continue
         if not line.strip():
             continue
         try:
@@ -86,7 +89,7 @@ def read_objects(lines: Iterable[str], name: str) -> Iterator[tuple[int, dict[st
         yield number, document
 
 
-def _decoded(lines: Iterable[str], name: str) -> Iterator[str]:
+def _decoded(lines: Lines, name: str) -> Iterator[str | Mapping[str, Any]]:
     # A file is decoded in blocks, so the line of a wrong byte is unknown.
     try:
         yield from lines

@@ -1,11 +1,10 @@
-"""Mounts the pages, their scripts and their routes on the application of the service."""
-
-from importlib import import_module
+"""Mounts the pages, their scripts and the routes of lives on the application of the service."""
 
 from fastapi import FastAPI
 from fastapi.responses import HTMLResponse
 from starlette.staticfiles import StaticFiles
 
+from lifelore.app.pages.life.routes import router as lives
 from lifelore.app.pages.shell.page_shell import HOME, PAGES, ROOT, SHELL, Page, page_document
 from lifelore.app.service.application import create_app
 from lifelore.app.service.settings import ServiceSettings
@@ -29,8 +28,7 @@ def app_with_pages(settings: ServiceSettings) -> FastAPI:
     app = create_app(settings, open_paths={HOME.path, *(page.path for page in PAGES)})
     for page in (HOME, *PAGES):
         _mount_document(app, page)
-        if page.live:
-            app.include_router(import_module(f"lifelore.app.pages.{page.name}.routes").router(app.state.service))
+    app.include_router(lives(app.state.service))
     for folder in (SHELL, *(page.name for page in PAGES)):
         app.mount(STATIC + folder, StaticFiles(directory=str(ROOT / folder / "static")), name=f"{folder} scripts")
     return app

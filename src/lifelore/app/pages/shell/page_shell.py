@@ -20,14 +20,11 @@ class Page:
     title : str
     does : str
         In one sentence, what a person does there.
-    live : bool
-        Whether its folder has routes of its own, ``router(service)`` in ``routes.py``.
     """
 
     name: str
     title: str
     does: str
-    live: bool = False
 
     @property
     def path(self) -> str:
@@ -36,18 +33,12 @@ class Page:
 
 
 PAGES: tuple[Page, ...] = (
-    Page("play", "Play", "Steer a ball to its goal while the system adapts the speed to you.", live=True),
-    Page("teach", "Teach", "Show a robot how to assemble, and watch learners use your prior.", live=True),
-    Page("walk", "Walk", "Find a place in a building that you do not know, with and without advice.", live=True),
     Page(
-        "see", "See", "See the objects of a point cloud in 3-D, where they touch, and which is on or beside which."
+        "see",
+        "See",
+        "See the objects of a point cloud in 3-D, where they touch, and which is on or beside which.",
     ),
-    Page(
-        "life",
-        "Life",
-        "Watch a memory grow: tasks, learning curves, maps, beliefs, curiosity, and reasons.",
-        live=True,
-    ),
+    Page("life", "Life", "Watch a memory grow: tasks, learning curves, maps, beliefs, curiosity, and reasons."),
     Page("study", "Study", "See what a study of personalisation achieves: traffic, uplift, policies, alarms."),
 )
 HOME = Page("", "Lifelore", "Choose a page.")

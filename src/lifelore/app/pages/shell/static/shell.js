@@ -29,24 +29,6 @@ export async function ask(path, { method = "GET", body, raw = false, headers = {
   return raw ? answer : answer.json();
 }
 
-/** Open a web socket of this service, with the token as a subprotocol where there is one. */
-export function openSocket(path) {
-  const scheme = location.protocol === "https:" ? "wss" : "ws";
-  const token = sessionStorage.getItem(TOKEN);
-  const protocols = token ? ["lifelore", `bearer.${token}`] : ["lifelore"];
-  const socket = new WebSocket(`${scheme}://${location.host}${path}`, protocols);
-  socket.binaryType = "arraybuffer";
-  return socket;
-}
-
-/** Save an answer of the service as a file; a plain link could not carry the token. */
-export async function saveAs(path, name) {
-  const answer = await ask(path, { raw: true });
-  const address = URL.createObjectURL(await answer.blob());
-  make("a", { href: address, download: name }).click();
-  URL.revokeObjectURL(address);
-}
-
 /** Say something in an element: a message, a warning or an error; an empty text hides it. */
 export function say(element, text, kind = "") {
   element.hidden = !text;

@@ -1,1 +1,0 @@
-"""The page `/walk`: a person explores a building, and the advisor helps where the person seems lost."""
