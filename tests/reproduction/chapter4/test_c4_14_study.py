@@ -167,9 +167,8 @@ def test_beat_goes_on_through_the_rounds_of_a_block(played):
     """The belief is sure from the first move of the second round on, which it is not in the first round."""
     rows = [row for row in played.done if row["method"] == BEAT]
     for block in {row["block"] for row in rows}:
-        first, second = (column(row, "named") for row in rows if row["block"] == block)
-        size = next(row["size"] for row in rows if row["block"] == block)
-        assert SIZES[second[0]] == size
+        _, second = (row for row in rows if row["block"] == block)
+        assert SIZES[column(second, "named")[0]] == second["size"]
     assert any(SIZES[column(row, "named")[0]] != row["size"] for row in rows)
 
 
