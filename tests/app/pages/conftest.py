@@ -118,6 +118,7 @@ def check_page(tmp_path: Path) -> Callable[..., None]:
         assert found.violations_count == 0, f"{page.url}: {found.generate_report()}"
         if picture is not None:
             page.set_viewport_size({"width": 1280, "height": height})
+            page.evaluate("scrollTo(0, 0)")
             page.screenshot(path=folder / f"page_{picture}.png")
             assert (folder / f"page_{picture}.png").stat().st_size < MOST_BYTES
 

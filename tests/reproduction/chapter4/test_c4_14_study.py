@@ -163,6 +163,15 @@ def test_blocks_keep_to_their_method(played):
             assert (named == -1).all()
 
 
+def test_beat_goes_on_through_the_rounds_of_a_block(played):
+    """The belief is sure from the first move of the second round on, which it is not in the first round."""
+    rows = [row for row in played.done if row["method"] == BEAT]
+    for block in {row["block"] for row in rows}:
+        _, second = (row for row in rows if row["block"] == block)
+        assert SIZES[column(second, "named")[0]] == second["size"]
+    assert any(SIZES[column(row, "named")[0]] != row["size"] for row in rows)
+
+
 def test_best_static_speed_and_values_by_hand():
     zeros = np.zeros((len(SIZES), len(SPEEDS)), np.int64)
     totals = TrainingTotals(zeros + 2, zeros + 200, zeros.copy(), np.zeros((5, N_SIGNALS, 6), np.int64))

@@ -29,9 +29,9 @@ export function ticksBetween(low, high, count = 5) {
  * A figure of lines.
  *
  * `series` are {name, points: [[x, y], …], half: [number or null, …]}: `half` is half of an interval around y.
- * `xends` are the ends of the x axis, by default those of the points; `xname` writes an x. `logarithmic` makes the y axis logarithmic, `level` draws a horizontal line. Series differ in colour, dash and marker.
+ * `xends` are the ends of the x axis, by default those of the points; `xname` writes an x. `level` draws a horizontal line. Series differ in colour, dash and marker.
  */
-export function lineChart({ title, xlabel, ylabel, series, logarithmic = false, level = null, xticks = null, xends = null, markers = true, digits = 2, xname = (x) => `${x}` }) {
+export function lineChart({ title, xlabel, ylabel, series, level = null, xticks = null, xends = null, markers = true, digits = 2, xname = (x) => `${x}` }) {
   const figure = make("figure");
   figure.append(make("figcaption", {}, make("strong", {}, title)));
   const drawn = series.filter((one) => one.points.length);
@@ -42,18 +42,15 @@ export function lineChart({ title, xlabel, ylabel, series, logarithmic = false, 
   const xs = drawn.flatMap((one) => one.points.map(([x]) => x));
   const ys = drawn.flatMap((one) => one.points.flatMap(([, y], i) => [y - (one.half?.[i] ?? 0), y + (one.half?.[i] ?? 0)]));
   if (level !== null) ys.push(level);
-  const positive = ys.filter((y) => y > 0);
-  const ends = logarithmic ? [Math.min(...positive), Math.max(...positive)] : [Math.min(...ys), Math.max(...ys)];
+  let [low, high] = [Math.min(...ys), Math.max(...ys)];
   const [x0, x1] = xends ?? [Math.min(...xs), Math.max(...xs)];
-  const marks = logarithmic ? powersBetween(...ends) : ticksBetween(ends[0], ends[1]);
+  const marks = ticksBetween(low, high);
   const left = 26 + 7 * Math.max(...marks.map((y) => `${y}`.length));
-  const warp = logarithmic ? Math.log : (value) => value;
-  let [low, high] = ends.map(warp);
   const margin = 0.06 * (high - low || 1);
   low -= margin;
   high += margin;
   const px = (x) => left + ((x - x0) / (x1 - x0 || 1)) * (WIDTH - left - RIGHT);
-  const py = (y) => HEIGHT - BOTTOM - ((warp(Math.max(y, logarithmic ? ends[0] : -Infinity)) - low) / (high - low)) * (HEIGHT - TOP - BOTTOM);
+  const py = (y) => HEIGHT - BOTTOM - ((y - low) / (high - low)) * (HEIGHT - TOP - BOTTOM);
   const svg = draw("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "picture", role: "img", "aria-label": `${title}; the table below has the numbers`, "font-size": 11, fill: INK });
   for (const y of marks) {
     svg.append(draw("line", { x1: left, x2: WIDTH - RIGHT, y1: py(y), y2: py(y), stroke: LIGHT }));
@@ -77,16 +74,6 @@ export function lineChart({ title, xlabel, ylabel, series, logarithmic = false, 
   });
   figure.append(svg, legend(series), table(xlabel, series, digits, xname));
   return figure;
-}
-
-function powersBetween(low, high) {
-  const found = [];
-  for (let power = Math.floor(Math.log10(low)); power <= Math.ceil(Math.log10(high)); power++)
-    for (const factor of [1, 2, 5]) {
-      const value = Number((factor * 10 ** power).toPrecision(3));
-      if (value >= low * 0.999 && value <= high * 1.001) found.push(value);
-    }
-  return found;
 }
 
 function legend(series) {
