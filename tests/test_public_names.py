@@ -14,8 +14,7 @@ ROOMS = ("core", "perception", "action", "interaction", "domains", "bridges", "f
 DOORS = [f"lifelore.{room}" for room in ROOMS]
 DOORS += ["lifelore.agent.personalise", "lifelore.domains.tabletop_job", "lifelore.interaction.evaluation"]
 WITHOUT_EXAMPLE = {
-    "AgentTask", "OutcomeTree", "RelationClassifier", "SignalModel", "TabletopJob", "TaskFamily", "Tray",
-    "World", "app_with_pages", "live_long", "perceive", "sample_tray",
+    "AgentTask", "OutcomeTree", "TabletopJob", "TaskFamily", "Tray", "app_with_pages", "sample_tray",
 }  # fmt: skip
 """Public names whose docstrings have no example yet; names may only be removed."""
 

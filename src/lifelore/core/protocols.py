@@ -20,6 +20,13 @@ class World(Protocol):
     ----------
     n_actions : int
         Actions are the integers in [0, n_actions).
+
+    Examples
+    --------
+    >>> from lifelore import GymnasiumWorld
+    >>> import gymnasium as gym
+    >>> isinstance(GymnasiumWorld(gym.make("CliffWalking-v1"), state=int, context=int), World)
+    True
     """
 
     n_actions: int
@@ -54,7 +61,18 @@ class Policy(Protocol):
 
 @runtime_checkable
 class SignalModel(Protocol):
-    """Likelihood of an observed signal by type, under a policy (thesis §4.4)."""
+    """Likelihood of an observed signal by type, under a policy (thesis §4.4).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> class Presses:
+    ...     rates = np.array([[0.2, 1.0], [2.0, 0.5]])  # of two types under two policies
+    ...     def log_likelihood(self, policy, signal):
+    ...         return signal * np.log(self.rates[:, policy]) - self.rates[:, policy]
+    >>> Presses().log_likelihood(0, 3).round(1).tolist()
+    [-5.0, 0.1]
+    """
 
     def log_likelihood(self, policy: int, signal: Any) -> NDArray[np.float64]:
         """Log likelihood per type, shape ``(n_types,)``; minus infinity is allowed."""

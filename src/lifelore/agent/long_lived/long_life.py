@@ -88,6 +88,12 @@ def live_long(
         A setting breaks its rule; the family is wrong in a way that one task shows; MuJoCo is missing.
     StoreError
         Memory cannot store a task; earlier tasks stay stored.
+
+    Examples
+    --------
+    >>> report = live_long("factory-customers", tasks=1, episodes=2)
+    >>> report["summary"].keys() >= {"second half"}
+    True
     """
     family = family_named(family, seed, change=change) if isinstance(family, str) else family
     check_constants(family)

@@ -215,6 +215,16 @@ def perceive(
         Memory has no model of this name, or there is no memory.
     StoreError
         A file cannot be written.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> plane = np.stack(np.meshgrid(np.linspace(0, 1, 30), np.linspace(0, 1, 30)), -1).reshape(-1, 2)
+    >>> plate = lambda side, z, label: np.column_stack([side * plane, np.full(900, z), np.full(900, label)])
+    >>> cloud = np.concatenate([plate(1, 0, 1), plate(0.1, 0.05, 2), plate(0.1, 0.06, 3)])
+    >>> document = perceive(cloud, PerceiveSettings(up="z"))
+    >>> [found["id"] for found in document["objects"]]
+    [2, 3]
     """
     asked = SceneFiles(**files)
     check_goal(settings, asked.pddl)

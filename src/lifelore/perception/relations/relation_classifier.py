@@ -80,6 +80,18 @@ class RelationClassifier(Estimator):
     ------
     InputError
         A setting breaks its rule.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from lifelore import LabelledCloud, PairLabel
+    >>> plane = np.stack(np.meshgrid(np.linspace(0, 1, 30), np.linspace(0, 1, 30)), -1).reshape(-1, 2)
+    >>> sizes = ((1, 0), (0.1, 0.05), (0.1, 0.06))  # the table, and two plates above each other
+    >>> points = [np.column_stack([side * plane, np.full(900, height)]) for side, height in sizes]
+    >>> cloud = LabelledCloud(np.concatenate(points), np.repeat([1, 2, 3], 900))
+    >>> mine = RelationClassifier(method="displacement", k=1).fit([cloud], [[PairLabel(3, 2, "above")]])
+    >>> [(found.a, found.b, found.relation) for found in mine.predict(cloud) if found.relation == "above"]
+    [(3, 2, 'above')]
     """
 
     def __init__(
