@@ -268,13 +268,6 @@ class Memory:
         for (text,) in rows:
             yield json.loads(text)
 
-    def history(self, robot: str) -> list[tuple[dict[str, Any], list[Record]]]:
-        """(task, records) of each contribution of a robot, oldest first; all are in main memory at once."""
-        with self._store.reading() as conn:
-            numbers = [entry.number for entry in ledger.entries(conn, robot)]
-            found = [stored.contribution for stored in ledger.load(conn, numbers)]
-            return [(json.loads(one.task), one.records()) for one in found]
-
     def robots(self) -> list[str]:
         """The robots that have contributed, sorted."""
         with self._store.reading() as conn:

@@ -6,7 +6,6 @@ import logging
 
 import pytest
 from fastapi.responses import StreamingResponse
-from starlette.websockets import WebSocketDisconnect
 
 from lifelore.app.service.limits import WINDOW, RateLimit
 from lifelore.app.service.tokens import add_token
@@ -246,15 +245,3 @@ def test_the_time_of_a_long_answer_counts_between_its_pieces(serve, pause, piece
 
     client.app.add_api_route("/lines", lambda: StreamingResponse(lines()))
     assert client.get("/lines").content == b"line\n" * pieces
-
-
-def test_a_socket_of_another_page_is_refused(shared):
-    client = shared
-    for origin in ("http://127.0.0.1:9999", "https://evil.example", "null"):
-        headers = {"Host": "127.0.0.1:8321", "Origin": origin}
-        with (
-            pytest.raises(WebSocketDisconnect) as refused,
-            client.websocket_connect("/v1/play/live", headers=headers),
-        ):
-            pass
-        assert refused.value.code == 1008

@@ -53,9 +53,6 @@ class Gate:
         self._first, self._numbers = secrets.token_hex(5), itertools.count()
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
-        if scope["type"] == "websocket":
-            await self._pass_socket(scope, receive, send)
-            return
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
@@ -110,20 +107,6 @@ class Gate:
         if given is not None and _IDENTIFIER.fullmatch(given):
             return given.decode()
         return f"{self._first}{next(self._numbers):06x}"
-
-    async def _pass_socket(self, scope: Any, receive: Any, send: Any) -> None:
-        """A web socket has no headers of its own: its token is a subprotocol ``bearer.TOKEN``."""
-        headers = dict(scope["headers"])
-        protocols = [name.strip() for name in headers.get(b"sec-websocket-protocol", b"").split(b",")]
-        token = next((name[7:] for name in protocols if name.startswith(b"bearer.")), None)
-        if token is not None:
-            headers[b"authorization"] = b"Bearer " + token
-        try:
-            self._admission.client_of(scope | {"method": "POST"}, headers)
-        except Refused:
-            await send({"type": "websocket.close", "code": 1008})  # refused with 403 before it opens
-            return
-        await self._app(scope, receive, send)
 
     def _note(
         self, scope: Any, identifier: str, client: str, status: int, seconds: float, defect: Exception | None

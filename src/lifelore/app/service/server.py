@@ -68,7 +68,7 @@ def serve(
         access_log=False,
         server_header=False,
         timeout_graceful_shutdown=GRACE,
-        ws_max_size=settings.largest_body,
+        ws="none",
     )
     # uvicorn raises the signal again when it has stopped; SIGTERM has done its work then. A process started in the
     # background of a shell inherits an ignored SIGINT; the status of a stopped service is the same there.
