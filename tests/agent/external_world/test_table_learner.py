@@ -102,6 +102,15 @@ def test_context_is_asked_with_the_reward_just_received():
     assert {state: row.max() for state, row in learner.q.items()} == {3: 0.25, 2: 0.75, 1: 1.25}
 
 
+def test_an_episode_is_replayed_backwards_at_a_falling_rate():
+    learner = TableLearner(2, None, QLearning(1), 0.95, PriorSettings(), stream(1, "own"), "q")
+    lived(Countdown(), learner, ContextCodes(), 9)
+    rate, last = 0.5 / 1.1, 1.25 + 0.5 / 1.1 * (2.5 - 1.25)  # the second time that a move is learnt
+    middle = 0.75 + rate * (1.5 + 0.95 * last - 0.75)
+    found = [learner.q[state].max() for state in (1, 2, 3)]
+    assert found == pytest.approx([last, middle, 0.25 + rate * (0.5 + 0.95 * middle - 0.25)])
+
+
 @pytest.mark.parametrize(
     ("rewards", "truncated", "well"),
     [((0, 0, 1), False, True), ((1, 1, 0), False, False), ((0, 0, 1), True, False)],

@@ -77,6 +77,17 @@ def test_a_type_is_followed_by_another_one(two):
     assert recognition.belief == pytest.approx((1 - CHANGE) * b + CHANGE * another)
 
 
+def test_a_cause_tells_of_the_type_once_and_is_counted_each_time(two):
+    recognition = Recognition(two, np.array([0.5, 0.5]), 0.05, UNKNOWN, 0)
+    recognition.begin_episode()
+    recognition.observe(((0, 0),))
+    belief = recognition.belief
+    assert belief.argmax() == row_of_door(two, 0)
+    recognition.observe(((0, 0),))
+    assert recognition.belief.tolist() == belief.tolist()
+    assert recognition.own[0].tolist() == [2, 0]
+
+
 def test_a_single_known_type_can_only_become_an_unknown_one():
     recognition = following(after(("0",), 3), [1.0])
     recognition.begin_episode()
