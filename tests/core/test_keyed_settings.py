@@ -28,10 +28,3 @@ def test_groups_take_their_keys():
     assert list(keys_of(Car, NAMES)) == ["seats", "power", "fuel"]
     car = Car(**arguments_by_key(Car, {"seats": 2, "fuel": "none", "colour": "red"}, NAMES))
     assert car == Car(2, Engine(1.0, "none"))
-
-
-def test_functions_have_keys_too():
-    def drive(car: Car, speed: float, fast: bool = False) -> None:
-        pass
-
-    assert arguments_by_key(drive, {"speed": 2.0, "power": 3.0}, {}) == {"car": Car(4, Engine(3.0)), "speed": 2.0}

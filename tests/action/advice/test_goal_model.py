@@ -26,15 +26,6 @@ def test_counts_and_steps_by_hand():
     assert purpose.theta[[0, 1, 2]] == pytest.approx(np.array([[1, 0], [2 / 3, 1 / 3], [0, 0]]))
 
 
-def test_the_prior_of_figure_3_18():
-    # Three experts pass the centre cell (state 4 of 3 × 3): two go on north, one east.
-    ways = [walk([7, 4, 1], [0, 0]), walk([3, 4, 1], [2, 0]), walk([3, 4, 5], [2, 2])]
-    theta = GoalModel.from_trajectories(ways, 9, 4).theta
-    assert theta[4] == pytest.approx([2 / 3, 0, 1 / 3, 0])
-    assert theta[3].tolist() == [0, 0, 1, 0]
-    assert not theta[0].any()
-
-
 def test_policies_count_their_tied_best_actions_but_no_goal_row():
     best = np.array([[True, False], [True, True], [False, False]])
     purpose = GoalModel.from_best_actions(best, goals=[2])

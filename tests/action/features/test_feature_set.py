@@ -51,19 +51,6 @@ def test_coarser_codes_are_the_codes_of_fewer_columns(case, random):
     assert np.array_equal(features.coarser(features.codes(columns), names), expected)
 
 
-def test_a_key_tells_features_and_actions():
-    one = named((2, 3))
-    assert one.key(("up", "down")) == named((2, 3)).key(("up", "down"))
-    others = {
-        named((3, 2)).key(("up", "down")),
-        one.key(("down", "up")),
-        one.key(("up",)),
-        named((2,)).key(("up",)),
-    }
-    assert one.key(("up", "down")) not in others
-    assert len(others) == 4
-
-
 @pytest.mark.parametrize(
     ("call", "message"),
     [

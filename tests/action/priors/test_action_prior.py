@@ -162,13 +162,6 @@ def test_rows_sum_to_one_in_every_form(steps, form, beta, escape):
     assert (probs >= 0).all()
 
 
-def test_softmax_follows_differences_of_counts_and_stays_finite():
-    probs = counted(2000, 1000, 0).probs([0], "softmax")
-    assert probs.tolist() == [[1.0, 0.0, 0.0]]
-    scaled = counted(2000, 1000, 0).probs([0], "softmax", beta=1e-3)[0]
-    assert scaled == pytest.approx(np.exp([2, 1, 0]) / np.exp([2, 1, 0]).sum())
-
-
 # ---- masks, entropy, coarser contexts ------------------------------------------------------------------
 
 
@@ -262,17 +255,6 @@ def test_a_frame_is_the_columns_where_pandas_is_installed():
     pandas = pytest.importorskip("pandas")
     prior = counted(2.0, 1.0)
     assert prior.to_frame().equals(pandas.DataFrame(prior.to_columns()))
-
-
-def test_own_labels_stand_in_tables_and_merge():
-    prior, other = ActionPrior(2), ActionPrior(2)
-    prior.update([7], [[True, False]])
-    assert "label" not in prior.to_columns()
-    other.update([7, 8], [[True, False], [False, True]])
-    prior.labels, other.labels = {7: ("free", 1)}, {7: "seven", 8: ("wall", 0)}
-    prior.merge(other)
-    assert prior.to_columns()["label"].tolist() == ["('free', 1)"] * 2 + ["('wall', 0)"] * 2
-    assert prior.to_columns({8: "eight"})["label"].tolist() == ["7", "7", "eight", "eight"]
 
 
 # ---- what may be counted -----------------------------------------------------------------------------

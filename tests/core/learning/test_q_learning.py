@@ -182,14 +182,6 @@ def test_many_refuse_what_breaks_a_rule(draw_world, worlds, options, message):
         QLearning().learn_many(draw_world(1), 0.9, worlds=[stream(i) for i in range(worlds)], owns=owns, **options)
 
 
-def test_a_seed_stands_for_its_two_streams(draw_world):
-    tables, plan = draw_world(4, n_outcomes=3), QLearning(30, max_steps=20)
-    seeded, curve = plan.learn(tables, 0.9, seed=5)
-    given_, other = plan.learn(tables, 0.9, world=stream(5, "world"), own=stream(5, "learner"))
-    assert np.array_equal(seeded.q, given_.q)
-    assert np.array_equal(curve.returns, other.returns)
-
-
 def test_probabilities_by_pair_learn_as_the_twin(draw_world, naive_learn):
     tables = draw_world(3, n_outcomes=4)
     own = np.random.default_rng(0).dirichlet(np.ones(4), tables.next_state.shape[:2]).cumsum(axis=2)

@@ -82,23 +82,6 @@ def test_the_goal_is_not_known_before_it_is_in_sight():
     assert search.found.tolist() == [6, 0]
 
 
-def ring():
-    """Ten states in a ring, each in sight of its neighbours: two ways of 2 and 8 steps from 0 to the goal 2."""
-    tables = graph([*pairwise(range(10)), (0, 9)], 10, goal=2, starts=[0])
-    gap = abs(np.subtract.outer(np.arange(10), np.arange(10)))
-    return tables, np.minimum(gap, 10 - gap) <= 1
-
-
-def test_exhaustive_search_sees_everything_before_it_walks_to_the_goal():
-    tables, visible = ring()
-    exhaustive = ExplorationStrategy(exhaustive=True)
-    lives = [lived(tables, visible, unknown_world(10, 2), strategy=exhaustive, seed=s) for s in range(8)]
-    assert all((learner.place != NOT_LOOKED).all() for learner, _, _ in lives)
-    # Some see the goal in the first step; all walk on to see the farther side of the ring.
-    assert min(search.found[0] for _, search, _ in lives) == 1
-    assert min(curve.steps[0] for _, _, curve in lives) >= 7
-
-
 # ---- against a naive planner -------------------------------------------------------------------------
 
 

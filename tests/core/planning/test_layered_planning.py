@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
-from lifelore.core.mdp import NOTHING, TERMINAL, Tables
+from lifelore.core.mdp import NOTHING, Tables
 from lifelore.core.planning.layered_planning import LayeredPlan, layered_q
 from lifelore.core.planning.planning import best_actions, optimal_q
 
@@ -40,35 +40,6 @@ def test_same_as_sweeps_over_all_layers(draw_layers, seed, n_outcomes, discount)
         assert plan.values(layer) == pytest.approx(found[here].max(axis=1), abs=1e-9)
         assert plan.q(layer) == pytest.approx(found[here], abs=1e-9)
         assert np.array_equal(plan.best_actions(layer), best_actions(plan.q(layer)))
-
-
-def corridor(length: int, exit_reward: float) -> Tables:
-    """Two layers of a corridor: west, east for -1 each; beyond the last cell lies the next layer, then the end."""
-    n = 2 * length
-    here, place = np.arange(n), np.arange(n) % length
-    west = here - (place > 0)
-    last = place == length - 1
-    east = np.where(last, np.minimum(here + 1, n - 1), here + 1)
-    reward = np.stack([np.full(n, -1.0), np.where(last, exit_reward, -1.0)], axis=1)
-    event = np.stack([np.full(n, NOTHING), np.where(here == n - 1, TERMINAL, NOTHING)], axis=1)
-    next_state = np.stack([west, east], axis=1)
-    return Tables(
-        next_state[:, :, None].astype(np.int32),
-        reward[:, :, None],
-        event[:, :, None].astype(np.uint8),
-        np.ones(1),
-        np.zeros(1, np.int32),
-    )
-
-
-@pytest.mark.parametrize("discount", [0.5, 0.999999])
-def test_a_corridor_by_hand(discount):
-    # Five moves: -1, -1, then 20 into the next layer, where it is the same once more.
-    rewards = [-1.0, -1.0, 20.0, -1.0, -1.0, 20.0]
-    worth = sum(reward * discount**t for t, reward in enumerate(rewards))
-    q = layered_q(corridor(3, 20.0), 3, discount)
-    assert q[0, 1] == pytest.approx(worth, rel=1e-12)
-    assert best_actions(q).tolist() == [[False, True]] * 6
 
 
 def test_only_what_is_asked_for_is_solved(draw_layers):

@@ -33,17 +33,6 @@ def test_a_belief_of_zero_stays_zero_and_a_tiny_one_may_rise_again():
     assert belief[2] == -INF
 
 
-def test_likelihoods_at_the_ends_of_the_range_of_numbers():
-    belief = log_prior([0.25, 0.75])
-    same = update(belief, [-1.7e308, -1.7e308])
-    assert np.exp(same.log_belief) == pytest.approx([0.25, 0.75])
-    assert np.isfinite(same.log_evidence)
-    apart = update(belief, [-1.7e308, 1.7e308])
-    assert np.exp(apart.log_belief).tolist() == [0.0, 1.0]
-    # Impossible types take no part in what likelihoods are measured against.
-    assert np.exp(update(log_prior([1.0, 0.0]), [-1e308, 1e308]).log_belief).tolist() == [1.0, 0.0]
-
-
 def test_many_users_broadcast():
     beliefs = np.log(np.random.default_rng(0).dirichlet(np.ones(4), (3, 5)))
     said = np.random.default_rng(1).normal(size=(5, 4))

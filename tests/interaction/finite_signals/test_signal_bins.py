@@ -89,16 +89,6 @@ def test_a_table_holds_the_shares_of_normal_outcomes():
     np.testing.assert_allclose(table.probs, users[0], atol=1e-8)
 
 
-@pytest.mark.parametrize("n_bins", [2, 3, 300])
-def test_any_number_of_bins_may_be_asked_for(n_bins):
-    mean, deviation = np.array([[0.0], [1.0]]), np.ones((2, 1))
-    cuts, table = normal_table(mean, deviation, n_bins)
-    assert table.n_signals == n_bins
-    # There are at most 97 bins; the others are empty.
-    assert np.isfinite(cuts).sum() == min(n_bins - 1, 96)
-    np.testing.assert_allclose(table.probs.sum(axis=2), 1)
-
-
 def test_fewer_than_two_bins_are_refused():
     with pytest.raises(InputError, match="n_bins must be at least 2, got 1"):
         informative_cuts(np.zeros((2, 1)), np.ones((2, 1)), 1)

@@ -25,15 +25,6 @@ def test_defaults():
     assert made.signal.outcomes is made.performance
 
 
-def test_options_reach_the_model():
-    wide = PolicyLibrary.from_samples([[[1.0, 1.2], [5.0, 9.0]]], shrinkage=1000.0)
-    assert wide.performance.deviation[0, 0] == pytest.approx(wide.performance.deviation[0, 1], rel=0.01)
-    edged = PolicyLibrary.from_samples([[[1.0]]], model="histogram", edges=[0.0, 2.0], pseudo_count=1.0)
-    assert edged.performance.bounds() == (0.0, 2.0)
-    with pytest.raises(InputError, match="model must be one of"):
-        PolicyLibrary.from_samples([[[1.0]]], model="cauchy")
-
-
 COLUMNS = {
     "type": ["young", "old", "young", "old", "young"],
     "policy": ["A", "A", "B", "B", "A"],
@@ -97,18 +88,6 @@ def test_signal_and_performance_must_be_of_one_size():
         library(signal=coin)
     with pytest.raises(InputError, match="signal has n_policies"):
         library(signal=CategorySignal(np.full((3, 1, 2), 0.5)))
-
-
-def test_tables_are_kept_until_the_model_learns():
-    made = PolicyLibrary.from_means(MEAN, 2.0, count=3)
-    first = made.table()
-    assert made.table() is first
-    assert made.table(4) is not first
-    made.observe("type 0", 1, 50.0)
-    assert made.performance.mean[0, 1] > 5
-    assert made.table() is not first
-    with pytest.raises(NotFoundError, match="unknown type"):
-        made.observe("nobody", 1, 0.0)
 
 
 def test_a_type_and_a_policy_later():

@@ -78,17 +78,6 @@ def test_the_product_is_the_log_likelihood_of_every_outcome(family):
     assert logs == pytest.approx(expected)
 
 
-@pytest.mark.slow
-def test_constant_outcomes_and_single_users():
-    one = OutcomeRows(np.zeros(2, int), np.arange(2), np.ones(2), (1, 2))
-    assert user_types(one, np.random.default_rng(0), 1).n_types == 1
-    same = OutcomeRows(np.repeat(np.arange(5), 2), np.tile(np.arange(2), 5), np.ones(10), (5, 2))
-    for family in ("gaussian", "categorical"):
-        found = user_types(same, np.random.default_rng(0), 3, family=family)
-        assert np.isfinite(found.probs).all()
-        assert found.n_types == 1
-
-
 def test_bad_input():
     rows, _ = drawn(n_users=6)
     generator = np.random.default_rng(0)

@@ -39,12 +39,3 @@ def test_fitted_values_are_those_seen_and_listed_ones_may_be_more():
     np.testing.assert_allclose(listed.probs, [[[0.5, 0.25, 0.25]]])
     with pytest.raises(InputError, match="outside the model's values 3, 10"):
         CategoricalOutcomes.from_samples([[[5.0]]], values=[10, 3])
-
-
-def test_bad_values_are_refused():
-    with pytest.raises(InputError, match="values must be 2 numbers"):
-        CategoricalOutcomes([1.0], [[[0.5, 0.5]]])
-    with pytest.raises(InputError, match="values must be distinct"):
-        CategoricalOutcomes([1.0, 1.0], [[[0.5, 0.5]]])
-    with pytest.raises(InputError, match="count must be positive"):
-        CategoricalOutcomes([1.0, 2.0], [[[0.5, 0.5]]], count=0)

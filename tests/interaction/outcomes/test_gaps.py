@@ -27,13 +27,6 @@ def test_a_guess_by_hand():
     assert moments.count[2, 2] == 1
 
 
-def test_a_gap_learns_like_another_pair():
-    model = GaussianOutcomes.from_samples(SAMPLES, gaps=True)
-    guess, count = model.moments.mean[2, 1], model.moments.count[2, 1]
-    model.observe(2, 1, 8.0)
-    assert model.moments.mean[2, 1] == pytest.approx((count * guess + 8.0) / (count + 1))
-
-
 def test_a_new_type_or_policy_with_gaps():
     library = PolicyLibrary.from_samples(SAMPLES[:2])
     grown = library.with_type([[5.0, 5.0], [NAN, NAN], [NAN, 2.0]], "new", gaps=True)

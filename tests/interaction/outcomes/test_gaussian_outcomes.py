@@ -17,15 +17,6 @@ def test_against_scipy():
     np.testing.assert_allclose(model.cumulative(0, np.array([0.7]))[:, 0], truth.cdf(0.7)[:, 0], rtol=1e-12)
 
 
-def test_observed_outcomes_by_hand():
-    model = GaussianOutcomes([[1.0]], 2.0, count=3)
-    model.observe(0, 0, 5.0)
-    # Mean (3 · 1 + 5) / 4 = 2; variance (3 · 4 + (5 - 1)(5 - 2)) / 4 = 6.
-    assert model.mean[0, 0] == 2.0
-    assert model.deviation[0, 0] == pytest.approx(np.sqrt(6))
-    assert model.log_density(0, 2.0)[0] == pytest.approx(stats.norm(2, np.sqrt(6)).logpdf(2))
-
-
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -26,12 +26,6 @@ def coin_library(**options) -> PolicyLibrary:
     )  # fmt: skip
 
 
-def grid_library(n: int = 8, deviation: float = 1.0) -> PolicyLibrary:
-    """A policy's return falls with its distance from the type."""
-    place = np.arange(n)
-    return PolicyLibrary.from_means(-np.abs(place[:, None] - place).astype(float), deviation)
-
-
 def test_two_episodes_by_hand():
     agent = BayesianPolicyReuse(coin_library(prior=[0.6, 0.4]), Greedy(), dynamics=STATIC)
     assert agent.select() == 0
@@ -82,29 +76,7 @@ def test_an_unexplained_signal_keeps_the_belief_and_raises_the_surprise():
     assert agent.belief.tolist() == [0.0, 1.0]
 
 
-def test_types_may_change_once_after_all_signals_of_an_episode():
-    agent = BayesianPolicyReuse(coin_library(), dynamics=TypeDynamics.hazard(0.1, [0.5, 0.5]))
-    agent.observe("left", 0)
-    agent.observe("left", 0)
-    assert agent.belief == pytest.approx([16 / 17, 1 / 17])
-    assert agent.episode == 0
-    agent.end_episode()
-    assert agent.belief == pytest.approx([0.9 * 16 / 17 + 0.05, 0.9 / 17 + 0.05])
-    assert agent.episode == 1
-
-
 # ---- bad input -----------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("bad", [math.nan, INF, -INF, 1.7e308, "much", None])
-def test_signals_that_are_none_leave_everything_as_it_was(bad):
-    agent = BayesianPolicyReuse(grid_library())
-    agent.update(0, -1.0)
-    before = agent.log_belief
-    with pytest.raises(InputError):
-        agent.update(0, bad)
-    assert np.array_equal(agent.log_belief, before)
-    assert agent.episode == 1
 
 
 class Broken:
@@ -147,20 +119,6 @@ def test_a_model_that_answers_wrongly_is_named(answer, message):
 def test_settings_that_break_their_rule_are_refused(options, message):
     with pytest.raises(InputError, match=message):
         BayesianPolicyReuse(coin_library(), **options)
-
-
-def test_evidence_is_kept_where_a_model_answers_in_one_array_each_time():
-    answer = np.empty(2)
-
-    class Same:
-        def log_likelihood(self, policy, signal):
-            answer[:] = [0.0, -signal]
-            return answer
-
-    agent = BayesianPolicyReuse(PolicyLibrary.from_means([[1.0], [2.0]], 1.0, signal=Same()))
-    agent.update(0, 1.0)
-    agent.update(0, 3.0)
-    assert agent.explain().evidence["type 1"] == [-1.0, -3.0]
 
 
 # ---- the printed form --------------------------------------------------------------------------------

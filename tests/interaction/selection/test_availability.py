@@ -8,8 +8,7 @@ import pytest
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.selection import RULES, Greedy, rule_named
-from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
+from lifelore.interaction.selection import RULES, rule_named
 
 NAMES = ["a", "b", "c", "d"]
 
@@ -55,13 +54,3 @@ def test_the_best_k_are_ranked_by_score_and_begin_with_the_selected(name):
 def test_a_k_that_there_is_not_is_refused(k, available):
     with pytest.raises(InputError, match="k must be 1 to"):
         BayesianPolicyReuse(learnt_library()).select_top(k, available)
-
-
-def test_a_signal_that_cannot_be_restricted_is_no_hindrance():
-    signal = LikelihoodSignal(lambda policy, seen: np.array([0.0, -1.0]), n_types=2)
-    library = PolicyLibrary.from_means([[3.0, 2.0, 1.0], [1.0, 2.0, 3.0]], 1.0, signal=signal)
-    agent = BayesianPolicyReuse(library, Greedy())
-    agent.update(0, "seen")
-    assert agent.select([1, 2]) == 1
-    with pytest.raises(InputError, match="no finite alphabet"):
-        BayesianPolicyReuse(library, rule_named("belief-entropy")).select([1, 2])

@@ -16,7 +16,7 @@ from lifelore.interaction.selection import (
     rule_named,
     tied_shares,
 )
-from lifelore.interaction.selection.choice import available_mask, best_policies, scored
+from lifelore.interaction.selection.choice import available_mask, scored
 
 from .small_libraries import SmallLibrary, problem, user_problem
 
@@ -90,31 +90,6 @@ def test_nan_and_nothing_are_refused(scores):
         choose(scores, np.random.default_rng(0))
     with pytest.raises(InputError, match="got NaN or nothing"):
         tied_shares(scores)
-
-
-# ---- the best few --------------------------------------------------------------------------------------------
-
-
-@settings(deadline=None, max_examples=40)
-@given(arrays(float, st.tuples(st.integers(1, 4), st.integers(1, 7)), elements=NEAR), st.integers(0, 99))
-def test_the_best_few_are_distinct_and_each_the_best_of_the_rest(scores, seed):
-    scores = scores[[available(row) for row in scores]]
-    if not len(scores):
-        return
-    k = int((scores > -INF).sum(axis=1).min())
-    ranked = best_policies(scores, k, np.random.default_rng(seed))
-    for row, best in zip(scores, ranked, strict=True):
-        assert len(set(best)) == k
-        left = row.copy()
-        for policy in best:
-            assert tied_shares(left)[policy] > 0
-            left[policy] = -INF
-
-
-@pytest.mark.parametrize(("k", "most"), [(0, 2), (3, 2)])
-def test_a_number_of_policies_that_there_is_not_is_refused(k, most):
-    with pytest.raises(InputError, match=f"k must be 1 to {most}, the number of available policies, got {k}"):
-        best_policies([[1.0, 2.0, 3.0], [-INF, 2.0, 3.0]], k, np.random.default_rng(0))
 
 
 # ---- which policies are available ----------------------------------------------------------------------------

@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.selection import (
     DEFAULT_RULE,
     RULES,
@@ -31,7 +30,7 @@ from lifelore.interaction.selection import (
 )
 from lifelore.interaction.selection import knowledge_gradient as gradient_module
 from lifelore.interaction.selection.information import mutual_information
-from lifelore.interaction.selection.knowledge_gradient import knowledge_gain, responses
+from lifelore.interaction.selection.knowledge_gradient import knowledge_gain
 from lifelore.interaction.selection.support import truncated
 
 from ..twins import naive_rules as naive
@@ -188,21 +187,6 @@ def test_without_an_improvement_of_the_pay_selection_is_greedy(noise):
     # Where a pay can improve, the score is the improvement: here policies 0 and 3 on type 2 alone.
     best = 0.5 * 3 + 0.5 * 90
     assert rule.scores(library, some).tolist() == [0.5 * (90 - best), 0, 0, 0.5 * (90 - best)]
-
-
-def test_a_policy_that_is_second_best_everywhere_is_seen_with_all_candidates():
-    # Three types, each with a policy of its own, and one that is good on all. The last tells type 0 from the
-    # others.
-    mean = np.array([[10, 0, 0, 8, 0], [0, 10, 0, 8, 0], [0, 0, 10, 8, 0]], float)
-    probs = np.full((3, 5, 2), 0.5)
-    probs[:, 4] = [[1, 0], [0, 1], [0, 1]]
-    table, belief = SignalTable(probs), np.array([0.98, 0.01, 0.01])
-    # Now policy 0 is best, at 9.8; after "not type 0" it is policy 3 with 8, against 5 for the others' own.
-    assert knowledge_gain(belief, mean, table)[4] == pytest.approx(0.98 * 10 + 0.02 * 8 - 9.8)
-    assert knowledge_gain(belief, mean, table, candidates="responses")[4] == pytest.approx(0.02 * 5)
-    assert responses(belief, mean).tolist() == [True, True, True, False, False]
-    # A type that is ruled out has no response; the policy that is best now is considered also where it is none.
-    assert responses(np.array([0.0, 0.5, 0.5]), mean).tolist() == [False, True, True, True, False]
 
 
 def test_small_libraries_consider_all_policies_and_large_ones_the_best_responses(monkeypatch):

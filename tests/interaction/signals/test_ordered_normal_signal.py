@@ -31,11 +31,6 @@ def test_probabilities_by_the_normal_distribution():
     assert (signal.n_types, signal.n_policies, signal.n_categories) == (2, 2, 4)
 
 
-def test_a_lapse_keeps_every_category_possible():
-    signal = OrderedNormalSignal([[0.0]], [[1.0]], [30.0, 40.0], lapse=0.03)
-    assert signal.probs[0, 0] == pytest.approx([0.98, 0.01, 0.01])
-
-
 @pytest.mark.parametrize("spacing", [None, np.array([3.0, 1.0, 2.0]), np.empty(0)])
 def test_the_gradient_is_that_of_differences(spacing):
     random = np.random.default_rng(0)

@@ -45,12 +45,6 @@ def test_each_policy_may_have_a_table_of_its_own():
     np.testing.assert_allclose(only.log_likelihood(0, [(0, 0, 1)]), np.log([0.75]))
 
 
-def test_one_action_needs_no_column():
-    signal = TransitionSignal([[[[0.9, 0.1]], [[0.0, 1.0]]]])
-    np.testing.assert_allclose(signal.log_likelihood(0, [(0, 0), (0, 1)]), np.log([0.09]))
-    assert signal.log_likelihood(0, [(1, 0)]).tolist() == [-np.inf]
-
-
 def test_pseudo_counts_only_where_a_step_may_lead():
     possible = np.array([[[True, True, False]]] * 3)
     counts = np.zeros((1, 3, 1, 3))

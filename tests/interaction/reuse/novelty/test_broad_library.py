@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 from scipy.stats import t
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
@@ -15,7 +14,6 @@ from lifelore.interaction.reuse.novelty.broad_library import (
 )
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.signals.category_signal import CategorySignal
-from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
 MEAN, DEVIATION = np.array([[10.0, 3.0], [0.0, 3.0]]), np.array([[2.0, 1.0], [2.0, 1.0]])
 PRIOR = np.array([0.5, 0.5])
@@ -51,9 +49,3 @@ def test_every_kind_of_outcome_has_a_broad_library():
     broad = broad_library(library)
     assert broad.n_types == 1
     assert broad.performance.mean[0, 0] == pytest.approx((1 - UNIFORM) * 0.05 + UNIFORM / 2)
-
-
-def test_other_signals_are_refused():
-    signal = LikelihoodSignal(lambda policy, seen: np.zeros(1), n_types=1)
-    with pytest.raises(InputError, match="outcomes or categories, got LikelihoodSignal"):
-        broad_library(PolicyLibrary.from_means([[1.0]], 1.0, signal=signal))

@@ -1,7 +1,6 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.spread import Spread
@@ -11,7 +10,6 @@ from lifelore.interaction.reuse.novelty.known_tasks import (
     known_tasks,
 )
 from lifelore.interaction.signals.category_signal import CategorySignal
-from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
 N = 20_000
 
@@ -57,9 +55,3 @@ def test_outcomes_of_a_few_values_and_of_bins():
     assert (signals >= low).all()
     assert (signals <= high).all()
     assert len(np.unique(signals)) == 200
-
-
-def test_other_signals_are_refused():
-    signal = LikelihoodSignal(lambda policy, seen: np.zeros(1), n_types=1)
-    with pytest.raises(InputError, match="got LikelihoodSignal"):
-        known_tasks(PolicyLibrary.from_means([[1.0]], 1.0, signal=signal), 5, np.random.default_rng(0))

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.belief import entropy
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -75,17 +75,6 @@ def test_a_restored_state_has_the_same_bits(kind, models):
     }
 
 
-def test_without_a_calibration_there_is_a_probability_and_no_alarm():
-    detector = NoveltyDetector(LIBRARY)
-    for _ in range(9):
-        detector.update("left", 5.0)
-    assert detector.probability > 0.9
-    assert not detector.alarm
-    with pytest.raises(InputError, match="needs a calibrated detector"):
-        _ = detector.score
-    assert "misfit" not in detector.state()
-
-
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -106,11 +95,3 @@ def test_states_that_are_none_are_refused(change, message):
     detector.update("left", 7.0)
     with pytest.raises(InputError, match=message):
         NoveltyDetector.restored(detector.state() | change, LIBRARY)
-
-
-def test_bad_signals_change_nothing():
-    detector = DETECTOR.restart()
-    for policy, signal, error in (("left", np.nan, InputError), ("up", 1.0, NotFoundError)):
-        with pytest.raises(error):
-            detector.update(policy, signal)
-    assert (detector.n_signals, detector.log_odds) == (0, 0.0)
