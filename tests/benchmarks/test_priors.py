@@ -21,7 +21,7 @@ from tests.benchmarks.contract import checked
 
 @pytest.mark.parametrize("name", [STATES, SCATTERED])
 def test_all_count_the_same_and_sample_the_same_law(name):
-    case = Case(name, 20_000)
+    case = Case(name, 5_000)
     case.prepare()
     counts = case.update().counts(case.codes)
     assert counts.sum() == case.best.sum()
@@ -32,16 +32,16 @@ def test_all_count_the_same_and_sample_the_same_law(name):
         assert counts.tolist() == case.update_dense()
         ways[DENSE] = np.array(case.sample_dense())
     # The share of samples that fall on counted actions: one minus the mean of what α⁰ gives the others. Its
-    # deviation is at most ½ / √20000 = 0.0035; four of them.
+    # deviation is at most ½ / √5000 = 0.007; four of them.
     alpha = counts + ALPHA0
     expected = np.mean((alpha * (counts > 0)).sum(axis=1) / alpha.sum(axis=1))
     for drawn in ways.values():
         assert set(drawn.tolist()) == set(range(ACTIONS))
-        assert np.mean(counts[np.arange(len(drawn)), drawn] > 0) == pytest.approx(expected, abs=0.015)
+        assert np.mean(counts[np.arange(len(drawn)), drawn] > 0) == pytest.approx(expected, abs=0.03)
 
 
 def test_the_answer_keeps_its_contract(monkeypatch):
-    monkeypatch.setattr(priors, "CONTEXTS", 20_000)
+    monkeypatch.setattr(priors, "CONTEXTS", 5_000)
     monkeypatch.setattr(priors, "COMPONENTS", 2)
     told = []
     result = bench_priors(2, lambda *at: told.append(at))

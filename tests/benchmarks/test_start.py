@@ -1,5 +1,6 @@
 """The benchmark of starting: its contract and arithmetic on stand-ins, and real processes."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -86,4 +87,4 @@ def test_what_the_verbs_are_given_can_be_used(monkeypatch, tmp_path):
 
 def test_a_process_that_fails_is_no_measurement(tmp_path):
     with pytest.raises(LifeloreError, match="no such file"):
-        process_cost(["perceive", tmp_path / "none.pcd"], installed_environment(tmp_path))
+        process_cost(["perceive", tmp_path / "none.pcd"], dict(os.environ))

@@ -5,7 +5,7 @@ import math
 import pytest
 from scipy.stats import binomtest
 
-from reproduction.engine.estimates import UNMEASURED, exact_share, mean_or_unmeasured
+from reproduction.engine.estimates import UNMEASURED, exact_share, mean_or_unmeasured, ratio_or_unmeasured
 
 
 def test_all_and_none_have_closed_forms():
@@ -28,3 +28,6 @@ def test_nothing_measured_says_so():
     assert math.isnan(UNMEASURED.value)
     assert UNMEASURED.n == 0
     assert mean_or_unmeasured([1.0, 2.0, 6.0]).value == 3.0
+    assert ratio_or_unmeasured([0, 1], [0, 0]) is UNMEASURED
+    ratio = ratio_or_unmeasured([1, 5, 3], [4, 0, 4])  # the second has nothing to divide by
+    assert (ratio.value, ratio.n) == (0.5, 2)

@@ -78,8 +78,6 @@ def test_games_that_cannot_be_played():
         ball_game("s-maze 110", 1.0)
     with pytest.raises(InputError, match=r"radius_share must lie in \(0, 1\], got 2"):
         ball_game(radius_share=2.0)
-    with pytest.raises(InputError, match="sizes and speeds must be whole numbers"):
-        ball_game(sizes=(0,))
     with pytest.raises(InputError, match="care must be finite"):
         ball_game(care=-1.0)
     with pytest.raises(InputError, match="blocked must be one of slides, stays, got 'bounces'"):

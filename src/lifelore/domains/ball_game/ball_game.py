@@ -70,7 +70,6 @@ class BallGame:
     Parameters
     ----------
     layout : Layout
-    sizes, speeds : tuple of int
     radius_share : float
         Radius of the ball as a share of its size b: 0.5, or 1 where b is read as the radius.
     care : float
@@ -81,20 +80,13 @@ class BallGame:
     """
 
     layout: Layout
-    sizes: tuple[int, ...]
-    speeds: tuple[int, ...]
     radius_share: float
     care: float
     blocked: str
     field: Field
 
-    @property
-    def n_types(self) -> int:
-        return len(self.sizes)
-
-    @property
-    def n_speeds(self) -> int:
-        return len(self.speeds)
+    sizes, speeds = SIZES, SPEEDS
+    n_types, n_speeds = len(SIZES), len(SPEEDS)
 
 
 @dataclass(frozen=True)
@@ -127,8 +119,6 @@ def ball_game(
     layout: str | Layout = "s-maze 160",
     radius_share: float = 0.5,
     care: float = CARE,
-    sizes: tuple[int, ...] = SIZES,
-    speeds: tuple[int, ...] = SPEEDS,
     blocked: str = "slides",
 ) -> BallGame:
     """A game, its distances and ways worked out once.
@@ -136,13 +126,10 @@ def ball_game(
     Raises
     ------
     InputError
-        Sizes, speeds, a share or care out of range, `blocked` unknown, or a ball that cannot get from the start to
-        the goal.
+        A share or care out of range, `blocked` unknown, or a ball that cannot get from the start to the goal.
     """
     from scipy.ndimage import distance_transform_edt
 
-    if not (sizes and speeds and all(0 < b <= 200 for b in sizes) and all(0 < z <= 200 for z in speeds)):
-        raise InputError(f"sizes and speeds must be whole numbers in [1, 200], got {sizes} and {speeds}")
     if not 0 < radius_share <= 1:
         raise InputError(f"radius_share must lie in (0, 1], got {radius_share}")
     if not 0 <= care < np.inf:
@@ -151,21 +138,21 @@ def ball_game(
         raise InputError(f"blocked must be one of {', '.join(BLOCKED)}, got {blocked!r}")
     layout = layout if isinstance(layout, Layout) else layout_of(layout)
     clearance = np.asarray(distance_transform_edt(~obstacle_points(layout)), np.float32)
-    radius = radius_share * np.asarray(sizes, np.float64)
+    radius = radius_share * np.asarray(SIZES, np.float64)
     cost = np.stack([cost_to_go(clearance, float(r), layout.goal, care) for r in radius])
     x, y = layout.start
-    for size, r, way in zip(sizes, radius, cost, strict=True):
+    for size, r, way in zip(SIZES, radius, cost, strict=True):
         if clearance[y, x] <= r or not np.isfinite(way[_cell(y), _cell(x)]):
             raise InputError(
                 f"a ball of size {size} and radius {r:g} cannot get from the start to the goal of "
                 f"'{layout.name}'; use a wider layout or a smaller radius_share"
             )
     field = Field(
-        clearance, cost, radius, np.asarray(sizes, np.float64) / 200.0,
-        np.asarray(speeds, np.int64), np.asarray(layout.goal, np.int64), np.asarray(layout.start, np.int64),
+        clearance, cost, radius, np.asarray(SIZES, np.float64) / 200.0,
+        np.asarray(SPEEDS, np.int64), np.asarray(layout.goal, np.int64), np.asarray(layout.start, np.int64),
         blocked == "stays",
     )  # fmt: skip
-    return BallGame(layout, tuple(sizes), tuple(speeds), float(radius_share), float(care), blocked, field)
+    return BallGame(layout, float(radius_share), float(care), blocked, field)
 
 
 def _cell(place: int) -> int:

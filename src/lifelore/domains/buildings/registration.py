@@ -40,7 +40,7 @@ FINE_REACH, FINE_BLUR = 0.4, 0.2
 """Metres: how far the fine search shifts a coarse pose, and the width of a wall's likelihood."""
 FINE_TURNS = np.radians(np.arange(-0.75, 0.76, 0.25))
 MOST_BEHIND, LEAST_ROUGH = 0.3, 0.5
-"""Rough matches: how far behind the best one a pose is still refined, and from which on a known pose is."""
+"""Rough matches: how far behind the best one a pose is still refined, and from which on maps are as they lie."""
 FAR, TURNED = 1.0, np.radians(5.0)
 """Metres at the middle of the map, or radians, from which on two poses are different."""
 LEAST_OVERLAP = 0.5
@@ -89,11 +89,11 @@ def register(a: "Walls", b: "Walls") -> Registration | None:
     return Registration(fits[order[0]], fits[second[0]] if second else None)
 
 
-def register_near(a: "Walls", b: "Walls", pose: Pose = IDENTITY) -> Fit | None:
-    """The fit of `b` on `a` near a pose; None where most walls do not lie on walls there, or a map has none."""
-    if len(a.points) < 2 or len(b.points) < 2 or _rough_match(a, b, pose) < LEAST_ROUGH:
+def register_near(a: "Walls", b: "Walls") -> Fit | None:
+    """The fit of `b` on `a` nearly as they lie; None where most walls do not lie on walls, or a map has none."""
+    if len(a.points) < 2 or len(b.points) < 2 or _rough_match(a, b, IDENTITY) < LEAST_ROUGH:
         return None
-    return _fit(a, b, _pose(b, _refined(a, b, _place(b, pose))))
+    return _fit(a, b, _pose(b, _refined(a, b, np.array([*b.middle, 0.0]))))
 
 
 # ---- walls -----------------------------------------------------------------------------------------
@@ -165,10 +165,6 @@ def composed(outer: Pose, inner: Pose) -> Pose:
 
 
 # ---- search: a place is (x, y, yaw) of the new map's middle in the old frame -----------------------
-
-
-def _place(b: Walls, pose: Pose) -> NDArray[np.float64]:
-    return np.array([*moved(pose, b.middle[None])[0], pose[2]])
 
 
 def _pose(b: Walls, place: NDArray[np.float64]) -> Pose:

@@ -88,11 +88,11 @@ def _sums(
     return np.bincount(a * size + b, values, size * size).astype(float).reshape(size, size)
 
 
-def contact_regions(places: NDArray[np.float64], apart: float = 0.025) -> int:
-    """How many regions contacts at `places` ``(k, d)`` form: those closer than `apart` metres belong together."""
+def contact_regions(places: NDArray[np.float64]) -> int:
+    """How many regions contacts at `places` ``(k, d)`` form: those closer than 25 mm belong together."""
     if not len(places):
         return 0
-    close = np.linalg.norm(places[:, None] - places[None], axis=2) < apart
+    close = np.linalg.norm(places[:, None] - places[None], axis=2) < 0.025
     return int(connected_components(close, directed=False)[0])
 
 
