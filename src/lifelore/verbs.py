@@ -18,7 +18,7 @@ from lifelore.core.protocols import Progress
 
 if TYPE_CHECKING:
     from lifelore.agent.learn_from.run_log import Run
-    from lifelore.agent.live.goals.destinations import Destination, Point
+    from lifelore.agent.live.goals.destinations import Point
     from lifelore.agent.live.life import Life, Watcher
     from lifelore.agent.live.life_settings import LifeSettings
     from lifelore.agent.way import Way
@@ -125,11 +125,12 @@ def way(
     >>> way("dock", (12.5, 3.0), map="depot.yaml", memory="depot.db").length  # doctest: +SKIP
     36.5
     """
+    from lifelore.agent.live.goals.destinations import Destination
     from lifelore.agent.way import way as find
     from lifelore.domains.worlds import WorldSettings
 
     world = WorldSettings("building", _text(map), cell=cell, robot_radius=robot_radius, seed=seed)
-    return find(world, _destination(start), _destination(goal), _text(memory), **more)
+    return find(world, Destination.of(start), Destination.of(goal), _text(memory), **more)
 
 
 def learn_from(
@@ -232,12 +233,6 @@ def _life_settings(keys: dict[str, Any]) -> "LifeSettings":
     if isinstance(keys.get("goals"), str | PathLike):
         given["goals"] = read_jobs(keys["goals"])
     return LifeSettings(**arguments_by_key(LifeSettings, given, LIFE_KEYS))
-
-
-def _destination(place: "str | Point") -> "Destination":
-    from lifelore.agent.live.goals.destinations import Destination
-
-    return Destination(name=place) if isinstance(place, str) else Destination((float(place[0]), float(place[1])))
 
 
 def _text(path: PathText | None) -> str | None:

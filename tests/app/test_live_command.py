@@ -229,7 +229,7 @@ def test_every_episode_is_logged_where_it_is_told(ask, tmp_path):
     assert rows == {"lore", "scratch"}
     (tmp_path / "file").write_text("")
     refused = ask(*LATTICE, "--memory", "none.db", *changed(l2log=tmp_path / "file"))
-    assert "folder must be a folder" in refused.refusal
+    assert "folder must name a folder" in refused.refusal
     assert not (tmp_path / "none.db").exists()
 
 

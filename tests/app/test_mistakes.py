@@ -61,7 +61,7 @@ NUMBERS = {
     # The same for settings that this life has no use for: they would stand in its report.
     f"{LATTICE} --set epsilon=7 --json": "epsilon must lie in [0, 1]",
     f"{LATTICE} --set learning_rate=inf --json": "learning_rate must lie in [0, 1]",
-    f"{LATTICE} --set cell=nan --json": "cell must be",
+    f"{LATTICE} --set cell=nan --json": "cell does not apply",
     f"{BUILDING} --set cell=1e-300": "cell must",
     f"{BUILDING} --set cell=100": "only one cell",
     f"{BUILDING} --set robot_radius=-0.1": "robot_radius must",

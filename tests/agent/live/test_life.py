@@ -47,7 +47,7 @@ def test_a_life_goes_on_where_it_stopped(tmp_path):
 @pytest.mark.slow
 def test_a_life_on_a_server_is_the_life_in_a_file(tmp_path, new_place):
     place = new_place("postgresql")
-    for tasks in (2, 1):
+    for tasks in (1, 1):
         in_file, on_server = (
             live(settings(tmp_path, tasks=tasks, memory=memory)).report
             for memory in (str(tmp_path / "file.db"), place)

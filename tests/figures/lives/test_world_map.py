@@ -59,8 +59,7 @@ def test_a_task_without_a_way_shows_its_goal(corridor, tmp_path):
     save_figure(figure, tmp_path / "world.png")
 
 
-@pytest.mark.parametrize("shape", [(60, 3), (20, 20), (3, 90)])
-@pytest.mark.parametrize("over_map", [True, False])
+@pytest.mark.parametrize(("shape", "over_map"), [((60, 3), True), ((20, 20), False), ((3, 90), False)])
 def test_title_and_legend_fit_into_the_picture(shape, over_map):
     plan = MapPlan(np.full(shape, 254, np.uint8), 0.5, (0, 0, 0)) if over_map else plan_of(np.ones(shape, bool))
     ways = [

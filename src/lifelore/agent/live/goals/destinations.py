@@ -56,6 +56,11 @@ class Destination:
                 f"got {name[:40]!r}"
             )
 
+    @classmethod
+    def of(cls, place: "Point | str") -> "Destination":
+        """A name, or a point of any two numbers."""
+        return cls(name=place) if isinstance(place, str) else cls((float(place[0]), float(place[1])))
+
     @property
     def located_point(self) -> Point:
         """The point of a destination that `NamedPlaces.located` has looked up."""

@@ -72,7 +72,7 @@ def own_places(settings: LifeSettings, place: Place, memory: Memory, first: int 
         start = None if settings.start is None else grid_state("start", settings.start, world)
         goals = () if settings.goal is None else (OwnGoal(grid_state("goal", settings.goal, world)),)
         return _checked(OwnPlaces(start, goals))
-    asked = [("goal", _destination(settings.goal), None)] if settings.goal is not None else []
+    asked = [("goal", Destination.of(settings.goal), None)] if settings.goal is not None else []
     asked += [(f"goals line {job.line}", job.destination, job.time) for job in settings.goals[first:]]
     if settings.start is None and not asked:
         return OwnPlaces()
@@ -89,7 +89,7 @@ def own_places(settings: LifeSettings, place: Place, memory: Memory, first: int 
         records = () if end.name is None else (names.record(end.name, end.located_point),)
         return OwnGoal(floor.state_at(argument, end.located_point), end, time, records)
 
-    start = None if settings.start is None else located("start", _destination(settings.start)).state
+    start = None if settings.start is None else located("start", Destination.of(settings.start)).state
     places = OwnPlaces(start, tuple(for_each(lambda one: located(*one), asked)), first)
     return places if settings.goals else _checked(places)
 
@@ -125,10 +125,6 @@ def grid_state(argument: str, place: Chosen, world: GridWorld) -> int:
         f"{argument} must be a free cell ROW,COL of this world ({rows} rows, {columns} columns), "
         f"got {row},{column}; the nearest free cell is {near[0]},{near[1]}"
     )
-
-
-def _destination(place: Chosen) -> Destination:
-    return Destination(name=place) if isinstance(place, str) else Destination((float(place[0]), float(place[1])))
 
 
 def _checked(places: OwnPlaces) -> OwnPlaces:
