@@ -47,7 +47,7 @@ def log(tmp_path):
 
 @pytest.fixture
 def study(memory, log):
-    fit(log, memory, FitSettings(control=0.0, types=3))
+    fit(log, memory, FitSettings(model="categorical", control=0.0, types=3))
     return open_study(memory)
 
 
@@ -143,12 +143,12 @@ def test_a_new_fit_replaces_the_lines_of_fits_and_keeps_those_of_warm(memory, st
     later = written(tmp_path / "later.csv", households(100, 3))
     warm(later, memory, study)
     assert n_past(memory, study) == 33 * 12
-    fit(written(tmp_path / "shorter.csv", households()[:-12]), memory, FitSettings(control=0.0, types=3))
+    fit(written(tmp_path / "shorter.csv", households()[:-12]), memory, FitSettings(model="categorical", control=0.0, types=3))
     study = open_study(memory)
     assert n_past(memory, study) == 32 * 12
     same_as_twin(memory, study, "h29", [])
     same_as_twin(memory, study, "h101", of_user(households(100, 3), "h101"))
-    fit([*log, *later], memory, FitSettings(control=0.0, types=3))
+    fit([*log, *later], memory, FitSettings(model="categorical", control=0.0, types=3))
     assert n_past(memory, open_study(memory)) == 33 * 12
     assert warm(log, memory, open_study(memory))["rows"] == 0
 
@@ -160,12 +160,12 @@ def test_decisions_that_memory_has_are_no_past(memory, study, log, tmp_path, new
     exported = [tmp_path / "decisions.csv"]
     assert warm(exported, memory, study)["decisions"] == 1
     same_as_twin(memory, study, "ann", [(made["policy"], 1.0)])
-    document = fit([*log, *exported], memory, FitSettings(control=0.0, types=3))
+    document = fit([*log, *exported], memory, FitSettings(model="categorical", control=0.0, types=3))
     assert document["kept"]["in_log"] == 1
     again = open_study(memory)
     same_as_twin(memory, again, "ann", [(made["policy"], 1.0)])
     with open_memory(new_place("sqlite")) as other:
-        fit(log, other, FitSettings(control=0.0, types=3))
+        fit(log, other, FitSettings(model="categorical", control=0.0, types=3))
         new = open_study(other)
         assert warm(exported, other, new)["rows"] == 1
         assert warm(exported, other, new)["known"] == 1
