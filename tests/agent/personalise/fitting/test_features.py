@@ -109,14 +109,15 @@ def test_users_of_the_log_come_back_with_their_features(memory, study, tmp_path)
 
 def test_a_new_fit_with_other_features_leaves_the_old_ones_unused(memory, study, tmp_path):
     # Types are static, so that a choice leaves the belief as it is.
-    fit([tmp_path / "log.csv"], memory, FitSettings(model="gaussian", control=0.0, change=0.0), FORM)
+    log, settings = [tmp_path / "log.csv"], FitSettings(model="gaussian", control=0.0, change=0.0)
+    fit(log, memory, settings, FORM)
     before = choose(memory, open_study(memory), "ann", features=OLD)["belief"]
-    fit([tmp_path / "log.csv"], memory, FitSettings(model="gaussian", control=0.0, change=0.0), LogFormat(features=("visits",)))
+    fit(log, memory, settings, LogFormat(features=("visits",)))
     said = choose(memory, open_study(memory), "ann")
     assert said["features"] is None
     assert said["belief"] != before
     # The features stay with the user, and count again.
-    fit([tmp_path / "log.csv"], memory, FitSettings(model="gaussian", control=0.0, change=0.0), FORM)
+    fit(log, memory, settings, FORM)
     assert choose(memory, open_study(memory), "ann")["belief"] == before
 
 
