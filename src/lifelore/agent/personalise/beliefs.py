@@ -139,7 +139,8 @@ def unknown_log_odds(
     found = UnknownEvidence(study.library, len(users), dynamics=study.dynamics, models=models)
     start_at_priors(found.types, study, users)
     row = {user.number: place for place, user in enumerate(users)}
-    for rows, policies, outcomes in turns(study, [(row[number], *pair) for number, *pair in evidence]):
+    own = [(row[number], policy, outcome) for number, policy, outcome in evidence]
+    for rows, policies, outcomes in turns(study, own):
         known = policies >= 0
         if known.any():
             found.observe(rows[known], policies[known], outcomes[known])
