@@ -118,19 +118,8 @@ def fit(
         if change not in ("learnt", "0"):
             raise InputError(f"change must be 0 with --variant thesis, where types stay, got {change}")
         rule, change, models = rule or "expected-improvement", "0", "plug-in"
-    settings = FitSettings(
-        name,
-        model,
-        types,
-        control,
-        incumbent,
-        rule or DEFAULT_RULE,
-        explore,
-        _change(change),
-        models,
-        seed,
-        variant,
-    )
+    chosen = rule or DEFAULT_RULE, explore, _change(change), models
+    settings = FitSettings(name, model, types, control, incumbent, *chosen, seed, variant)
     form = log_format(
         columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features
     )

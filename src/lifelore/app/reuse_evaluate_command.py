@@ -99,18 +99,8 @@ def evaluate(
 
     if estimator not in (*ESTIMATORS, "all"):
         raise NotFoundError(f"estimator must be one of {', '.join(ESTIMATORS)}, all, got '{estimator}'")
-    settings = EvaluateSettings(
-        tuple(policy or ()),
-        tuple(target or ()),
-        tuple(rule or ()),
-        study,
-        first,
-        model,
-        types,
-        explore,
-        group,
-        seed,
-    )
+    policies, tables, rules = (tuple(names or ()) for names in (policy, target, rule))
+    settings = EvaluateSettings(policies, tables, rules, study, first, model, types, explore, group, seed)
     named = [*(columns or ()), *([f"probability={probability}"] if probability else [])]
     form = log_format(
         named, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features

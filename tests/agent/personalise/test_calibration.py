@@ -33,7 +33,7 @@ def study(memory):
         "policy": [f"p{policy}" for _, policy in rows],
         "outcome": [random.normal(MEANS[user % 2, policy], 2) for user, policy in rows],
     }  # fmt: skip
-    fit(frame, memory, FitSettings(control=0.0, rule="sampling"))
+    fit(frame, memory, FitSettings(model="gaussian", control=0.0, rule="sampling"))
     return open_study(memory)
 
 

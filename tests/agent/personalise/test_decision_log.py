@@ -89,7 +89,7 @@ def test_a_fit_reads_the_names_of_a_log_as_they_were(memory, clock, tmp_path):
         update(memory, study, made["decision"], float(number % 7))
     (tmp_path / "log.csv").write_bytes(b"".join(log_parts(memory, study)))
     assert (tmp_path / "log.csv").read_bytes() == text(memory, study, "csv").encode()
-    fit([tmp_path / "log.csv"], memory, FitSettings("again", control=0.0, types=2))
+    fit([tmp_path / "log.csv"], memory, FitSettings("again", "gaussian", control=0.0, types=2))
     again = open_study(memory, "again")
     used = {line["policy"] for line in lines(memory, study)}
     assert set(again.library.policies) == used <= set(study.library.policies)

@@ -13,7 +13,7 @@ from lifelore.agent.personalise.explanation import explain
 from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.past import warm
 from lifelore.agent.personalise.registration import register
-from lifelore.agent.personalise.study import open_study, study_names
+from lifelore.agent.personalise.study import open_study, study_states
 from lifelore.agent.personalise.study_report import report
 from lifelore.core.errors import InputError, StoreError
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -42,10 +42,10 @@ def memory(old):
 
 
 def test_nothing_of_the_old_records_is_left_and_the_study_has_its_name(memory):
-    assert study_names(memory) == ["shop"]
+    assert [*study_states(memory)] == ["shop"]
     assert [kind for kind in KINDS if memory.keys(kind)]
     study = open_study(memory, "shop")
-    assert (study.version, study.control, study_names(memory)) == (1, 0.3, ["shop"])
+    assert (study.version, study.control, [*study_states(memory)]) == (1, 0.3, ["shop"])
     assert not [kind for kind in KINDS if memory.keys(kind)]
     assert memory.robots() == []
     assert memory.check() == []

@@ -17,6 +17,7 @@ from lifelore.memory import open_memory
 from .studies import one_more, study_of, twin
 
 HEAD = "user,policy,outcome\n"
+SETTINGS = FitSettings(model="categorical", control=0.0, types=3)
 
 
 def households(first=0, n=30, each=12):
@@ -47,7 +48,7 @@ def log(tmp_path):
 
 @pytest.fixture
 def study(memory, log):
-    fit(log, memory, FitSettings(control=0.0, types=3))
+    fit(log, memory, SETTINGS)
     return open_study(memory)
 
 
@@ -143,12 +144,12 @@ def test_a_new_fit_replaces_the_lines_of_fits_and_keeps_those_of_warm(memory, st
     later = written(tmp_path / "later.csv", households(100, 3))
     warm(later, memory, study)
     assert n_past(memory, study) == 33 * 12
-    fit(written(tmp_path / "shorter.csv", households()[:-12]), memory, FitSettings(control=0.0, types=3))
+    fit(written(tmp_path / "shorter.csv", households()[:-12]), memory, SETTINGS)
     study = open_study(memory)
     assert n_past(memory, study) == 32 * 12
     same_as_twin(memory, study, "h29", [])
     same_as_twin(memory, study, "h101", of_user(households(100, 3), "h101"))
-    fit([*log, *later], memory, FitSettings(control=0.0, types=3))
+    fit([*log, *later], memory, SETTINGS)
     assert n_past(memory, open_study(memory)) == 33 * 12
     assert warm(log, memory, open_study(memory))["rows"] == 0
 
@@ -160,12 +161,12 @@ def test_decisions_that_memory_has_are_no_past(memory, study, log, tmp_path, new
     exported = [tmp_path / "decisions.csv"]
     assert warm(exported, memory, study)["decisions"] == 1
     same_as_twin(memory, study, "ann", [(made["policy"], 1.0)])
-    document = fit([*log, *exported], memory, FitSettings(control=0.0, types=3))
+    document = fit([*log, *exported], memory, SETTINGS)
     assert document["kept"]["in_log"] == 1
     again = open_study(memory)
     same_as_twin(memory, again, "ann", [(made["policy"], 1.0)])
     with open_memory(new_place("sqlite")) as other:
-        fit(log, other, FitSettings(control=0.0, types=3))
+        fit(log, other, SETTINGS)
         new = open_study(other)
         assert warm(exported, other, new)["rows"] == 1
         assert warm(exported, other, new)["known"] == 1

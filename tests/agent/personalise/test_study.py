@@ -7,7 +7,7 @@ import pytest
 
 from lifelore.agent.personalise.decisions import choose
 from lifelore.agent.personalise.open_studies import OpenStudies
-from lifelore.agent.personalise.study import open_study, study_names, study_states
+from lifelore.agent.personalise.study import open_study, study_states
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.memory import open_memory
@@ -56,7 +56,7 @@ def test_studies_are_listed_archived_and_deleted_alone(memory):
     assert study_states(memory) == {"one": "archived", "two": "active"}
     assert memory.studies.delete("one")
     assert not memory.studies.delete("one")
-    assert study_names(memory) == ["two"]
+    assert study_states(memory) == {"two": "active"}
     with memory._store.reading() as conn:
         for table in TABLES:
             assert conn.value(f"SELECT COUNT(*) FROM {table} WHERE study = ?", (first.number,)) == 0

@@ -17,6 +17,8 @@ from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.figures.reuse_report import draw_reuse_report
 from lifelore.interaction.library.policy_library import PolicyLibrary
 
+ONE_TYPE = FitSettings(model="gaussian", control=0.0, types=1)
+
 
 @pytest.fixture
 def memory(file_memory):
@@ -191,13 +193,13 @@ def test_a_control_group_with_an_incumbent_does_not_measure_the_best_single_poli
 def test_a_user_whose_decisions_a_later_fit_read_is_known_to_it(memory, tmp_path):
     lines = [f"u{user},{policy},{user + (policy == 'x')}" for user in range(6) for policy in "xy"]
     (tmp_path / "log.csv").write_text("\n".join(["user,policy,outcome", *lines]) + "\n")
-    fit([tmp_path / "log.csv"], memory, FitSettings(control=0.0, types=1))
+    fit([tmp_path / "log.csv"], memory, ONE_TYPE)
     study = open_study(memory)
     for user, outcome in (("ann", 2.0), ("bo", 4.0)):
         update(memory, study, choose(memory, study, user)["decision"], outcome)
     report(memory, study, log=tmp_path / "decisions.csv")
     before = choose(memory, study, "ann")["belief"]
-    fit([tmp_path / "log.csv", tmp_path / "decisions.csv"], memory, FitSettings(control=0.0, types=1))
+    fit([tmp_path / "log.csv", tmp_path / "decisions.csv"], memory, ONE_TYPE)
     study = open_study(memory)
     update(memory, study, choose(memory, study, "cy")["decision"], 6.0)
     # Only cy is new to the later fit; the decisions of the others still count once in their beliefs.
@@ -222,11 +224,11 @@ def test_splits_leave_out_what_the_fit_has_seen(memory, tmp_path, monkeypatch):
         now = open_study(memory)
         update(memory, now, choose(memory, now, user)["decision"], outcome)
 
-    fit([tmp_path / "log.csv"], memory, FitSettings(control=0.0, types=1))
+    fit([tmp_path / "log.csv"], memory, ONE_TYPE)
     one_more("u1", 1.0)
     one_more("ann", 2.0)
     clock[0] += 10
-    fit([tmp_path / "log.csv"], memory, FitSettings(control=0.0, types=1))
+    fit([tmp_path / "log.csv"], memory, ONE_TYPE)
     one_more("u1", 3.0)
     one_more("ann", 6.0)
     study = open_study(memory)

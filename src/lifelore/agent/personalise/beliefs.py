@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.personalise.study import Study
-from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.reuse.user_beliefs import blocks
 from lifelore.memory.study_rows import StudyRows, UserRow
@@ -134,11 +133,14 @@ def unknown_log_odds(
     study: Study, users: Sequence[UserRow], evidence: Iterable[tuple[int, str, float]]
 ) -> NDArray[np.float64]:
     """Evidence in nats that no known type fits, of each user; InputError where no broad law is known."""
+    from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
+
     models: Any = study.models
     found = UnknownEvidence(study.library, len(users), dynamics=study.dynamics, models=models)
     start_at_priors(found.types, study, users)
     row = {user.number: place for place, user in enumerate(users)}
-    for rows, policies, outcomes in turns(study, [(row[number], *pair) for number, *pair in evidence]):
+    own = [(row[number], policy, outcome) for number, policy, outcome in evidence]
+    for rows, policies, outcomes in turns(study, own):
         known = policies >= 0
         if known.any():
             found.observe(rows[known], policies[known], outcomes[known])

@@ -79,16 +79,17 @@ def _parts(
     features = [name for name in names if name.strip().lower() not in COLUMNS]
     columns = (*_READ, "u.features") if features else _READ
     word = escaped if form == "csv" else _same
-    written: Callable[[Iterable[Sequence[Any]]], bytes] = _csv if form == "csv" else _ndjson([*COLUMNS, *features])
+    head = [*COLUMNS, *features]
     if form == "csv":
-        yield _csv([[*COLUMNS, *features]])
+        yield _csv([head])
     left = limit
     while left is None or left > 0:
         size = ROWS if left is None else min(left, ROWS)
         with memory.studies.totals(study.number) as totals:
             rows = totals.log(columns, after, before, size)
         if rows:
-            yield written([_line(row, rules, features, word) for row in rows])
+            lines = [_line(row, rules, features, word) for row in rows]
+            yield _csv(lines) if form == "csv" else b"".join(_document(head, line) for line in lines)
             after = rows[-1][_READ.index("d.id")]
         if len(rows) < size:
             return
@@ -122,15 +123,8 @@ def _csv(lines: Iterable[Sequence[Any]]) -> bytes:
     return text.getvalue().encode()
 
 
-def _ndjson(names: Sequence[str]) -> Callable[[Iterable[Sequence[Any]]], bytes]:
-    available = COLUMNS.index("available")
-
-    def written(lines: Iterable[Sequence[Any]]) -> bytes:
-        found = []
-        for line in lines:
-            document = dict(zip(names, line, strict=True))
-            document["available"] = None if line[available] is None else json.loads(line[available])
-            found.append(json.dumps(document, ensure_ascii=False))
-        return "".join(f"{one}\n" for one in found).encode()
-
-    return written
+def _document(names: Sequence[str], line: Sequence[Any]) -> bytes:
+    document = dict(zip(names, line, strict=True))
+    if document["available"] is not None:
+        document["available"] = json.loads(document["available"])
+    return f"{json.dumps(document, ensure_ascii=False)}\n".encode()

@@ -284,20 +284,8 @@ def _drawn(
             policies = _for_control(study, request.available)
             policy, own = policies[int(draw * len(policies))], 1 / len(policies)
         available = None if request.available is None else tuple(request.available)
-        found.append(
-            DecisionRow(
-                id_,
-                user.number,
-                policy,
-                own,
-                control,
-                study.version,
-                now,
-                user.context,
-                available,
-                request.request,
-            )
-        )
+        known = user.context, available, request.request
+        found.append(DecisionRow(id_, user.number, policy, own, control, study.version, now, *known))
     return found
 
 

@@ -4,14 +4,12 @@ from collections import deque
 from typing import Any
 
 import numpy as np
-from scipy.special import expit, logit
 
 from lifelore.agent.personalise.beliefs import probabilities, start_at_priors, unknown_log_odds
 from lifelore.agent.personalise.identifiers import identifier
 from lifelore.agent.personalise.study import Study, known_users
 from lifelore.core.errors import NotFoundError
 from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, Evidence, relative_evidence
-from lifelore.interaction.reuse.novelty.novelty_detector import MASS
 from lifelore.memory import Memory
 from lifelore.memory.record_rules import check_name
 from lifelore.memory.study_rows import DecisionRow, UserRow
@@ -98,6 +96,10 @@ def stranger_table(study: Study) -> dict[str, Any]:
 
 def novelty_of(memory: Memory, study: Study, user: str) -> float:
     """The probability that no type of the library fits a user; InputError where no broad law is known."""
+    from scipy.special import expit, logit
+
+    from lifelore.interaction.reuse.novelty.novelty_detector import MASS
+
     known, _, shown = _read(memory, study, user)
     (log_odds,) = unknown_log_odds(study, [known], [(known.number, *pair) for pair in shown])
     return float(expit(log_odds + logit(MASS)))

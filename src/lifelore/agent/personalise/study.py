@@ -305,11 +305,6 @@ def study_of(name: str, found: StudyVersion) -> Study:
     )
 
 
-def study_names(memory: Memory) -> list[str]:
-    """Names of the studies in memory, sorted."""
-    return sorted(study_states(memory))
-
-
 def study_states(memory: Memory) -> dict[str, str]:
     """The state of each study, "active" or "archived", by its name."""
     from lifelore.agent.personalise.earlier_studies import earlier_studies
@@ -326,7 +321,7 @@ def check_study_name(name: str) -> str:
 
 
 def _refuse_unknown(memory: Memory, name: str) -> NoReturn:
-    known = ", ".join(study_names(memory))
+    known = ", ".join(sorted(study_states(memory)))
     other = ", or say which with --name" if known else ""
     raise NotFoundError(
         f"no study '{name}' in {memory.location}; known: {known or 'none'}. Begin with 'lifelore reuse fit'{other}"

@@ -56,6 +56,7 @@ class Admission:
         self._largest, self._tokens = settings.largest_body, tokens
         self._open = {*OPEN_PATHS, *open_paths}
         self._rate = RateLimit(settings.rate)
+        self._rule = f"rate must be at most {settings.rate:g} requests per second"
         self._failures = RateLimit(WRONG_TOKENS / MINUTE if settings.rate else 0.0, window=MINUTE)
 
     def client_of(self, scope: Mapping[str, Any], headers: Headers) -> str:
@@ -68,7 +69,7 @@ class Admission:
             client = self._named(self._tokens, client, method, path, headers)
         if path == HEALTH:
             return client
-        _refuse_above(self._rate, client, f"rate must be at most {self._rate.rate:g} requests per second")
+        _refuse_above(self._rate, client, self._rule)
         if method in ("POST", "PUT", "PATCH"):
             _refuse_forms(headers)
         length = headers.get(b"content-length", b"0")

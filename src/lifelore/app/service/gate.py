@@ -50,6 +50,8 @@ class Gate:
     ) -> None:
         self._app, self._settings, self._metrics = app, settings, metrics
         self._admission = Admission(settings, tokens, open_paths)
+        self._running = 0
+        metrics.running.set_function(lambda: self._running)
         self._first, self._numbers = secrets.token_hex(5), itertools.count()
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
@@ -77,7 +79,7 @@ class Gate:
             if not status:
                 await _refuse(answer, code, message, identifier, further)
 
-        self._metrics.running.inc()
+        self._running += 1
         try:
             client = self._admission.client_of(scope, headers)
             if b"content-length" not in headers or b"transfer-encoding" in headers:
@@ -98,7 +100,7 @@ class Gate:
                 defect = error
                 await refuse(500, "Lifelore failed; the log of the service has the traceback under this request")
         finally:
-            self._metrics.running.dec()
+            self._running -= 1
             self._note(scope, identifier, client, status, time.perf_counter() - began, defect)
 
     def _identifier(self, headers: dict[bytes, bytes]) -> str:

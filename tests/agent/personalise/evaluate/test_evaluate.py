@@ -207,7 +207,7 @@ def served(tmp_path_factory):
     folder = tmp_path_factory.mktemp("served")
     generator = np.random.default_rng(0)
     with open_memory(folder / "m.db") as memory:
-        fit([simulated(folder / "log.csv")], memory, FitSettings(types=2, control=0.4))
+        fit([simulated(folder / "log.csv")], memory, FitSettings(model="categorical", types=2, control=0.4))
         study = open_study(memory)
         for user in range(60):
             for _ in range(4):
@@ -258,7 +258,8 @@ def test_a_study_is_not_judged_on_decisions_that_a_later_fit_may_have_read(serve
     now = time.time()
     monkeypatch.setattr("lifelore.agent.personalise.fitting.fit.time.time", lambda: now + 10)
     with open_memory(tmp_path / "m.db") as memory:
-        fit([served / "log.csv", served / "decisions.csv"], memory, FitSettings(types=2, control=0.4))
+        logs = [served / "log.csv", served / "decisions.csv"]
+        fit(logs, memory, FitSettings(model="categorical", types=2, control=0.4))
         with pytest.raises(InputError, match="was fitted to all users of the log or knows their past"):
             evaluate([served / "decisions.csv"], EvaluateSettings(study="default"), memory=memory)
 

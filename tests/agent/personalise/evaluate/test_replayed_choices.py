@@ -57,7 +57,7 @@ def naive(study, log, rows):
 def test_users_side_by_side_are_users_one_after_the_other(monkeypatch, rule, models):
     monkeypatch.setattr(module, "USERS_AT_ONCE", 4)
     # The study knows a policy, r, that the log has not, and has retired q; it does not know the log's s.
-    settings = FitSettings(types=2, rule=rule, explore=0.1, models=models, change=0.05)
+    settings = FitSettings(model="gaussian", types=2, rule=rule, explore=0.1, models=models, change=0.05)
     study = study_of_log(log_of(("p", "q", "r"), 40), settings)[0].with_state("q", "retired")
     log = log_of(("p", "q", "s"), seed=1)
     rows = np.random.default_rng(2).permutation(len(log))[: len(log) - 3]

@@ -33,6 +33,12 @@ def lines(first=0, users=60, typed=True):
     return "\n".join(rows) + "\n"
 
 
+@pytest.fixture
+def memory(file_memory):
+    """Features are text in both back ends."""
+    return file_memory
+
+
 def features_of(memory, study, user):
     with memory.studies.reading(study.number) as rows:
         return rows.users([user])[user].features
@@ -41,18 +47,18 @@ def features_of(memory, study, user):
 @pytest.fixture
 def study(memory, tmp_path):
     (tmp_path / "log.csv").write_text(lines())
-    fit([tmp_path / "log.csv"], memory, FitSettings(control=0.0), FORM)
+    fit([tmp_path / "log.csv"], memory, FitSettings(model="gaussian", control=0.0), FORM)
     return open_study(memory)
 
 
 def test_a_fit_says_what_the_features_tell(memory, tmp_path):
     (tmp_path / "log.csv").write_text(lines())
-    document = fit([tmp_path / "log.csv"], memory, FitSettings(), FORM)
+    document = fit([tmp_path / "log.csv"], memory, FitSettings(model="gaussian"), FORM)
     assert document["features"]["names"] == ["age", "visits"]
     # Users 0, 7, …, 56 have no age.
     assert document["features"]["users"] == 60 - 9
     assert document["features"]["gain"] > 0.2
-    assert fit([tmp_path / "log.csv"], memory, FitSettings())["features"] is None
+    assert fit([tmp_path / "log.csv"], memory, FitSettings(model="gaussian"))["features"] is None
 
 
 def test_the_prior_follows_the_features_and_is_stored_bit_for_bit(memory, study):
@@ -103,14 +109,15 @@ def test_users_of_the_log_come_back_with_their_features(memory, study, tmp_path)
 
 def test_a_new_fit_with_other_features_leaves_the_old_ones_unused(memory, study, tmp_path):
     # Types are static, so that a choice leaves the belief as it is.
-    fit([tmp_path / "log.csv"], memory, FitSettings(control=0.0, change=0.0), FORM)
+    log, settings = [tmp_path / "log.csv"], FitSettings(model="gaussian", control=0.0, change=0.0)
+    fit(log, memory, settings, FORM)
     before = choose(memory, open_study(memory), "ann", features=OLD)["belief"]
-    fit([tmp_path / "log.csv"], memory, FitSettings(control=0.0, change=0.0), LogFormat(features=("visits",)))
+    fit(log, memory, settings, LogFormat(features=("visits",)))
     said = choose(memory, open_study(memory), "ann")
     assert said["features"] is None
     assert said["belief"] != before
     # The features stay with the user, and count again.
-    fit([tmp_path / "log.csv"], memory, FitSettings(control=0.0, change=0.0), FORM)
+    fit(log, memory, settings, FORM)
     assert choose(memory, open_study(memory), "ann")["belief"] == before
 
 
@@ -122,7 +129,7 @@ def test_the_log_of_decisions_has_the_features_and_can_be_fitted(memory, study, 
     with (tmp_path / "d.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     assert [(row["age"], row["visits"]) for row in rows] == [("70.0", "3.0"), ("", "")]
-    document = fit([tmp_path / "log.csv", tmp_path / "d.csv"], memory, FitSettings(), FORM)
+    document = fit([tmp_path / "log.csv", tmp_path / "d.csv"], memory, FitSettings(model="gaussian"), FORM)
     assert document["features"]["users"] >= 51
     assert features_of(memory, study, "ann") == OLD
 
@@ -145,7 +152,7 @@ def test_bad_features_are_refused_and_nothing_is_stored(features, error, words, 
 
 def test_a_study_without_features_says_how_to_get_them(memory, tmp_path):
     (tmp_path / "log.csv").write_text(lines())
-    fit([tmp_path / "log.csv"], memory, FitSettings())
+    fit([tmp_path / "log.csv"], memory, FitSettings(model="gaussian"))
     with pytest.raises(InputError, match="was fitted without --features"):
         choose(memory, open_study(memory), "ann", features=OLD)
 
@@ -153,7 +160,7 @@ def test_a_study_without_features_says_how_to_get_them(memory, tmp_path):
 def test_a_log_whose_users_all_miss_a_feature_is_refused(memory, tmp_path):
     (tmp_path / "log.csv").write_text("user,policy,outcome,age,visits\na,x,1,,2\nb,x,2,3,\n")
     with pytest.raises(InputError, match="no user has all of age, visits"):
-        fit([tmp_path / "log.csv"], memory, FitSettings(), FORM)
+        fit([tmp_path / "log.csv"], memory, FitSettings(model="gaussian"), FORM)
 
 
 @pytest.mark.parametrize("words", [["age=31,visits=4"], ["age = 31", "visits=4.0"]])

@@ -151,17 +151,18 @@ def test_contexts_have_priors_of_their_own(fitted):
 
 @pytest.mark.slow
 def test_fitting_again_keeps_users_and_what_was_retired(fitted, memory):
-    _, study = fitted(list(many(MEANS)))
+    two = {"model": "gaussian", "types": 2}
+    _, study = fitted(list(many(MEANS)), **two)
     made = choose(memory, study, "ann")
     retire(memory, study, "p2")
     add(memory, open_study(memory), "new")
-    document, again = fitted([line for line in many(MEANS, seed=1) if ",p1," not in line])
+    document, again = fitted([line for line in many(MEANS, seed=1) if ",p1," not in line], **two)
     states = {row["name"]: row["state"] for row in document["policies"]}
     # p1 is in the log no more; the new one still waits for its first outcome.
     assert states == {"p0": "active", "p1": "retired", "p2": "retired", "new": "pilot"}
     assert document["policies"][0]["mean"] is None
     assert update(memory, again, made["decision"], 1.0)["policy"] == made["policy"]
-    document, _ = fitted([*many(MEANS), "u1,new,3.5"])
+    document, _ = fitted([*many(MEANS), "u1,new,3.5"], **two)
     assert {row["name"]: row["state"] for row in document["policies"]}["new"] == "active"
 
 

@@ -63,7 +63,7 @@ def test_features_are_each_users_last_values(written):
 )
 def test_bad_numbers_are_refused_by_their_line(text, form, words, written, memory):
     with pytest.raises(InputError, match=words):
-        fit([written(text)], memory, FitSettings(), form)
+        fit([written(text)], memory, FitSettings(model="gaussian"), form)
 
 
 @pytest.mark.parametrize("features", [("age", "age"), (" ",)])
@@ -120,9 +120,9 @@ def test_a_table_is_fitted_as_its_file(kind, written, memory, tmp_path):
     lines = [f"u{i % 7},k{i % 2},{'xy'[i % 3 % 2]},{float(v)!r},1" for i, v in
              enumerate(np.random.default_rng(0).normal(size=40))]  # fmt: skip
     lines = [f"u{i % 8},k{i % 2},{line.split(',', 2)[2]}" for i, line in enumerate(lines)]
-    from_file = fit([written(HEAD + "\n".join(lines) + "\n")], memory, FitSettings("file"))
+    from_file = fit([written(HEAD + "\n".join(lines) + "\n")], memory, FitSettings("file", "gaussian"))
     table = tables()[kind](frame_of(lines))
-    from_table = fit(table, memory, FitSettings("table"))
+    from_table = fit(table, memory, FitSettings("table", "gaussian"))
     assert from_table | {"study": "file"} == from_file
     first, second = open_study(memory, "file"), open_study(memory, "table")
     assert first.library.to_bytes() == second.library.to_bytes()

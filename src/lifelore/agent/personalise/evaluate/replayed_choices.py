@@ -72,7 +72,7 @@ def replayed_choices(
             own, known = user_of[at] - first, policies[at] >= 0
             expected[at] = algorithm.known(own).performance.expected(algorithm.belief(own))
             if choose:
-                probs[np.ix_(at, study.active_numbers)] = probabilities(study, algorithm, own)
+                probs[np.ix_(at, np.array(study.active_numbers))] = probabilities(study, algorithm, own)
             if known.any():
                 algorithm.observe(own[known], policies[at[known]], outcomes[at[known]])
             algorithm.end_episode(own)

@@ -7,9 +7,10 @@ from lifelore.agent.personalise.fitting.library_from_log import TypedRows, libra
 from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.evaluation.propensity_weights import decision_numbers
 from lifelore.interaction.library.user_types import user_types
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 
 CERTAIN = 0.9
 """Belief from which a user's type, which the log does not name, is taken to be known."""
@@ -38,24 +39,25 @@ def _named(log: ReuseLog) -> TypedRows:
 
 def _with_guessed(log: ReuseLog, named: TypedRows, model: str) -> TypedRows:
     """Also the rows of users of whom nobody says the type, and whose outcomes leave little doubt of it."""
-    waiting: dict[int, list[int]] = {}
-    for row in np.flatnonzero(log.type_of_user[log.user.codes] < 0).tolist():
-        waiting.setdefault(int(log.user.codes[row]), []).append(row)
-    rows, types = named.rows.tolist(), named.types.tolist()
-    if waiting:
-        library = library_of(log, named, model).library
-        for own in waiting.values():
-            agent = BayesianPolicyReuse(library, dynamics=TypeDynamics.static(), models="plug-in")
-            for row in own:
-                policy = log.policy.names[log.policy.codes[row]]
-                if policy in library.policies:
-                    agent.update(policy, float(log.outcomes[row]))
-            belief = agent.belief
-            if belief.max() >= CERTAIN:
-                rows += own
-                types += [int(belief.argmax())] * len(own)
+    waiting = np.flatnonzero(log.type_of_user[log.user.codes] < 0)
+    if not waiting.size:
+        return named
+    library = library_of(log, named, model).library
+    place = {policy: number for number, policy in enumerate(library.policies)}
+    policies = np.array([place.get(policy, -1) for policy in log.policy.names])[log.policy.codes[waiting]]
+    users, user = np.unique(log.user.codes[waiting], return_inverse=True)
+    turn, outcomes = decision_numbers(user), log.outcomes[waiting]
+    algorithm = ReuseAlgorithm(library, len(users), dynamics=TypeDynamics.static(), models="plug-in")
+    for number in range(turn.max() + 1):
+        at = (turn == number) & (policies >= 0)
+        if at.any():
+            algorithm.update(user[at], policies[at], outcomes[at])
+    belief = algorithm.belief(np.arange(len(users)))
+    sure = (belief.max(axis=1) >= CERTAIN)[user]
     return named._replace(
-        rows=np.array(rows, np.int64), types=np.array(types, np.int64), guessed=len(rows) - len(named.rows)
+        rows=np.concatenate([named.rows, waiting[sure]]),
+        types=np.concatenate([named.types, belief.argmax(axis=1)[user][sure]]),
+        guessed=int(sure.sum()),
     )
 
 

@@ -4,7 +4,6 @@ import codecs
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.outcomes.outcome_model import LARGEST
@@ -98,14 +97,6 @@ class LogFormat:
         """The log's names of its columns of numbers beside the outcome, in small letters: weights, features."""
         weight = [self.column(WEIGHT)] if WEIGHT in self.columns else []
         return (*weight, *(name.strip().lower() for name in self.features))
-
-    def to_dict(self) -> dict[str, Any]:
-        """Plain data."""
-        return vars(self) | {
-            "columns": dict(self.columns),
-            "missing": list(self.missing),
-            "features": list(self.features),
-        }
 
 
 def parse_features(words: Sequence[str]) -> dict[str, float]:
