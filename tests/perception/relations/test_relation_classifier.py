@@ -70,7 +70,7 @@ def test_as_printed_a_pair_without_contacts_has_no_relation_and_the_form_is_stor
 
 @pytest.fixture(scope="module")
 def lessons() -> Lessons:
-    scenes = [blocks(number) for number in range(64)]
+    scenes = [blocks(number) for number in range(44)]
     return [scene_pairs(cloud) for cloud, _ in scenes], [truth for _, truth in scenes]
 
 
@@ -174,12 +174,12 @@ def views(cloud: LabelledCloud) -> list[PairLabel]:
 
 @pytest.mark.slow
 def test_several_words_may_hold_of_one_pair(lessons):
-    clouds = [blocks(number)[0] for number in range(64)]
+    clouds = [blocks(number)[0] for number in range(44)]
     truths = [views(cloud) for cloud in clouds]
-    model = RelationClassifier(multi_label=True, trees=SMALL).fit_pairs(lessons[0][:52], truths[:52])
+    model = RelationClassifier(multi_label=True, trees=SMALL).fit_pairs(lessons[0][:36], truths[:36])
     assert model.symmetric_ == {"near"}
     right, total = 0, 0
-    for scene, truth in zip(lessons[0][52:], truths[52:], strict=True):
+    for scene, truth in zip(lessons[0][36:], truths[36:], strict=True):
         found = said(model.predict_pairs(scene))
         assert (2, 3, "near") in found
         total += len(wanted(truth) | found)
@@ -197,6 +197,9 @@ def test_what_cannot_be_learnt_is_refused(lessons):
         RelationClassifier().fit_pairs(scenes[:1], [[PairLabel(3, 2, ON, 1)]])
     with pytest.raises(InputError, match="multi_label"):
         RelationClassifier().fit_pairs(scenes[:1], [[PairLabel(3, 2, ON), PairLabel(3, 2, ADJACENT)]])
+    for name in ("~on", "beside="):
+        with pytest.raises(InputError, match="start with ~"):
+            RelationClassifier().fit_pairs(scenes[:1], [[PairLabel(2, 3, name)]])
     with pytest.raises(InputError, match="fit"):
         RelationClassifier().predict_pairs(scenes[0])
     with pytest.raises(InputError, match="method"):
@@ -365,12 +368,6 @@ def test_the_score_counts_pairs_with_all_their_relations_right(lessons, fitted):
     assert fitted.score(scenes, [*turned, *truths[1:]]) == pytest.approx(1 - 1 / n_pairs)
     with pytest.raises(InputError, match="near pair"):
         fitted.score(scenes[:1], [[PairLabel(8, 9, ON)]])
-
-
-def test_names_that_mark_something_else_are_refused(lessons):
-    for name in ("~on", "beside="):
-        with pytest.raises(InputError, match="start with ~"):
-            RelationClassifier().fit_pairs(lessons[0][:1], [[PairLabel(2, 3, name)]])
 
 
 def test_the_limit_of_adjacent_may_be_changed_but_not_taken_away(lessons, fitted):

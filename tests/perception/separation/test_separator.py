@@ -90,8 +90,7 @@ def test_two_points_by_hand():
 
 
 @pytest.mark.parametrize("name", PAIRS)
-@pytest.mark.parametrize("n", [60, 700])
-@pytest.mark.parametrize(("length", "cost"), [(0.12, 1.0), (0.06, 10.0), (0.03, 10.0)])
+@pytest.mark.parametrize(("n", "length", "cost"), [(60, 0.12, 1.0), (60, 0.03, 10.0), (700, 0.06, 10.0)])
 def test_same_as_libsvm(name, n, length, cost):
     first, second = PAIRS[name](n)
     found = separate(first, second, length=length, cost=cost, tolerance=1e-5)
@@ -152,7 +151,7 @@ def test_identical_clouds_weigh_each_other_out(cost):
     assert found.decision(cloud) == pytest.approx(np.zeros(1500), abs=1e-3)
 
 
-@pytest.mark.parametrize("sizes", [(1, 1), (900, 700), (3000, 8000)])
+@pytest.mark.parametrize("sizes", [(1, 1), (3000, 4000)])
 def test_all_points_at_one_place(sizes):
     n, m = sizes
     found = separate(np.zeros((n, 3)), np.zeros((m, 3)))
@@ -182,13 +181,6 @@ def test_too_few_steps_are_owned_up_to():
     found = separate(first, second, length=0.06, cost=100.0, max_steps=20)
     assert found.max_violation > 0.1
     assert violation(first, second, found, 0.06, 100.0) == pytest.approx(found.max_violation, abs=1e-9)
-
-
-def test_same_input_same_bits():
-    first, second = PAIRS["touching boxes"](3000)
-    one, two = (separate(first, second, length=0.06, cost=5.0) for _ in range(2))
-    assert np.array_equal(one.alpha_first, two.alpha_first)
-    assert one.bias == two.bias
 
 
 def test_swapped_clouds_swap_the_sign():
@@ -246,7 +238,7 @@ def mixed(n, seed=0, side=0.3):
 
 
 @pytest.mark.parametrize("side", [0.2, 0.05, 0.01])  # many cells of the far field, some, and one
-@pytest.mark.parametrize("max_work", [1e3, 3e4, 1e5, 3e5, 1e6, 4e6, 1e7])
+@pytest.mark.parametrize("max_work", [1e3, 1e5, 1e6, 1e7])
 def test_too_little_work_is_owned_up_to(max_work, side):
     first, second = mixed(1200, side=side)
     found = separate(first, second, length=0.06, cost=10.0, max_work=max_work)
@@ -277,7 +269,7 @@ def test_work_is_counted_and_bounded(monkeypatch):
     assert free.max_violation < few.max_violation
 
 
-def test_work_that_suffices_changes_no_bit():
+def test_the_same_input_and_work_that_suffices_change_no_bit():
     first, second = PAIRS["touching boxes"](3000)
     one = separate(first, second, length=0.06, cost=5.0, max_work=np.inf)
     two = separate(first, second, length=0.06, cost=5.0, max_work=5000 * 6000)
