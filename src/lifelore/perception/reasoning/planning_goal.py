@@ -40,16 +40,16 @@ def read_goal(text: str) -> tuple[Statement, ...]:
     while True:
         match = STATEMENT.match(lower, at)
         if match is None:
-            raise InputError(
-                f"goal must be statements, got '{text[:80]}', which is none from '{text[at:].strip()[:80]}': {FORM}"
-            )
+            rest = text[at:].strip()[:80]
+            raise InputError(f"goal must be statements, got '{text[:80]}', which is none from '{rest}': {FORM}")
         denied, name, inside = match.groups()
         arguments = tuple(part.strip() for part in inside.split(",")) if inside.strip() else ()
         statements.append(Statement(name, arguments, denied is None))
         if (at := match.end()) == len(lower):
             return tuple(statements)
         if (joint := re.match(r"and\b", lower[at:])) is None:
-            raise InputError(f"goal must join statements by `and`, got '{text[at:].strip()[:80]}' in '{text[:80]}': {FORM}")
+            rest = text[at:].strip()[:80]
+            raise InputError(f"goal must join statements by `and`, got '{rest}' in '{text[:80]}': {FORM}")
         at += joint.end()
 
 
