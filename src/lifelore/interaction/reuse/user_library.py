@@ -40,9 +40,10 @@ class UserLibrary:
     def table(self, n_bins: int) -> SignalTable:
         """The next signal of each pair, in at most `n_bins` bins; errors as for `PolicyLibrary.table`."""
         model = self._signals
-        if not (model.law.learns and hasattr(model.law, "table")):
+        law: Any = model.law
+        if not (law.learns and hasattr(law, "table")):
             return self.library.table(n_bins)
-        return model.law.table(n_bins, model.shown, self._users, model.log_weights[self._users])
+        return law.table(n_bins, model.shown, self._users, model.log_weights[self._users])
 
     def part(self, rows: Any, policies: NDArray[np.bool_]) -> PartOfLibrary:
         """What rules read of some of the users and policies."""
