@@ -16,11 +16,11 @@ def axes():
 
 def test_curve_and_interval(axes):
     x, mean = np.arange(5), np.arange(5.0)
-    draw_curve(axes, x, mean, (mean - 1, mean + 2), "lore", "the lore")
+    draw_curve(axes, x, mean, (mean - 1, mean + 2), "lore")
     (line,) = axes.lines
     assert line.get_xydata().tolist() == np.column_stack([x, mean]).tolist()
     assert to_hex(line.get_color()) == COLOURS["lore"]
-    assert line.get_label() == "the lore"
+    assert line.get_label() == "lore"
     edge = axes.collections[0].get_paths()[0].vertices
     assert (edge[:, 1].min(), edge[:, 1].max()) == (-1, 6)
 

@@ -94,10 +94,10 @@ class Connection:
             Names of the values in their order in `rows`, and their types on PostgreSQL.
         """
         if self.is_sqlite:
-            places = {name: f"?{number}" for number, name in enumerate(types, 1)}
+            places = {name: f":{name}" for name in types}
             statement = f"UPDATE {table} SET {setting.format(**places)} WHERE {where.format(**places)}"
             self.statements += len(rows)
-            self._driver.executemany(statement, rows)
+            self._driver.executemany(statement, [dict(zip(types, row, strict=True)) for row in rows])
         elif rows:
             places = {name: f"v.new_{name}" for name in types}
             arrays = ", ".join(f"CAST(? AS {kind}[])" for kind in types.values())
