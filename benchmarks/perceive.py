@@ -53,9 +53,8 @@ _PROCESS = """
 import time
 marks = [time.process_time()]
 import json, os, sys
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the verb does
 from lifelore.app import command_line, console
-from lifelore.app.perceive_command import _one_thread_for_matrices
-_one_thread_for_matrices()
 from lifelore.agent.perceive import perceive
 from lifelore.perception import scene_json, scene_perception
 from lifelore.perception.clouds.cloud_file import read_cloud
