@@ -1,4 +1,10 @@
+import os
 import re
+import signal
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
 from threading import Event
 
 import gymnasium
@@ -133,6 +139,29 @@ def test_robots_share_what_they_learn(tmp_path):
         assert sum(one.tasks for one in agent.types.values()) == pytest.approx(4, abs=0.1)
         assert result.type == "bob.0"
         assert result.policies[0] in ("ann.0", "bob.0")
+
+
+def test_a_killed_task_is_lived_again(tmp_path):
+    program = textwrap.dedent(f"""
+        import os, signal
+        from tests.agent.any_tasks.windy_grid import SETTINGS, WindyGrid
+        from lifelore import LongLivedAgent
+        agent = LongLivedAgent(**SETTINGS, memory={str(tmp_path / "life.db")!r})
+        agent.live(WindyGrid(-1))
+        class Dies(WindyGrid):
+            def step(self, action):
+                os.kill(os.getpid(), signal.SIGKILL)
+        agent.live(Dies(-1))
+    """)
+    root = Path(__file__).parents[3]
+    killed = subprocess.run(
+        [sys.executable, "-c", program], cwd=root, env=os.environ | {"PYTHONPATH": f"{root}/src:{root}"}
+    )
+    assert killed.returncode == -signal.SIGKILL
+    with LongLivedAgent(**SETTINGS, memory=tmp_path / "life.db") as agent:
+        result = agent.live(WindyGrid(-1))
+        assert result.number == 1
+        assert result.type == "robot.0"
 
 
 def test_what_memory_refuses_was_not_learnt(tmp_path, monkeypatch):
