@@ -218,31 +218,31 @@ def _decided(
 
 
 def _users(memory: Memory, rows: StudyRows, study: Study, requests: Sequence[Request]) -> dict[str, UserRow]:
-    """The users of requests by name; new ones are added, and what requests tell of them is kept."""
+    """The users of requests by name; adds new users, and stores the contexts and features of requests."""
     names = list({request.user: None for request in requests})
     users = known_users(rows, study, names, lock=True, count=True)
-    told = {request.user: request for request in requests if request.context or request.features}
+    given = {request.user: request for request in requests if request.context or request.features}
     if len(users) < len(names):
         new = [name for name in names if name not in users]
-        strangers = [told.get(name, Request(name)) for name in new]
+        strangers = [given.get(name, Request(name)) for name in new]
         rows.add_users([(one.user, one.context, one.features) for one in strangers], study.version)
         users |= rows.users(new, lock=True)
         if len(users) < len(names):
             raise RacedError(f"memory {memory.location}: a user was forgotten at this moment; try again")
-    touched = [users[name].number for name in _news(told, users)]
+    touched = [users[name].number for name in _changed(given, users)]
     touched += [user.number for user in users.values() if user.version != study.version]
     if touched:  # their beliefs will be computed again, so nobody may add to the evidence in the meantime
         for user in rows.numbered(touched, lock=True).values():
             users[user.name] = user._replace(n_decisions=users[user.name].n_decisions)
-    if news := _news(told, users):
-        rows.describe((user.number, user.context, user.features, user.type) for user in news.values())
-    return users | news
+    if changed := _changed(given, users):
+        rows.describe((user.number, user.context, user.features, user.type) for user in changed.values())
+    return users | changed
 
 
-def _news(told: Mapping[str, Request], users: Mapping[str, UserRow]) -> dict[str, UserRow]:
-    """The users of whom requests tell what is not stored, with what they tell."""
+def _changed(given: Mapping[str, Request], users: Mapping[str, UserRow]) -> dict[str, UserRow]:
+    """The users whose requests give another context or other features than are stored, with the new ones."""
     found = {}
-    for name, request in told.items():
+    for name, request in given.items():
         user = users[name]
         now = user._replace(
             context=request.context or user.context, features=dict(request.features or user.features or {}) or None

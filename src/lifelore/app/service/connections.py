@@ -46,7 +46,7 @@ class PatientProtocol(HttpToolsProtocol):
 
     def _look(self) -> None:
         if self not in self.connections:
-            return  # closed, or a web socket has taken it
+            return  # closed
         # Between two requests, the last one names the state; in a request, `self` does, which is no request.
         cycle = self.cycle
         state = cycle if cycle is None or cycle.response_complete else self

@@ -159,13 +159,13 @@ class JointNormalLaw(PolicyLaw):
 
     # ---- a single user's statistics as small arrays ----------------------------------------------------------
 
-    def told(self, policies: Array, rows: Array) -> Array:
+    def in_signal_units(self, policies: Array, rows: Array) -> Array:
         """Number and mean (m, 2) in units of outcomes."""
         number, total = rows.T
         return np.stack([number, self.middle[policies] + self.unit[policies] * total / number], axis=-1)
 
     def kept(self, policies: Array, rows: Array) -> Array:
-        """Rows of `told` as the law keeps them."""
+        """Rows in units of signals as the law keeps them."""
         number, mean = rows.T
         return np.stack([number, number * (mean - self.middle[policies]) / self.unit[policies]], axis=-1)
 

@@ -102,7 +102,7 @@ class PolicyLaw(Law):
         """Whether each row (..., n_numbers) has shown something, (...)."""
         return shown[..., 0] != 0
 
-    def told(self, policies: Array, rows: Array) -> Array:
+    def in_signal_units(self, policies: Array, rows: Array) -> Array:
         """Rows (m, n_numbers) of `policies` in units of signals; `kept` is the way back."""
         return rows
 
@@ -113,7 +113,8 @@ class PolicyLaw(Law):
     def state(self, shown: Array, user: int) -> dict[str, Array]:
         """``policies`` (m,) and ``shown`` (m, n_numbers), a row of each."""
         policies = np.flatnonzero(self.tried(shown[user]))
-        return {"policies": policies, "shown": self.told(policies, shown[user, policies].astype(np.float64))}
+        rows = self.in_signal_units(policies, shown[user, policies].astype(np.float64))
+        return {"policies": policies, "shown": rows}
 
     def restore(self, shown: Array, user: int, state: Mapping[str, Array]) -> None:
         """Take over a `state`; InputError where it is of another law."""

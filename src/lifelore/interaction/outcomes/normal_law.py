@@ -173,14 +173,14 @@ class NormalLaw(PolicyLaw):
 
     # ---- a single user's statistics as small arrays ----------------------------------------------------------
 
-    def told(self, policies: Array, rows: Array) -> Array:
+    def in_signal_units(self, policies: Array, rows: Array) -> Array:
         """Number, mean and sum of squares (m, 3) in units of outcomes."""
         n, mean, squares = _parts(rows)
         unit, middle = self.unit[policies], self.middle[policies]
         return np.stack([n, middle + unit * mean, unit**2 * squares], axis=-1)
 
     def kept(self, policies: Array, rows: Array) -> Array:
-        """Rows of `told` as the law keeps them."""
+        """Rows in units of signals as the law keeps them."""
         n, mean, squares = _parts(rows)
         unit, middle = self.unit[policies], self.middle[policies]
         return np.stack([n, (mean - middle) / unit, squares / unit**2], axis=-1)

@@ -3,19 +3,16 @@
 Equal models give equal bytes.
 """
 
-import io
-import json
-import zipfile
 from collections.abc import Mapping
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, StoreError
+from lifelore.core.packed_arrays import PackedFormat
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.relations.displacement_relations import DisplacementRelations, NeighbourSettings
 from lifelore.perception.relations.relation_model import RelationModel
@@ -28,14 +25,12 @@ from lifelore.perception.relations.relation_model_check import (
 from lifelore.perception.trees.tree_ensemble import TreeEnsemble
 from lifelore.perception.trees.tree_relations import TreeRelations
 
-FORMAT = "lifelore relation model"
-VERSION = 1
+FORMAT = PackedFormat(
+    "lifelore relation model", 1, "relation model", "`lifelore learn-relations --out`", largest=2**28
+)
 SUFFIX = ".npz"
 """End of the name of every relation model file."""
-LARGEST = 2**28
-"""Largest size of a model after unpacking, in bytes, so that no file fills the memory."""
 SHIPPED = Path(__file__).parent / "models" / "tabletop.npz"
-DAMAGED = "is no relation model that can be read ({}); write it anew with `lifelore learn-relations --out`"
 
 
 def write_model(model: RelationModel, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
@@ -77,8 +72,7 @@ def read_model(path: str | Path) -> RelationModel:
 
 def model_about(path: str | Path) -> dict[str, Any]:
     """The header of a model file: how the model was trained, its names, its settings."""
-    _, header = _opened(_content(path), str(path))
-    return header
+    return FORMAT.unpack(_content(path), str(path))[0]
 
 
 def _content(path: str | Path) -> bytes:
@@ -91,8 +85,6 @@ def _content(path: str | Path) -> bytes:
 def model_bytes(model: RelationModel, about: Mapping[str, Any] | None = None) -> bytes:
     """The model as the bytes of an npz file."""
     header: dict[str, Any] = {
-        "format": FORMAT,
-        "version": VERSION,
         "method": model.method,
         "adjacent_gap": model.adjacent_gap,
         "multi_label": model.multi_label,
@@ -115,10 +107,7 @@ def model_bytes(model: RelationModel, about: Mapping[str, Any] | None = None) ->
         fields, columns = _fields(part)
         header["models"][kind] = {"at": number, **fields}
         arrays.update({f"{number}.{name}": column for name, column in columns.items()})
-    text = json.dumps(header, sort_keys=True, allow_nan=False).encode()
-    stream = io.BytesIO()
-    np.savez_compressed(stream, about=np.frombuffer(text, np.uint8), **arrays)  # type: ignore[arg-type]
-    return stream.getvalue()
+    return FORMAT.pack(header, arrays)
 
 
 def _fields(part: TreeRelations | DisplacementRelations) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
@@ -132,7 +121,7 @@ def _fields(part: TreeRelations | DisplacementRelations) -> tuple[dict[str, Any]
 
 def model_from_bytes(content: bytes, where: str = "the model") -> RelationModel:
     """The model of `model_bytes`; errors name `where`."""
-    arrays, header = _opened(content, where)
+    header, arrays = FORMAT.unpack(content, where)
     try:
         check_header(header)
         model = RelationModel(
@@ -147,9 +136,9 @@ def model_from_bytes(content: bytes, where: str = "the model") -> RelationModel:
         )
         models = {kind: _part(model, kind, fields, arrays) for kind, fields in header["models"].items()}
     except KeyError as error:
-        raise InputError(f"{where} {DAMAGED.format(f'{error} is missing')}") from None
+        raise FORMAT.damaged(where, ValueError(f"{error} is missing")) from None
     except (TypeError, ValueError, AttributeError, OverflowError) as error:
-        raise InputError(f"{where} {DAMAGED.format(error)}") from None
+        raise FORMAT.damaged(where, error) from None
     return replace(model, models=models)
 
 
@@ -184,20 +173,3 @@ def _part(
     check_displacements(own["displacements"], own["codes"], classes)
     votes = NeighbourSettings(fields["k"], None, fields["weights"])
     return DisplacementRelations(classes, own["displacements"], own["codes"], votes.k, votes.weights)
-
-
-def _opened(content: bytes, where: str) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as packed:
-            if sum(entry.file_size for entry in packed.infolist()) > LARGEST:
-                raise ValueError(f"it unpacks to more than {LARGEST} bytes")
-        with np.load(io.BytesIO(content), allow_pickle=False) as packed:
-            arrays = {name: packed[name] for name in packed.files}
-        header = json.loads(arrays.pop("about").tobytes())
-        if header["format"] != FORMAT:
-            raise ValueError("another kind of file")
-    except Exception as error:  # a damaged archive raises what its parsers raise: zlib, lzma, struct, tokenize, …
-        raise InputError(f"{where} {DAMAGED.format(error)}") from None
-    if header.get("version") != VERSION:
-        raise InputError(f"{where} has version {header.get('version')}, this Lifelore reads {VERSION}; update it")
-    return arrays, header
