@@ -60,6 +60,13 @@ def test_memory_goes_on_and_counts_numbered_moves_once(adapted):
     assert objects(adapted(move("fast", "miss")))[0]["step"] == 3
 
 
+def test_a_forgotten_user_starts_again(adapted):
+    gone, again = objects(adapted(move("fast", "miss"), {"user": "ada", "forget": True}, {"user": "ada"}))[1:]
+    assert (gone["user"], again["step"], again["belief"]) == ("ada", 0, {"steady": 0.5, "shaky": 0.5})
+    assert gone["forgotten"] > 0
+    assert "nothing is stored of user 'ben'" in adapted({"user": "ben", "forget": True}).refusal
+
+
 def test_a_saved_library_and_one_document(adapted, tmp_path):
     signal = CategorySignal(FIELDS["signals"], FIELDS["categories"])
     library = PolicyLibrary.from_means(FIELDS["means"], 0.1, FIELDS["types"], FIELDS["policies"], signal=signal)

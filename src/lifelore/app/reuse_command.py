@@ -374,7 +374,8 @@ def adapt(
     """Adapt an interface to each user, step by step (BEAT).
 
     Each JSON line of input, a move of a user, gives one JSON line with the action set for the next step. Use it
-    where each step shows the user's type. Memory stores the beliefs; with another library they start again.
+    where each step shows the user's type. Memory stores the beliefs; with another library they start again. The
+    line {"user": "ada", "forget": true} deletes what is stored of a user.
     """
     from lifelore.agent.personalise import adaptation
     from lifelore.app.console import print_json, print_json_line

@@ -126,7 +126,8 @@ def adapt(
 
     A line is an object: ``{"user": …}`` asks before the first move; ``{"user": …, "action_set": …, "signal": …}``
     stores a move first. ``"step"``, the number of the move from 0, makes a move that comes twice count once.
-    ``"ends_episode": true`` ends an episode with the move.
+    ``"ends_episode": true`` ends an episode with the move. ``{"user": …, "forget": true}`` deletes all that is
+    stored of the user.
 
     Raises
     ------
@@ -138,6 +139,9 @@ def adapt(
             user = line.pop("user", None)
             if not isinstance(user, str) or not user:
                 raise InputError(f"user must be a name, got {user!r}")
+            if line == {"forget": True}:
+                yield {"user": user, "forgotten": forget_adaptation(memory, adaptation, user)}
+                continue
             if line:
                 _learn_line(memory, adaptation, user, line)
             yield select(memory, adaptation, user, seed)
