@@ -12,7 +12,7 @@ url = sys.argv[1] if len(sys.argv) > 1 else "http://127.0.0.1:8321"
 random.seed(0)
 means = [{"slow": 8.0, "fast": 2.0}, {"slow": 3.0, "fast": 8.5}]  # two types of user, unknown to the service
 
-with StudyClient(url, "playlists", fallback="slow", queue="outcomes.jsonl") as client:
+with StudyClient(url, "playlists", fallback="slow", queue="outcomes.db") as client:
     for _ in range(5):
         for user in range(100):
             choice = client.decide(f"user{user}")

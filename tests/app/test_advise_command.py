@@ -56,7 +56,7 @@ def test_a_bad_line_ends_it_after_the_good_ones(experts, monkeypatch, capsys):
 
 
 def test_a_watch_file_that_is_not_there(experts):
-    with pytest.raises(NotFoundError, match="watch must be a file that can be read, got 'nowhere'"):
+    with pytest.raises(NotFoundError, match="file 'nowhere' does not exist"):
         advise("lattice", str(experts), watch="nowhere")
 
 

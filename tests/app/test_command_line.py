@@ -93,7 +93,19 @@ def test_the_contract_names_these_commands():
     verbs = {"live", "explain", "way", "recognise", "perceive", "learn-relations", "scenes", "learn-from", "teach"}
     verbs |= {"advise", "reproduce", "doctor", "serve", "version"}
     verbs |= {f"memory {verb}" for verb in ("show", "export", "nav2", "import", "merge", "forget")}
-    reuse = ("fit", "warm", "choose", "update", "report", "evaluate", "retire", "add", "forget", "studies")
+    reuse = (
+        "fit",
+        "warm",
+        "choose",
+        "update",
+        "report",
+        "evaluate",
+        "retire",
+        "add",
+        "forget",
+        "studies",
+        "adapt",
+    )
     verbs |= {f"reuse {verb}" for verb in reuse}
     assert {" ".join(path) for path in COMMANDS} == verbs
 

@@ -1,7 +1,5 @@
 """`lifelore advise`: advise agents whose goals are unknown."""
 
-import json
-import sys
 from typing import Annotated
 
 import typer
@@ -58,30 +56,18 @@ def advise(
     Each JSON line of input, a step of an agent, gives one JSON line of output. Use it when experts have walked in
     the same world and you do not know the goals of the agents.
     """
-    from contextlib import nullcontext
-
     from lifelore.agent.advise.advise import AdviceSession, AdviseSettings
     from lifelore.agent.advise.step_lines import read_steps
-    from lifelore.app.console import print_json
+    from lifelore.app.console import print_json, print_json_line
+    from lifelore.core.json_lines import lines_of
 
     session = AdviceSession(
         AdviseSettings(world, experts, goals, method, kappa, window, share, cell, robot_radius, shown=shown)
     )
-    name = "stdin" if watch == "-" else watch
-    with nullcontext(sys.stdin) if watch == "-" else _opened(watch) as lines:
-        answers = (session.answer(step) for step in read_steps(lines, session.world, name, session.classes))
-        if as_json:
-            print_json({"goals": session.goals, "experts": session.n_experts, "advice": list(answers)})
-            return
-        for answer in answers:
-            # The caller waits for this line before the agent's next step.
-            print(json.dumps(answer, allow_nan=False), flush=True)
-
-
-def _opened(path: str):
-    from lifelore.core.errors import NotFoundError
-
-    try:
-        return open(path, encoding="utf-8")
-    except OSError as error:
-        raise NotFoundError(f"watch must be a file that can be read, got '{path}': {error.strerror}") from None
+    steps = read_steps(lines_of(watch), session.world, "stdin" if watch == "-" else watch, session.classes)
+    answers = (session.answer(step) for step in steps)
+    if as_json:
+        print_json({"goals": session.goals, "experts": session.n_experts, "advice": list(answers)})
+        return
+    for answer in answers:
+        print_json_line(answer)  # The caller waits for this line before the agent's next step.

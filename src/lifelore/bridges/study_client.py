@@ -1,6 +1,6 @@
 """A Python client of one study, which answers also while the service is gone, and delivers each outcome once.
 
-This file imports the standard library alone: copy it into a program that has no Lifelore. Linux and macOS.
+This file imports the standard library alone: copy it into a program that has no Lifelore.
 
     with StudyClient("http://127.0.0.1:8321", "playlists", fallback="slow") as client:
         choice = client.decide("ada")
@@ -11,25 +11,24 @@ that was gone is back.
 """
 
 import atexit
-import fcntl
 import http.client
-import io
 import json
 import logging
 import math
 import os
 import random
-import select
 import socket
-import ssl
+import sqlite3
 import threading
 import time
 import uuid
 from collections import Counter, deque
 from collections.abc import Callable, Collection, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, closing, suppress
 from dataclasses import dataclass
 from itertools import islice
-from typing import Any, cast
+from typing import Any
 from urllib.parse import quote, urlsplit
 
 log = logging.getLogger("lifelore.study_client")
@@ -48,6 +47,8 @@ PATIENCE = 10.0
 """Seconds that a delivery or the erasure of a user may take."""
 REMEMBERED = 10_000
 """Users whose last probabilities, and offline choices whose particulars, are in memory."""
+MOST_CALLS = 32
+"""Calls at a time that wait for the service."""
 RETRIED = ("store", "rate", "time")
 """Kinds of errors of one outcome that are not its fault."""
 
@@ -216,33 +217,13 @@ class StudyClient:
             The client is closed, or was made before a fork of the process.
         """
         item = _item(user, context, features, available, request)
-        made = self._asked("/decisions", item, self._timeout, _Made)
-        return self._offline_choice(item) if made is None else self._online_choice(item, made)
-
-    def decide_many(self, items: Sequence[Mapping[str, Any]], timeout: float | None = None) -> list[Choice]:
-        """A policy for each item, a mapping with the arguments of `decide`; all are asked for in one request.
-
-        Parameters
-        ----------
-        items : sequence of mappings
-            At most 100,000.
-        timeout : float, optional
-            Seconds for the whole request; default: as the client.
-
-        Raises
-        ------
-        ValueError
-            As `decide`. Decisions that the service has made for other items then have no outcome.
-        """
-        checked = [_item(**item) for item in items]
-        seconds = timeout or self._timeout
-        made = self._asked("/decisions/batch", {"items": checked}, seconds, _each(len(checked), _Made))
+        made = self._made_by_service(item)
         if made is None:
-            return [self._offline_choice(item) for item in checked]
-        for place, one in enumerate(made):
-            if not isinstance(one, _Made):
-                raise ServiceRefusal(422, f"items.{place}: {one[1]}")
-        return [self._online_choice(item, one) for item, one in zip(checked, made, strict=True)]
+            return self._offline_choice(item)
+        self._count("service")
+        if made.probabilities:
+            self._users.put((user, context), made.probabilities)
+        return _choice(item, made.policy, made.decision, made.probability, "service")
 
     def observe(self, choice: Choice | str, outcome: float) -> None:
         """Queue the outcome of a decision; it is delivered soon, and counts once however often it is delivered.
@@ -332,33 +313,27 @@ class StudyClient:
         with self._lock:
             return {name: self._counts[name] for name in names} | {"pending": len(self._queue)}
 
-    def _asked(self, route: str, document: Any, seconds: float, read: Callable[[Any], Any]) -> Any:
-        """The service's answer to a question for decisions; None if it has none."""
+    def _made_by_service(self, item: dict[str, Any]) -> "_Made | None":
+        """The service's decision; None if it gives none."""
         self._check_usable()
         if not self._breaker.admits():
             return None
         try:
-            answer = self._link.ask("POST", route, document, seconds, read)
+            made = self._link.ask_within(self._timeout, "/decisions", item, _Made)
         except ServiceUnavailable as error:
             self._failed(error)
             self._wake.set()
             return None
         except ServiceRefusal:
-            self._breaker.succeeded()
+            self._breaker.ended(well=True)
             raise
-        if self._breaker.succeeded():
+        if self._breaker.ended(well=True):
             log.warning("study %s: the service is back", self.study)
-        return answer
+        return made
 
     def _failed(self, error: ServiceUnavailable) -> None:
-        if self._breaker.failed():
+        if self._breaker.ended(well=False):
             log.warning("study %s: choices are made without the service: %s", self.study, error)
-
-    def _online_choice(self, item: dict[str, Any], made: "_Made") -> Choice:
-        self._count("service")
-        if made.probabilities:
-            self._users.put((item["user"], item.get("context")), made.probabilities)
-        return _choice(item, made.policy, made.decision, made.probability, "service")
 
     def _offline_choice(self, item: dict[str, Any]) -> Choice:
         user, context, available = item["user"], item.get("context"), item.get("available")
@@ -403,12 +378,11 @@ class StudyClient:
                     self._deliver()
             except Exception:  # a defect in one round must not end all later deliveries
                 log.exception("study %s: the client's thread goes on", self.study)
-            if len(self._queue) < BATCH or self._breaker.is_open or self._deliver_at:
-                can_deliver = len(self._queue) and not self._breaker.is_open
-                due = max(self._deliver_at, time.monotonic()) if can_deliver else math.inf
-                self._wake.wait(max(min(due, self._probe_at()) - time.monotonic(), 0))
-                self._wake.clear()
-                self._stopped.wait(LINGER)
+            can_deliver = len(self._queue) and not self._breaker.is_open
+            due = min(self._probe_at(), self._deliver_at if can_deliver else math.inf)
+            self._wake.wait(max(due - time.monotonic(), 0))
+            self._wake.clear()
+            self._stopped.wait(LINGER)
 
     def _probe_at(self) -> float:
         return self._probed_at + (self._breaker.wait if self._breaker.is_open else self._refresh)
@@ -423,11 +397,11 @@ class StudyClient:
             answered = False
         except ServiceRefusal as error:
             log.warning("study %s has no table: %s", self.study, error)
-        if self._breaker.probed(answered):
+        if self._breaker.is_open:
+            self._breaker.probed(answered)
             self._delivery_wait = self._deliver_at = 0.0
 
     def _fetch_table(self) -> None:
-        self._link.resolve()
         self._table = self._link.ask("GET", "/table", None, PROBE, _Table)
 
     def _deliver(self) -> None:
@@ -572,68 +546,49 @@ class Recent:
 
 
 class _Breaker:
-    """Whether calls ask the service: closed, all do; open, none does; half open, a single one tries."""
+    """Whether calls ask the service: after `FAILURES` in a row none does, and after a good probe a single one."""
 
     def __init__(self) -> None:
-        self._state, self._failures, self._lock = "closed", 0, threading.Lock()
+        self._failures, self._try_one, self._lock = 0, False, threading.Lock()
         self.wait = WAITS[0]
 
     @property
     def is_open(self) -> bool:
-        return self._state == "open"
+        return self._failures >= FAILURES and not self._try_one
 
     def admits(self) -> bool:
-        if self._state != "half open":
-            return self._state == "closed"
+        if self._failures < FAILURES:
+            return True
         with self._lock:
-            if self._state == "half open":
-                self._state = "open"  # for all others, until this call has ended
-                return True
-            return self._state == "closed"
+            admitted, self._try_one = self._try_one, False
+            return admitted
 
-    def succeeded(self) -> bool:
-        """Close; whether the breaker was not closed before."""
-        if self._state == "closed" and not self._failures:
-            return False
+    def ended(self, well: bool) -> bool:
+        """Count how a call has ended; whether calls ask the service, or no longer ask it, from here on."""
         with self._lock:
-            was, self._state, self._failures, self.wait = self._state, "closed", 0, WAITS[0]
-            return was != "closed"
+            before, self._failures = self._failures, 0 if well else self._failures + 1
+            if well:
+                self.wait = WAITS[0]
+            return (before >= FAILURES) != (self._failures >= FAILURES)
 
-    def failed(self) -> bool:
-        """Count a failure; whether it opened the breaker."""
-        with self._lock:
-            self._failures += 1
-            was = self._state
-            if self._failures >= FAILURES:
-                self._state = "open"
-            return was == "closed" and self._state == "open"
-
-    def probed(self, answered: bool) -> bool:
-        """Wait longer for the next attempt of the client's thread; whether this one made the breaker half open."""
-        with self._lock:
-            if self._state != "open":
-                return False
-            self.wait = min(2 * self.wait, WAITS[1])
-            self._state = "half open" if answered else "open"
-            return answered
+    def probed(self, answered: bool) -> None:
+        """Wait longer for the next probe; if this one was answered, a single call may ask the service."""
+        self.wait, self._try_one = min(2 * self.wait, WAITS[1]), answered
 
 
 class _Queue:
-    """Outcomes in the order of their arrival; with a path, also as lines of JSON in a file.
-
-    The file grows by a line for each outcome, and by ``{"done": n}`` once the n oldest ones are delivered. It is
-    emptied when all are delivered, and written anew, without the delivered ones, when these are the larger part.
-    """
+    """Outcomes in the order of their arrival; with a path, also in a SQLite file until they are delivered."""
 
     def __init__(self, path: str | os.PathLike[str] | None, capacity: int, fsync: bool) -> None:
         self.path = None if path is None else os.fspath(path)
-        self._capacity, self._fsync = capacity, fsync
-        self._lines: deque[dict[str, Any]] = deque()
-        self._lock, self._file, self._delivered = threading.Lock(), -1, 0
-        if self.path is not None:
-            self._file = self._opened(self.path)
-            self._lines.extend(_undelivered(self._file))
-            self._write_anew()
+        self._capacity, self._lock = capacity, threading.Lock()
+        self._file = None if self.path is None else _opened(self.path, fsync)
+        self._lines: deque[tuple[int | None, dict[str, Any]]] = (
+            deque()
+        )  # with the number of the row, if it has one
+        if self._file is not None:
+            rows = self._file.execute("SELECT number, line FROM outcomes ORDER BY number")
+            self._lines.extend((number, json.loads(line)) for number, line in rows)
 
     def __len__(self) -> int:
         return len(self._lines)
@@ -643,150 +598,102 @@ class _Queue:
         with self._lock:
             if len(self._lines) >= self._capacity:
                 return False
-            self._lines.append(line)
-            self._append(line)
+            self._lines.append((self._stored(line), line))
             return True
 
     def head(self, most: int) -> list[dict[str, Any]]:
         """The oldest outcomes."""
         with self._lock:
-            return list(islice(self._lines, most))
+            return [line for _, line in islice(self._lines, most)]
 
     def pop(self, number: int) -> None:
         """Remove the oldest outcomes, which are delivered."""
-        if not number:
-            return
         with self._lock:
-            for _ in range(number):
-                self._lines.popleft()
-            self._delivered += number
-            if self._file < 0:
-                return
-            if not self._lines:
-                os.ftruncate(self._file, 0)
-                self._delivered = 0
-            elif self._delivered > max(len(self._lines), BATCH):
-                self._write_anew()
-            else:
-                self._append({"done": number})
+            self._erase([self._lines.popleft() for _ in range(number)])
 
     def keep(self, wanted: Callable[[dict[str, Any]], bool]) -> None:
         """Remove all outcomes but those wanted."""
         with self._lock:
-            self._lines = deque(filter(wanted, self._lines))
-            if self._file >= 0:  # delivered lines too may name a user
-                self._write_anew()
+            self._erase([pair for pair in self._lines if not wanted(pair[1])])
+            self._lines = deque(pair for pair in self._lines if wanted(pair[1]))
 
     def close(self) -> None:
         with self._lock:
-            if self._file >= 0:
-                os.close(self._file)
-                self._file = -1
+            if self._file is not None:
+                self._file.close()
 
-    def _append(self, line: dict[str, Any]) -> None:
-        if self._file < 0:
-            return
-        data, size = _encoded(line), os.fstat(self._file).st_size
+    def _stored(self, line: dict[str, Any]) -> int | None:
+        """The number of a new row; None without a file, and if it cannot be written."""
+        if self._file is None:
+            return None
         try:
-            if os.write(self._file, data) < len(data):
-                raise OSError("the disk is full")
-            if self._fsync:
-                os.fsync(self._file)
-        except OSError as error:
+            with self._file:
+                return self._file.execute("INSERT INTO outcomes (line) VALUES (?)", [json.dumps(line)]).lastrowid
+        except sqlite3.Error as error:
             log.error("an outcome is in memory alone, since its file cannot be written: %s", error)
-            os.ftruncate(self._file, size)
+            return None
 
-    def _write_anew(self) -> None:
-        """Replace the file by one of the outcomes that are not delivered, in one step."""
-        path = self.path
-        assert path is not None
-        try:
-            file = self._opened(f"{path}.new", os.O_TRUNC)
-            with open(file, "wb", closefd=False) as stream:
-                stream.writelines(map(_encoded, self._lines))
-            if self._fsync:
-                os.fsync(file)
-            os.replace(f"{path}.new", path)
-            if self._fsync:
-                _fsync_folder(path)
-        except OSError as error:
-            log.error("the queue's file cannot be written anew: %s", error)
+    def _erase(self, lines: list[tuple[int | None, dict[str, Any]]]) -> None:
+        rows = [(number,) for number, _ in lines if number is not None]
+        if self._file is None or not rows:
             return
-        os.close(self._file)
-        self._file, self._delivered = file, 0
-
-    def _opened(self, path: str, flags: int = 0) -> int:
-        """The open file, which no other client can open."""
-        if os.path.exists(path) and not os.path.isfile(path):
-            raise ValueError(f"queue must be the path of a file, got {path}")
-        file = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND | flags, 0o600)
         try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            os.close(file)
-            raise ValueError(f"queue must be a file of one client, but another client uses {path}") from None
-        return file
+            with self._file:
+                self._file.executemany("DELETE FROM outcomes WHERE number = ?", rows)
+        except sqlite3.Error as error:  # delivered again after a restart, they count once
+            log.error("delivered outcomes stay in the queue's file: %s", error)
 
 
-def _fsync_folder(path: str) -> None:
-    folder = os.open(os.path.dirname(os.path.abspath(path)), os.O_RDONLY)
+def _opened(path: str, fsync: bool) -> sqlite3.Connection:
+    """The open file of a queue, which no other client can open; what is erased is overwritten."""
+    if os.path.exists(path) and not os.path.isfile(path):
+        raise ValueError(f"queue must be the path of a file, got {path}")
     try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
-
-
-def _encoded(line: dict[str, Any]) -> bytes:
-    return json.dumps(line).encode() + b"\n"
-
-
-def _undelivered(file: int) -> list[dict[str, Any]]:
-    """The outcomes of a queue's file that are not delivered. A crash can leave a last line that is not whole."""
-    lines: deque[dict[str, Any]] = deque()
-    with open(file, "rb", closefd=False) as stream:
-        for text in stream:
-            try:
-                line = json.loads(text)
-                done = line.get("done", 0)
-            except (ValueError, AttributeError):
-                log.warning("a line of the queue's file is not whole and is left out")
-                continue
-            if "done" not in line:
-                lines.append(line)
-            for _ in range(min(done, len(lines))):
-                lines.popleft()
-    return list(lines)
+        with ExitStack() as failed:
+            file = failed.enter_context(closing(sqlite3.connect(path, timeout=0, check_same_thread=False)))
+            for pragma in ("locking_mode = EXCLUSIVE", "journal_mode = TRUNCATE", "secure_delete = ON"):
+                file.execute(f"PRAGMA {pragma}")
+            file.execute(f"PRAGMA synchronous = {'FULL' if fsync else 'OFF'}")
+            file.execute("CREATE TABLE IF NOT EXISTS outcomes (number INTEGER PRIMARY KEY, line TEXT NOT NULL)")
+            os.chmod(path, 0o600)
+            failed.pop_all()
+            return file
+    except sqlite3.Error as error:
+        reason = {
+            "SQLITE_BUSY": "another client uses it; give each client a file of its own",
+            "SQLITE_NOTADB": "it has other content; give a new file",
+        }.get(error.sqlite_errorname, error)
+        raise ValueError(f"queue {path} cannot be used: {reason}") from None
 
 
 class _Link:
-    """HTTP to one service: connections stay open, each serves one thread at a time, and each wait has an end."""
-
-    MOST_IDLE = 64
+    """HTTP to one service. Connections stay open; each serves one call at a time."""
 
     def __init__(self, url: str, prefix: str, token: str | None) -> None:
         parts = urlsplit(url)
         if parts.scheme not in ("http", "https") or not parts.hostname:
             raise ValueError(f"url must begin with http:// or https:// and a host, got {url!r}")
-        self._host, self._prefix = parts.hostname, parts.path.rstrip("/") + prefix
-        self._port = parts.port or (443 if parts.scheme == "https" else 80)
-        self._tls = ssl.create_default_context() if parts.scheme == "https" else None
-        headers = f"Host: {parts.netloc.rpartition('@')[2]}\r\nContent-Type: application/json\r\n"
+        self._class = http.client.HTTPSConnection if parts.scheme == "https" else http.client.HTTPConnection
+        self._host, self._port, self._prefix = parts.hostname, parts.port, parts.path.rstrip("/") + prefix
+        self._headers = {"Content-Type": "application/json"}
         if token is not None:
             if not (token.isascii() and token.isprintable()):
                 raise ValueError("token must be printable ASCII, as `lifelore serve --add-token` prints it")
-            headers += f"Authorization: Bearer {token}\r\n"
-        self._headers = headers
-        self._idle: deque[socket.socket] = deque()
-        self._addresses: list[Any] = []
-        self._resolved, self._closed = threading.Event(), False
+            self._headers["Authorization"] = f"Bearer {token}"
+        self._idle: deque[http.client.HTTPConnection] = deque()
+        self._workers, self._closed = ThreadPoolExecutor(MOST_CALLS, "study call"), False
 
-    def resolve(self) -> None:
-        """Ask for the addresses of the host, which can take long: calls of users take those found here."""
+    def ask_within(self, seconds: float, path: str, document: Any, read: Callable[[Any], Any]) -> Any:
+        """As `ask`, by POST; the seconds also end an answer that comes slowly."""
+        connection = self._connection(seconds)
+        answer = self._workers.submit(self._asked, connection, "POST", path, document, read)
         try:
-            self._addresses = socket.getaddrinfo(self._host, self._port, type=socket.SOCK_STREAM)
-        except OSError as error:
-            raise ServiceUnavailable(f"{self._host} has no address: {error}") from error
-        self._resolved.set()
+            return answer.result(seconds)
+        except TimeoutError:
+            answer.cancel()
+            with suppress(OSError, AttributeError):  # wakes the worker that waits for it
+                connection.sock.shutdown(socket.SHUT_RDWR)
+            raise ServiceUnavailable("no answer in time") from None
 
     def ask(self, method: str, path: str, document: Any, seconds: float, read: Callable[[Any], Any] = dict) -> Any:
         """The document of the answer, read by a function.
@@ -794,15 +701,41 @@ class _Link:
         Raises
         ------
         ServiceUnavailable
-            No answer within these seconds, one that says to come back later, or one that is not the service's.
+            Nothing came in these seconds, the answer says to come back later, or it is not the service's.
         ServiceRefusal
             The service says that the request breaks a rule.
         """
-        deadline = time.monotonic() + seconds
-        body = b"" if document is None else json.dumps(document, allow_nan=False).encode()
-        head = f"{method} {self._prefix}{path} HTTP/1.1\r\n{self._headers}Content-Length: {len(body)}\r\n\r\n"
+        return self._asked(self._connection(seconds), method, path, document, read)
+
+    def close(self) -> None:
+        self._closed = True
+        self._workers.shutdown(wait=False)
+        while self._idle:
+            self._idle.pop().close()
+
+    def _connection(self, seconds: float) -> http.client.HTTPConnection:
+        """The connection that was used last, or a new one."""
         try:
-            status, content = self._exchange(head.encode() + body, deadline)
+            connection = self._idle.pop()
+        except IndexError:
+            return self._class(self._host, self._port, timeout=seconds)
+        connection.timeout = seconds
+        if connection.sock is not None:
+            connection.sock.settimeout(seconds)
+        return connection
+
+    def _asked(
+        self,
+        connection: http.client.HTTPConnection,
+        method: str,
+        path: str,
+        document: Any,
+        read: Callable[[Any], Any],
+    ) -> Any:
+        body = None if document is None else json.dumps(document, allow_nan=False).encode()
+        request = method, self._prefix + path, body, self._headers
+        try:
+            status, content = self._exchange(connection, request)
             answer = json.loads(content)
             if status == 200:
                 return read(answer)
@@ -813,89 +746,23 @@ class _Link:
             raise ServiceRefusal(status, message)
         raise ServiceUnavailable(f"status {status}: {message}")
 
-    def close(self) -> None:
-        self._closed = True
-        while self._idle:
-            self._idle.pop().close()
-
-    def _exchange(self, message: bytes, deadline: float) -> tuple[int, bytes]:
+    def _exchange(self, connection: http.client.HTTPConnection, request: tuple[Any, ...]) -> tuple[int, bytes]:
         """Status and content of the answer. A connection that ended while it was idle is replaced once."""
-        connection = self._idle_connection()
-        if connection is not None:
-            try:
-                return self._sent(connection, message, deadline)
-            except ConnectionError:
-                pass
-        return self._sent(self._connected(deadline), message, deadline)
-
-    def _sent(self, connection: socket.socket, message: bytes, deadline: float) -> tuple[int, bytes]:
+        was_idle = connection.sock is not None
         try:
-            connection.settimeout(_left(deadline))
-            connection.sendall(message)
-            response = http.client.HTTPResponse(cast(Any, _Until(connection, deadline)))
-            response.begin()
-            content = response.read()
+            connection.request(*request)
+            with closing(connection.getresponse()) as response:
+                content = response.read()
+        except ConnectionError:
+            connection.close()
+            if was_idle:
+                return self._exchange(connection, request)
+            raise
         except BaseException:
             connection.close()
             raise
-        if response.will_close or self._closed or len(self._idle) >= self.MOST_IDLE:
+        if self._closed or len(self._idle) >= MOST_CALLS:
             connection.close()
         else:
             self._idle.append(connection)
         return response.status, content
-
-    def _idle_connection(self) -> socket.socket | None:
-        """The connection that was used last, if the service has not closed it."""
-        while True:
-            try:
-                connection = self._idle.pop()
-            except IndexError:
-                return None
-            readable = select.poll()
-            readable.register(connection, select.POLLIN)
-            if not readable.poll(0):
-                return connection
-            connection.close()
-
-    def _connected(self, deadline: float) -> socket.socket:
-        """A new connection to the first of the host's addresses that answers; each gets its share of the time."""
-        self._resolved.wait(_left(deadline))
-        error: OSError = TimeoutError(f"{self._host} has no address yet")
-        addresses = self._addresses
-        for place, (family, kind, protocol, _, address) in enumerate(addresses):
-            connection = socket.socket(family, kind, protocol)
-            try:
-                connection.settimeout(_left(deadline) / (len(addresses) - place))
-                connection.connect(address)
-                connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-                connection.settimeout(_left(deadline))
-                return self._tls.wrap_socket(connection, server_hostname=self._host) if self._tls else connection
-            except OSError as failure:
-                connection.close()
-                error = failure
-        raise error
-
-
-class _Until(io.RawIOBase):
-    """What a socket receives, until a deadline."""
-
-    def __init__(self, connection: socket.socket, deadline: float) -> None:
-        self._connection, self._deadline = connection, deadline
-
-    def makefile(self, mode: str) -> io.BufferedReader:
-        return io.BufferedReader(self)
-
-    def readable(self) -> bool:
-        return True
-
-    def readinto(self, buffer: Any) -> int:
-        self._connection.settimeout(_left(self._deadline))
-        return self._connection.recv_into(buffer)
-
-
-def _left(deadline: float) -> float:
-    """Seconds until the deadline."""
-    left = deadline - time.monotonic()
-    if left <= 0:
-        raise TimeoutError("no answer in time")
-    return left

@@ -46,7 +46,7 @@ def through_kills(
     memory, url, again = served
     child, answered, stop = again(), [], threading.Event()
     register(url, study)
-    with StudyClient(url, "s", fallback="slow", queue=tmp_path / "queue.jsonl") as client:
+    with StudyClient(url, "s", fallback="slow", queue=tmp_path / "queue.db", timeout=1.0) as client:
 
         def work(number: int) -> None:
             while not stop.is_set():

@@ -6,7 +6,6 @@ Thesis: §3.7.
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from lifelore.action.advice.advice import WatchedAgent
@@ -15,16 +14,9 @@ from lifelore.action.advice.agent_classes import ClassAdvisor, classes_with_goal
 from lifelore.action.advice.behaviour_models import Behaviour, Tabulated
 from lifelore.action.advice.goal_model import GoalModel, Trajectory, extend_goal_models
 from lifelore.agent.advise.expert_trajectories import goal_models, goals_of_ends, state_after, trajectories
-from lifelore.agent.advise.step_lines import (
-    NO_ACTION,
-    Lines,
-    StepLine,
-    read_classes,
-    read_objects,
-    read_steps,
-    state_number,
-)
-from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.agent.advise.step_lines import NO_ACTION, StepLine, read_classes, read_steps, state_number
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.json_lines import Lines, lines_of, read_objects
 from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
 from lifelore.domains.grids.grid_world import MOVES, GridWorld
 from lifelore.domains.worlds import WorldSettings, domain_names, world_from_settings
@@ -207,17 +199,8 @@ def _name_of(source: Source, name: str) -> str:
     return source if isinstance(source, str) else name
 
 
-def _lines_of(path: Source) -> Iterator[Any]:
-    if not isinstance(path, str):
-        yield from path
-        return
-    if not Path(path).is_file():
-        raise NotFoundError(f"file '{path}' does not exist; give a file of JSON lines")
-    try:
-        with open(path, encoding="utf-8") as file:
-            yield from file
-    except OSError as error:
-        raise StoreError(f"cannot read {path}: {error.strerror}") from None
+def _lines_of(source: Source) -> Lines:
+    return lines_of(source) if isinstance(source, str) else source
 
 
 def _goals(settings: AdviseSettings, walks: list[Trajectory], world: GridWorld) -> list[int]:

@@ -5,18 +5,16 @@ the agent tried in that state, or null: the agent has reached its goal, or asks 
 ``class`` may name the class of agents that it shows.
 """
 
-import json
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from lifelore.core.errors import InputError
+from lifelore.core.json_lines import Lines, read_objects
 from lifelore.domains.grids.grid_world import MOVE_NAMES, GridWorld
 
 NO_ACTION = -1
-Lines = Iterable[str | Mapping[str, Any]]
-"""Lines of JSON, or the objects that they would hold."""
 
 
 class StepLine(NamedTuple):
@@ -68,33 +66,6 @@ def read_classes(lines: Lines, name: str) -> dict[str | int, str]:
                 f"{name} line {number}: agent {agent!r} must have one class, got {given!r} after {found[agent]!r}"
             )
     return found
-
-
-def read_objects(lines: Lines, name: str) -> Iterator[tuple[int, dict[str, Any]]]:
-    """The number of each line, from 1, and its object."""
-    for number, line in enumerate(_decoded(lines, name), 1):
-        if isinstance(line, Mapping):
-            yield number, dict(line)
-            continue
-        if not line.strip():
-            continue
-        try:
-            document = json.loads(line)
-        except (ValueError, RecursionError):
-            raise InputError(
-                f"{name} line {number}: not JSON, got {line.strip()[:60]!r}; one object a line"
-            ) from None
-        if not isinstance(document, dict):
-            raise InputError(f"{name} line {number}: must be an object {{…}}, got {line.strip()[:60]!r}")
-        yield number, document
-
-
-def _decoded(lines: Lines, name: str) -> Iterator[str | Mapping[str, Any]]:
-    # A file is decoded in blocks, so the line of a wrong byte is unknown.
-    try:
-        yield from lines
-    except UnicodeDecodeError:
-        raise InputError(f"{name} must be JSON lines in UTF-8, got other bytes; convert the file") from None
 
 
 def _agent(document: dict[str, Any]) -> str | int:

@@ -8,15 +8,19 @@ Moves are numbered, so that moves that come twice count once. Thesis: §4.8.4, A
 """
 
 import hashlib
+import json
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from lifelore.agent.personalise.library_document import library_of
 from lifelore.agent.personalise.study import check_study_name, user_key
+from lifelore.core.atomic_write import read_file
 from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.core.json_lines import Lines, read_objects
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
 from lifelore.interaction.adaptation.beat import Beat, rule_at
@@ -92,6 +96,73 @@ def open_adaptation(memory: Memory, name: str) -> Adaptation:
     except InputError as error:
         raise StoreError(f"{error}; register the library again") from None
     return Adaptation(name, library, about["epsilon"], about["id"])
+
+
+def read_library(path: str) -> PolicyLibrary:
+    """The library of a file: that of `PolicyLibrary.save`, or the JSON fields of `library_of`.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or is neither.
+    """
+    content = read_file(path, "the library")
+    if not content.lstrip().startswith(b"{"):
+        return PolicyLibrary.from_bytes(content, path)
+    try:
+        return library_of(json.loads(content))
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+    except (ValueError, RecursionError):
+        raise InputError(
+            f"{path} must be one JSON object, or a file of PolicyLibrary.save, got other text"
+        ) from None
+
+
+def adapt(
+    memory: Memory, adaptation: Adaptation, lines: Lines, name: str = "moves", seed: int = 0
+) -> Iterator[dict[str, Any]]:
+    """The action set for the next step of a user after each line, as `select` returns it.
+
+    A line is an object: ``{"user": …}`` asks before the first move; ``{"user": …, "action_set": …, "signal": …}``
+    stores a move first. ``"step"``, the number of the move from 0, makes a move that comes twice count once.
+    ``"ends_episode": true`` ends an episode with the move. ``{"user": …, "forget": true}`` deletes all that is
+    stored of the user.
+
+    Raises
+    ------
+    InputError
+        A line is no such object or breaks a rule; the lines before it are stored.
+    """
+    for number, line in read_objects(lines, name):
+        try:
+            user = line.pop("user", None)
+            if not isinstance(user, str) or not user:
+                raise InputError(f"user must be a name, got {user!r}")
+            if line == {"forget": True}:
+                yield {"user": user, "forgotten": forget_adaptation(memory, adaptation, user)}
+                continue
+            if line:
+                _learn_line(memory, adaptation, user, line)
+            yield select(memory, adaptation, user, seed)
+        except (InputError, NotFoundError) as error:
+            raise type(error)(f"{name} line {number}: {error}") from None
+
+
+def _learn_line(memory: Memory, adaptation: Adaptation, user: str, line: dict[str, Any]) -> None:
+    """Store the move of a line of `adapt`."""
+    step, ends = line.pop("step", None), line.pop("ends_episode", False)
+    if line.keys() != {"action_set", "signal"}:
+        fields = "user, action_set, signal[, step, ends_episode]"
+        raise InputError(f"a move must have {fields}, got {', '.join(['user', *line])}")
+    if step is None:
+        step = _beat(memory, adaptation, user).step
+    if isinstance(step, bool) or not isinstance(step, int) or step < 0:
+        raise InputError(f"step must be a whole number from 0, got {step!r}")
+    if not isinstance(ends, bool):
+        raise InputError(f"ends_episode must be true or false, got {ends!r}")
+    moves = [(line["action_set"], line["signal"])]
+    learn_moves(memory, adaptation, user, step, moves, ends_episode=ends)
 
 
 def select(memory: Memory, adaptation: Adaptation, user: str, seed: int = 0) -> dict[str, Any]:

@@ -21,11 +21,12 @@ export function drawTraffic(found) {
   $("alarms").replaceChildren(...(alarms.length ? alarms : [make("p", {}, fine)]));
   const all = found.points.flatMap((one) => [one.personal, one.control]);
   const [decisions, outcomes] = ["decisions", "outcomes"].map((name) => all.reduce((sum, one) => sum + one[name], 0));
-  $("traffic-words").textContent = `${count(decisions)} decisions and ${count(outcomes)} outcomes in this window, by the time of the decision (UTC); the last ${found.step > 3600 ? "day" : "hour"} is not over. Read ${Math.round(found.age)} s ago.`;
+  $("traffic-words").textContent = `${count(decisions)} decisions and ${count(outcomes)} outcomes in this window, by the time of the decision (UTC); the last ${found.step > 3600 ? "day" : "hour"} is not over. Read ${Math.round(found.age)}\u00a0s\u00a0ago.`;
   if (!decisions) return;
   const xname = (time) => new Date(1000 * time).toISOString().slice(...(found.step > 3600 ? [5, 10] : [8, 16])).replace("T", ". ");
   const every = Math.ceil(found.points.length / 5);
-  const common = { xlabel: found.step > 3600 ? "day" : "day of the month and hour", xname, markers: found.points.length < 30, xticks: found.points.map((one) => one.time).filter((_, i) => i % every === Math.floor(every / 2)) };
+  const xends = [found.points[0].time, found.points.at(-1).time];
+  const common = { xlabel: found.step > 3600 ? "day" : "day of the month and hour", xname, xends, markers: found.points.length < 30, xticks: found.points.map((one) => one.time).filter((_, i) => i % every === Math.floor(every / 2)) };
   const drawn = GROUPS.filter(([group]) => found.points.some((one) => one[group].decisions));
   const counts = drawn.flatMap(([group, words]) => ["decisions", "outcomes"].map((name) => ({ name: `${name}, ${words}`, colour: COLOURS[group], points: found.points.map((one) => [one.time, one[group][name]]) })));
   const means = drawn.map(([group, words]) => ({ name: words, colour: COLOURS[group], points: found.points.filter((one) => one[group].outcomes).map((one) => [one.time, one[group].sum / one[group].outcomes]) }));
