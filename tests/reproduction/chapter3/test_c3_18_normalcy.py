@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lifelore.action.advice.advised_walk import Walk
 from lifelore.action.advice.advisor import Advisor
 from lifelore.action.advice.goal_model import GoalModel
+from reproduction.chapter3.advice.advised_walk import Walk
 from reproduction.chapter3.c3_18_normalcy import run
 from reproduction.chapter3.c3_18_normalcy.run import block_curve, measure, own_normalcy, readings
 from reproduction.engine.registry import claim_of
