@@ -10,7 +10,7 @@ outcomes, which nothing renormalises. Kinds of worlds are the readings. Thesis: 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
-from lifelore.action.search import domain_reduction
+from lifelore.action import domain_reduction
 from numpy.typing import NDArray
 
 from lifelore.action.domain_reduction import MinimisedDomain, tables_within, trap_states

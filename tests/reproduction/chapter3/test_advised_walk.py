@@ -12,6 +12,7 @@ from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 from reproduction.chapter3.advice.advised_walk import advised_walk
+
 from .naive_advisor import NaiveAdvisor
 
 EAST, WEST = 0, 1
