@@ -10,9 +10,9 @@ outcomes, which nothing renormalises. Kinds of worlds are the readings. Thesis: 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
-from lifelore.action import domain_reduction
 from numpy.typing import NDArray
 
+from lifelore.action import domain_reduction
 from lifelore.action.domain_reduction import MinimisedDomain, tables_within, trap_states
 from lifelore.core.learning.curve import Curve, new_curve
 from lifelore.core.learning.learning_metrics import episodes_to_threshold
