@@ -146,9 +146,11 @@ def _search(ground, ends, costs_ahead, stride):
     measured, closed = np.zeros(n_nodes, np.bool_), np.zeros(n_nodes, np.bool_)
     beside = np.empty((2 * stride + 1) ** 2 + 6, np.int64)
     cost[-2], measured[-2] = 0.0, True
-    queue: Any = [(0.0, -2)]
+    queue: Any = [(_ahead(ground, ends, -2, costs_ahead), -2)]
     while queue:
         bound, node = heapq.heappop(queue)
+        if bound == np.inf:
+            break  # no moves lead to the goal
         ahead = _ahead(ground, ends, node, costs_ahead)
         if closed[node] or bound > cost[node] + ahead + 1e-9:
             continue
