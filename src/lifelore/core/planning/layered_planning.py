@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from lifelore.core.compiled.jit import inlined, kernel
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import TERMINAL, Tables
-from lifelore.core.planning.planning import backup, best_actions
+from lifelore.core.planning.planning import backup
 
 LAST_MOVE = 1e-12
 """Sweeps end when no value moves by more than this share of the largest reward."""
@@ -86,10 +86,6 @@ class LayeredPlan:
         q = np.empty((self.layer_size, rows.n_actions))
         _back_up(rows, self._discount, self._value, q)
         return q
-
-    def best_actions(self, layer: int) -> NDArray[np.bool_]:
-        """Which actions are best or tied best in each place of one layer (Eq. 3.1)."""
-        return best_actions(self.q(layer))
 
     def _solve(self, layer: int) -> None:
         if not 0 <= layer < len(self.solved):
