@@ -44,7 +44,8 @@ def layered_q(tables: Tables, layer_size: int, discount: float) -> NDArray[np.fl
 
     def rows_of(layer: int) -> Tables:
         rows = slice(layer * layer_size, (layer + 1) * layer_size)
-        return Tables(*(array[rows] for array in whole[:-1]), whole.starts)
+        next_state, reward, event, outcome_cum = (array[rows] for array in whole[:4])
+        return Tables(next_state, reward, event, outcome_cum, whole.starts)
 
     plan = LayeredPlan(rows_of, n_layers, layer_size, discount)
     return np.concatenate([plan.q(layer) for layer in range(n_layers)])
