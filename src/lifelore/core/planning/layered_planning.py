@@ -44,8 +44,9 @@ def layered_q(tables: Tables, layer_size: int, discount: float) -> NDArray[np.fl
 
     def rows_of(layer: int) -> Tables:
         rows = slice(layer * layer_size, (layer + 1) * layer_size)
-        next_state, reward, event, outcome_cum = (array[rows] for array in whole[:4])
-        return Tables(next_state, reward, event, outcome_cum, whole.starts)
+        return Tables(
+            whole.next_state[rows], whole.reward[rows], whole.event[rows], whole.outcome_cum[rows], whole.starts
+        )
 
     plan = LayeredPlan(rows_of, n_layers, layer_size, discount)
     return np.concatenate([plan.q(layer) for layer in range(n_layers)])
