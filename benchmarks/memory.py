@@ -23,7 +23,7 @@ from benchmarks.rounds import Part, at_most, counted, interleaved, joined, row, 
 from lifelore.action.priors.action_prior import KIND, VERSION, ActionPrior
 from lifelore.core.errors import LifeloreError
 from lifelore.core.learning.curve import Curve, new_curve
-from lifelore.core.learning.q_learning import QLearner, new_learners
+from lifelore.core.learning.q_learning import QLearner, new_learner
 from lifelore.core.protocols import Progress, Record
 from lifelore.core.streams import stream
 from lifelore.memory import Memory, open_memory
@@ -103,11 +103,11 @@ def slope_of(measured: Mapping[int, float]) -> float:
     return (measured[more] - measured[less]) / (more - less)
 
 
-def learners(n: int) -> tuple[QLearner, Curve]:
+def learners(n: int) -> list[tuple[QLearner, Curve]]:
     """`n` Q-learners of the 23×23 lattice, each with a table, random streams and a curve of its own."""
     tables = lattice_task().tables()
     world, own = (stream(0, "bench", "capacity", name) for name in ("world", "own"))
-    return new_learners(tables.n_states, tables.n_actions, [world] * n, [own] * n), new_curve((n, EPISODES))
+    return [(new_learner(tables.n_states, tables.n_actions, world, own), new_curve(EPISODES)) for _ in range(n)]
 
 
 def prior_of(n: int) -> ActionPrior:

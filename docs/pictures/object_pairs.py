@@ -8,9 +8,9 @@ from pathlib import Path
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
-from lifelore.figures.gallery import draw_gallery
 from lifelore.figures.style import save_figure
 from reproduction.chapter2.scenes.tabletop_pairs import LEAST_CONFIDENCE, MIX
+from reproduction.figures.gallery import draw_gallery
 
 PATH = Path("docs/pictures/object_pairs.png")
 PAIRS, COLUMNS = 12, 4

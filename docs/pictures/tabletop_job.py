@@ -7,13 +7,13 @@ extra ``sim``.
 from collections.abc import Sequence
 from pathlib import Path
 
+from docs.pictures.cloud_sequence import draw_cloud_sequence
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.domains.tabletop.photograph import FIRST_OBJECT
 from lifelore.domains.tabletop_job.best_return import OutcomeTree
 from lifelore.domains.tabletop_job.job import HAND_OVER_GENTLY, PICK, PUSH_APART, VERBS, TabletopJob
 from lifelore.domains.tabletop_job.job_types import job_type_named
 from lifelore.domains.tabletop_job.tray import Tray, sample_tray
-from lifelore.figures.scenes.cloud_sequence import draw_cloud_sequence
 from lifelore.figures.style import save_figure
 
 PATH = Path("docs/pictures/tabletop_job.png")

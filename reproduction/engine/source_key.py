@@ -16,7 +16,7 @@ import lifelore
 CHECKOUT = Path(__file__).parents[2]
 ROOTS = {"lifelore": Path(lifelore.__file__).parent, "reproduction": Path(__file__).parents[1]}
 """Folders of the packages that count as ours."""
-_NO_PART = ("lifelore.figures",)
+_NO_PART = ("lifelore.figures", "reproduction.figures")
 
 
 @cache

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.bridges.life_log import write_life_log
+from lifelore.bridges.viewer_log import write_life_log
 from lifelore.core.errors import InputError
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from lifelore.bridges.rosbag_cloud import read_bag_cloud
-from lifelore.bridges.scene_log import check_log, write_scene_log
 from lifelore.bridges.scene_mcap import DEFINITIONS, SCENE_FRAME
+from lifelore.bridges.viewer_log import check_log, write_scene_log
 from lifelore.core.cloud_origin import CloudOrigin, SensorFrame
 from lifelore.core.errors import InputError, MissingExtraError
 from lifelore.core.labelled_cloud import LabelledCloud

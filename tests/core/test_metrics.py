@@ -10,7 +10,6 @@ from lifelore.core.intervals import RESAMPLES
 from lifelore.core.metrics import (
     difference_estimate,
     entropy,
-    interquartile_mean_estimate,
     mean_estimate,
     ratio_estimate,
 )
@@ -78,23 +77,3 @@ def test_values_that_break_a_rule(values):
 def test_entropy_by_hand():
     probs = np.array([[0.5, 0.5, 0.0], [1.0, 0.0, 0.0], [1 / 3, 1 / 3, 1 / 3]])
     assert entropy(probs) == pytest.approx([np.log(2), 0.0, np.log(3)])
-
-
-# ---- interquartile means -----------------------------------------------------------------------------
-
-
-def test_the_interquartile_mean_is_the_mean_of_the_middle_half():
-    estimate = interquartile_mean_estimate([[1, 2], [3, 4], [5, 6], [-900, 900]])
-    assert (estimate.value, estimate.median, estimate.n) == ((2 + 3 + 4 + 5) / 4, 3.5, 8)
-
-
-def test_its_interval_resamples_runs_within_each_task():
-    """The naive twin on the same draws: two loops, sorting by hand."""
-    values = np.random.default_rng(3).normal([0.0, 10.0, 50.0], 1.0, (6, 3))
-    draws = stream(6, "bootstrap", "strata", 3).integers(0, 6, size=(RESAMPLES, 6, 3))
-    means = []
-    for drawn in draws:
-        sample = sorted(values[drawn[run, task], task] for run in range(6) for task in range(3))
-        means.append(sum(sample[4:14]) / 10)
-    low, high = np.quantile(means, [0.025, 0.975])
-    assert interquartile_mean_estimate(values).ci95 == pytest.approx((low, high))

@@ -1,6 +1,7 @@
 """Colours of relations, objects and methods are fixed, and different."""
 
-from lifelore.figures.scenes.object_palette import method_palette, mixed, object_palette, relation_palette
+from lifelore.figures.scenes.object_palette import mixed, object_palette
+from reproduction.figures.palettes import method_palette, relation_palette
 
 
 def test_colours_are_fixed_and_differ():

@@ -5,10 +5,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lifelore.core.relations import ADJACENT
-from lifelore.figures.scatter import draw_scatter
-from lifelore.figures.scenes.object_palette import RELATION_MARKERS, mixed, relation_palette
+from lifelore.figures.scenes.object_palette import mixed
 from lifelore.figures.style import INK, PAPER, Axes, Figure, house_style, new_figure
 from reproduction.chapter2.c2_03_displacements_by_relation.run import EDGE
+from reproduction.figures.palettes import RELATION_MARKERS, relation_palette
+from reproduction.figures.scatter import draw_scatter
 
 CLOSE = 20
 """Millimetres; how far the second view reaches."""

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import BLUE, GREY, LIGHT, ORANGE, VERMILION, Figure, house_style, new_figure
 from reproduction.chapter2.c2_05_discarded_points.run import METHODS
+from reproduction.figures.curves import draw_curves
 
 LOOKS = dict(zip(METHODS, (BLUE, ORANGE, VERMILION), strict=True))
 

@@ -4,9 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.scatter import draw_scatter
-from lifelore.figures.scenes.object_palette import object_palette, relation_palette
+from lifelore.figures.scenes.object_palette import object_palette
 from lifelore.figures.style import Figure, house_style, new_figure
+from reproduction.figures.palettes import relation_palette
+from reproduction.figures.scatter import draw_scatter
 
 REACH = 40
 """Millimetres shown around the origin; a note counts the displacements beyond."""

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.gallery import gallery_above
-from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import BLUE, LIGHT, ORANGE, Figure, house_style
 from reproduction.chapter2.c2_13_contacts_and_centres.run import ON_BLOCK, ON_POST
 from reproduction.chapter2.scenes.scene_example import examples_of
+from reproduction.figures.gallery import gallery_above
+from reproduction.figures.interval_bars import draw_interval_bars
 
 NAMES = {ON_BLOCK: "ball on the block", ON_POST: "ball on a post, centres as far apart"}
 COLOURS = {"contacts": BLUE, "centres": ORANGE}

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.figures.gallery import PictureOfScene, draw_gallery
 from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.scene import Scene
 from lifelore.perception.scene_json import scene_document
 from reproduction.chapter2.scenes.perturbation import part_of
+from reproduction.figures.gallery import PictureOfScene, draw_gallery
 
 MOST_POINTS = 4000
 _STEP = 0.0005

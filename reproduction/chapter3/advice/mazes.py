@@ -14,7 +14,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.action.advice.advised_walk import Walk, advised_walk
 from lifelore.action.advice.advisor import AdviceSettings, Advisor
 from lifelore.action.advice.goal_model import GoalModel, Trajectory
 from lifelore.core.learning.known_world import GOAL, goal_distances
@@ -24,6 +23,7 @@ from lifelore.core.streams import stream
 from lifelore.domains.advice.advice_maze import advice_maze, errand, maze_goals
 from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
 from lifelore.domains.grids.grid_world import GridWorld
+from reproduction.chapter3.advice.advised_walk import Walk, advised_walk
 
 NO_PSEUDO_COUNT = 1e-9
 """α⁰ of M₁ where θ has none: an action that no expert took is next to impossible, not impossible."""

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import BLUE, GREY, INK, Figure, house_style, new_figure
+from reproduction.figures.curves import draw_curves
 
 LOOKS = {
     "learnt": ("accumulated prior", {"color": BLUE}),

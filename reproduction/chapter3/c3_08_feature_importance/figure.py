@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 
 from lifelore.domains.factory.contexts import PHI
-from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import GREY, LIGHT, Figure, colour_of, house_style, new_figure
 from reproduction.chapter3.factory.modified_tasks import FEATURES
 from reproduction.chapter3.figures.feature_words import features_in_words
+from reproduction.figures.interval_bars import draw_interval_bars
 
 COLOURS = {phi.replace("phi", "φ"): colour_of(phi) for phi in PHI}
 TICKS = features_in_words(FEATURES)

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import BLUE, GREY, PURPLE, Figure, house_style, new_figure
 from reproduction.chapter3.c3_09_online_features.run import DRAWN, METHODS
 from reproduction.chapter3.factory.figure import looks_of
+from reproduction.figures.curves import draw_curves
 
 LOOKS = looks_of(
     METHODS,

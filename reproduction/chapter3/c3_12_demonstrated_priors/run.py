@@ -13,10 +13,10 @@ from functools import cache
 import numpy as np
 
 from lifelore.action.demonstrations.demonstrations import Demonstration, count_demonstrations
-from lifelore.action.demonstrations.simulated_person import simulated_demonstration
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
+from reproduction.chapter3.c3_12_demonstrated_priors.simulated_person import simulated_demonstration
 from reproduction.chapter3.factory import comparison, modified_tasks
 from reproduction.chapter3.factory.comparison import UNIFORM, Comparison, is_default, summary
 from reproduction.chapter3.factory.modified_tasks import N_ACTIONS, Problem, contexts_of

@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import BLUE, GREY, LIGHT, Figure, house_style, new_figure
+from reproduction.figures.interval_bars import draw_interval_bars
 
 PANELS = {
     "traps": (1, "Trap states and dead ends"),

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import INK, LIGHT, Figure, house_style, new_figure
 from reproduction.chapter3.advice.figures import ADVICE_COLOURS, AGENTS
+from reproduction.figures.interval_bars import draw_interval_bars
 
 WAYS = dict(zip(("alone", "advised", "apart"), ADVICE_COLOURS, strict=True))
 PRINTED = {

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import LIGHT, Figure, house_style, new_figure
 from reproduction.chapter3.advice.figures import ADVICE_COLOURS
+from reproduction.figures.curves import draw_curves
 
 LABELS = {"plain": "without advice", "advised": "with advice"}
 

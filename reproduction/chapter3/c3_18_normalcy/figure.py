@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import INK, LIGHT, Figure, house_style, new_figure
 from reproduction.chapter3.advice.figures import AGENT_COLOURS, EXPLORERS
+from reproduction.figures.curves import draw_curves
 
 STYLES = {"alone": "-", "advised": (0, (1.2, 1.2))}
 PANELS = {"normal": ("P(M₁ | H) of walks under way", 1.0), "reward": ("mean reward so far, of 1000", 1000.0)}

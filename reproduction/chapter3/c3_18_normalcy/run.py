@@ -8,10 +8,10 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from lifelore.action.advice.advised_walk import Walk
 from lifelore.action.advice.advisor import Advisor
 from lifelore.core.metrics import Estimate
 from lifelore.domains.advice.explorers import EXPLORERS
+from reproduction.chapter3.advice.advised_walk import Walk
 from reproduction.chapter3.advice.mazes import (
     choices_of,
     goal_models_of,

@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.curves import draw_curves
-from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import BLUE, GREEN, GREY, LIGHT, VERMILION, Figure, house_style, new_figure
 from reproduction.chapter3.figures.feature_words import features_in_words
+from reproduction.figures.curves import draw_curves
+from reproduction.figures.interval_bars import draw_interval_bars
 
 LABELS = {
     "uniform": ("no prior", GREY),

@@ -5,9 +5,9 @@ from collections.abc import Collection, Mapping, Sequence
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import GREY, Axes, Figure, new_figure
 from reproduction.chapter3.learning.schedules import Epsilon
+from reproduction.figures.curves import draw_curves
 
 Looks = Mapping[str, tuple[str, str]]
 """Method → its label and colour, in the order of drawing."""

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.curves import draw_curves
-from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import GREY, Figure, colour_of, new_figure
+from reproduction.figures.curves import draw_curves
+from reproduction.figures.interval_bars import draw_interval_bars
 
 
 def draw_return_curves(result: Mapping, methods: Mapping[str, tuple[str, str]]) -> Figure:

@@ -14,10 +14,10 @@ from lifelore.core.learning import q_learning
 from lifelore.core.learning.curve import Curve, new_curve
 from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
 from lifelore.core.mdp import Tables
-from lifelore.core.planning.episode_value import return_moments
-from lifelore.core.planning.episodes import episode_returns
 from lifelore.core.streams import stream
 from lifelore.domains.pacman.pacman import MAX_STEPS, N_ACTIONS, STRATEGIES, PacmanMaze, PacmanTask
+from reproduction.chapter4.c4_04_pacman.episode_value import return_moments
+from reproduction.chapter4.c4_04_pacman.episodes import episode_returns
 
 Array = NDArray[np.float64]
 GREATEST = 140.0

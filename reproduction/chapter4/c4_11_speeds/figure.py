@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 
 from lifelore.domains.ball_game.ball_game import SIZES, SPEEDS
-from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import LIGHT, Figure, house_style, new_figure
 from reproduction.chapter4.ball_game.looks import size_lines
+from reproduction.figures.curves import draw_curves
 
 SHOWN = (2, 20, 60)
 """The thesis shows three representative sizes and does not name them."""

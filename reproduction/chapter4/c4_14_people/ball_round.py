@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.domains.ball_game.ball_game import HEADINGS, MAX_STEPS, SIZES, SPEEDS, BallGame, LossScale, step
-from lifelore.domains.ball_game.moves import N_OUTCOMES, move_context, move_outcome
+from reproduction.chapter4.ball_game.moves import N_OUTCOMES, move_context, move_outcome
 from reproduction.chapter4.c4_14_people.study_plan import BEAT, Round
 
 COLUMNS = ("x", "y", "heading", "speed", "hit", "signal", "named")

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import GREY, LIGHT, Axes, Figure, house_style, new_figure
 from reproduction.chapter4.ball_game.looks import METHODS, WORDS, size_lines
+from reproduction.figures.curves import draw_curves
 
 TITLES = {"person": "people", "scripted": "scripted players; no person has played"}
 

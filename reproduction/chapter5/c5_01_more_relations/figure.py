@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import BLUE, GREEN, GREY, LIGHT, VERMILION, Figure, house_style, new_figure
 from reproduction.chapter5.c5_01_more_relations.run import COMPOUNDS, KINDS
+from reproduction.figures.interval_bars import draw_interval_bars
 
 PARTS = {"right": GREEN, "wrong": VERMILION, "missed": GREY}
 

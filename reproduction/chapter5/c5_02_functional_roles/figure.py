@@ -4,11 +4,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.gallery import gallery_above
-from lifelore.figures.scenes.object_palette import method_palette
 from lifelore.figures.style import INK, LIGHT, house_style
 from reproduction.chapter2.scenes.scene_example import examples_of
 from reproduction.chapter5.c5_02_functional_roles.run import METHODS
+from reproduction.figures.gallery import gallery_above
+from reproduction.figures.palettes import method_palette
 
 
 def draw(result: Mapping):

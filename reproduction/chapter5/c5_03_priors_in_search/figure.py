@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from lifelore.figures.curves import draw_curves
-from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import BLUE, GREEN, GREY, LIGHT, VERMILION, Axes, Figure, house_style, new_figure
+from reproduction.figures.curves import draw_curves
+from reproduction.figures.interval_bars import draw_interval_bars
 
 KINDS = {None: ("no prior", GREY), "place": ("prior on places", BLUE), "percept": ("prior on percepts", GREEN)}
 INDICES = {"ucb1": "Bandits: UCB1", "beta": "Bandits: Thompson sampling"}

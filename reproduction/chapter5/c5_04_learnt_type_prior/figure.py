@@ -4,7 +4,6 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import BLUE, GREY, INK, LIGHT, ORANGE, SKY, Figure, house_style, new_figure
 from reproduction.chapter5.c5_04_learnt_type_prior.run import (
     CONTEXT,
@@ -16,6 +15,7 @@ from reproduction.chapter5.c5_04_learnt_type_prior.run import (
     STEADY,
     TRUE,
 )
+from reproduction.figures.curves import draw_curves
 
 TITLES = {
     STEADY: "Popularity alike in all contexts",

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import BLUE, GREY, LIGHT, VERMILION, Axes, Figure, house_style, new_figure
 from reproduction.chapter5.c5_05_curiosity.run import CURIOUS, UNIFORM
+from reproduction.figures.curves import draw_curves
 
 LABELS = {UNIFORM: "uniform replay", CURIOUS: "by entropy × frequency"}
 LOOKS = {"uniform replay": {"color": GREY}, "by entropy × frequency": {"color": BLUE, "linewidth": 2.2}}

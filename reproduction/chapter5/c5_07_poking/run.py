@@ -17,7 +17,6 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.layout import Group, Placed, put_beside, stand, top
-from lifelore.domains.tabletop.poke import PokedTabletop
 from lifelore.domains.tabletop.pose import about
 from lifelore.domains.tabletop.settings import TabletopScene, TabletopSettings
 from lifelore.domains.tabletop.shapes import box
@@ -25,6 +24,7 @@ from lifelore.perception.segmentation.object_segmentation import SegmentationSet
 from reproduction.chapter2.scenes.arranged_scenes import Placement, arranged, settled, turned
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scoring.segmentation_scoring import FOUND, overlaps
+from reproduction.chapter5.c5_07_poking.poke import PokedTabletop
 from reproduction.chapter5.c5_07_poking.poked_segments import PokedSegments
 from reproduction.engine.estimates import ratio_or_unmeasured
 

@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.gallery import gallery_above
-from lifelore.figures.scenes.object_palette import method_palette
 from lifelore.figures.style import LIGHT, house_style
 from reproduction.chapter2.scenes.scene_example import examples_of
 from reproduction.chapter5.c5_08_grasps.run import SEARCHES, TRANSFERS
+from reproduction.figures.gallery import gallery_above
+from reproduction.figures.palettes import method_palette
 
 NAMES = {
     "seeded": "from seeds",

@@ -11,7 +11,6 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
-from lifelore.domains.tabletop.parallel_gripper import Grasp, GraspedTabletop
 from lifelore.domains.tabletop.photograph import FIRST_OBJECT
 from lifelore.domains.tabletop.settings import TabletopScene
 from lifelore.perception.scene import Scene
@@ -21,6 +20,7 @@ from reproduction.chapter2.scenes.scene_example import scene_row
 from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of
 from reproduction.chapter2.scenes.skeletons import perceived, reading
 from reproduction.chapter2.scenes.substructure import Substructure, find_substructure, skeleton
+from reproduction.chapter5.c5_08_grasps.parallel_gripper import Grasp, GraspedTabletop
 from reproduction.chapter5.c5_08_grasps.searches import (
     anywhere,
     around,

@@ -5,11 +5,11 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.domains.tabletop.parallel_gripper import OPENING, Grasp
 from lifelore.domains.tabletop.pose import aligned
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.grasp_seeds import GraspSeed
 from lifelore.perception.topology.holes import Node
+from reproduction.chapter5.c5_08_grasps.parallel_gripper import OPENING, Grasp
 
 JITTER, TURN, BACK = 0.01, 0.3, 0.04
 """Around a pose that is tried again: metres (standard deviation), radians (the same), metres that the hand stays

@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import BLUE, GREY, LIGHT, VERMILION, Figure, house_style, new_figure
+from reproduction.figures.curves import draw_curves
 from reproduction.own.o_02_strangers.run import CELLS, HELD, KNOWN
 
 LOOKS = {KNOWN: {"color": GREY}, HELD: {"color": VERMILION}, CELLS: {"color": BLUE}}

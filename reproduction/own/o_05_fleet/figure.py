@@ -2,8 +2,8 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import BLUE, GREEN, GREY, LIGHT, ORANGE, VERMILION, Figure, house_style, new_figure
+from reproduction.figures.curves import draw_curves
 
 COLOURS = (GREY, GREEN, ORANGE, BLUE)
 

@@ -16,9 +16,12 @@ from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.depth_camera import CAMERAS
-from lifelore.domains.tabletop.photograph import Photograph
+from lifelore.domains.tabletop.photograph import FIRST_OBJECT, Photograph
+from lifelore.domains.tabletop.physics import NEAR as AT_CONTACT
+from lifelore.domains.tabletop.physics import Tabletop
+from lifelore.domains.tabletop.settings import TabletopScene
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
-from lifelore.domains.tabletop.views import true_contacts, views_around
+from lifelore.domains.tabletop.views import views_around
 from lifelore.perception.clouds.fused_views import fused
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.registration.registered_views import registered_views
@@ -63,6 +66,18 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         }
         contacts.append({how: contacts_found(cloud, places) for how, cloud in joined.items()})
     return {"pairs": pairs, "contacts": contacts}
+
+
+def true_contacts(scene: TabletopScene) -> dict[frozenset[int], NDArray[np.float64]]:
+    """Places (k, 3) where two objects touch, by the labels of both; metres in the table's frame."""
+    found = Tabletop(scene.shapes, scene.poses).contacts()
+    touching = (found.distances < AT_CONTACT / 4) & (np.minimum(found.first, found.second) >= 0)
+    pairs = np.sort(np.stack([found.first, found.second], axis=1)[touching], axis=1)
+    places = found.positions[touching]
+    return {
+        frozenset((int(a) + FIRST_OBJECT, int(b) + FIRST_OBJECT)): places[(pairs == (a, b)).all(axis=1)]
+        for a, b in np.unique(pairs, axis=0)
+    }
 
 
 def registered_pose(first: Photograph, second: Photograph) -> NDArray[np.float64] | None:

@@ -70,7 +70,7 @@ def way(
     """The cheapest path over remembered transitions that is clear by the robot's radius.
 
     The path turns at any angle. It costs its length, and what memory knows about its moves: where they took
-    longer or were refused, the path leads around if that is expected to take less time (``Travel.cost``).
+    longer or were refused, the path leads around if that is expected to take less time (``MoveCosts.cost``).
 
     Parameters
     ----------
@@ -111,13 +111,12 @@ def way(
         travel = Travel.recalled(place.world, place.grid, opened)
     floor = floor_of(place.occupancy or occupancy, place.world)
     contradicted = _contradicted(moves, floor, start, goal)
-    minutes = travel.passes.minute
-    now = float(clock if clock is not None else 60 * minutes.max(initial=0))
-    price = price_of_moves(np.where(moves.open, travel.cost(now), np.inf), place.world.frame.cell)
+    costs = travel.costs(travel.newest if clock is None else clock)
+    price = price_of_moves(np.where(moves.open, costs.cost, np.inf), place.world.frame.cell)
     ends = start.located_point, goal.located_point
     path = footprint_path(floor, *ends, footprint, price) if footprint else clear_path(floor, *ends, price)
     assert path is not None, "open moves join the pieces of their cells"
-    states, seconds = _driven(path, floor, travel.seconds(now) / place.world.frame.cell)
+    states, seconds = _driven(path, floor, costs.seconds / place.world.frame.cell)
     return Way(start, goal, poses_along(path, spacing), states, seconds, contradicted)
 
 

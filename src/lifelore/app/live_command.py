@@ -188,8 +188,7 @@ def _recorder(values: dict[str, Any]) -> "Recorder | None":
         return None
     if values["domain"] != "building":
         raise InputError(f"log applies to domain building, got {values['domain']}; leave it out")
-    from lifelore.bridges.life_log import write_life_log
-    from lifelore.bridges.scene_log import check_log
+    from lifelore.bridges.viewer_log import check_log, write_life_log
 
     check_log(values["log"])
     return write_life_log

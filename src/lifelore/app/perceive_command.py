@@ -159,7 +159,7 @@ def perceive(
     )
     files: Files = {"pddl": pddl, "dot": dot, "plot": plot, "masks_out": masks_out}
     if log is not None:
-        from lifelore.bridges.scene_log import check_log, write_scene_log
+        from lifelore.bridges.viewer_log import check_log, write_scene_log
 
         check_log(log)
         files |= {"log": log, "recorder": write_scene_log}

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from lifelore.core.mdp import Tables as Tables
     from lifelore.core.mdp import Task as Task
     from lifelore.core.metrics import difference_estimate as difference_estimate
-    from lifelore.core.metrics import interquartile_mean_estimate as interquartile_mean_estimate
     from lifelore.core.metrics import mean_estimate as mean_estimate
     from lifelore.core.planning.planning import best_actions as best_actions
     from lifelore.core.planning.planning import greedy_policy as greedy_policy
@@ -65,7 +64,6 @@ _HOME = {
     "best_actions": ".planning.planning",
     "difference_estimate": ".metrics",
     "greedy_policy": ".planning.planning",
-    "interquartile_mean_estimate": ".metrics",
     "learning_gain": ".learning.learning_metrics",
     "learnt_best_actions": ".planning.planning",
     "lifetime_transfer": ".learning.transfer",

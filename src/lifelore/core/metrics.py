@@ -1,4 +1,4 @@
-"""Estimates with 95 % bootstrap intervals: means, paired differences, ratios, interquartile means."""
+"""Estimates with 95 % bootstrap intervals: means, paired differences, ratios."""
 
 from dataclasses import asdict, dataclass
 
@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.core.intervals import LEAST_VALUES, RESAMPLES, bca_interval, percentile_interval
-from lifelore.core.streams import stream
+from lifelore.core.intervals import bca_interval
 
 
 @dataclass(frozen=True)
@@ -40,33 +39,6 @@ def mean_estimate(values: ArrayLike) -> Estimate:
     """
     values = _checked(values)
     return Estimate(float(values.mean()), float(np.median(values)), bca_interval([values], np.mean), len(values))
-
-
-def interquartile_mean_estimate(values: ArrayLike) -> Estimate:
-    """Interquartile mean and median of `values` (n_runs, n_tasks), with a stratified bootstrap interval.
-
-    The interquartile mean is the mean of the middle half of all values: a few runs that fail, or a few tasks with
-    large returns, do not decide it. The interval resamples runs within each task (a stratum), 2.5 to 97.5 %.
-    After Agarwal et al. (2021), "Deep reinforcement learning at the edge of the statistical precipice".
-
-    Examples
-    --------
-    >>> interquartile_mean_estimate(np.arange(8.0).reshape(4, 2)).value
-    3.5
-    """
-    from scipy.stats import trim_mean
-
-    values = np.atleast_2d(np.asarray(values, np.float64))
-    _checked(values)
-    n, n_tasks = values.shape
-    estimate, median = float(trim_mean(values.ravel(), 0.25)), float(np.median(values))
-    if n < LEAST_VALUES:
-        return Estimate(estimate, median, None, values.size)
-    if (values == values[0]).all():
-        return Estimate(estimate, median, (estimate, estimate), values.size)
-    draws = stream(n, "bootstrap", "strata", n_tasks).integers(0, n, size=(RESAMPLES, n, n_tasks))
-    resampled = values[draws, np.arange(n_tasks)].reshape(RESAMPLES, -1)
-    return Estimate(estimate, median, percentile_interval(trim_mean(resampled, 0.25, axis=1)), values.size)
 
 
 def difference_estimate(values: ArrayLike, others: ArrayLike) -> Estimate:

@@ -11,11 +11,12 @@ from lifelore.action.advice.advisor import BETTER, TRACE, AdviceSettings, Adviso
 from lifelore.action.advice.behaviour_models import Tabulated, Uniform
 from lifelore.action.advice.goal_model import GoalModel, Trajectory
 from lifelore.core.errors import InputError
+from tests.action.advice.goal_models import goal_model_of
 
 
 def all_open(theta, goals=()):
     """A purpose whose experts use alike all that `theta` (n_states, n_actions) does; α⁰ is drowned in counts."""
-    purpose = GoalModel.from_best_actions(np.asarray(theta) > 0, goals)
+    purpose = goal_model_of(np.asarray(theta) > 0, goals)
     purpose.prior.update(np.arange(len(theta)), np.asarray(theta) > 0, 1e6)
     return purpose
 
@@ -59,7 +60,7 @@ def test_gain_over_uniform_is_log_of_4_over_the_actions_in_use(used):
 
 def test_posterior_and_gain_by_hand():
     # Experts always take 0 of two actions; one count and α⁰ = 0.1: P(0 | M₁) = 1.1/1.2, P(1 | M₁) = 0.1/1.2.
-    purpose = GoalModel.from_best_actions([[True, False]] * 3)
+    purpose = goal_model_of([[True, False]] * 3)
     advisor = Advisor([purpose], settings=AdviceSettings(kappa=0.3))
     watch = advisor.watch()
     first = advisor.consider(watch, 0)
@@ -77,7 +78,7 @@ def test_posterior_and_gain_by_hand():
 
 
 def test_silent_where_no_expert_was_and_such_steps_prove_nothing():
-    purpose = GoalModel.from_best_actions([[True, False], [False, False]])
+    purpose = goal_model_of([[True, False], [False, False]])
     advisor = Advisor([purpose])
     watch = advisor.watch()
     for action in (0, 1, 1, 0, 1):
@@ -90,7 +91,7 @@ def test_silent_where_no_expert_was_and_such_steps_prove_nothing():
 def test_one_step_never_proves_a_model_wrong_for_good():
     # A model that excludes what was done keeps TRACE; without it log 0 - log 0 would follow.
     sure = Tabulated([[1.0, 0.0]])
-    advisor = Advisor([GoalModel.from_best_actions([[True, False]])], [sure], AdviceSettings(window=2))
+    advisor = Advisor([goal_model_of([[True, False]])], [sure], AdviceSettings(window=2))
     found = advisor.assess([0] * 6, [1, 0, 0, 0, 0, 0])
     assert found.posterior[1, 1] == pytest.approx(TRACE / (TRACE + 0.1 / 1.2))
     assert np.isfinite(found.gain).all()
@@ -99,7 +100,7 @@ def test_one_step_never_proves_a_model_wrong_for_good():
 
 
 def test_thousands_of_steps_do_not_underflow():
-    purpose = GoalModel.from_best_actions([[True, False, False, False]])
+    purpose = goal_model_of([[True, False, False, False]])
     advisor = Advisor([purpose], settings=AdviceSettings(window=100_000))
     lost = np.tile([0, 1, 2, 3], 5000)
     assert advisor.assess(np.zeros(20_000, int), lost).p_normal[-1] < 1e-300
@@ -125,7 +126,7 @@ def test_a_goal_left_again_is_dropped_and_the_nearest_of_the_rest_comes_next():
 
 
 def test_steps_that_followed_advice_make_any_agent_seem_an_expert_unless_they_are_left_out():
-    purpose = GoalModel.from_best_actions([[True, False]])
+    purpose = goal_model_of([[True, False]])
     for own_steps_only in (False, True):
         advisor = Advisor([purpose], settings=AdviceSettings(own_steps_only=own_steps_only))
         watch = advisor.watch()
@@ -137,8 +138,8 @@ def test_steps_that_followed_advice_make_any_agent_seem_an_expert_unless_they_ar
 
 def test_goals_pooled_lead_nowhere_where_goals_apart_lead_straight():
     # A corridor with a goal at each end: the optimal policies are opposite in every place between.
-    to_west = GoalModel.from_best_actions([[False, False], *[[False, True]] * 5, [False, True]], [0])
-    to_east = GoalModel.from_best_actions([[True, False], *[[True, False]] * 5, [False, False]], [6])
+    to_west = goal_model_of([[False, False], *[[False, True]] * 5, [False, True]], [0])
+    to_east = goal_model_of([[True, False], *[[True, False]] * 5, [False, False]], [6])
     pooled = GoalModel.pooled([to_west, to_east])
     assert pooled.theta[1:6].tolist() == [[0.5, 0.5]] * 5
     always = Advisor.of_thesis([to_west, to_east], AdviceSettings(kappa=0))
@@ -227,8 +228,8 @@ def test_settings_that_break_a_rule(options, words):
 
 
 def test_advisors_that_cannot_be():
-    one = GoalModel.from_best_actions([[True, False]])
-    other = GoalModel.from_best_actions([[True, False], [True, True]])
+    one = goal_model_of([[True, False]])
+    other = goal_model_of([[True, False], [True, True]])
     for arguments, words in (
         (([],), "goal_models must have at least one model"),
         (([one, other],), "goal_models must agree"),

@@ -7,6 +7,7 @@ import pytest
 
 from lifelore.action.advice.goal_model import GoalModel, Trajectory, extend_goal_models
 from lifelore.core.errors import InputError
+from tests.action.advice.goal_models import goal_model_of
 
 EAST, WEST = 0, 1
 LINE = np.array([[1, -1], [2, 0], [3, 1], [4, 2], [-1, 3]])
@@ -28,7 +29,7 @@ def test_counts_and_steps_by_hand():
 
 def test_policies_count_their_tied_best_actions_but_no_goal_row():
     best = np.array([[True, False], [True, True], [False, False]])
-    purpose = GoalModel.from_best_actions(best, goals=[2])
+    purpose = goal_model_of(best, goals=[2])
     assert purpose.theta.tolist() == [[1, 0], [0.5, 0.5], [0, 0]]
     assert purpose.steps.tolist() == [0, 0, np.inf]
 

@@ -5,10 +5,10 @@ import pytest
 
 from lifelore.action.demonstrations.competence import competence_by_steps
 from lifelore.action.demonstrations.demonstrations import Demonstration
-from lifelore.action.demonstrations.simulated_person import person_policy, simulated_demonstration
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.streams import stream
+from reproduction.chapter3.c3_12_demonstrated_priors.simulated_person import person_policy, simulated_demonstration
 
 
 def demonstration(agent, done, task="t") -> Demonstration:

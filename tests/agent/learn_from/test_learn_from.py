@@ -144,7 +144,7 @@ def way_around(world, path, start: int, goal: int, clock: float) -> list[int]:
     with open_memory(path) as memory:
         occupancy = map_from_settings(OFFICE)
         place = recognised_place(OFFICE, world, occupancy, memory)
-        cost = Travel.recalled(world, place.grid, memory).cost(clock)
+        cost = Travel.recalled(world, place.grid, memory).costs(clock).cost
     route = cheapest_route(world, start, goal, cost)
     assert route is not None
     return route.states.tolist()

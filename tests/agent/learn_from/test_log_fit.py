@@ -5,9 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.agent.learn_from.log_fit import MOST_OUTSIDE, Reachable, mending_shift, shifted, shifted_runs
+from lifelore.agent.learn_from.log_fit import MOST_OUTSIDE, Reachable, mending_shift, shifted_runs
 from lifelore.domains.buildings.floor import floor_of
 from lifelore.domains.buildings.occupancy_map import FREE, OccupancyMap, read_occupancy_map
+from lifelore.domains.buildings.registration import moved as shifted
 from lifelore.domains.worlds import WorldSettings, world_from_settings
 
 from .robot_runs import driven_run
@@ -51,11 +52,11 @@ def test_poses_in_walls_in_the_unknown_and_beyond_the_map_lie_outside(floor, rea
 
 @pytest.mark.parametrize("offset", [(5.0, -2.0, 0.0), (-0.9, 3.3, 0.0), (1.2, 2.0, np.deg2rad(3))])
 def test_the_offset_that_mends_a_log_is_found(reachable, points, offset):
-    moved = shifted(points, offset)
+    moved = shifted(offset, points)
     assert reachable.outside(moved).mean() > MOST_OUTSIDE
     found = mending_shift(moved, reachable)
     assert found is not None
-    mended = shifted(moved, found[0])
+    mended = shifted(found[0], moved)
     assert np.hypot(*(mended - points).T).max() < 0.5
     assert reachable.outside(mended).mean() <= 0.01
 
@@ -72,10 +73,10 @@ def test_a_turned_map_is_searched_in_its_own_frame(world, points):
     own = read_occupancy_map(OFFICE)
     x, y, yaw = own.origin
     turn = 0.4
-    x, y = shifted(np.array([[x, y]]), (0.0, 0.0, turn))[0]
+    x, y = shifted((0.0, 0.0, turn), np.array([[x, y]]))[0]
     occupancy = OccupancyMap(own.state, own.resolution, (x, y, yaw + turn))
     floor = floor_of(occupancy, world_from_settings(WorldSettings("building", OFFICE), occupancy))
-    moved = shifted(points, (0.0, 0.0, turn)) + np.array([3.0, 1.0])
+    moved = shifted((0.0, 0.0, turn), points) + np.array([3.0, 1.0])
     found = mending_shift(moved, Reachable.of(floor))
     assert found is not None
     assert np.allclose(found[0], (-3.0, -1.0, 0.0), atol=0.5)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.agent.travel import Travel
-from lifelore.agent.travel.travel import DETOUR
+from lifelore.agent.travel.move_costs import DETOUR
 from lifelore.core.errors import InputError
 from lifelore.domains.grids.cell_numbers import BuildingGrid
 from lifelore.domains.grids.grid_world import Frame, GridWorld
@@ -28,8 +28,8 @@ def test_without_observations_all_is_nominal():
     has_move = travel.world.neighbour >= 0
     assert (travel.blocked(NOON)[has_move] < 0.02).all()
     assert (travel.blocked(NOON)[~has_move] == 1).all()
-    assert np.isinf(travel.cost(NOON)[~has_move]).all()
-    assert travel.cost(NOON)[0, 2] == pytest.approx(1 + DETOUR * 0.01)
+    assert np.isinf(travel.costs(NOON).cost[~has_move]).all()
+    assert travel.costs(NOON).cost[0, 2] == pytest.approx(1 + DETOUR * 0.01)
 
 
 def test_slow_moves_are_expected_to_be_slow_and_refused_ones_to_be_refused():
@@ -60,7 +60,7 @@ def test_memory_adds_what_two_robots_observe_in_any_order(tmp_path):
         assert recalled.passes.refusals.tolist() == [0, 1]
         assert recalled.passes.log_seconds[0] == pytest.approx(np.log(15), abs=1e-5)
         assert recalled.news() == []
-        found.append(recalled.cost(NOON + 600))
+        found.append(recalled.costs(NOON + 600).cost)
     assert np.array_equal(*found)
 
 
@@ -82,7 +82,7 @@ def test_a_larger_map_of_the_building_finds_the_same_cells(tmp_path):
 def test_observations_of_another_decade_and_of_the_future_give_numbers():
     travel = travel_in(corridor())
     travel.observe([2, 2, 3], [2, 2, 2], [100.0, 200.0, 2 * NOON], [2.0, np.nan, 2.0])
-    cost = travel.cost(NOON)[travel.world.neighbour >= 0]
+    cost = travel.costs(NOON).cost[travel.world.neighbour >= 0]
     assert np.isfinite(cost).all()
     assert travel.blocked(NOON)[2, 2] < 0.1
 

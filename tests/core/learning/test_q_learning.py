@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import new_curve
-from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import Rows, Schedule, cumulative, learn, new_learner, uniform_rows
 from lifelore.core.mdp import NOTHING, TERMINAL, Tables
 from lifelore.core.planning.planning import optimal_q, policy_values
@@ -140,46 +139,6 @@ def test_converges_to_the_optimum_where_every_action_keeps_mass(draw_world, seed
 def test_rows_that_break_a_rule(draw_world, given_rows, message):
     with pytest.raises(InputError, match=message):
         uniform_rows(draw_world(0), **given_rows)
-
-
-# ---- many learners at once -----------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(("chunk", "threads"), [(7, 1), (7, 3), (10**6, 2)])
-def test_many_learn_what_each_learns_alone(draw_world, chunk, threads):
-    tables, n = draw_world(4, n_states=9, n_outcomes=2), 11
-    method = QLearning(episodes=12, max_steps=25)
-    rows = uniform_rows(tables, ties=np.random.default_rng(0).uniform(0.5, 2, (1, 3)))
-    learners, curves = method.learn_many(
-        tables,
-        0.9,
-        worlds=[stream(i, "world") for i in range(n)],
-        owns=[stream(i, "own") for i in range(n)],
-        rows=rows,
-        threads=threads,
-        chunk=chunk,
-    )
-    for i in range(n):
-        alone = method.learn(tables, 0.9, world=stream(i, "world"), own=stream(i, "own"), rows=rows)
-        for stacked, one in zip((*learners, *curves), (*alone[0], *alone[1]), strict=True):
-            assert stacked[i].dtype == one.dtype
-            assert np.array_equal(stacked[i], one)
-    assert not np.array_equal(learners.q[0], learners.q[1])
-
-
-@pytest.mark.parametrize(
-    ("worlds", "options", "message"),
-    [
-        (0, {}, "worlds and owns must hold one generator a learner, got 0 and 2"),
-        (3, {}, "worlds and owns must hold one generator a learner, got 3 and 2"),
-        (2, {"threads": 0}, "threads must be at least 1, got 0"),
-        (2, {"chunk": 0}, "chunk must be at least 1, got 0"),
-    ],
-)
-def test_many_refuse_what_breaks_a_rule(draw_world, worlds, options, message):
-    owns = [stream(i) for i in range(2)]
-    with pytest.raises(InputError, match=message):
-        QLearning().learn_many(draw_world(1), 0.9, worlds=[stream(i) for i in range(worlds)], owns=owns, **options)
 
 
 def test_probabilities_by_pair_learn_as_the_twin(draw_world, naive_learn):

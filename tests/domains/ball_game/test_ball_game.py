@@ -243,7 +243,7 @@ def test_loss_by_hand():
 PLAIN = """
 import numpy as np
 from lifelore.domains.ball_game.ball_game import ball_game
-from lifelore.domains.ball_game.moves import read_moves
+from reproduction.chapter4.ball_game.moves import read_moves
 from lifelore.domains.ball_game.simulated_player import advance, new_balls, random_states
 for blocked in ("slides", "stays"):
     field = ball_game(blocked=blocked).field

@@ -128,7 +128,7 @@ def test_layer_by_layer_same_as_sweeps_over_everything(components):
     for configuration in (task.n_configurations - 2, 1, 0):
         here = slice(configuration * task.factory.n_cells, (configuration + 1) * task.factory.n_cells)
         assert np.array_equal(plan.q(configuration), found[here])
-        assert np.array_equal(plan.best_actions(configuration), best[here])
+        assert np.array_equal(best_actions(plan.q(configuration)), best[here])
 
 
 def test_nine_components_on_demand():

@@ -6,10 +6,10 @@ import pytest
 from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learning import cumulative
 from lifelore.core.mdp import COLLISION, TERMINAL
-from lifelore.core.planning.episode_value import return_moments
-from lifelore.core.planning.episodes import episode_returns
 from lifelore.core.streams import stream
 from lifelore.domains.pacman.pacman import STRATEGIES, PacmanMaze, PacmanTask, step
+from reproduction.chapter4.c4_04_pacman.episode_value import return_moments
+from reproduction.chapter4.c4_04_pacman.episodes import episode_returns
 
 NORTH, SOUTH, EAST, WEST = range(4)
 SMALL = PacmanMaze(5, 5)

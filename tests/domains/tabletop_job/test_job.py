@@ -5,9 +5,10 @@ import pickle
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
+from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.labelled_cloud import UNLABELLED
 from lifelore.domains.tabletop.layout import stand
+from lifelore.domains.tabletop.settings import TabletopSettings
 from lifelore.domains.tabletop.shapes import box
 from lifelore.domains.tabletop_job.events import Events
 from lifelore.domains.tabletop_job.job import (
@@ -150,3 +151,10 @@ def test_trays_depend_on_their_seed_and_number_alone():
     assert pickle.loads(pickle.dumps(first)).target == first.target
     assert 2 <= len(first.shapes) <= 7
     assert TabletopJob(first, JOB_TYPES[0])._physics.weights[first.target] <= TARGET_WEIGHT
+
+
+def test_unknown_types_and_trays_of_a_mix_are_refused():
+    with pytest.raises(NotFoundError, match="type must be one of"):
+        job_type_named("kind/firm")
+    with pytest.raises(InputError, match="mix must be None"):
+        sample_tray(1, 0, TabletopSettings(mix={"on": 1.0}))

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from docs.pictures.cloud_sequence import draw_cloud_sequence
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.figures.scenes.cloud_sequence import draw_cloud_sequence
 from lifelore.figures.style import save_figure
 
 POINTS = np.random.default_rng(0).uniform(0, 0.1, (60, 3))

@@ -6,11 +6,11 @@ from matplotlib.patches import FancyArrowPatch, Polygon
 
 from docs.pictures.scene_layers import draw_layers, predicate
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.figures.gallery import draw_gallery
 from lifelore.figures.scenes import scene_picture
 from lifelore.figures.scenes.scene_document import Bond
 from lifelore.figures.scenes.scene_picture import draw_scene
 from lifelore.figures.style import MAX_BYTES, save_figure
+from reproduction.figures.gallery import draw_gallery
 
 
 @pytest.fixture(autouse=True)

@@ -17,6 +17,7 @@ from reproduction.chapter3.c3_17_advice_cost.run import (
     steepest_rise,
 )
 from reproduction.engine.registry import claim_of
+from tests.action.advice.goal_models import goal_model_of
 
 SETTINGS = {
     **claim_of("C3.17").sizes["quick"], "kappas": [0.5, 1.4], "loops": [0.1], "experts": ["walks"],
@@ -26,7 +27,7 @@ SETTINGS = {
 
 @pytest.mark.parametrize("alpha0", [0.0, 1.0])
 def test_an_agent_that_is_surely_lost_gains_the_ceiling_and_an_expert_nothing(alpha0):
-    models = [GoalModel.from_best_actions([[True, False, False, False]], alpha0=alpha0 or 1e-9)]
+    models = [goal_model_of([[True, False, False, False]], alpha0=alpha0 or 1e-9)]
     models = [GoalModel((), models[0].prior, models[0].steps, advised_alpha0=alpha0)]
     theta = models[0].theta[0]
     entropy = -sum(p * log(p) for p in theta if p)

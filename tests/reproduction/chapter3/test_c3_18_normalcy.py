@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from lifelore.action.advice.advised_walk import Walk
 from lifelore.action.advice.advisor import Advisor
-from lifelore.action.advice.goal_model import GoalModel
+from reproduction.chapter3.advice.advised_walk import Walk
 from reproduction.chapter3.c3_18_normalcy import run
 from reproduction.chapter3.c3_18_normalcy.run import block_curve, measure, own_normalcy, readings
 from reproduction.engine.registry import claim_of
+from tests.action.advice.goal_models import goal_model_of
 
 
 def walked(p_normal, advised, reached=False, actions=None):
@@ -20,7 +20,7 @@ def walked(p_normal, advised, reached=False, actions=None):
 
 def test_own_steps_by_hand():
     # One count and α⁰ = 0.1: P(0 | M₁) = 1.1/1.2, P(1 | M₁) = 0.1/1.2, against 1/2.
-    advisor = Advisor.of_thesis([GoalModel.from_best_actions([[True, False]])])
+    advisor = Advisor.of_thesis([goal_model_of([[True, False]])])
     after = (0.1 / 1.2) / (0.1 / 1.2 + 0.5)
     # It chose 1, was advised 0 twice, and chose 1: P(M₁ | H) before each step is 1/2, then that after one step.
     found = own_normalcy(advisor, walked([0.5] * 4, [0, 1, 1, 0], actions=[1, 0, 0, 1]))

@@ -10,7 +10,7 @@ import pytest
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import SIZES, SPEEDS, ball_game
-from lifelore.domains.ball_game.moves import N_SIGNALS, read_moves
+from reproduction.chapter4.ball_game.moves import N_SIGNALS, read_moves
 from reproduction.chapter4.c4_14_people.ball_round import BallRound, column
 from reproduction.chapter4.c4_14_people.losses import STEPS, losses_by_diversity, losses_by_speed, ratio_by_move
 from reproduction.chapter4.c4_14_people.records import new_session, other_players, recorded_sessions, store_round

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.domains.tabletop.parallel_gripper import OPENING, Grasp
 from lifelore.perception.contacts.contact_points import ContactPoint
 from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.grasp_seeds import GraspSeed
+from reproduction.chapter5.c5_08_grasps.parallel_gripper import OPENING, Grasp
 from reproduction.chapter5.c5_08_grasps.run import TRIES, equal_topology, measure, rows
 from reproduction.chapter5.c5_08_grasps.searches import (
     anywhere,

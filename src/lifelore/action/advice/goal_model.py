@@ -97,21 +97,6 @@ class GoalModel:
         return cls(tuple(int(goal) for goal in goals), prior, steps)
 
     @classmethod
-    def from_best_actions(
-        cls, best: ArrayLike, goals: Sequence[int] = (), steps: ArrayLike | None = None, alpha0: float = 0.1
-    ) -> "GoalModel":
-        """Count a policy's best or tied-best actions, (n_states, n_actions) bool; leave goal rows all False.
-
-        `steps` (n_states,) defaults to 0 in states with counts, which makes all goals equally far.
-        """
-        best = np.asarray(best)
-        prior = ActionPrior(best.shape[-1], alpha0)
-        prior.update(np.arange(len(best)), best)
-        shown = best.any(axis=1)
-        far = np.zeros(len(best)) if steps is None else np.asarray(steps, np.float64)
-        return cls(tuple(int(goal) for goal in goals), prior, np.where(shown, far, np.inf))
-
-    @classmethod
     def pooled(cls, goal_models: Sequence["GoalModel"]) -> "GoalModel":
         """The thesis's model: one prior over all goals, without a goal of its own.
 

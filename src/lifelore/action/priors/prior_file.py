@@ -64,11 +64,6 @@ def load_prior(path: str | Path) -> ActionPrior:
     return prior_from_bytes(read_file(path, "the prior"), str(path))
 
 
-def prior_about(path: str | Path) -> dict[str, Any]:
-    """Description of a prior file: format, version, n_actions, alpha0, key and `about`."""
-    return FORMAT.unpack(read_file(path, "the prior"), str(path))[0]
-
-
 def prior_bytes(prior: ActionPrior, about: Mapping[str, Any] | None = None) -> bytes:
     """The prior as the bytes of an npz file."""
     header = {

@@ -15,8 +15,9 @@ from lifelore.agent.learn_from.run_log import Run
 from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.buildings.free_space import free_pixels
 from lifelore.domains.buildings.inflation import inflate
+from lifelore.domains.buildings.registration import Pose, moved
 
-Shift = tuple[float, float, float]
+Shift = Pose
 """x, y in metres and yaw in radians: p becomes R(yaw)·p + (x, y)."""
 TOLERANCE = 0.15
 """Metres: three standard deviations of a localisation with 5 cm."""
@@ -76,7 +77,7 @@ def mending_shift(points: NDArray[np.float64], reachable: Reachable) -> tuple[Sh
         candidates = [shift for turn in turns for shift in _candidates(points, turn, reachable)]
         if len(candidates) > _MOST_CANDIDATES:
             return None
-        share = np.array([reachable.outside(shifted(points, shift)).mean() for shift in candidates])
+        share = np.array([reachable.outside(moved(shift, points)).mean() for shift in candidates])
         if (share <= MENDED).any():
             return _middle(points, np.array(candidates)[share <= MENDED], reachable)
     return None
@@ -87,13 +88,13 @@ def _middle(
 ) -> tuple[Shift, float] | None:
     """The middle of the offsets (n, 3) that mend a log, and its share of poses outside; None if they differ."""
     # Where the middle of the log comes to lie, because a turn about the origin moves it.
-    middles = np.array([shifted(points.mean(axis=0)[None], tuple(one))[0] for one in good])
+    middles = np.array([moved(tuple(one), points.mean(axis=0)[None])[0] for one in good])
     if np.ptp(middles, axis=0).max() > SURE or np.ptp(good[:, 2]) > SURE_TURN:
         return None
     apart = np.hypot(*(middles - middles.mean(axis=0)).T) + np.abs(good[:, 2] - good[:, 2].mean())
     best = good[apart.argmin()]
     x, y, yaw = round(float(best[0]), 2), round(float(best[1]), 2), round(float(best[2]), 4)
-    share = float(reachable.outside(shifted(points, (x, y, yaw))).mean())
+    share = float(reachable.outside(moved((x, y, yaw), points)).mean())
     return ((x, y, yaw), share) if share <= 2 * MENDED else None
 
 
@@ -106,7 +107,7 @@ def _candidates(points: NDArray[np.float64], turn: float, reachable: Reachable) 
     step = max(1, round(_PIXEL / floor.occupancy.resolution))
     side, free = step * floor.occupancy.resolution, reachable.near[::step, ::step]
     middle = points.mean(axis=0)
-    turned = shifted(points - middle, (0.0, 0.0, turn)) + middle
+    turned = moved((0.0, 0.0, turn), points - middle) + middle
     at = np.rint(floor.pixels(turned) / step).astype(np.int64)
     low, reach = at.min(axis=0), round(FARTHEST_SHIFT / side)
     picture = np.zeros(at.max(axis=0) - low + 1)
@@ -122,18 +123,11 @@ def _candidates(points: NDArray[np.float64], turn: float, reachable: Reachable) 
     hits = signal.fftconvolve(window, picture[::-1, ::-1], mode="valid")
     rows, columns = np.nonzero(hits >= (1 - MOST_OUTSIDE) * len(points) - 0.5)
     up, right = (reach - rows) * side, (columns - reach) * side
-    yaw = floor.occupancy.origin[2]
-    moved = np.column_stack([np.cos(yaw) * right - np.sin(yaw) * up, np.sin(yaw) * right + np.cos(yaw) * up])
-    origin = middle - shifted(middle[None], (0.0, 0.0, turn))[0]
-    return [(float(x), float(y), turn) for x, y in moved + origin]
-
-
-def shifted(points: NDArray[np.float64], shift: Shift) -> NDArray[np.float64]:
-    """Points (n, 2) after a shift."""
-    cos, sin = np.cos(shift[2]), np.sin(shift[2])
-    return points @ np.array([[cos, sin], [-sin, cos]]) + np.array(shift[:2])
+    shifts = moved((0.0, 0.0, floor.occupancy.origin[2]), np.column_stack([right, up]))
+    origin = middle - moved((0.0, 0.0, turn), middle[None])[0]
+    return [(float(x), float(y), turn) for x, y in shifts + origin]
 
 
 def shifted_runs(runs: Sequence[Run], shift: Shift) -> list[Run]:
     """Runs after a shift."""
-    return [replace(run, points=shifted(run.points, shift), heading=run.heading + shift[2]) for run in runs]
+    return [replace(run, points=moved(shift, run.points), heading=run.heading + shift[2]) for run in runs]

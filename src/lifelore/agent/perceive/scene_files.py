@@ -21,7 +21,7 @@ NAME = "{name}"
 
 
 Recorder = Callable[[str, "Scene", Mapping], None]
-"""Writes a log of a scene and its document to a path, such as `bridges.scene_log.write_scene_log`."""
+"""Writes a log of a scene and its document to a path, such as `bridges.viewer_log.write_scene_log`."""
 ENDINGS = {"plot": (".png",), "masks_out": (".png",), "log": (".mcap", ".rrd")}
 """Endings of the files that have them."""
 
@@ -71,7 +71,7 @@ class SceneFiles:
 
     def __post_init__(self) -> None:
         if self.log is not None and self.recorder is None:
-            raise InputError("log needs a recorder: give bridges.scene_log.write_scene_log")
+            raise InputError("log needs a recorder: give bridges.viewer_log.write_scene_log")
 
     @property
     def options(self) -> dict[str, str]:

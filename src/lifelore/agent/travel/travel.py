@@ -2,7 +2,7 @@
 
     travel = Travel.recalled(world, grid, memory)
     travel.observe(states, actions, clock, seconds)   # after each drive
-    cost = travel.cost(clock)                         # seconds to plan with
+    costs = travel.costs(clock)                       # seconds, and seconds to plan with
 
 Memory adds what is observed, so that any robots in any order give the same knowledge.
 """
@@ -15,14 +15,12 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.agent.travel import passes as records
 from lifelore.agent.travel.blocked_moves import blocked_probability
 from lifelore.agent.travel.edge_times import typical_seconds
+from lifelore.agent.travel.move_costs import MoveCosts
 from lifelore.agent.travel.passes import Passes, joined, observed
 from lifelore.core.protocols import Record
 from lifelore.domains.grids.cell_numbers import BuildingGrid
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.memory import Memory
-
-DETOUR = 60.0
-"""Seconds that a refused move costs: turning round, and another way."""
 
 
 @dataclass
@@ -98,10 +96,11 @@ class Travel:
         """
         return blocked_probability(self.world, self.passes, clock)
 
-    def cost(self, clock: float) -> NDArray[np.float64]:
-        """Seconds (n_states, 4) to plan with: typical seconds + probability of refusal · `DETOUR`.
+    def costs(self, clock: float) -> MoveCosts:
+        """The costs of all moves at `clock`."""
+        return MoveCosts(self.world, self.seconds(clock), self.blocked(clock))
 
-        Infinite where the map has no move.
-        """
-        cost = self.seconds(clock) + DETOUR * self.blocked(clock)
-        return np.where(self.world.neighbour >= 0, cost, np.inf)
+    @property
+    def newest(self) -> float:
+        """Seconds since 1970 of the newest observation by the robot's clock; 0 if there is none."""
+        return 60.0 * self.passes.minute.max(initial=0)

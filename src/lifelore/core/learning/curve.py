@@ -30,6 +30,6 @@ def first_episodes(curve: Curve, n_episodes: int) -> Curve:
     return Curve._make(part[:n_episodes].copy() for part in curve)
 
 
-def new_curve(shape: int | tuple[int, int]) -> Curve:
-    """An empty learning curve of `shape` episodes, or a stack of curves, (n_learners, n_episodes)."""
-    return Curve._make(np.zeros(shape, kind) for kind in ("f8", "f8", "i8", "i8", "?"))
+def new_curve(episodes: int) -> Curve:
+    """An empty learning curve."""
+    return Curve._make(np.zeros(episodes, kind) for kind in ("f8", "f8", "i8", "i8", "?"))

@@ -1,26 +1,22 @@
-"""`QLearning`: the settings of ε-greedy Q-learning, and runs of one learner or of many on tables in chunks."""
+"""`QLearning`: the settings of ε-greedy Q-learning, and runs on tables in chunks."""
 
-from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.core.learning.curve import EPISODE, Curve, new_curve
+from lifelore.core.learning.curve import Curve, new_curve
 from lifelore.core.learning.q_learning import (
     QLearner,
     Rows,
     Schedule,
     learn,
-    learn_each,
     new_learner,
-    new_learners,
     uniform_rows,
 )
 from lifelore.core.mdp import Tables
 from lifelore.core.streams import stream
-from lifelore.core.usable_cores import usable_cores
 
 CHUNK = 1_000_000
 """Steps between two checks for Ctrl-C and for `watch`: well under 0.2 s."""
@@ -139,71 +135,3 @@ class QLearning:
             if watch and watch(learner, curve):
                 break
         return learner, curve
-
-    def learn_many(
-        self,
-        tables: Tables,
-        discount: float,
-        *,
-        worlds: Sequence[np.random.Generator],
-        owns: Sequence[np.random.Generator],
-        rows: Rows | None = None,
-        threads: int | None = None,
-        chunk: int = CHUNK,
-        watch: Callable[[QLearner, Curve], bool] | None = None,
-    ) -> tuple[QLearner, Curve]:
-        """Learn one task by many learners at once; each gets the same result, to the bit, as alone.
-
-        Parameters
-        ----------
-        tables, discount, rows
-            As for `learn`; the same for all.
-        worlds, owns : sequences of numpy generators
-            One of each a learner.
-        threads : int, optional
-            Default one a core; results do not depend on it.
-        chunk : int
-            Steps of each learner between two calls of `watch`, ≥ 1. Many learners do not fit into the processor's
-            caches: without a `watch`, a large chunk is quickest.
-        watch : callable, optional
-            Called between chunks with all learners and curves; a true answer ends learning early.
-
-        Returns
-        -------
-        learners, curves : Learner, Curve
-            Every array has the learners as its first axis: ``q`` is (n_learners, n_rows, n_actions), ``returns``
-            (n_learners, n_episodes).
-
-        Raises
-        ------
-        InputError
-            There is no learner, `worlds` and `owns` differ in number, `threads` or `chunk` is below 1.
-        """
-        n = len(worlds)
-        if not n or n != len(owns):
-            raise InputError(f"worlds and owns must hold one generator a learner, got {n} and {len(owns)}")
-        if threads is not None and threads < 1:
-            raise InputError(f"threads must be at least 1, got {threads}")
-        if chunk < 1:
-            raise InputError(f"chunk must be at least 1, got {chunk}")
-        threads = threads or usable_cores()
-        chunk = chunk if watch else min(chunk, CHUNK)
-        rows, schedule = rows or uniform_rows(tables), self.schedule(discount)
-        learners = new_learners(int(rows.q_row.max()) + 1, tables.n_actions, worlds, owns)
-        curves = new_curve((n, self.episode_cap))
-        # Small enough that threads finish together and Ctrl-C is noticed soon.
-        batch = max(1, min(-(-n // (4 * threads)), CHUNK // min(chunk, self.episode_cap * self.step_cap)))
-        pool = ThreadPoolExecutor(threads)
-        try:
-            while (learners.cursor[:, EPISODE] < self.episode_cap).any():
-                futures = [
-                    pool.submit(learn_each, tables, rows, schedule, learners, curves, chunk, i, min(i + batch, n))
-                    for i in range(0, n, batch)
-                ]
-                for future in futures:
-                    future.result()
-                if watch and watch(learners, curves):
-                    break
-        finally:
-            pool.shutdown(cancel_futures=True)
-        return learners, curves

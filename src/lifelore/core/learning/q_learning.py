@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from lifelore.core.compiled.jit import inlined, kernel
 from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.errors import InputError
-from lifelore.core.learning.curve import DISCOUNT, EPISODE, RETURN, REWARD_CLASS, STATE, STEP, TOTAL, Curve
+from lifelore.core.learning.curve import DISCOUNT, EPISODE, RETURN, REWARD_CLASS, STATE, STEP, TOTAL
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 
 
@@ -124,19 +124,13 @@ def _check_context_row(row: NDArray[np.int32], n_states: int, n_contexts: int) -
 
 def new_learner(n_q_rows: int, n_actions: int, world, own) -> QLearner:
     """A learner at the start of its first episode, Q = 0; `world` and `own` are numpy generators."""
-    return QLearner._make(part[0] for part in new_learners(n_q_rows, n_actions, [world], [own]))
-
-
-def new_learners(n_q_rows: int, n_actions: int, worlds, owns) -> QLearner:
-    """Learners at the start of their first episodes, stacked along a first axis; a pair of generators each."""
-    n = len(worlds)
     return QLearner(
-        np.zeros((n, n_q_rows, n_actions)),
-        np.zeros((n, n_q_rows, n_actions), np.int64),
-        np.stack([random_state(world) for world in worlds]),
-        np.stack([random_state(own) for own in owns]),
-        np.zeros((n, 5), np.int64),
-        np.zeros((n, 2)),
+        np.zeros((n_q_rows, n_actions)),
+        np.zeros((n_q_rows, n_actions), np.int64),
+        random_state(world),
+        random_state(own),
+        np.zeros(5, np.int64),
+        np.zeros(2),
     )
 
 
@@ -259,26 +253,3 @@ def _best_value(q, row):
         if q[row, a] > best:
             best = q[row, a]
     return best
-
-
-@kernel
-def learn_each(tables, rows, schedule, learners, curves, budget, first, last):
-    """`learn` for the learners `first` … `last` - 1 of a stack, one after the other; returns the steps of all.
-
-    Every array of `learners` and `curves` has the learners as its first axis.
-    """
-    done_steps = 0
-    for i in range(first, last):
-        learner = QLearner(
-            learners.q[i],
-            learners.visits[i],
-            learners.world_random[i],
-            learners.own_random[i],
-            learners.cursor[i],
-            learners.running[i],
-        )
-        curve = Curve(
-            curves.returns[i], curves.rewards[i], curves.steps[i], curves.collisions[i], curves.reached[i]
-        )
-        done_steps += learn(tables, rows, schedule, learner, curve, budget)
-    return done_steps

@@ -1,4 +1,4 @@
 """Planning: exact solutions of tasks written as tables.
 
-Read in this order: `planning`, `layered_planning`, `episode_value`, `episodes`.
+Read in this order: `planning`, `layered_planning`.
 """

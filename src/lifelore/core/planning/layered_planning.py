@@ -16,15 +16,13 @@ from numpy.typing import NDArray
 from lifelore.core.compiled.jit import inlined, kernel
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import TERMINAL, Tables
-from lifelore.core.planning.planning import backup, best_actions
+from lifelore.core.planning.planning import backup
 
 LAST_MOVE = 1e-12
 """Sweeps end when no value moves by more than this share of the largest reward."""
 
 
-def layered_q(
-    tables: Tables, layer_size: int, discount: float, tolerance: float = LAST_MOVE
-) -> NDArray[np.float64]:
+def layered_q(tables: Tables, layer_size: int, discount: float) -> NDArray[np.float64]:
     """Optimal action values of a task in layers, (n_states, n_actions); equal to those of `planning.optimal_q`.
 
     Parameters
@@ -34,8 +32,6 @@ def layered_q(
         Places of a layer: state s lies in layer s // layer_size.
     discount : float
         γ in [0, 1).
-    tolerance : float
-        See `LAST_MOVE`.
 
     Raises
     ------
@@ -44,13 +40,16 @@ def layered_q(
     """
     if layer_size < 1 or tables.n_states % layer_size:
         raise InputError(f"layer_size must divide the {tables.n_states} states, got {layer_size}")
-    value = np.zeros(tables.n_states)
-    q = np.empty((tables.n_states, tables.n_actions))
-    scale = tolerance * max(1.0, float(np.abs(tables.reward).max()))
-    wrong = _solve_all(tables.by_pair, layer_size, float(discount), scale, value, q)
-    if wrong >= 0:
-        raise _leads_back(wrong)
-    return q
+    whole, n_layers = tables.by_pair, tables.n_states // layer_size
+
+    def rows_of(layer: int) -> Tables:
+        rows = slice(layer * layer_size, (layer + 1) * layer_size)
+        return Tables(
+            whole.next_state[rows], whole.reward[rows], whole.event[rows], whole.outcome_cum[rows], whole.starts
+        )
+
+    plan = LayeredPlan(rows_of, n_layers, layer_size, discount)
+    return np.concatenate([plan.q(layer) for layer in range(n_layers)])
 
 
 class LayeredPlan:
@@ -89,10 +88,6 @@ class LayeredPlan:
         q = np.empty((self.layer_size, rows.n_actions))
         _back_up(rows, self._discount, self._value, q)
         return q
-
-    def best_actions(self, layer: int) -> NDArray[np.bool_]:
-        """Which actions are best or tied best in each place of one layer (Eq. 3.1)."""
-        return best_actions(self.q(layer))
 
     def _solve(self, layer: int) -> None:
         if not 0 <= layer < len(self.solved):
@@ -137,34 +132,6 @@ def _layers_after(rows, layer_size, seen):
                         found[n] = layer
                         n += 1
     return found[:n].copy()
-
-
-@kernel
-def _solve_all(tables, layer_size, discount, tolerance, value, q):
-    """Every layer, the last first; the number of a layer that leads back, else -1."""
-    next_state, reward, event, outcome_cum, starts = tables
-    for layer in range(value.size // layer_size - 1, -1, -1):
-        first = layer * layer_size
-        last = first + layer_size
-        rows = Tables(
-            next_state[first:last], reward[first:last], event[first:last], outcome_cum[first:last], starts
-        )
-        if _leads_before(rows, first):
-            return layer
-        _solve_layer(rows, first, discount, tolerance, value)
-        _back_up(rows, discount, value, q[first:last])
-    return -1
-
-
-@inlined
-def _leads_before(rows, first):
-    found = False
-    for s in range(rows.next_state.shape[0]):
-        for a in range(rows.next_state.shape[1]):
-            for k in range(rows.next_state.shape[2]):
-                if rows.next_state[s, a, k] < first and not rows.event[s, a, k] & TERMINAL:
-                    found = True
-    return found
 
 
 @kernel

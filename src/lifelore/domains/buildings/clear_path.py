@@ -8,6 +8,7 @@ path cheaper.
 
 Source: Nash, Koenig and Tovey, Lazy Theta*: Any-Angle Path Planning and Path Length Analysis in 3D, AAAI 2010.
 Added here: lines have prices, so the cost of a line is known when it is measured; its end is then queued again.
+`cost_ahead` estimates the costs that lead the search.
 """
 
 import heapq
@@ -16,12 +17,11 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
-from scipy.sparse import csgraph
 
 from lifelore.core.compiled.jit import kernel
+from lifelore.domains.buildings.cost_ahead import cost_ahead, cost_ahead_of
 from lifelore.domains.buildings.floor import Floor
-from lifelore.domains.buildings.line_of_sight import TIGHT, Ground, ground_of, line_cost
+from lifelore.domains.buildings.line_of_sight import TIGHT, ground_of, line_cost
 
 _STRIDE, _STRIDES_PER_CELL = 4, 3
 """Most pixels between two nodes on open floor, and least number of such steps through a cell: a path may be known
@@ -62,21 +62,12 @@ def clear_path(
     ground = ground_of(floor, np.zeros((floor.n_states, 4)) if price is None else price, clearance)
     cell = math.sqrt(np.count_nonzero(floor.state >= 0) / floor.n_states)
     stride = min(max(int(cell / _STRIDES_PER_CELL), 1), _STRIDE)
-    corners = _search(ground, ends, _prices_ahead(floor, ground, ends[1]), stride)
+    corners = _search(ground, ends, cost_ahead_of(floor, ground.price, ends[1]), stride)
     if not len(corners):
         return None
     path = floor.metres(_pulled(ground, corners, _SHIFTS))
     path[0], path[-1] = start, goal
     return path[np.r_[True, (np.diff(path, axis=0) != 0).any(axis=1)]]
-
-
-def _prices_ahead(floor: Floor, ground: Ground, goal: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The least sum of prices from each state to the goal, (n_states,) in pixels; inf without moves to it."""
-    last = floor.state[tuple(np.floor(goal + 0.5).astype(int))]
-    tail, action = np.nonzero((floor.neighbour >= 0) & np.isfinite(ground.price))
-    # A graph has no edges of weight 0.
-    edges = ground.price[tail, action] + 1e-12, (floor.neighbour[tail, action], tail)
-    return csgraph.dijkstra(sparse.csr_array(edges, shape=(floor.n_states,) * 2), indices=last) * (1 - 1e-9)
 
 
 @kernel
@@ -140,15 +131,14 @@ def _around(ground, ends, node, stride, found):
 
 
 @kernel
-def _ahead(ground, ends, node, prices_ahead):
-    """A lower bound of the cost from a node to the goal: the distance, and the least sum of prices."""
+def _ahead(ground, ends, node, ahead):
+    """The cost estimated from a node to the goal."""
     row, column = _point(ends, ground.state.shape[1], node)
-    state = ground.state[math.floor(row + 0.5), math.floor(column + 0.5)]
-    return math.hypot(ends[1, 0] - row, ends[1, 1] - column) + prices_ahead[state]
+    return cost_ahead(ahead, ground.state[math.floor(row + 0.5), math.floor(column + 0.5)], row, column)
 
 
 @kernel
-def _search(ground, ends, prices_ahead, stride):
+def _search(ground, ends, costs_ahead, stride):
     """Lazy Theta*: points (n, 2) of the cheapest path, none if there is none."""
     columns = ground.state.shape[1]
     n_nodes = ground.state.size + 2  # the two ends are the last, by their negative numbers
@@ -156,10 +146,12 @@ def _search(ground, ends, prices_ahead, stride):
     measured, closed = np.zeros(n_nodes, np.bool_), np.zeros(n_nodes, np.bool_)
     beside = np.empty((2 * stride + 1) ** 2 + 6, np.int64)
     cost[-2], measured[-2] = 0.0, True
-    queue: Any = [(0.0, -2)]
+    queue: Any = [(_ahead(ground, ends, -2, costs_ahead), -2)]
     while queue:
         bound, node = heapq.heappop(queue)
-        ahead = _ahead(ground, ends, node, prices_ahead)
+        if bound == np.inf:
+            break  # no moves lead to the goal
+        ahead = _ahead(ground, ends, node, costs_ahead)
         if closed[node] or bound > cost[node] + ahead + 1e-9:
             continue
         n = _around(ground, ends, node, stride, beside)
@@ -184,7 +176,7 @@ def _search(ground, ends, prices_ahead, stride):
             at_least = cost[origin] + math.hypot(row - from_row, column - from_column)
             if at_least < cost[there] - 1e-9:
                 cost[there], before[there], measured[there] = at_least, origin, False
-                heapq.heappush(queue, (at_least + _ahead(ground, ends, there, prices_ahead), there))
+                heapq.heappush(queue, (at_least + _ahead(ground, ends, there, costs_ahead), there))
     return _corners(ends, columns, before, closed)
 
 

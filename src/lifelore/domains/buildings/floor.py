@@ -99,6 +99,14 @@ class Floor:
         first = np.searchsorted(state[order], np.arange(self.n_states))
         return np.column_stack(np.unravel_index(pixel[order][first], self.state.shape))
 
+    @cached_property
+    def middles(self) -> NDArray[np.float64]:
+        """(n_states, 2) mean row and column of each state's pixels; 0 for a state without pixels."""
+        pixel = np.flatnonzero(self.state >= 0)
+        state, at = self.state.ravel()[pixel], np.divmod(pixel, self.state.shape[1])
+        n = np.maximum(np.bincount(state, minlength=self.n_states), 1)
+        return np.column_stack([np.bincount(state, axis, minlength=self.n_states) / n for axis in at])
+
     def state_at(self, name: str, point: tuple[float, float]) -> int:
         """The state in whose piece of free space a point lies; `name` is the argument that an error names.
 

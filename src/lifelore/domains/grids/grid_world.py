@@ -192,9 +192,7 @@ class GridWorld:
     @cached_property
     def move_vectors(self) -> NDArray[np.float64]:
         """Unit vectors (n_actions, 2) of the moves, x and y in the world."""
-        yaw = self.frame.origin[2]
-        right, up = MOVES[:, 1], -MOVES[:, 0]
-        return np.column_stack([np.cos(yaw) * right - np.sin(yaw) * up, np.sin(yaw) * right + np.cos(yaw) * up])
+        return Frame(1.0, (0.0, 0.0, self.frame.origin[2])).metres(MOVES[:, 1], -MOVES[:, 0])
 
     def states_at(self, points: ArrayLike) -> NDArray[np.int32]:
         """The states (n,) int32 in whose cells `points` lie, (n, 2) x and y in metres; -1 where there is none."""

@@ -3,11 +3,10 @@
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.domains.tabletop.depth_camera import Camera
-from lifelore.domains.tabletop.photograph import FIRST_OBJECT, Photograph, photograph
-from lifelore.domains.tabletop.physics import NEAR, Tabletop
+from lifelore.domains.tabletop.photograph import Photograph, photograph
+from lifelore.domains.tabletop.physics import Tabletop
 from lifelore.domains.tabletop.pose import Pose, about
 from lifelore.domains.tabletop.settings import TabletopScene
 
@@ -46,15 +45,3 @@ def views_around(
         assert photo is not None
         photos.append(photo)
     return photos
-
-
-def true_contacts(scene: TabletopScene) -> dict[frozenset[int], NDArray[np.float64]]:
-    """Places (k, 3) where two objects touch, by the labels of both; metres in the table's frame."""
-    found = Tabletop(scene.shapes, scene.poses).contacts()
-    touching = (found.distances < NEAR / 4) & (np.minimum(found.first, found.second) >= 0)
-    pairs = np.sort(np.stack([found.first, found.second], axis=1)[touching], axis=1)
-    places = found.positions[touching]
-    return {
-        frozenset((int(a) + FIRST_OBJECT, int(b) + FIRST_OBJECT)): places[(pairs == (a, b)).all(axis=1)]
-        for a, b in np.unique(pairs, axis=0)
-    }

@@ -35,7 +35,9 @@ class Ring:
 
     def drive(self, start: int, goal: int, clock: float) -> DrivenJob:
         travel = self.travel
-        return drive_job(self.world, start, goal, clock, travel.cost, self.building, travel.observe)
+        return drive_job(
+            self.world, start, goal, clock, lambda now: travel.costs(now).cost, self.building, travel.observe
+        )
 
 
 def test_the_straight_way_is_driven():

@@ -6,7 +6,6 @@ import math
 import numpy as np
 import pytest
 
-from lifelore.agent.live.output.move_costs import MoveCosts
 from lifelore.agent.live.output.nav2_masks import (
     FULL_SPEED,
     KEEP_OUT,
@@ -22,6 +21,7 @@ from lifelore.agent.live.output.nav2_masks import (
     write_directions,
     write_masks,
 )
+from lifelore.agent.travel.move_costs import DETOUR, MoveCosts
 from lifelore.domains.buildings.building import building_from_map
 from lifelore.domains.buildings.floor import Floor, floor_of
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap, read_occupancy_map
@@ -40,14 +40,13 @@ def costs_of(
     slow: dict[tuple[int, int], float] | None = None,
     refused: dict[tuple[int, int], float] | None = None,
 ) -> MoveCosts:
-    """Costs where a usual move takes 1 s, and a refusal costs 10 s; `refused` are probabilities."""
+    """Costs where a usual move takes 1 s; `refused` are expected seconds of refusals."""
     seconds, blocked = np.ones((world.n_states, 4)), np.zeros((world.n_states, 4))
     for move, value in (slow or {}).items():
         seconds[move] = value
     for move, value in (refused or {}).items():
-        blocked[move] = value
-    cost = np.where(world.neighbour >= 0, seconds + 10 * blocked, np.inf)
-    return MoveCosts(world, seconds, blocked, cost)
+        blocked[move] = value / DETOUR
+    return MoveCosts(world, seconds, blocked)
 
 
 @pytest.fixture
@@ -72,7 +71,7 @@ def test_a_building_that_is_slow_everywhere_is_usual(long_corridor):
 
 
 def test_refusals_cost_and_do_not_limit_the_speed(long_corridor):
-    costs = costs_of(long_corridor, refused={(2, EAST): 0.4, (0, WEST): 1.0})
+    costs = costs_of(long_corridor, refused={(2, EAST): 4.0, (0, WEST): 10.0})
     # The move west of place 0 leads into a wall, which nav2 inflates itself.
     assert place_costs(costs, ALL).tolist() == [0, 0, 50, 50, 0, 0, 0]
     assert set(place_speeds(costs, ALL)) == {FULL_SPEED}
@@ -173,7 +172,7 @@ def test_a_place_that_is_now_blocked_is_kept_out(tmp_path):
     occupancy, world, floor = room()
     known, (east,) = np.ones(world.n_states, bool), world.states_at([(2.75, 1.25)])
     into = {
-        (int(world.neighbour[east, back]), back ^ 1): 0.9 for back in range(4) if world.neighbour[east, back] >= 0
+        (int(world.neighbour[east, back]), back ^ 1): 54.0 for back in range(4) if world.neighbour[east, back] >= 0
     }
     write_masks(tmp_path, costs_of(world, refused=into), known, floor, occupancy)
     keepout = read_occupancy_map(tmp_path / "keepout.yaml").state

@@ -8,8 +8,8 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from lifelore.agent.live.output.move_costs import MoveCosts
 from lifelore.agent.live.output.route_graph import MOST_PLACES, write_route_graph
+from lifelore.agent.travel.move_costs import MoveCosts
 from lifelore.domains.buildings.building import building_from_map
 from lifelore.domains.buildings.floor import floor_of
 from lifelore.domains.buildings.occupancy_map import FREE, OccupancyMap
@@ -28,8 +28,7 @@ def two_rooms():
     world = building_from_map(occupancy, 0.5, 0.2)
     rng = np.random.default_rng(0)
     seconds, blocked = rng.uniform(1, 2, (world.n_states, 4)), rng.uniform(0, 0.2, (world.n_states, 4))
-    cost = np.where(world.neighbour >= 0, seconds + 30 * blocked, np.inf)
-    return MoveCosts(world, seconds, blocked, cost), floor_of(occupancy, world)
+    return MoveCosts(world, seconds, blocked), floor_of(occupancy, world)
 
 
 def turned(point: tuple[float, float]) -> tuple[float, float]:

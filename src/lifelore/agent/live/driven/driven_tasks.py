@@ -115,7 +115,7 @@ class DrivenTasks:
         def building(way: NDArray[np.int64], clock: float) -> Drive:
             return quiet_building(way, clock, world) if self._busy is None else self._busy.drive(way, clock, noise)
 
-        return drive_job(world, start, goal, clock, travel.cost, building, travel.observe)
+        return drive_job(world, start, goal, clock, lambda now: travel.costs(now).cost, building, travel.observe)
 
     def _map_metres(self, start: int, goal: int) -> float:
         """Length of the shortest route on the map; 0 where there is none."""

@@ -13,8 +13,8 @@ from lifelore.agent.live.buildings.recognition import Place, recognised_place
 from lifelore.agent.live.goals.destinations import NamedPlaces, Point
 from lifelore.agent.live.lore import Lore, prior_scope
 from lifelore.agent.live.output.folder import folder_to_write
-from lifelore.agent.live.output.move_costs import MoveCosts
 from lifelore.agent.live.output.nav2_masks import write_masks
+from lifelore.agent.travel.move_costs import MoveCosts
 from lifelore.agent.travel.travel import Travel
 from lifelore.core.errors import NotFoundError
 from lifelore.core.learning.known_world import WorldModel
@@ -64,7 +64,7 @@ class KnownBuilding:
     @cached_property
     def costs(self) -> MoveCosts:
         """The costs of its moves at the newest observation."""
-        return MoveCosts.latest(self.travel)
+        return self.travel.costs(self.travel.newest)
 
     def write(self, folder: Path, more_places: Mapping[str, Point] | None = None) -> list[str]:
         """Write `NAV2_FILES` into a folder; the names of those that were written.

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from lifelore.agent.live.output.move_costs import MoveCosts
+from lifelore.agent.travel.move_costs import MoveCosts
 from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.buildings.inflation import inflate
 from lifelore.domains.buildings.map_alignment import axis_aligned

@@ -23,7 +23,7 @@ from scipy import sparse
 from scipy.sparse import csgraph
 
 from lifelore.agent.live.driven.route import moves_along
-from lifelore.agent.live.output.move_costs import MoveCosts
+from lifelore.agent.travel.move_costs import MoveCosts
 from lifelore.core.errors import InputError
 from lifelore.domains.buildings.clear_path import clear_path
 from lifelore.domains.buildings.floor import Floor

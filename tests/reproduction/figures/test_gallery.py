@@ -5,9 +5,9 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.figures.gallery import draw_gallery, gallery_above
 from lifelore.figures.scenes import scene_picture
 from lifelore.figures.style import house_style, save_figure
+from reproduction.figures.gallery import draw_gallery, gallery_above
 
 POINTS = np.random.default_rng(0).uniform(0, 0.1, (60, 3))
 CLOUD = LabelledCloud(POINTS, np.repeat([1, 2, 3], 20), None, np.array([0.0, -1, 0.5]))

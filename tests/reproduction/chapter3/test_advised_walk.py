@@ -5,13 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.action.advice.advised_walk import advised_walk
 from lifelore.action.advice.advisor import AdviceSettings, Advisor
 from lifelore.action.advice.behaviour_models import Tabulated, Uniform
 from lifelore.action.advice.goal_model import GoalModel, Trajectory
 from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
+from reproduction.chapter3.advice.advised_walk import advised_walk
 
 from .naive_advisor import NaiveAdvisor
 

@@ -6,8 +6,8 @@ import pytest
 from lifelore.core.compiled.random_state import random_state
 from lifelore.core.learning.q_learning import cumulative
 from lifelore.core.mdp import TERMINAL
-from lifelore.core.planning.episodes import episode_returns
 from lifelore.core.streams import stream
+from reproduction.chapter4.c4_04_pacman.episodes import episode_returns
 
 
 @pytest.mark.parametrize("n_outcomes", [1, 3])

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.figures.scatter import draw_scatter
 from lifelore.figures.style import house_style, new_figure
+from reproduction.figures.scatter import draw_scatter
 
 
 def scatter(groups, **more):

@@ -5,8 +5,8 @@ import pytest
 
 from lifelore.domains.tabletop.depth_camera import looking_down
 from lifelore.domains.tabletop.layout import stand
-from lifelore.domains.tabletop.poke import PokedTabletop
 from lifelore.domains.tabletop.shapes import box
+from reproduction.chapter5.c5_07_poking.poke import PokedTabletop
 
 pytest.importorskip("mujoco", reason="needs the extra sim")
 pytestmark = pytest.mark.sim

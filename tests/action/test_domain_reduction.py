@@ -5,9 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.action.priors.policy_counts import actions_to_count
-from lifelore.action.search.domain_reduction import (
+from lifelore.action.domain_reduction import (
     domain_futile_actions,
     domain_futile_states,
     futile_goal_probability,
@@ -19,6 +17,8 @@ from lifelore.action.search.domain_reduction import (
     task_futile_states,
     trap_states,
 )
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.action.priors.policy_counts import actions_to_count
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning.planning import optimal_q

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from lifelore.domains.tabletop.layout import stand
-from lifelore.domains.tabletop.parallel_gripper import OPENING, Grasp, GraspedTabletop
 from lifelore.domains.tabletop.pose import about
 from lifelore.domains.tabletop.shapes import box
+from reproduction.chapter5.c5_08_grasps.parallel_gripper import OPENING, Grasp, GraspedTabletop
 
 pytest.importorskip("mujoco", reason="needs the extra sim")
 pytestmark = pytest.mark.sim

@@ -1,13 +1,15 @@
-"""What the moves of a building cost, as arrays, for the exports to other programs."""
+"""What the moves of a building cost at one time: seconds, risk of a refusal, and both in seconds."""
 
 from dataclasses import dataclass
-from typing import Self
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.travel.travel import Travel
 from lifelore.domains.grids.grid_world import GridWorld
+
+DETOUR = 60.0
+"""Seconds that a refused move costs: turning round, and another way."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -15,21 +17,21 @@ class MoveCosts:
     """Costs of the moves of a building at one time.
 
     world : the building
-    seconds : (n_states, 4) expected seconds of each move
+    seconds : (n_states, 4) typical seconds of each move
     blocked : (n_states, 4) probability that the move is refused
-    cost : (n_states, 4) seconds to plan with, the price of refusals included; inf where the map has no move
     """
 
     world: GridWorld
     seconds: NDArray[np.float64]
     blocked: NDArray[np.float64]
-    cost: NDArray[np.float64]
 
-    @classmethod
-    def latest(cls, travel: Travel) -> Self:
-        """The costs at the newest observation in memory, or anywhen if there is none."""
-        clock = 60.0 * travel.passes.minute.max(initial=0)
-        return cls(travel.world, travel.seconds(clock), travel.blocked(clock), travel.cost(clock))
+    @cached_property
+    def cost(self) -> NDArray[np.float64]:
+        """Seconds (n_states, 4) to plan with: typical seconds + probability of refusal · `DETOUR`.
+
+        Infinite where the map has no move.
+        """
+        return np.where(self.world.neighbour >= 0, self.seconds + DETOUR * self.blocked, np.inf)
 
     def at_places(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """(n_states,) mean of `values` (n_states, 4) over the moves out of and into a place; NaN without moves."""

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from lifelore.action.search.bandit import (
+from lifelore.core.errors import InputError
+from reproduction.chapter5.c5_03_priors_in_search.bandit import (
     Arms,
     beta_thompson,
     flat_arms,
@@ -14,7 +15,6 @@ from lifelore.action.search.bandit import (
     regret,
     ucb1,
 )
-from lifelore.core.errors import InputError
 
 
 def random():

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.domains.ball_game.ball_game import MOVES, ball_game
-from lifelore.domains.ball_game.moves import (
+from reproduction.chapter4.ball_game.moves import (
     FATES,
     N_AFTER,
     N_BEFORE,

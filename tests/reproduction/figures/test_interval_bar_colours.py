@@ -3,8 +3,8 @@
 import pytest
 from matplotlib.colors import to_hex
 
-from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import new_figure
+from reproduction.figures.interval_bars import draw_interval_bars
 
 BARS = {"exact": [{"value": 1.0}, {"value": 2.0}], "learnt": [{"value": 3.0}, None]}
 

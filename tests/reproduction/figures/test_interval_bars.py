@@ -2,8 +2,8 @@
 
 import pytest
 
-from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import new_figure
+from reproduction.figures.interval_bars import draw_interval_bars
 
 
 def drawn(groups, **how):
