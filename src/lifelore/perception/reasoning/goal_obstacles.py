@@ -11,7 +11,7 @@ from lifelore.perception.reasoning.scene_logic import reached_from
 
 
 def goal_obstacles(state: PlanningState, goal: Iterable[Statement], called: Mapping[int, str]) -> tuple[str, ...]:
-    """One reason for each object that stands in the way; empty where the state alone does not forbid a plan.
+    """One reason for each pair of objects in the way; empty where the state alone does not forbid a plan.
 
     An object must become clear to be taken, or to carry another one. So all that rests on it or may cover it goes
     first, and what rests on that or may cover that. It never becomes clear if one of these objects would have to
