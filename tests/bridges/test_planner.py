@@ -129,14 +129,21 @@ def test_words_of_a_user_are_planned_with():
 
 
 @pytest.mark.slow
-def test_nothing_is_planned_on_what_may_be_covered():
-    """2 carries 3, and perhaps something that was not seen: 3 can be fetched, 2 cannot, even after 3."""
-    state = planning_state(PILE[:2])
-    doubted = replace(state, may_be_covered=(2,))
-    called = {2: "o2", 3: "o3"}
-    assert len(solve(DOMAIN, problem_text(state, called, "(holding o2)")) or ()) == 3
-    assert solve(DOMAIN, problem_text(doubted, called, "(holding o2)")) is None
-    assert len(solve(DOMAIN, problem_text(doubted, called, "(holding o3)")) or ()) == 1
+def test_what_may_cover_an_object_is_taken_away_first():
+    """2 carries 3, and 5 may rest on 2 or hides its top: 2 is fetched after both, and 3 alone."""
+    state = replace(planning_state([*PILE[:2], PILE[3]]), may_cover={(5, 2): "hidden"})
+    called = {2: "o2", 3: "o3", 5: "o5"}
+    steps = solve(DOMAIN, problem_text(state, called, "(holding o2)")) or ()
+    assert {str(step) for step in steps if step.action == "pick-up"} == {f"(pick-up o{n})" for n in (2, 3, 5)}
+    assert str(steps[-1]) == "(pick-up o2)"
+    assert len(solve(DOMAIN, problem_text(state, called, "(holding o3)")) or ()) == 1
+
+
+@pytest.mark.slow
+def test_objects_that_may_cover_each_other_are_not_planned_with():
+    state = replace(planning_state([PILE[0], PILE[3]]), may_cover={(2, 5): "doubtful", (5, 2): "doubtful"})
+    unclear = replace(state, stated=tuple(fact for fact in state.stated if fact.name != "clear"))
+    assert solve(DOMAIN, problem_text(unclear, {2: "o2", 5: "o5"}, "(holding o2)")) is None
 
 
 @pytest.mark.skipif(not TRUTH.exists(), reason="needs LIFELORE_DATA/osd")

@@ -40,7 +40,12 @@ def _plan_lines(plan: Mapping) -> Iterator[str]:
         yield f"plan with a confidence of {plan['confidence']:.2f}; places of the centres as x, y, z in m:"
         for number, step in enumerate(plan["steps"], start=1):
             objects = ", ".join(_placed(one) for one in step["objects"])
-            yield f"{number}. {step['action']} {objects}: confidence {step['confidence']:.2f}"
+            look = (
+                f"; look first whether anything rests on {', '.join(map(str, step['look']))}"
+                if step["look"]
+                else ""
+            )
+            yield f"{number}. {step['action']} {objects}: confidence {step['confidence']:.2f}{look}"
 
 
 def _placed(one: Mapping) -> str:

@@ -88,6 +88,23 @@ def test_a_cloud_in_a_robots_frame_with_its_camera_at_the_origin(name, base):
 
 
 @needs_data
+@pytest.mark.parametrize("camera", [None, np.zeros(3)], ids=["unknown", "wrong"])
+def test_the_pixels_of_an_organised_cloud_tell_where_the_camera_is(camera):
+    """In a robot's frame, the scene is cut as in the camera's own."""
+    cloud = read_cloud(DATA / "osd" / "learn21.pcd")
+    own = segmented_scene(replace(cloud, labels=None))
+    to_robot = own.cloud.origin.T_scene_camera
+    points = (cloud.points @ to_robot[:3, :3].T + to_robot[:3, 3] - [0.2, 1.6, 0.4]).astype(np.float32)
+    scene = segmented_scene(replace(cloud, labels=None, points=points, camera=camera))
+    places = [np.linalg.norm(one.cloud.points - one.cloud.camera, axis=1) for one in (own, scene)]
+    np.testing.assert_allclose(*places, atol=1e-4)
+    codes = [warning.code for warning in scene_warnings(scene)]
+    assert ("camera_doubted" in codes) == (camera is not None)
+    assert "computed from the pixels" in " ".join(one.message for one in scene_warnings(scene)) or camera is None
+    assert len(scene.cloud.objects) == len(own.cloud.objects)
+
+
+@needs_data
 def test_a_doubted_camera_gives_the_scene_without_a_camera():
     cloud = in_base_frame(read_cloud(DATA / "osd" / "test51.pcd"), np.array([0.2, 1.6, 0.4]))
     doubted, unknown = segmented_scene(cloud).cloud, segmented_scene(replace(cloud, camera=None)).cloud

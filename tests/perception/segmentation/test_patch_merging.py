@@ -4,7 +4,7 @@ import numpy as np
 
 from lifelore.perception.segmentation.cut_confidence import cut_confidence
 from lifelore.perception.segmentation.patch_convexity import evidence, signed_angles
-from lifelore.perception.segmentation.patch_merging import merged, without_fragments
+from lifelore.perception.segmentation.patch_merging import absorbed, merged
 from lifelore.perception.segmentation.supervoxels import Supervoxels
 
 CHAIN = np.array([[0, 1], [1, 2], [2, 3]])
@@ -84,11 +84,16 @@ def test_no_patches_that_touch_stay_apart():
     assert merged(3, none, np.empty(0, np.int64), np.empty(0)).tolist() == [0, 1, 2]
 
 
-def test_fragments_join_the_neighbour_of_the_longest_border():
+def test_weak_regions_join_the_neighbour_of_the_longest_border():
     regions, counts = np.array([0, 1, 2, 3]), np.array([100, 5, 90, 3])
-    assert without_fragments(regions, counts, CHAIN, np.array([2, 7, 1]), 10).tolist() == [0, 1, 1, 1]
-    # A fragment without neighbours stays.
-    assert without_fragments(regions, counts, CHAIN[:2], np.array([2, 7]), 10).tolist() == [0, 1, 1, 2]
+
+    def small(own):
+        voxels = np.bincount(own, counts)
+        return np.where(voxels < 10, voxels, np.inf)
+
+    assert absorbed(regions, CHAIN, np.array([2, 7, 1]), small).tolist() == [0, 1, 1, 1]
+    # A weak region without neighbours stays.
+    assert absorbed(regions, CHAIN[:2], np.array([2, 7]), small).tolist() == [0, 1, 1, 2]
 
 
 def test_confidence_by_hand():

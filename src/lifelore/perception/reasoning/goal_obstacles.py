@@ -1,4 +1,4 @@
-"""Why no plan can reach a goal: objects that it moves or covers, and on which something may rest unseen."""
+"""Why no plan can reach a goal: objects that it moves or covers, and that cannot become clear."""
 
 from collections.abc import Iterable, Mapping
 
@@ -7,13 +7,15 @@ from lifelore.core.relations import ADJACENT, ON
 from lifelore.perception.reasoning.fact import Fact
 from lifelore.perception.reasoning.planning_goal import TABLE_WORD, Statement
 from lifelore.perception.reasoning.planning_state import CLEAR, HIDDEN, PlanningState
+from lifelore.perception.reasoning.scene_logic import reached_from
 
 
 def goal_obstacles(state: PlanningState, goal: Iterable[Statement], called: Mapping[int, str]) -> tuple[str, ...]:
-    """One reason for each object that stands in the way; empty where the state alone does not forbid a plan.
+    """One reason for each pair of objects in the way; empty where the state alone does not forbid a plan.
 
-    An object must become clear to be taken, or to carry another one. It never does if something may rest on it
-    unseen, or on an object of the pile on it.
+    An object must become clear to be taken, or to carry another one. So all that rests on it or may cover it goes
+    first, and what rests on that or may cover that. It never becomes clear if one of these objects would have to
+    be taken before itself.
 
     Parameters
     ----------
@@ -24,18 +26,19 @@ def goal_obstacles(state: PlanningState, goal: Iterable[Statement], called: Mapp
         What each object is called in the goal and in the reasons.
     """
     numbers = {TABLE_WORD: TABLE} | {name: n for n, text in called.items() for name in (text, str(n))}
-    hidden = {one.fact.arguments[0] for one in state.unknown if one.reason == HIDDEN}
-    found: dict[int, str] = {}
+    first = _to_take_first(state)
+    circles = [(a, b) for a, b in state.may_cover if b in reached_from(a, first)]
+    found: dict[tuple[int, int], str] = {}
     for statement in goal:
         places = tuple(numbers[name] for name in statement.arguments)
-        ways = [
-            {thing for end in way if end != TABLE for thing in _covered(end, state)}
-            for way in _must_be_clear(statement, places, state)
-        ]
+        ways = []
+        for way in _must_be_clear(statement, places, state):
+            ends = {end for end in way if end != TABLE}
+            needed = ends.union(*(reached_from(end, first) for end in ends))
+            ways.append([pair for pair in circles if pair[1] in needed])
         if ways and all(ways):
-            for thing in sorted(set().union(*ways)):
-                found[thing] = _reason(called[thing], thing in hidden, state.probability[Fact(CLEAR, (thing,))])
-    return tuple(found.values())
+            found |= {(a, b): _reason(a, b, state, called) for way in ways for a, b in way}
+    return tuple(found[pair] for pair in sorted(found))
 
 
 def _must_be_clear(statement: Statement, places: tuple[int, ...], state: PlanningState) -> list[tuple[int, ...]]:
@@ -54,15 +57,17 @@ def _must_be_clear(statement: Statement, places: tuple[int, ...], state: Plannin
     return []
 
 
-def _covered(thing: int, state: PlanningState) -> set[int]:
-    """Of an object and the pile on it, those on which something may rest unseen."""
-    pile = {thing}
-    while above := {f.arguments[0] for f in state.stated if f.name == ON and f.arguments[1] in pile} - pile:
-        pile |= above
-    return pile & set(state.may_be_covered)
+def _to_take_first(state: PlanningState) -> dict[int, set[int]]:
+    """What must be taken away before each object is clear: what rests on it by what is stated, or may cover it."""
+    first: dict[int, set[int]] = {}
+    for a, b in (*(fact.arguments for fact in state.stated if fact.name == ON), *state.may_cover):
+        first.setdefault(b, set()).add(a)
+    return first
 
 
-def _reason(name: str, is_hidden: bool, clear: float) -> str:
-    if is_hidden:
-        return f"other objects hide a part of the top of {name}, so something may rest on it unseen"
-    return f"something may rest on {name}: that nothing unknown does has a probability of {clear:.2f} only"
+def _reason(a: int, b: int, state: PlanningState, called: Mapping[int, str]) -> str:
+    upper, lower = called[a], called[b]
+    doubt = f"{upper} may rest on {lower}"
+    if state.may_cover[a, b] == HIDDEN:
+        doubt = f"{upper} hides a part of the top of {lower}, so something may rest on it unseen"
+    return f"{doubt}, and {upper} cannot be taken away before {lower}"

@@ -1,4 +1,4 @@
-"""Objects whose top the camera did not fully see: something may rest there unseen.
+"""Objects whose top the camera did not fully see, and the objects that hide it: something may rest there unseen.
 
 The camera sees a place if no point of another object lies on the line of sight before it. Places are taken on a
 grid over the highest points of an object, a little above them, with a margin around for the part of the top that
@@ -25,11 +25,12 @@ LEAST_HIDDEN = 6
 """Hidden places (6 cm²) from which a small object could lie there unseen; fewer are noise at edges."""
 
 
-def hidden_tops(cloud: LabelledCloud) -> tuple[int, ...]:
-    """The objects whose top is partly hidden by other objects, ascending; none without a camera.
+def hidden_tops(cloud: LabelledCloud) -> dict[int, tuple[int, ...]]:
+    """The objects whose top is partly hidden, ascending, each with those that hide it; none without a camera.
 
-    A camera below a top does not see it at all, but such a position is often a placeholder, as in the header of a
-    cloud that was moved to another frame: these tops do not count.
+    Once these are taken away, fewer than `LEAST_HIDDEN` of the places that are now hidden stay so. A camera below
+    a top does not see it at all, but such a position is often a placeholder, as in the header of a cloud that was
+    moved to another frame: these tops do not count.
 
     Parameters
     ----------
@@ -37,15 +38,16 @@ def hidden_tops(cloud: LabelledCloud) -> tuple[int, ...]:
         In the scene frame, z up.
     """
     if cloud.camera is None or not cloud.objects:
-        return ()
+        return {}
     is_object = cloud.labels > TABLE
     image = _Image(cloud.points[is_object] - cloud.camera, cloud.labels[is_object])
     places = {label: _places_over(cloud.of(label)) - cloud.camera for label in cloud.objects}
-    return tuple(label for label, rays in places.items() if image.n_hidden(rays, label) >= LEAST_HIDDEN)
+    hiding = {label: image.hiding(rays, label) for label, rays in places.items()}
+    return {label: hiders for label, hiders in hiding.items() if hiders}
 
 
 class _Image(ViewImage):
-    """The nearest object in each pixel and its distance, and the distance of the nearest other object.
+    """The nearest object in each pixel and its distance, and those of the nearest other object.
 
     Parameters
     ----------
@@ -57,18 +59,35 @@ class _Image(ViewImage):
 
     def __init__(self, rays: NDArray[np.float64], labels: NDArray[np.int64]) -> None:
         super().__init__(rays, PIXEL)
-        wins = self.depths == self.nearest[self.at]
-        self._label = np.zeros(len(self.nearest), np.int64)
-        self._label[self.at[wins]] = labels[wins]
+        self._label = self._owner(self.nearest, labels, np.ones(len(rays), bool))
         other = labels != self._label[self.at]
         self._second = np.full(len(self.nearest), np.inf)
         np.minimum.at(self._second, self.at[other], self.depths[other])
+        self._second_label = self._owner(self._second, labels, other)
 
-    def n_hidden(self, rays: NDArray[np.float64], label: int) -> int:
-        """Number of places below the camera before which another object than `label` lies; rays are ``(m, 3)``."""
+    def _owner(
+        self, nearest: NDArray[np.float64], labels: NDArray[np.int64], which: NDArray[np.bool_]
+    ) -> NDArray[np.int64]:
+        """The object of the point of `which` that is nearest in each pixel; 0 where there is none."""
+        wins = which & (self.depths == nearest[self.at])
+        owner = np.zeros(len(nearest), np.int64)
+        owner[self.at[wins]] = labels[wins]
+        return owner
+
+    def hiding(self, rays: NDArray[np.float64], label: int) -> tuple[int, ...]:
+        """The objects that hide places below the camera from it, ascending; rays to the places are ``(m, 3)``.
+
+        Those that hide most, until fewer than `LEAST_HIDDEN` places are left.
+        """
         at, inside = self.pixels_of(rays)
-        depths = np.where(self._label[at] == label, self._second[at], self.nearest[at])
-        return int((inside & (rays[:, 2] < 0) & (depths < lengths(rays) - BEFORE)).sum())
+        own = self._label[at] == label
+        depths = np.where(own, self._second[at], self.nearest[at])
+        hidden = inside & (rays[:, 2] < 0) & (depths < lengths(rays) - BEFORE)
+        before = np.where(own, self._second_label[at], self._label[at])[hidden]
+        hiders, counts = np.unique(before, return_counts=True)
+        order = np.argsort(-counts, kind="stable")
+        left = np.count_nonzero(hidden) - np.cumsum(counts[order]) + counts[order]
+        return tuple(sorted(hiders[order][left >= LEAST_HIDDEN].tolist()))
 
 
 def _places_over(points: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -1,9 +1,9 @@
 """The domain to plan in: PDDL of a blocks world opened to what scenes show, with a user's words as predicates.
 
 An object may rest on several others, and several on one; neighbours are ``adjacent``, and stop being so when one
-of them is taken away. Picking up needs a clear object and an empty hand. An object with ``clear-unknown`` never
-becomes clear: something may rest on it that was not seen. The domain does not model whether a top is flat enough
-to put something on, whether a pile stays up, or whether the hand can get there.
+of them is taken away. Picking up needs a clear object and an empty hand. ``may-cover ?a ?b`` says that a may rest
+on b, or hides a part of its top: b is not clear before a has been taken away. The domain does not model whether a
+top is flat enough to put something on, whether a pile stays up, or whether the hand can get there.
 
 A user's word is the predicate ``WORD ?a ?b``, and ``WORD-table ?a`` or ``table-WORD ?a`` with the table. It
 describes the scene as seen: taking an object away ends the words that hold of it, and no action makes a word hold.
@@ -30,7 +30,7 @@ DOMAIN = """(define (domain tabletop)
     (clear ?a - thing)
     (holding ?a - thing)
     (adjacent ?a ?b - thing)
-    (clear-unknown ?a - thing)
+    (may-cover ?a ?b - thing)
     (hand-empty))
   (:action pick-up
     :parameters (?a - thing)
@@ -39,7 +39,9 @@ DOMAIN = """(define (domain tabletop)
       (holding ?a) (not (hand-empty)) (not (clear ?a)) (not (on-table ?a))
       (forall (?b - thing) (and
         (when (on ?a ?b) (not (on ?a ?b)))
-        (when (and (on ?a ?b) (not (clear-unknown ?b)) (forall (?c - thing) (or (= ?c ?a) (not (on ?c ?b)))))
+        (when (may-cover ?a ?b) (not (may-cover ?a ?b)))
+        (when (and (or (on ?a ?b) (may-cover ?a ?b))
+                   (forall (?c - thing) (or (= ?c ?a) (and (not (on ?c ?b)) (not (may-cover ?c ?b))))))
               (clear ?b))
         (when (adjacent ?a ?b) (not (adjacent ?a ?b)))
         (when (adjacent ?b ?a) (not (adjacent ?b ?a)))))))

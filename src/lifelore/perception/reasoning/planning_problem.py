@@ -1,8 +1,8 @@
 """A scene as a planning problem: PDDL with the perceived relations as ``:init``.
 
 *both* gives ``on`` and ``adjacent``. PDDL has no word for unknown: what is not stated is false. So an unknown fact
-(see `planning_state`) is left out and listed in a comment at the top, and an object on which something may rest
-unseen gets ``clear-unknown``, which keeps plans away from it.
+(see `planning_state`) is left out and listed in a comment at the top, and ``may-cover`` names what a plan must
+take away before an object counts as clear.
 
 Thesis: §2.2 and §2.5: the relations are the language of planning problems.
 """
@@ -112,7 +112,7 @@ def problem_text(state: PlanningState, called: Mapping[int, str], goal: str, wor
     ]
     declared = f" {' '.join(called[thing] for thing in state.objects)} - thing" if state.objects else ""
     atoms = {atom for fact in state.stated for atom in _atoms(fact, called, of_word, words)}
-    atoms |= {f"(clear-unknown {called[thing]})" for thing in state.may_be_covered}
+    atoms |= {f"(may-cover {called[a]} {called[b]})" for a, b in state.may_cover}
     initial = [f"    {atom}" for atom in ("(hand-empty)", *sorted(atoms))]
     return "\n".join(
         [

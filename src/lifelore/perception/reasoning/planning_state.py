@@ -6,13 +6,14 @@ Pairs count as independent. A fact of the most likely scene is stated if its pro
 otherwise it is unknown. *clear(b)* is also unknown if other objects hide a part of b's top from the camera, and
 *on(b, table)* where no object carries b and the cloud has no point of a table.
 
-For a planner, a fact that is not stated is false. So an object on which something may rest unseen is marked:
-nothing is planned on it or with it, even when everything known has been taken off it.
+For a planner, a fact that is not stated is false. So each object that may cover another is named: it may rest on
+it, or it hides the top. A plan takes it away first, whether or not it does rest there.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from math import prod
+from types import MappingProxyType
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
@@ -30,6 +31,7 @@ PLAN_CONFIDENCE = 0.6
 DOUBTFUL, HIDDEN, NO_TABLE = "doubtful", "hidden", "no table"
 """Reasons why a fact is unknown: its probability is below the threshold, the place is out of sight, or the cloud
 has no table."""
+NO_HIDDEN: Mapping[int, Collection[int]] = MappingProxyType({})
 
 
 @dataclass(frozen=True, order=True)
@@ -62,17 +64,18 @@ class PlanningState:
         ``on(a, b)``, ``on(a, table)``, ``adjacent(a, b)`` with a < b, ``clear(a)``, and words of a user; sorted.
     unknown : tuple of UnknownFact
         Sorted.
-    may_be_covered : tuple of int
-        Objects on which something may rest beside what is stated, ascending.
+    may_cover : mapping of (int, int) to str
+        Pairs (a, b), sorted, with the reason: a may rest on b, though that is not stated (`DOUBTFUL`), or a hides
+        a part of b's top (`HIDDEN`).
     probability : mapping of Fact to float
         Of every fact of the most likely scene, stated or not. That of ``clear(a)``, which every object has, is the
-        probability that nothing rests on a beside what is stated, as far as the camera sees.
+        probability that nothing rests on a beside what is stated and what may cover it, as far as the camera sees.
     """
 
     objects: tuple[int, ...]
     stated: tuple[Fact, ...]
     unknown: tuple[UnknownFact, ...] = ()
-    may_be_covered: tuple[int, ...] = ()
+    may_cover: Mapping[tuple[int, int], str] = field(default_factory=dict)
     probability: Mapping[Fact, float] = field(default_factory=dict, compare=False)
 
 
@@ -104,7 +107,7 @@ def planning_state(
     objects: Iterable[int] = (),
     least: float = 0.0,
     distributions: Sequence[LabelDistribution] | None = None,
-    hidden: Iterable[int] = (),
+    hidden: Mapping[int, Collection[int]] = NO_HIDDEN,
 ) -> PlanningState:
     """The state that relations give.
 
@@ -118,8 +121,8 @@ def planning_state(
         Least probability of a stated fact, in [0, 1]; at 0 all are stated.
     distributions : sequence of LabelDistribution, optional
         Probabilities of all labels of each near pair; default: from the confidences of the relations.
-    hidden : iterable of int
-        Objects whose top is partly hidden.
+    hidden : mapping of int to collection of int
+        Objects whose top is partly hidden, each with those that hide it.
 
     Raises
     ------
@@ -135,23 +138,36 @@ def planning_state(
     likely = _likely_facts(relations, by_pair)
     stated = {fact for fact, probability in likely.items() if probability >= least}
     unknown = {UnknownFact(fact, likely[fact], DOUBTFUL) for fact in set(likely) - stated}
-    covered = []
+    may_cover: dict[tuple[int, int], str] = {}
     clear: dict[Fact, float] = {}
     for thing in things:
         on_it = {fact.arguments[0] for fact in likely if fact.name == ON and fact.arguments[1] == thing}
         stated_on_it = {a for a in on_it if Fact(ON, (a, thing)) in stated}
-        free = prod(1 - one.carried(x) for one in known for x in _others(one, thing) if x not in stated_on_it)
-        clear[Fact(CLEAR, (thing,))] = free
-        # At threshold 0 the most likely scene counts as it is.
-        doubtful = least > 0 and (on_it != stated_on_it or free < least)
-        unseen = thing in set(hidden) and not on_it
-        if doubtful or unseen:
-            covered.append(thing)
-        if not on_it and (doubtful or unseen):
-            unknown.add(UnknownFact(Fact(CLEAR, (thing,)), free, DOUBTFUL if doubtful else HIDDEN))
+        carried = {x: one.carried(x) for one in known for x in _others(one, thing) if x not in stated_on_it}
+        doubted = _doubted(carried, on_it - stated_on_it, least)
+        unseen = () if on_it else hidden.get(thing, ())
+        may_cover |= {(x, thing): DOUBTFUL for x in doubted} | {(x, thing): HIDDEN for x in unseen}
+        clear[Fact(CLEAR, (thing,))] = prod(1 - p for x, p in carried.items() if x not in doubted)
+        if not on_it and (doubted or unseen):
+            free = prod(1 - p for p in carried.values())
+            unknown.add(UnknownFact(Fact(CLEAR, (thing,)), free, HIDDEN if unseen else DOUBTFUL))
         elif not on_it:
             stated.add(Fact(CLEAR, (thing,)))
-    return PlanningState(things, tuple(sorted(stated)), tuple(sorted(unknown)), tuple(covered), likely | clear)
+    covers = dict(sorted(may_cover.items()))
+    return PlanningState(things, tuple(sorted(stated)), tuple(sorted(unknown)), covers, likely | clear)
+
+
+def _doubted(carried: Mapping[int, float], unstated: Collection[int], least: float) -> set[int]:
+    """The objects that may rest on another one, so that no other does with a probability of at least `least`.
+
+    They are the `unstated` ones, which rest on it in the most likely scene, and of the others the likeliest, as
+    many as it takes. `carried` has the probability of each object whose resting there is not stated.
+    """
+    doubted = set(unstated)
+    others = sorted(carried.keys() - doubted, key=lambda x: (carried[x], -x))
+    while others and prod(1 - carried[x] for x in others) < least:
+        doubted.add(others.pop())
+    return doubted
 
 
 def _others(one: LabelDistribution, thing: int) -> list[int]:

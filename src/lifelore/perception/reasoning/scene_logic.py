@@ -172,19 +172,19 @@ def _contradictions(labels: Iterable[Label], must_rest: Iterable[int]) -> tuple[
 
 def _circles(rests: Mapping[int, Iterable[int]]) -> list[tuple[int, ...]]:
     """Largest sets of two or more objects that each rest on all others of the set, directly or not; sorted."""
-    below = {thing: _all_below(thing, rests) for thing in rests}
+    below = {thing: reached_from(thing, rests) for thing in rests}
     circles = {
         tuple(sorted(y for y in under if x in below.get(y, ()))) for x, under in below.items() if x in under
     }
     return sorted(circle for circle in circles if len(circle) > 1)
 
 
-def _all_below(thing: int, rests: Mapping[int, Iterable[int]]) -> set[int]:
-    """All that an object rests on, directly or through others; itself where it is part of a circle."""
+def reached_from(thing: int, links: Mapping[int, Iterable[int]]) -> set[int]:
+    """All objects that links lead to from one, directly or through others; itself where it is part of a circle."""
     found: set[int] = set()
     waiting = [thing]
     while waiting:
-        new = set(rests.get(waiting.pop(), ())) - found
+        new = set(links.get(waiting.pop(), ())) - found
         found |= new
         waiting += new
     return found

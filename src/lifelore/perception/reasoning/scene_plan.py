@@ -13,7 +13,7 @@ from lifelore.perception.reasoning.goal_obstacles import goal_obstacles
 from lifelore.perception.reasoning.planning_domain import planning_domain, predicates
 from lifelore.perception.reasoning.planning_goal import Statement, pddl_goal
 from lifelore.perception.reasoning.planning_problem import pddl_names, state_problem
-from lifelore.perception.reasoning.planning_state import CLEAR, PLAN_CONFIDENCE, PlanningState, scene_state
+from lifelore.perception.reasoning.planning_state import CLEAR, HIDDEN, PLAN_CONFIDENCE, PlanningState, scene_state
 from lifelore.perception.scene import Scene, object_name
 
 
@@ -43,11 +43,14 @@ class PlannedStep:
         The object that is moved, then the one it is put on or beside.
     confidence : float
         Probability that what the step relies on is true, see `ScenePlan`.
+    look : tuple of int
+        Those of the objects whose top was hidden until an earlier step: look whether anything rests on them.
     """
 
     action: str
     objects: tuple[int, ...]
     confidence: float
+    look: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -57,7 +60,7 @@ class ScenePlan:
     A step relies on perceived facts, as far as no earlier step made them true: that nothing unknown rests on the
     object that is picked up or put upon, that an object beside which another is put rests on the table, and that
     an object that was cut automatically is one object. Its confidence is the product of their probabilities,
-    which count as independent.
+    which count as independent. What may rest on a hidden top is not part of it.
 
     Parameters
     ----------
@@ -141,13 +144,17 @@ def _judged(
     actions: Sequence[tuple[str, tuple[int, ...]]], state: PlanningState, cut: Mapping[int, float]
 ) -> ScenePlan:
     steps, moved = [], set()
+    hidden = {below for (_, below), why in state.may_cover.items() if why == HIDDEN}
     relied: dict[Fact | int, float] = {}
     for action, objects in actions:
+        facts = _facts(action, objects)
+        look = tuple(fact.arguments[0] for fact in facts if fact.name == CLEAR and fact.arguments[0] in hidden)
         own: dict[Fact | int, float] = {thing: cut.get(thing, 1.0) for thing in objects}
-        for fact in _facts(action, objects):
+        for fact in facts:
             if fact.arguments[0] not in moved:
                 own[fact] = state.probability[fact]
-        steps.append(PlannedStep(action, objects, prod(own.values())))
+        steps.append(PlannedStep(action, objects, prod(own.values()), look))
+        hidden -= set(look)
         relied |= own
         moved.add(objects[0])
     return ScenePlan(tuple(steps), prod(relied.values()))

@@ -14,10 +14,10 @@ from lifelore.perception.segmentation.cut_confidence import CutCloud, cut_confid
 from lifelore.perception.segmentation.hollow_objects import hollow_pairs
 from lifelore.perception.segmentation.parted_objects import parted_pairs
 from lifelore.perception.segmentation.patch_convexity import beyond_bend, evidence, signed_angles
-from lifelore.perception.segmentation.patch_merging import merged, without_fragments
+from lifelore.perception.segmentation.patch_merging import absorbed, merged
 from lifelore.perception.segmentation.plane import NEAR
 from lifelore.perception.segmentation.range_noise import band
-from lifelore.perception.segmentation.supervoxels import supervoxels
+from lifelore.perception.segmentation.supervoxels import Supervoxels, supervoxels
 from lifelore.perception.segmentation.surface_voxels import surface_voxels
 
 VOXEL = 0.005
@@ -30,6 +30,9 @@ PATCH = 0.020
 FRAGMENT = 150
 """Voxels of that size, 37 cm² of surface; a smaller region joins the neighbour of the longest border. Less leaves
 slivers at creases, more swallows small objects that touch others."""
+LEAST_SURE = 0.05
+"""Probability of a true object (`cut_confidence`); a less sure region joins the neighbour of the longest border.
+More removes more false objects, and swallows small true ones."""
 _MOST_VOXELS = 100_000
 _SPARSE = 3 * VOXEL
 """Size to which the voxels of sparse points grow."""
@@ -63,13 +66,20 @@ def convex_objects(
     odds = evidence(beyond_bend(patches, signed_angles(patches)))
     regions = merged(len(patches.counts), patches.pairs, patches.borders, odds)
     fragment = round(FRAGMENT * (VOXEL / surface.size) ** 2)
-    regions = without_fragments(regions, patches.counts, patches.pairs, patches.borders, fragment)
+    regions = absorbed(
+        regions, patches.pairs, patches.borders, lambda own: _below(fragment, _voxels(patches, own))
+    )
     pairs = list(hollow_pairs(surface, patches, regions, fragment))
     if camera is not None:
         pairs += parted_pairs(patches, regions, fragment, camera, points if seen is None else seen)
     joined = connected_parts(np.array(pairs, np.int64).reshape(-1, 2), int(regions.max()) + 1)
-    regions = joined[regions]
-    voxels = np.bincount(regions, patches.counts)
+    regions = absorbed(
+        joined[regions],
+        patches.pairs,
+        patches.borders,
+        lambda own: _below(LEAST_SURE, cut_confidence(patches, odds, own)),
+    )
+    voxels = _voxels(patches, regions)
     order = np.argsort(-voxels, kind="stable")
     kept = order[voxels[order] * surface.size**2 >= min_area]
     label = np.full(len(voxels), UNLABELLED, np.int64)
@@ -77,3 +87,13 @@ def convex_objects(
     sure = cut_confidence(patches, odds, regions)
     confidence = {int(label[region]): float(sure[region]) for region in kept}
     return CutCloud(label[regions][patches.of_voxel][surface.inverse], confidence)
+
+
+def _voxels(patches: Supervoxels, regions: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(r,) number of voxels of each region."""
+    return np.bincount(regions, patches.counts).astype(np.float64)
+
+
+def _below(limit: float, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The values below a limit; infinity in place of the others."""
+    return np.where(values < limit, values, np.inf)

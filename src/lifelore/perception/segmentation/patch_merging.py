@@ -1,6 +1,7 @@
 """Merging of patches into objects: the two regions with the strongest evidence along their border join first."""
 
 import heapq
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,33 +60,33 @@ def _join(a: int, b: int, beside: list[dict[int, tuple[float, float]]], queue: l
     beside[b] = {}
 
 
-def without_fragments(
+def absorbed(
     regions: NDArray[np.int64],
-    counts: NDArray[np.int64],
     pairs: NDArray[np.int64],
     borders: NDArray[np.int64],
-    least: int,
+    weakness: Callable[[NDArray[np.int64]], NDArray[np.float64]],
 ) -> NDArray[np.int64]:
-    """(n,) int64: the regions, those of less than `least` voxels merged into the neighbour of the longest border.
+    """(n,) int64: the regions, the weakest first merged into the neighbour of the longest border.
 
     Parameters
     ----------
-    regions, counts : (n,) int64
-        Region of each patch, and its number of voxels.
+    regions : (n,) int64
+        Region of each patch.
     pairs, borders
         As of `Supervoxels`.
-    least : int
-        Fragments are merged smallest first; one without neighbours stays.
+    weakness : function
+        From regions (n,) to a number for each, lower is weaker; infinite for regions that stay. A region without
+        neighbours stays too.
     """
     regions = regions.copy()
     while True:
-        voxels = np.bincount(regions, counts)
         ends = regions[pairs].reshape(-1, 2)
         at_border = ends[:, 0] != ends[:, 1]
-        fragments = np.intersect1d(np.flatnonzero((voxels > 0) & (voxels < least)), ends[at_border])
-        if len(fragments) == 0:
+        weak = weakness(regions)
+        weakest = np.intersect1d(np.flatnonzero(np.isfinite(weak)), ends[at_border])
+        if len(weakest) == 0:
             return np.unique(regions, return_inverse=True)[1].reshape(-1).astype(np.int64)
-        fragment = fragments[voxels[fragments].argmin()]
-        own = at_border & (ends == fragment).any(axis=1)
-        others = np.where(ends[own, 0] == fragment, ends[own, 1], ends[own, 0])
-        regions[regions == fragment] = np.bincount(others, borders[own]).argmax()
+        region = weakest[weak[weakest].argmin()]
+        own = at_border & (ends == region).any(axis=1)
+        others = np.where(ends[own, 0] == region, ends[own, 1], ends[own, 0])
+        regions[regions == region] = np.bincount(others, borders[own]).argmax()

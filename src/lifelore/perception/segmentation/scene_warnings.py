@@ -71,11 +71,13 @@ def _units(scene: SegmentedScene) -> list[tuple[str, str]]:
 def _camera(scene: SegmentedScene) -> list[tuple[str, str]]:
     if scene.camera_doubt is None:
         return []
-    text = (
-        f"the camera cannot be where the cloud says: {scene.camera_doubt}; it counts as unknown, so that hidden"
-        " tops are not noticed. Give its place in the cloud's frame (VIEWPOINT of a PCD, camera of an npz)"
-    )
-    return [("camera_doubted", text)]
+    instead = "its place was computed from the pixels of the image"
+    if scene.cloud.camera is None:
+        instead = (
+            "it counts as unknown, so that hidden tops are not noticed. Give its place in the cloud's frame"
+            " (VIEWPOINT of a PCD, camera of an npz)"
+        )
+    return [("camera_doubted", f"the camera cannot be where the cloud says: {scene.camera_doubt}; {instead}")]
 
 
 def _table(scene: SegmentedScene) -> list[tuple[str, str]]:

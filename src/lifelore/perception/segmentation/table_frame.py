@@ -12,6 +12,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED, LabelledCloud
 from lifelore.core.streams import stream
 from lifelore.perception.clouds.cloud_scale import FAR, unit_hint
+from lifelore.perception.clouds.pixel_camera import camera_from_pixels
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.clouds.voxel import thinned
 from lifelore.perception.segmentation.camera_doubt import camera_doubt
@@ -46,7 +47,8 @@ class SegmentedScene:
     confidence : mapping of int to float
         How surely each object was cut, see `CutCloud`; empty for a cloud with labels.
     camera_doubt : str, optional
-        Why the position of the camera is impossible; the camera then counts as unknown.
+        Why the position of the camera that the cloud gives is impossible; the cloud's camera is then that of its
+        pixels, or unknown.
     up_given : bool
         Whether the upward direction was given, so that it is no result of the search for the table.
     """
@@ -103,8 +105,8 @@ def segmented_scene(
         Measured points of the region only, z = 0 at the table; `LabelledCloud.origin` leads back to the pixels and
         the frame of the cloud. Under ``up="table"`` and a vector, x is the camera's right seen from above and y
         leads away from it; under ``"z"`` x and y stay. Without a visible table, z = 0 is the lowest point but for
-        1 % (a vector), or stays as it is (``"z"``). A camera whose position is impossible counts as unknown (see
-        `camera_doubt`).
+        1 % (a vector), or stays as it is (``"z"``). Where the camera is not given, or its position is impossible
+        (see `camera_doubt`), the pixels of an organised cloud tell it (`pixel_camera`); else it is unknown.
 
     Raises
     ------
@@ -120,17 +122,33 @@ def segmented_scene(
         raise InputError(f"the cloud holds no finite point among {len(cloud.points)}")
     cloud = cloud.only(measured)
     points = cloud.points.astype(np.float64)
-    doubt = None
+    given = cloud.camera is not None
+    seen = cloud if given else replace(cloud, camera=camera_from_pixels(cloud))
+    scene, doubt = _seen_scene(points, seen, up, segmentation, region)
+    if given and doubt is not None:
+        seen = replace(cloud, camera=camera_from_pixels(cloud), other_cameras=None)
+        scene, _ = _seen_scene(points, seen, up, segmentation, region)
+    if scene is None:
+        unseen = replace(cloud, camera=None, other_cameras=None)
+        scene = _upright_scene(points, unseen, up, segmentation, region)
+    return replace(scene, camera_doubt=doubt if given else None)
+
+
+def _seen_scene(
+    points: NDArray[np.float64],
+    cloud: PointCloud,
+    up: Up,
+    segmentation: SegmentationSettings | None,
+    region: Region,
+) -> tuple[SegmentedScene | None, str | None]:
+    """The scene with the cloud's camera; none where its position is impossible, with the reason."""
     if cloud.camera is not None and cloud.other_cameras is None:
         doubt = camera_doubt(points, cloud.camera)
-    if doubt is None:
-        scene = _upright_scene(points, cloud, up, segmentation, region)
-        depth = _depth_below_table(scene.cloud)
-        if depth <= 0:
-            return scene
-        doubt = f"it would be {depth:.2f} m below the table"
-    unseen = replace(cloud, camera=None, other_cameras=None)
-    return replace(_upright_scene(points, unseen, up, segmentation, region), camera_doubt=doubt)
+        if doubt is not None:
+            return None, doubt
+    scene = _upright_scene(points, cloud, up, segmentation, region)
+    depth = _depth_below_table(scene.cloud)
+    return (None, f"it would be {depth:.2f} m below the table") if depth > 0 else (scene, None)
 
 
 def _depth_below_table(cloud: LabelledCloud) -> float:
