@@ -5,15 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from lifelore.action.search.bandit import (
-    Arms,
-    beta_thompson,
-    flat_arms,
-    play,
-    prior_arms,
-    regret,
-    ucb1,
-)
+from lifelore.action.search.bandit import Arms, beta_thompson, flat_arms, play, prior_arms, regret, ucb1
 from lifelore.core.errors import InputError
 
 
