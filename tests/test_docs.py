@@ -2,23 +2,16 @@
 
 import json
 import re
-import subprocess
-import sys
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
+from tests.page_block import run_block
+
 DOCS = Path(__file__).parents[1] / "docs"
 COURIER = (DOCS / "courier.md").read_text(encoding="utf-8")
-
-
-def run(command: list[str], folder: Path) -> str:
-    """What the command prints."""
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
 
 
 PAGES = [
@@ -62,9 +55,7 @@ def test_a_page_imports_from_rooms_alone(page):
 @pytest.mark.slow
 def test_transfer_over_lifetimes_is_what_the_page_says(tmp_path):
     (code,) = re.findall(r"```python\n(.*?)```", COURIER, flags=re.S)
-    said = dict(
-        line.split(" ", 1) for line in run([sys.executable, "-W", "error", "-c", code], tmp_path).splitlines()
-    )
+    said = dict(line.split(" ", 1) for line in run_block("python", code, tmp_path).splitlines())
     told = re.findall(r"^\| ([a-z]+)[^|]*\| ([+−\d.]+) \[([−\d.]+), ([−\d.]+)\] \|$", COURIER, flags=re.M)
     assert [word for word, *_ in told] == [
         "forward", "backward", "forgetting", "performance", "jumpstart", "asymptote", "transfer", "time"

@@ -1,12 +1,13 @@
 """The scripts in `examples/` run without a warning, print what their pages show, and stay short."""
 
-import os
 import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from tests.page_block import run_block
 
 ROOT = Path(__file__).parents[1]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
@@ -63,11 +64,8 @@ HOLDS = {
     "example", [path for path in EXAMPLES if path.stem not in SERVED], ids=lambda path: path.stem
 )
 def test_an_example_runs_and_shows_its_point(example, tmp_path):
-    command = [sys.executable, "-W", "error", str(example)]
-    environment = os.environ | {"XDG_DATA_HOME": str(tmp_path)}
-    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    assert HOLDS[example.stem](done.stdout.splitlines()), done.stdout
+    said = run_block("python", example.read_text(encoding="utf-8"), tmp_path)
+    assert HOLDS[example.stem](said.splitlines()), said
 
 
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)

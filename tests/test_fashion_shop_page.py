@@ -1,13 +1,12 @@
 """docs/fashion_shop.md: its Python and its commands print the lines that it shows (needs the files of `obp`)."""
 
 import re
-import shlex
 from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
 
-from lifelore.app.command_line import run as run_command
+from tests.page_block import run_block
 
 PAGE = (Path(__file__).parents[1] / "docs" / "fashion_shop.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(python|sh)\n(.*?)^```", PAGE, flags=re.S | re.M)
@@ -35,18 +34,9 @@ def test_the_page_says_what_its_lines_show():
 
 
 @pytest.mark.slow
-def test_blocks_print_what_the_page_shows(tmp_path, monkeypatch, capsys):
+def test_blocks_print_what_the_page_shows(tmp_path):
     if find_spec("obp") is None:
         pytest.skip("obp, whose package has the logs, is not installed")
-    monkeypatch.chdir(tmp_path)
-    shown = 0
-    for kind, code in BLOCKS:
-        if kind == "python":
-            exec(compile(code, "fashion_shop.md", "exec"), {"__name__": "page"})
-        else:
-            for line in code.splitlines():
-                assert run_command(shlex.split(line)[1:]) == 0, capsys.readouterr().err
-        for line in capsys.readouterr().out.splitlines():
-            assert f"    {line}\n" in PAGE
-            shown += 1
-    assert shown > 15
+    shown = [line for block in BLOCKS for line in run_block(*block, tmp_path).splitlines()]
+    assert len(shown) > 15
+    assert not [line for line in shown if f"    {line}\n" not in PAGE]

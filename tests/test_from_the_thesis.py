@@ -1,8 +1,6 @@
 """The page from the thesis to the code: it is complete, its names exist, and its blocks run in its order."""
 
 import re
-import subprocess
-import sys
 from importlib import import_module
 from pathlib import Path
 
@@ -10,6 +8,7 @@ import pytest
 
 import lifelore
 from lifelore.domains import ENVIRONMENTS
+from tests.page_block import run_block
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "from_the_thesis.md").read_text("utf-8")
@@ -75,10 +74,6 @@ def test_a_docstring_cites_what_the_thesis_has():
 def test_the_blocks_run_in_the_order_of_the_page(tmp_path):
     code = "\n".join(re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.S | re.M))
     (tmp_path / "examples").symlink_to(ROOT / "examples")
-    done = subprocess.run(
-        [sys.executable, "-W", "error::UserWarning", "-c", code],
-        cwd=tmp_path, capture_output=True, text=True, check=False,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
+    said = run_block("python", code, tmp_path)
     for words in ("contact points", "relation='on'", "Advice(advise=True", "[0. 1.] B", "Discrete(4)"):
-        assert words in done.stdout, done.stdout
+        assert words in said

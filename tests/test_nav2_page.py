@@ -3,10 +3,7 @@
 import csv
 import json
 import re
-import shlex
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +13,7 @@ import yaml
 from lifelore.agent.live.output.known_building import NAV2_FILES, ROUTE_FILE
 from lifelore.agent.live.output.report import FILES
 from lifelore.domains.buildings.occupancy_map import read_occupancy_map
+from tests.page_block import run_block
 
 DOCS = Path(__file__).parents[1] / "docs"
 NAV2 = (DOCS / "nav2.md").read_text(encoding="utf-8")
@@ -66,29 +64,20 @@ def test_the_table_names_files_that_are_written():
     assert named <= set(FILES)
 
 
-def said(line: str, folder: Path) -> str:
-    """What a printed command prints, run with a memory of its own."""
-    words = shlex.split(line.split(" > ")[0], comments=True)[1:]
-    command = [sys.executable, "-m", "lifelore.app.command_line", *words, "--memory", "life.db"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
 @pytest.mark.slow
 def test_the_commands_run_as_printed(tmp_path):
     shutil.copytree(DOCS.parent / "examples", tmp_path / "examples")
     live, nav2, to_dock, to_point = [line for line in NAV2.splitlines() if line.startswith("lifelore ")]
-    assert "11:15:00 dock 4.975,12.525: driven" in said(live, tmp_path)
+    assert "11:15:00 dock 4.975,12.525: driven" in run_block("sh", live, tmp_path)
     assert set(np.unique(read_occupancy_map(tmp_path / "exports" / "keepout.yaml").state)) <= {0, 1}
     written = (tmp_path / "exports" / "route_graph.geojson").read_bytes()
-    assert said(nav2, tmp_path).startswith("7 files")
+    assert run_block("sh", nav2, tmp_path).startswith("7 files")
     assert (tmp_path / "exports" / "route_graph.geojson").read_bytes() == written
-    said(to_point, tmp_path)
+    run_block("sh", to_point, tmp_path)
     with (tmp_path / "way.csv").open(newline="", encoding="utf-8") as file:
         ends = [(float(row["x"]), float(row["y"])) for row in csv.DictReader(file)]
     assert ends[-1] == (4.975, 12.525)
-    message = json.loads(said(to_dock, tmp_path))
+    message = json.loads(run_block("sh", to_dock.split(" > ")[0], tmp_path))
     assert {"header", "poses", "length"} <= set(message)
     for key in message:
         assert f"`{key}`" in NAV2

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from lifelore.action.priors.prior_file import load_prior
+from tests.page_block import run_block
 
 DOCS = Path(__file__).parents[1] / "docs"
 GAIN = "lore compared with scratch, last third: steps to 80 % ×0.153 [0.120, 0.202]"
@@ -63,14 +64,6 @@ EXPECTED = {
     ],
     "long_lived": ["points below the best possible return", "task 3, context", "believed in"],
     "fleet": ["karl", "rosie", "contributions: 2 added", "contributions: 0 added"],
-    "log_to_choices": [
-        "10 types named",
-        "decision ",
-        "uplift ",
-        "columns is retired",
-        "new 3 and 12 decisions",
-        "(archived)",
-    ],
 }
 """Words of the output of each page, in this order."""
 NOT_RUN = {
@@ -103,16 +96,6 @@ def without_not_run(code: str) -> str:
     return "".join(line for line in code.splitlines(keepends=True) if not line.startswith(tuple(NOT_RUN)))
 
 
-def process(language: str, code: str, folder: Path, home: Path) -> subprocess.Popen[str]:
-    """A block that runs, with the program of this environment and a memory of its own."""
-    command = ["bash", "-euc", code] if language == "sh" else [sys.executable, "-W", "error", "-c", code]
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    environment = os.environ | {"PATH": path, "XDG_DATA_HOME": str(home), "COLUMNS": "120"}
-    return subprocess.Popen(
-        command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
-    )
-
-
 def walk(page: str, folder: Path, home: Path) -> str:
     """The output of a page's blocks; `perceive --watch` runs during the next block, until Ctrl-C."""
     shown, steps = [], iter(blocks(page))
@@ -120,25 +103,21 @@ def walk(page: str, folder: Path, home: Path) -> str:
         if language == "sh" and "perceive --watch" in code:
             shown.append(watched(code, next(steps)[1], folder, home))
             continue
-        shown.append(output(language, code, folder, home))
+        shown.append(run_block(language, code, folder, home))
     return "".join(shown)
-
-
-def output(language: str, code: str, folder: Path, home: Path) -> str:
-    """The output of a block."""
-    with process(language, code, folder, home) as child:
-        out, err = child.communicate()
-    assert child.returncode == 0, f"{code}\n{err}"
-    return out + err
 
 
 def watched(code: str, during: str, folder: Path, home: Path) -> str:
     """The line that a watching command prints for the cloud that the second block gives it."""
-    with process("sh", f"exec {code}", folder, home) as child:
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    with subprocess.Popen(
+        ["bash", "-euc", f"exec {code}"], cwd=folder, env=os.environ | {"PATH": path, "XDG_DATA_HOME": str(home)},
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    ) as child:  # fmt: skip
         assert child.stderr is not None
         assert child.stdout is not None
         assert "Ctrl-C stops" in child.stderr.readline()
-        subprocess.run(["bash", "-euc", during], cwd=folder, check=True)
+        run_block("sh", during, folder)
         line = child.stdout.readline()
         child.send_signal(signal.SIGINT)
         child.communicate()
@@ -210,13 +189,12 @@ def test_an_outcome_comes_by_the_identifier_that_the_choice_printed(tmp_path):
         r"^    (lifelore reuse update .*)", (DOCS / "start" / "personalisation.md").read_text("utf-8"), flags=re.M
     )
     log = DOCS.parent / "examples" / "data" / "log.csv"
-    made = output(
-        "sh", f"lifelore reuse fit {log} > fit.txt; lifelore reuse choose --user ann", tmp_path, tmp_path
-    )
+    run_block("sh", f"lifelore reuse fit {log}", tmp_path)
+    made = run_block("sh", "lifelore reuse choose --user ann", tmp_path)
     (decision,) = re.findall(r"^decision (\S+) ", made, flags=re.M)
     line, replaced = re.subn(r"(?<=--decision )\S+", decision, line)
     assert replaced == 1
-    stored = output("sh", line, tmp_path, tmp_path)
+    stored = run_block("sh", line, tmp_path)
     assert f"outcome 41.5 of {made.splitlines()[0]} stored; ann is" in stored
 
 
@@ -238,8 +216,8 @@ def code_of(page: str) -> str:
 def test_every_page_with_commands_is_walked():
     names = {path.relative_to(DOCS).with_suffix("").as_posix() for path in DOCS.rglob("*.md")}
     with_commands = {name for name in names if any(language == "sh" and code for language, code in blocks(name))}
-    # The shop, whose log comes with a package, the service, its pages, nav2 and ROS 2 have tests of their own.
-    assert with_commands <= {*EXPECTED, "install", "index", "fashion_shop", "service", "pages", "nav2", "ros2"}
+    with_own_tests = {"fashion_shop", "log_to_choices", "service", "pages", "nav2", "ros2"}
+    assert with_commands <= {*EXPECTED, *with_own_tests, "install", "index"}
     assert {name for name in names if name.startswith("start/")} <= set(EXPECTED)
 
 

@@ -1,38 +1,20 @@
 """docs/policy_reuse.md and docs/log_to_choices.md: their Python and commands run and print what they show."""
 
 import re
-import shlex
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from lifelore.app.command_line import run as run_command
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.selection import RULES, ExpectedImprovement, Greedy
+from tests.page_block import run_block
 
 DOCS = Path(__file__).parents[1] / "docs"
 PAGE = (DOCS / "policy_reuse.md").read_text(encoding="utf-8")
 LOG_PAGE = (DOCS / "log_to_choices.md").read_text(encoding="utf-8")
 ALONE, TUTORIAL = (re.findall(r"^```(python|sh)\n(.*?)^```", page, flags=re.S | re.M) for page in (PAGE, LOG_PAGE))
-
-
-@pytest.fixture
-def run(tmp_path, monkeypatch, capsys):
-    """Run a block here, in an empty folder with a memory of its own; what it prints."""
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
-
-    def run(kind: str, text: str) -> str:
-        if kind == "python":
-            exec(compile(text, "policy_reuse.md", "exec"), {"__name__": "page"})
-        else:
-            for line in text.splitlines():
-                assert run_command(shlex.split(line)[1:]) == 0, capsys.readouterr().err
-        return capsys.readouterr().out
-
-    return run
 
 
 @pytest.mark.parametrize(
@@ -44,27 +26,27 @@ def run(tmp_path, monkeypatch, capsys):
         (3, r"(19|20) of the last 20 won\n"),
     ],
 )
-def test_each_piece_alone(place, said, run):
-    assert re.fullmatch(said, run(*ALONE[place]))
+def test_each_piece_alone(place, said, tmp_path):
+    assert re.fullmatch(said, run_block(*ALONE[place], tmp_path))
 
 
 @pytest.mark.slow
-def test_the_tutorial_from_a_log_to_its_end(run, tmp_path):
-    kinds = [kind for kind, _ in TUTORIAL]
-    assert kinds == ["python", "sh", "python", "sh"]
-    assert run(*TUTORIAL[0]) == ""
-    fitted, *_, policy, decision = run(*TUTORIAL[1]).splitlines()
+def test_the_tutorial_from_a_log_to_its_end(tmp_path):
+    assert [kind for kind, _ in TUTORIAL] == ["python", "sh", "python", "sh"]
+    said, chosen, measured, managed = (run_block(*block, tmp_path) for block in TUTORIAL)
+    assert said == ""
+    fitted, *_, policy, decision = chosen.splitlines()
     assert re.match(r"study default: 720 outcomes of 60 users, 6 policies, 10 types named", fitted)
     assert policy in ("top", "bottom", "left", "right", "rows", "columns")
     assert decision.startswith("decision ")
-    for line in run(*TUTORIAL[2]).splitlines():
+    for line in measured.splitlines():
         assert line in LOG_PAGE
     assert (tmp_path / "report" / "report.png").exists()
-    told = run(*TUTORIAL[3])
-    assert "columns is retired" in told
-    assert "whole is given to the control group" in told
-    assert "new 3 and 12 decisions and lines of the past forgotten" in told
-    assert "default (archived)" in told
+    assert "uplift " in managed
+    assert "columns is retired" in managed
+    assert "whole is given to the control group" in managed
+    assert "new 3 and 12 decisions and lines of the past forgotten" in managed
+    assert "default (archived)" in managed
 
 
 def test_where_outcomes_are_0_or_1_expected_improvement_is_greedy():

@@ -13,10 +13,6 @@ import lifelore
 ROOMS = ("core", "perception", "action", "interaction", "domains", "bridges", "figures", "agent", "app")
 DOORS = [f"lifelore.{room}" for room in ROOMS]
 DOORS += ["lifelore.agent.personalise", "lifelore.domains.tabletop_job", "lifelore.interaction.evaluation"]
-WITHOUT_EXAMPLE = {
-    "AgentTask", "OutcomeTree", "TabletopJob", "TaskFamily", "Tray", "app_with_pages", "sample_tray",
-}  # fmt: skip
-"""Public names whose docstrings have no example yet; names may only be removed."""
 
 
 def test_every_public_name_exists_and_is_documented():
@@ -49,7 +45,7 @@ def test_every_public_name_has_an_example():
     without = {
         name for name, value in public.items() if callable(value) and ">>>" not in (inspect.getdoc(value) or "")
     }
-    assert without == WITHOUT_EXAMPLE
+    assert without == set()
 
 
 def test_importing_the_package_imports_nothing_heavy():

@@ -1,27 +1,17 @@
 """The README's Python runs as it stands, only shorter; its make targets, links and pictures exist."""
 
 import json
-import os
 import re
-import shlex
 import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
+from tests.page_block import run_block
+
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 ROOMS, CLIFF, USER = re.findall(r"```python\n(.*?)```", README, flags=re.S)
-
-
-def run(code: str, folder: Path) -> str:
-    """The output of the code."""
-    command = [sys.executable, "-W", "error", "-c", code]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-    return done.stdout
 
 
 @pytest.mark.slow
@@ -29,7 +19,7 @@ def test_an_own_gymnasium_world(tmp_path):
     pytest.importorskip("minigrid")
     shorter = ROOMS.replace("tasks=6, episodes=100", "tasks=3, episodes=20")
     assert shorter != ROOMS
-    jumpstart = json.loads(run(shorter, tmp_path).replace("'", '"').replace("None", "null"))
+    jumpstart = json.loads(run_block("python", shorter, tmp_path).replace("'", '"').replace("None", "null"))
     assert jumpstart["n"] == 1
     assert (tmp_path / "rooms.db").is_file()
 
@@ -37,7 +27,7 @@ def test_an_own_gymnasium_world(tmp_path):
 @pytest.mark.slow
 def test_tasks_with_hidden_types(tmp_path):
     assert len(CLIFF.splitlines()) <= 10
-    text = run(CLIFF, tmp_path)
+    text = run_block("python", CLIFF, tmp_path)
     taken = re.findall(r"^taken for (.*)$", text, flags=re.M)
     assert taken == ["robot.0, a new type", "robot.1, a new type", "robot.0", "robot.1"]
     assert (tmp_path / "cliff.db").is_file()
@@ -45,7 +35,7 @@ def test_tasks_with_hidden_types(tmp_path):
 
 @pytest.mark.slow
 def test_a_new_user(tmp_path):
-    assert re.fullmatch(r"C \[0\.0? +0\.0? +0\.99\]\n", run(USER, tmp_path))
+    assert re.fullmatch(r"C \[0\.0? +0\.0? +0\.99\]\n", run_block("python", USER, tmp_path))
 
 
 @pytest.mark.slow
@@ -53,14 +43,7 @@ def test_its_commands_run_as_printed(tmp_path):
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
     commands = re.findall(r"^lifelore .*", README, flags=re.M)
     assert len(commands) == 4
-    for command in commands:
-        words = shlex.split(command, comments=True)[1:]
-        done = subprocess.run(
-            [sys.executable, "-m", "lifelore.app.command_line", *words],
-            cwd=tmp_path, env=os.environ | {"XDG_DATA_HOME": str(tmp_path)}, capture_output=True, text=True,
-            check=False,
-        )  # fmt: skip
-        assert done.returncode == 0, done.stderr
+    run_block("sh", "\n".join(commands), tmp_path)
     assert (tmp_path / "scene.png").is_file()
 
 

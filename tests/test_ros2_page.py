@@ -36,6 +36,7 @@ from lifelore.domains.buildings.occupancy_map import read_occupancy_map, write_o
 from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
 from lifelore.memory import open_memory
 from lifelore.perception.clouds.cloud_file import read_cloud
+from tests.page_block import run_block
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "examples" / "ros2" / "lifelore_node"
@@ -66,8 +67,7 @@ def exports(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (line,) = re.findall(r"^lifelore (live .*)$", PAGE, flags=re.M)
     shorter = line.replace("--tasks 5", "--tasks 2")
     assert shorter != line
-    words = [*shlex.split(shorter), "--memory", "m.db"]
-    subprocess.run([*PROGRAM, *words], cwd=folder, check=True, capture_output=True)
+    run_block("sh", f"lifelore {shorter} --memory m.db", folder)
     return folder / "exports"
 
 
@@ -107,13 +107,7 @@ def test_the_commands_on_bags_run_as_printed(tmp_path):
     """The bag of a night teaches, closes the place of three bumps, and is undone."""
     (tmp_path / "examples").symlink_to(ROOT / "examples")
     (block,) = re.findall(r"^## Bags of the robot\n\n```sh\n(.*?)^```", PAGE, flags=re.M | re.S)
-    said = []
-    for line in block.splitlines():
-        words = shlex.split(line, comments=True)[1:]
-        done = subprocess.run(
-            [*PROGRAM, *words, "--memory", "m.db"], cwd=tmp_path, check=True, capture_output=True
-        )
-        said.append(done.stdout.decode())
+    said = [run_block("sh", line, tmp_path) for line in block.splitlines()]
     assert "dry run: nothing is stored" in said[0]
     for text in said[:2]:
         assert "10 of 10 runs are new; 7 reached their goal" in text
@@ -442,10 +436,8 @@ def test_recognition_is_a_service(node_module, monkeypatch, tmp_path):
 @pytest.mark.slow
 def test_its_python_runs_in_the_checkout(exports):
     _, code = re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.S | re.M)
-    done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code], cwd=exports.parent, capture_output=True, text=True, check=True
-    )
-    assert re.search(r"680 × 480 pixels, \d+ of them kept out", done.stdout)
+    said = run_block("python", code, exports.parent)
+    assert re.search(r"680 × 480 pixels, \d+ of them kept out", said)
 
 
 def test_its_topics_and_parameters_are_those_of_the_node():

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from lifelore.domains.tabletop_job.job_types import GRIPPERS, JOB_TYPES, USERS
+from tests.page_block import run_block
 
 PAGE = (Path(__file__).parents[1] / "docs" / "tabletop_job.md").read_text(encoding="utf-8")
 
@@ -28,10 +29,9 @@ def test_the_table_of_grippers(gripper):
 
 
 @pytest.mark.sim
-def test_the_example_runs(capsys):
+def test_the_example_runs(tmp_path):
     pytest.importorskip("mujoco", reason="needs the extra sim")
     (code,) = re.findall(r"```python\n(.*?)```", PAGE, flags=re.S)
-    exec(compile(code, "tabletop_job.md", "exec"), {"__name__": "page"})
-    picked, best = capsys.readouterr().out.splitlines()
+    picked, best = run_block("python", code, tmp_path).splitlines()
     assert picked == "True () [ 3  7  9 10]"
     assert best.endswith("['pick', 'hand over briskly']")

@@ -21,11 +21,7 @@ print(status, sorted(sys.modules), file=sys.stderr)
 """
 
 
-@pytest.mark.parametrize(
-    "arguments",
-    [["--help"], ["live", "--help"], ["reproduce", "--help"]],
-    ids=" ".join,
-)
+@pytest.mark.parametrize("arguments", [["--help"], ["live", "--help"], ["reproduce", "--help"]], ids=" ".join)
 def test_help_imports_nothing_heavy(arguments):
     done = subprocess.run(
         [sys.executable, "-c", TOLD_WHAT_IT_IMPORTED, *arguments], capture_output=True, text=True, check=True

@@ -140,17 +140,6 @@ def test_the_same_seed_is_the_same_life_for_any_number_of_threads_and_in_another
     assert [task["goal"] for task in other["tasks"]] != [task["goal"] for task in first["tasks"]]
 
 
-def test_a_second_life_goes_on(ask, tmp_path):
-    whole = ask(*LATTICE, "--tasks", 5, "--memory", "whole.db").document
-    first = ask(*LATTICE, "--tasks", 2, "--memory", "life.db").document
-    second = ask(*LATTICE, "--tasks", 3, "--memory", "life.db").document
-    assert second["memory"] == {"tasks_before": 2, "tasks_after": 5}
-    assert [task["index"] for task in second["tasks"]] == [2, 3, 4]
-    goals = [tuple(task["goal"]) for task in first["tasks"] + second["tasks"]]
-    assert len(set(goals)) == len(goals)
-    assert first["tasks"] + second["tasks"] == whole["tasks"]
-
-
 def test_without_a_memory_named_it_is_the_users_own(ask, own_data_folder):
     assert ask(*LATTICE, "--tasks", 1).document["settings"]["memory"] == str(own_data_folder / "lifelore.db")
     assert ask(*LATTICE, "--tasks", 1).document["memory"] == {"tasks_before": 1, "tasks_after": 2}
@@ -294,16 +283,6 @@ def test_known_goals_are_driven_to(ask, tmp_path):
     refused = ask(*options, *changed(l2log="logs")).refusal
     assert "l2log logs episodes of searches" in refused
     assert "busy applies to goals that are driven to" in ask("live", *changed(busy="true")).refusal
-
-
-def test_a_name_that_moves_is_refused_with_both_places(ask, tmp_path):
-    path = map_of(office_map(3).state[:300, :300], tmp_path)
-    options = ("live", "--map", path, "--goals", "jobs.csv", "--memory", "life.db", "--json")
-    Path("jobs.csv").write_text("name,x,y\nhere,1.475,1.525\n")
-    ask(*options)
-    Path("jobs.csv").write_text("name,x,y\nhere,6.475,1.525\n")
-    assert "memory knows 'here' at 1.475,1.525, 5.00 m from 6.475,1.525" in ask(*options).refusal
-    assert ask(*options, *changed(move_names="true")).status == 0
 
 
 def test_an_interrupted_list_begins_again_by_a_setting(ask, tmp_path):

@@ -4,14 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks import personalise_value
-from benchmarks.personalise_value import (
-    CLICKS,
-    LinUCB,
-    Log,
-    World,
-    bench_personalise_value,
-    paired,
-)
+from benchmarks.personalise_value import CLICKS, LinUCB, Log, World, bench_personalise_value, paired
 from tests.benchmarks.contract import checked
 
 SMALL = {"small": World(CLICKS, 2, 3, 2, 0.9)}

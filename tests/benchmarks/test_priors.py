@@ -4,17 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks import priors
-from benchmarks.priors import (
-    ACTIONS,
-    ALPHA0,
-    DENSE,
-    DICT,
-    OURS,
-    SCATTERED,
-    STATES,
-    Case,
-    bench_priors,
-)
+from benchmarks.priors import ACTIONS, ALPHA0, DENSE, DICT, OURS, SCATTERED, STATES, Case, bench_priors
 from lifelore.core.errors import InputError, LifeloreError
 from tests.benchmarks.contract import checked
 

@@ -4,10 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.core.learning.learning_metrics import (
-    episodes_to_threshold,
-    learning_gain,
-)
+from lifelore.core.learning.learning_metrics import episodes_to_threshold, learning_gain
 from lifelore.core.metrics import mean_estimate
 
 WITH = [[2.0, 4.0, 8.0, 10.0], [1.0, 9.0, 9.0, 9.0], [3.0, 3.0, 7.0, 7.0]]

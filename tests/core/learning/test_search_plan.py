@@ -9,14 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.compiled.random_state import random_state
-from lifelore.core.learning.known_world import (
-    DEAD_END,
-    GOAL,
-    LOOKED,
-    NOT_LOOKED,
-    UNKNOWN,
-    goal_distances,
-)
+from lifelore.core.learning.known_world import DEAD_END, GOAL, LOOKED, NOT_LOOKED, UNKNOWN, goal_distances
 from lifelore.core.learning.model_learning import StateInfo, new_model_learner
 from lifelore.core.learning.search_plan import NO_CRUMBS, OUT_OF_REACH, plan_search
 from lifelore.core.streams import stream

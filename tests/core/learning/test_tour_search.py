@@ -43,7 +43,7 @@ def test_a_world_without_knowledge_is_searched_as_before():
 
 
 def test_the_tour_of_the_same_moves_is_not_planned_again():
-    world = lattice(23)
+    world = lattice(13)
     model = remembered(world)
     known = KnownTour.of(model, world.cells)
     assert KnownTour.of(model, world.cells, known) is known
@@ -59,6 +59,8 @@ def test_a_door_that_closed_is_left_out_and_the_goal_still_found():
     state, action = np.nonzero(world.neighbour < 0)
     inner = np.random.default_rng(0).choice(len(state), 20, replace=False)
     model.target[state[inner], action[inner]] = (state[inner] + 1) % world.n_states
+    known = KnownTour.of(model, world.cells)
     for goal in (0, world.n_states // 2, world.n_states - 1):
-        learner, _, _ = lived(world, WorldModel(model.target.copy(), model.percept.copy()), goal, goal)
+        own = WorldModel(model.target.copy(), model.percept.copy())
+        learner, _, _ = lived(world, own, goal, goal, known=known)
         assert learner.cursor[GOALS] == 1

@@ -6,11 +6,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.core.planning.destination_order import (
-    MOST_EXACT,
-    by_exact_search,
-    by_rate,
-)
+from lifelore.core.planning.destination_order import MOST_EXACT, by_exact_search, by_rate
 
 
 def expected_time(order, steps, chance, elsewhere, tour) -> float:

@@ -23,10 +23,7 @@ def test_rows_are_probabilities_and_only_the_random_and_the_bug_bump(explorer):
     assert (bumps > 0) == (explorer in ("random", "bug"))
 
 
-@pytest.mark.parametrize(
-    ("heading", "order"),
-    [(NORTH, "WNES"), (SOUTH, "ESWN"), (EAST, "NESW"), (WEST, "SWNE")],
-)
+@pytest.mark.parametrize(("heading", "order"), [(NORTH, "WNES"), (SOUTH, "ESWN"), (EAST, "NESW"), (WEST, "SWNE")])
 def test_left_straight_right_back(heading, order):
     # With all four ways open the first of the order is taken; close it and the next one is, and so on.
     names = "NSEW"

@@ -12,27 +12,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
-from lifelore.domains.ball_game.ball_game import (
-    MOVES,
-    SIDE,
-    LossScale,
-    ball_game,
-    check_place,
-    slide,
-    step,
-)
-from lifelore.domains.ball_game.layouts import (
-    Layout,
-    layout_names,
-    s_maze,
-)
+from lifelore.domains.ball_game.ball_game import MOVES, SIDE, LossScale, ball_game, check_place, slide, step
+from lifelore.domains.ball_game.layouts import Layout, layout_names, s_maze
 from lifelore.domains.ball_game.paths import CELL, MARGIN, cost_to_go
-from lifelore.domains.ball_game.simulated_player import (
-    advance,
-    choose_heading,
-    new_balls,
-    random_states,
-)
+from lifelore.domains.ball_game.simulated_player import advance, choose_heading, new_balls, random_states
 
 GAME = ball_game()
 FIELD = GAME.field

@@ -22,18 +22,6 @@ def floor_plan(text: str, resolution: float = 0.1, origin=(0.0, 0.0, 0.0)) -> Oc
     return OccupancyMap(np.array(rows, np.uint8), resolution, origin)
 
 
-def test_a_wall_one_pixel_thin_is_not_walked_through():
-    # Cells of 3 pixels; the wall lies beside the second cell's centre, which sampling would find free.
-    plan = floor_plan("""
-        ...#.....
-        ...#.....
-        ...#.....
-    """)
-    world = building_from_map(plan, cell=0.3, robot_radius=0)
-    assert world.cells.tolist() == [[0, 1], [0, 2]]
-    assert world.neighbour.tolist() == [[-1, -1, 1, -1], [-1, -1, -1, 0]]
-
-
 def test_a_door_one_pixel_off_the_centre_is_found():
     plan = floor_plan("""
         .....#....
@@ -68,35 +56,6 @@ def test_min_free_leaves_small_pieces_out():
     assert building_from_map(plan, cell=0.2, robot_radius=0, min_free=0).n_states == 3
     assert building_from_map(plan, cell=0.2, robot_radius=0, min_free=0.25).n_states == 3
     assert building_from_map(plan, cell=0.2, robot_radius=0, min_free=0.26).n_states == 2
-
-
-def test_a_beam_through_a_window_is_no_place_for_a_robot():
-    # One free pixel between unknown ones: narrower than the robot, whose disc would reach into the unknown.
-    plan = floor_plan("""
-        ......??????
-        ............
-        ......??????
-    """)
-    assert building_from_map(plan, cell=0.3, robot_radius=0, min_free=0).n_states == 4
-    assert building_from_map(plan, cell=0.1, robot_radius=0.1).cells[:, 1].max() == 5
-
-
-def test_specks_of_unknown_are_not_free_and_do_not_grow():
-    plan = floor_plan("""
-        .........
-        .........
-        ....?....
-        .........
-        ..??.....
-        ..??.....
-        .........
-        .........
-    """)
-    world = building_from_map(plan, cell=0.1, robot_radius=0.1)
-    free = world.state_of >= 0
-    assert not free[2, 4]
-    assert free[1, 4]  # beside a speck of 0.01 m²
-    assert not free[4, 4]  # beside an island of 0.04 m²
 
 
 def test_what_makes_the_world_is_in_its_fingerprint():

@@ -5,15 +5,7 @@ import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.domains.buildings.building import building_from_map
-from lifelore.domains.buildings.building_days import (
-    CROWD,
-    DAYS,
-    MOVE,
-    REFUSED,
-    BuildingWay,
-    Day,
-    day_in,
-)
+from lifelore.domains.buildings.building_days import CROWD, DAYS, MOVE, REFUSED, BuildingWay, Day, day_in
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.task_stream import LivedTask

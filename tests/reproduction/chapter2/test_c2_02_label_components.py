@@ -5,11 +5,7 @@ import pytest
 
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON
 from reproduction.chapter2.c2_02_label_components.figure import PRINTED
-from reproduction.chapter2.c2_02_label_components.run import (
-    COMPONENTS,
-    component_answers,
-    split_answers,
-)
+from reproduction.chapter2.c2_02_label_components.run import COMPONENTS, component_answers, split_answers
 from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES
 from reproduction.chapter2.scoring.pair_validation import Reading
 from reproduction.engine.estimates import exact_share

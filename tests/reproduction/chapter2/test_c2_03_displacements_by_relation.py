@@ -5,11 +5,7 @@ import pytest
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ADJACENT, ON, PairLabel
-from reproduction.chapter2.c2_03_displacements_by_relation.run import (
-    CHOICES,
-    measure,
-    plotted,
-)
+from reproduction.chapter2.c2_03_displacements_by_relation.run import CHOICES, measure, plotted
 from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES, STANDARD, pair_rows
 from reproduction.chapter2.scoring.pair_validation import FIXED, Reading, displacements
 

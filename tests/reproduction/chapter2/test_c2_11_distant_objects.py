@@ -10,14 +10,7 @@ from lifelore.perception.contacts.contact_points import linked
 from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS
 from lifelore.perception.separation.separator import separate
 from reproduction.chapter2.c2_11_distant_objects import run as c2_11
-from reproduction.chapter2.c2_11_distant_objects.run import (
-    away,
-    bearing_pairs,
-    measure,
-    readings,
-    rows,
-    shift_to,
-)
+from reproduction.chapter2.c2_11_distant_objects.run import away, bearing_pairs, measure, readings, rows, shift_to
 from reproduction.chapter2.scenes.tabletop_pairs import STANDARD
 
 SETTINGS = {"gaps": [1.0, 0.1], "lengths": [0.25], "costs": [10.0]}

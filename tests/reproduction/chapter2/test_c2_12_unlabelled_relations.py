@@ -4,14 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.relations import ADJACENT, BOTH, ON
-from reproduction.chapter2.c2_12_unlabelled_relations.run import (
-    MOST,
-    blurred,
-    joined,
-    measure,
-    mostly,
-    rand_index,
-)
+from reproduction.chapter2.c2_12_unlabelled_relations.run import MOST, blurred, joined, measure, mostly, rand_index
 from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES
 from reproduction.chapter2.scoring.pair_validation import Reading
 

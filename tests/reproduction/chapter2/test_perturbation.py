@@ -5,10 +5,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from reproduction.chapter2.scenes.perturbation import (
-    cut_object,
-    fewer_points,
-)
+from reproduction.chapter2.scenes.perturbation import cut_object, fewer_points
 
 CAMERA = np.array([0.0, 0.0, 1.0])
 

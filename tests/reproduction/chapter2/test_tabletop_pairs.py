@@ -46,12 +46,7 @@ def blocks() -> LabelledCloud:
     return LabelledCloud(np.vstack(list(parts.values())), labels, None, CAMERA)
 
 
-TRUTH = (
-    PairLabel(3, 2, ON, 3),
-    PairLabel(2, 4, NONE, 2),
-    PairLabel(4, 3, ADJACENT, 1),
-    PairLabel(2, 1, ON, 3),
-)
+TRUTH = (PairLabel(3, 2, ON, 3), PairLabel(2, 4, NONE, 2), PairLabel(4, 3, ADJACENT, 1), PairLabel(2, 1, ON, 3))
 
 
 @pytest.fixture(scope="module")

@@ -4,13 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.action.advice.goal_model import GoalModel
-from reproduction.chapter3.advice.mazes import (
-    expert_walk,
-    goal_models_of,
-    maze_estimate,
-    maze_of,
-    thesis_advisor,
-)
+from reproduction.chapter3.advice.mazes import expert_walk, goal_models_of, maze_estimate, maze_of, thesis_advisor
 from reproduction.engine.registry import claim_of
 
 SMALL = claim_of("C3.15").settings("quick")

@@ -6,11 +6,7 @@ import pytest
 from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.mdp import TERMINAL
 from lifelore.core.streams import stream
-from reproduction.chapter3.advice.learning import (
-    errand_tables,
-    learner_schedule,
-    reached_by_learner,
-)
+from reproduction.chapter3.advice.learning import errand_tables, learner_schedule, reached_by_learner
 from reproduction.chapter3.advice.mazes import errands_of, goal_models_of, maze_of, thesis_advisor
 from reproduction.engine.learning_run import learnt
 from reproduction.engine.registry import claim_of

@@ -5,12 +5,7 @@ import pytest
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.domains.factory.contexts import PHI
-from reproduction.chapter3.c3_08_feature_importance.run import (
-    grid_of,
-    importance,
-    measure,
-    rows,
-)
+from reproduction.chapter3.c3_08_feature_importance.run import grid_of, importance, measure, rows
 from reproduction.chapter3.factory.modified_tasks import FULL_SET
 from reproduction.engine.registry import claim_of
 

@@ -9,13 +9,7 @@ from lifelore.domains.ball_game.ball_game import LossScale, ball_game
 from lifelore.interaction.baselines.exp3 import EXP3
 from reproduction.chapter4.ball_game.games import Game, check_games, choices
 from reproduction.chapter4.ball_game.learners import BeatLearner, exp3_by_episode
-from reproduction.chapter4.ball_game.play import (
-    Learner,
-    Players,
-    losses_by_speed,
-    play_all,
-    train,
-)
+from reproduction.chapter4.ball_game.play import Learner, Players, losses_by_speed, play_all, train
 
 GAME = ball_game()
 SCALE = LossScale()

@@ -7,13 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from lifelore.interaction.library.task_types import epsilon_types, landmark_regret
-from reproduction.chapter4.c4_10_landmark_regret.run import (
-    BINS,
-    EXAMPLE,
-    measure,
-    member_regret,
-    parted,
-)
+from reproduction.chapter4.c4_10_landmark_regret.run import BINS, EXAMPLE, measure, member_regret, parted
 
 TABLES = st.tuples(st.integers(1, 12), st.integers(1, 5)).flatmap(
     lambda shape: arrays(np.float64, shape, elements=st.integers(-20, 20).map(lambda k: k / 4))

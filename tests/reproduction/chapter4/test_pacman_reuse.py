@@ -6,11 +6,7 @@ import pytest
 from lifelore.core.streams import stream
 from lifelore.domains.pacman.pacman import PacmanMaze
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from reproduction.chapter4.c4_04_pacman.pacman_library import (
-    arenas,
-    exact_moments,
-    trained_policies,
-)
+from reproduction.chapter4.c4_04_pacman.pacman_library import arenas, exact_moments, trained_policies
 from reproduction.chapter4.c4_04_pacman.run import first_stretch, reused
 from reproduction.engine.registry import claim_of
 

@@ -8,11 +8,7 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection import ExpectedImprovement, InformationDirected
-from reproduction.chapter4.reuse.many_tasks import (
-    converged_after,
-    grouped_mean,
-    play_rule,
-)
+from reproduction.chapter4.reuse.many_tasks import converged_after, grouped_mean, play_rule
 
 MEANS = np.array([[10.0, 4.0, 0.0], [5.0, 9.0, 1.0], [0.0, 3.0, 8.0]])
 

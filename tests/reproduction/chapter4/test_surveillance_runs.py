@@ -6,14 +6,7 @@ import pytest
 from lifelore.domains.surveillance.surveillance import Surveillance
 from lifelore.interaction.selection.information import mutual_information
 from reproduction.chapter4.reuse.rules import RULES
-from reproduction.chapter4.surveillance.runs import (
-    EXACT,
-    LEARNT,
-    WORLD,
-    by_method,
-    library_of,
-    run_method,
-)
+from reproduction.chapter4.surveillance.runs import EXACT, LEARNT, WORLD, by_method, library_of, run_method
 
 SETTINGS = {"tasks": 5, "episodes": 12, "samples": 4}
 RESERVE = Surveillance()

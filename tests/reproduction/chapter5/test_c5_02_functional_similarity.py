@@ -5,11 +5,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
-from reproduction.chapter5.c5_02_functional_roles.functional_similarity import (
-    overlap,
-    role,
-    shape_distribution,
-)
+from reproduction.chapter5.c5_02_functional_roles.functional_similarity import overlap, role, shape_distribution
 
 POINT = np.zeros((1, 3))
 DOWN, EAST = [0, 0, -1.0], [1.0, 0, 0]
@@ -47,8 +43,7 @@ def test_a_bridge_is_like_a_bridge_before_a_tower(make_scene, meet):
     def bridge(span):
         posts = [meet(2, 1, [[0, 0, 0]]), meet(3, 1, [[span, 0, 0]])]
         return make_scene(
-            dict.fromkeys((2, 3, 4), POINT),
-            [*posts, meet(4, 2, [[0, 0, 0.1]]), meet(4, 3, [[span, 0, 0.1]])],
+            dict.fromkeys((2, 3, 4), POINT), [*posts, meet(4, 2, [[0, 0, 0.1]]), meet(4, 3, [[span, 0, 0.1]])]
         )
 
     tower = make_scene({2: POINT, 3: POINT}, [meet(2, 1, [[0, 0, 0]]), meet(3, 2, [[0, 0, 0.1]])])

@@ -5,16 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lifelore.action.search.tree_search import EpisodeResult, SearchSettings, play, search, search_guidance
 from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
-from reproduction.chapter5.c5_03_priors_in_search.tree_search import (
-    EpisodeResult,
-    SearchSettings,
-    play,
-    search,
-    search_guidance,
-)
 
 ENDS = SearchSettings(simulations=60, depth=12)
 

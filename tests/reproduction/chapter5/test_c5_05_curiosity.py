@@ -5,14 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reproduction.chapter5.c5_05_curiosity.run import (
-    SIGNS,
-    auc_over_lives,
-    measure,
-    orders_needed,
-    rows,
-    signs,
-)
+from reproduction.chapter5.c5_05_curiosity.run import SIGNS, auc_over_lives, measure, orders_needed, rows, signs
 
 LATE = {"part": "late type", "known": [[0.0, 0.5, 0.0], [1.0, 0.5, 1.0]], "late": [0.5, 0.5, 2.0], "learnt": True}
 

@@ -12,13 +12,7 @@ from lifelore.perception.scene import Scene
 from lifelore.perception.topology.grasp_seeds import GraspSeed
 from reproduction.chapter5.c5_08_grasps.parallel_gripper import OPENING, Grasp
 from reproduction.chapter5.c5_08_grasps.run import TRIES, equal_topology, measure, rows
-from reproduction.chapter5.c5_08_grasps.searches import (
-    anywhere,
-    around,
-    carried,
-    from_above,
-    from_seeds,
-)
+from reproduction.chapter5.c5_08_grasps.searches import anywhere, around, carried, from_above, from_seeds
 
 DOWN, ALONG = np.array([0.0, 0.0, -1.0]), np.array([0.0, 1.0, 0.0])
 RNG = np.random.default_rng

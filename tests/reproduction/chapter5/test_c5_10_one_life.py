@@ -12,14 +12,7 @@ from gymnasium.utils.env_checker import check_env
 from lifelore.core.streams import stream
 from reproduction.chapter5.c5_10_one_life import lives
 from reproduction.chapter5.c5_10_one_life.lives import AGENTS, FULL, SCRATCH, drawn_tasks, lived, own_name
-from reproduction.chapter5.c5_10_one_life.run import (
-    first_returns,
-    is_recognised,
-    measure,
-    pairs,
-    readings,
-    seen,
-)
+from reproduction.chapter5.c5_10_one_life.run import first_returns, is_recognised, measure, pairs, readings, seen
 from reproduction.chapter5.c5_10_one_life.worlds import FAMILIES, taxi, windy_grid
 from reproduction.chapter5.c5_10_one_life.worlds.grid_preference import ACTIONS
 

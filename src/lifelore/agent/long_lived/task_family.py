@@ -128,7 +128,23 @@ class SharedKnowledge:
 
 
 class AgentTask(Protocol):
-    """A task as the agent meets it; its type is hidden. A class that derives from it has the defaults."""
+    """A task as the agent meets it; its type is hidden. A class that derives from it has the defaults.
+
+    Examples
+    --------
+    A coin that shows 1: the only cause is the throw, an act says what it will show, and a right one pays 1:
+
+    >>> class Throw(AgentTask):
+    ...     def begin(self):
+    ...         pass
+    ...     def plan(self, laws, tried, new, shared):
+    ...         acts = laws[:, 0].argmax(axis=1)
+    ...         return Plan(laws[:, 0][:, acts], acts, acts)
+    ...     def act(self, act):
+    ...         return Step(reward=float(act == 1), effects=((0, 1),), ended=True)
+    >>> Throw().act(1).reward, Throw().context
+    (1.0, 0)
+    """
 
     @property
     def context(self) -> int:
@@ -199,6 +215,31 @@ class TaskFamily(ABC):
         Names of the acts.
     n_causes, n_effects : int
         Causes are the integers in [0, n_causes), effects those in [0, n_effects).
+
+    Examples
+    --------
+    Coins that show 0 or 1, which is the hidden type of a task:
+
+    >>> from lifelore.agent.long_lived.check_family import check_family
+    >>> from lifelore.domains.task_stream import TaskStream
+    >>> class Throw(AgentTask):
+    ...     def __init__(self, shows):
+    ...         self.shows = shows
+    ...     def begin(self):
+    ...         pass
+    ...     def plan(self, laws, tried, new, shared):
+    ...         acts = laws[:, 0].argmax(axis=1)
+    ...         return Plan(laws[:, 0][:, acts], acts, acts)
+    ...     def act(self, act):
+    ...         return Step(float(act == self.shows), ((0, self.shows),), ended=True)
+    >>> class Coins(TaskFamily):
+    ...     name, acts, n_causes, n_effects = "coins", ("say 0", "say 1"), 1, 2
+    ...     def meet(self, number, abilities, context=None):
+    ...         drawn = TaskStream(("0", "1")).draw(number, context)
+    ...         return drawn, Throw(int(drawn.hidden_type))
+    ...     def best_return(self, number, context=None):
+    ...         return 1.0
+    >>> check_family(Coins())
     """
 
     name: str

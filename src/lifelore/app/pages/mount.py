@@ -22,6 +22,12 @@ def app_with_pages(settings: ServiceSettings) -> FastAPI:
     """The application of the service with all pages, if its settings want pages.
 
     The documents of pages need no token, for they hold no data.
+
+    Examples
+    --------
+    >>> app = app_with_pages(ServiceSettings(memory="life.db"))
+    >>> {"/", "/see", "/life", "/study"} <= {getattr(route, "path", None) for route in app.routes}
+    True
     """
     if "pages" not in settings.only:
         return create_app(settings)

@@ -82,6 +82,18 @@ class OutcomeTree:
     ----------
     tray : Tray
     gripper : Gripper
+
+    Examples
+    --------
+    A single box is brought at once:
+
+    >>> from lifelore.domains.tabletop.layout import stand
+    >>> from lifelore.domains.tabletop.shapes import box
+    >>> from lifelore.domains.tabletop_job.job_types import job_type_named
+    >>> from lifelore.domains.tabletop_job.tray import tray_of
+    >>> tree = OutcomeTree(tray_of([stand(box(0.1, 0.06, 0.05))], 0), job_type_named("patient/firm").gripper)
+    >>> tree.best(job_type_named("patient/firm").user).actions
+    (0, 4)
     """
 
     def __init__(self, tray: Tray, gripper: Gripper) -> None:
@@ -120,20 +132,7 @@ class OutcomeTree:
         return sum(self._points(user, actions[:k]) for k in range(1, len(actions) + 1))
 
     def best(self, user: User, most: int = 5000) -> BestReturn:
-        """Search until no sequence can be better, or `most` sequences were looked at.
-
-        Examples
-        --------
-        A single box is brought at once:
-
-        >>> from lifelore.domains.tabletop.layout import stand
-        >>> from lifelore.domains.tabletop.shapes import box
-        >>> from lifelore.domains.tabletop_job.job_types import job_type_named
-        >>> from lifelore.domains.tabletop_job.tray import tray_of
-        >>> tree = OutcomeTree(tray_of([stand(box(0.1, 0.06, 0.05))], 0), job_type_named("patient/firm").gripper)
-        >>> tree.best(job_type_named("patient/firm").user).actions
-        (0, 4)
-        """
+        """Search until no sequence can be better, or `most` sequences were looked at."""
         before, order = len(self), count()
         best, best_actions = self._best_known(user)
         # Minus the bound, a number that breaks ties, the sequence, and the return before its last action.

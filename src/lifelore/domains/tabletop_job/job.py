@@ -81,6 +81,20 @@ class TabletopJob:
     ------
     MissingExtraError
         MuJoCo is not installed.
+
+    Examples
+    --------
+    Pick the target and hand it over briskly, with two objects on the tray:
+
+    >>> from lifelore.domains.tabletop.layout import stand
+    >>> from lifelore.domains.tabletop.shapes import box
+    >>> from lifelore.domains.tabletop_job.job_types import job_type_named
+    >>> from lifelore.domains.tabletop_job.tray import tray_of
+    >>> placed = [stand(box(0.1, 0.1, 0.06)), stand(box(0.06, 0.06, 0.05), height=0.06)]
+    >>> job = TabletopJob(tray_of(placed, target=1), job_type_named("patient/firm"))
+    >>> rewards = [job.step(verb * job.n_objects + 1)[1] for verb in (PICK, HAND_OVER_BRISKLY)]
+    >>> print(f"{sum(rewards):.0f} points; ended: {job.ended}")
+    9 points; ended: True
     """
 
     def __init__(self, tray: Tray, job_type: JobType, seed: int = 0, camera: str = "kinect") -> None:

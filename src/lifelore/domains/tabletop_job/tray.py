@@ -42,6 +42,12 @@ class Tray:
         Of the camera.
     pointed : (3,) float64
         A seen point of the target, without noise, metres: the user points at it.
+
+    Examples
+    --------
+    >>> tray = sample_tray(seed=0, number=3)
+    >>> tray.target in range(len(tray.shapes)), tray.target + FIRST_OBJECT in tray.cloud.objects
+    (True, True)
     """
 
     shapes: tuple[Shape, ...]
@@ -61,6 +67,14 @@ def sample_tray(seed: int, number: int, settings: TabletopSettings | None = None
         MuJoCo is not installed.
     InputError
         The settings name something unknown or have a mix, or no scene of a hundred has an object light enough.
+
+    Examples
+    --------
+    >>> tray = sample_tray(seed=0, number=3)
+    >>> tray is sample_tray(seed=0, number=3)
+    True
+    >>> len(tray.poses) == len(tray.shapes)
+    True
     """
     settings = settings or TabletopSettings()
     if settings.mix is not None:

@@ -9,10 +9,7 @@ from lifelore.perception.relations.relation import Relation
 from reproduction.own.o_07_unseen_scenes.peers import PEERS
 from reproduction.own.o_07_unseen_scenes.peers.described_pairs import described_pairs
 
-LEAST_RIGHT = {
-    "bounding-box rule": 0.95,
-    "orientation histogram": 0.85,
-}
+LEAST_RIGHT = {"bounding-box rule": 0.95, "orientation histogram": 0.85}
 
 
 @pytest.fixture(scope="module", params=PEERS)
