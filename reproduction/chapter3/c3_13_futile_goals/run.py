@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import binomtest
 
-from lifelore.action.domain_reduction import domain_futile_states, futile_goal_probability
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import prior_rows
 from lifelore.action.priors.policy_counts import actions_to_count
+from lifelore.action.search.domain_reduction import domain_futile_states, futile_goal_probability
 from lifelore.core.learning.curve import new_curve
 from lifelore.core.learning.q_learning import Rows, Schedule, learn, new_learner
 from lifelore.core.mdp import TERMINAL, Tables

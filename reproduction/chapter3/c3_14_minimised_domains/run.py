@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action import domain_reduction
-from lifelore.action.domain_reduction import MinimisedDomain, tables_within, trap_states
+from lifelore.action.search.domain_reduction import MinimisedDomain, tables_within, trap_states
 from lifelore.core.learning.curve import Curve, new_curve
 from lifelore.core.learning.learning_metrics import episodes_to_threshold
 from lifelore.core.learning.q_learning import Schedule, learn, new_learner, uniform_rows

@@ -1,7 +1,7 @@
 """Action: priors over actions, and what they guide (thesis ch. 3).
 
-`priors` counts which actions were best, `features` chooses what to condition on, `domain_reduction` leaves out
-futile states and actions, `demonstrations` learns from people, `advice` advises agents whose goals are unknown.
+`priors` counts which actions were best, `features` chooses what to condition on, `search` guides planners,
+`demonstrations` learns from people, `advice` advises agents whose goals are unknown.
 """
 
 from typing import TYPE_CHECKING
@@ -18,13 +18,6 @@ if TYPE_CHECKING:
     from lifelore.action.demonstrations.demonstrations import Demonstration as Demonstration
     from lifelore.action.demonstrations.demonstrations import count_demonstrations as count_demonstrations
     from lifelore.action.demonstrations.demonstrations import read_demonstrations as read_demonstrations
-    from lifelore.action.domain_reduction import MinimisedDomain as MinimisedDomain
-    from lifelore.action.domain_reduction import domain_futile_actions as domain_futile_actions
-    from lifelore.action.domain_reduction import domain_futile_states as domain_futile_states
-    from lifelore.action.domain_reduction import futile_goal_probability as futile_goal_probability
-    from lifelore.action.domain_reduction import minimised_domain as minimised_domain
-    from lifelore.action.domain_reduction import minimised_transitions as minimised_transitions
-    from lifelore.action.domain_reduction import reachable_states as reachable_states
     from lifelore.action.features.counted_features import CountedFeatures as CountedFeatures
     from lifelore.action.features.feature_acquisition import FeatureAcquisition as FeatureAcquisition
     from lifelore.action.features.feature_function import AgentClass as AgentClass
@@ -45,6 +38,13 @@ if TYPE_CHECKING:
     from lifelore.action.priors.prior_file import load_prior as load_prior
     from lifelore.action.priors.prior_file import save_prior as save_prior
     from lifelore.action.priors.prior_report import prior_report as prior_report
+    from lifelore.action.search.domain_reduction import MinimisedDomain as MinimisedDomain
+    from lifelore.action.search.domain_reduction import domain_futile_actions as domain_futile_actions
+    from lifelore.action.search.domain_reduction import domain_futile_states as domain_futile_states
+    from lifelore.action.search.domain_reduction import futile_goal_probability as futile_goal_probability
+    from lifelore.action.search.domain_reduction import minimised_domain as minimised_domain
+    from lifelore.action.search.domain_reduction import minimised_transitions as minimised_transitions
+    from lifelore.action.search.domain_reduction import reachable_states as reachable_states
 
 _HOME = {
     "ActionPrior": ".priors.action_prior",
@@ -60,7 +60,7 @@ _HOME = {
     "JoinedFeatures": ".features.feature_function",
     "LastReward": ".features.feature_function",
     "LearntContexts": ".features.learnt_contexts",
-    "MinimisedDomain": ".domain_reduction",
+    "MinimisedDomain": ".search.domain_reduction",
     "OnlineFeatureSelection": ".features.feature_selection",
     "OutcomeMap": ".advice.outcome_map",
     "StateFeatures": ".features.feature_function",
@@ -69,17 +69,17 @@ _HOME = {
     "best_feature_set": ".features.feature_selection",
     "context_codes": ".features.feature_function",
     "count_demonstrations": ".demonstrations.demonstrations",
-    "domain_futile_actions": ".domain_reduction",
-    "domain_futile_states": ".domain_reduction",
+    "domain_futile_actions": ".search.domain_reduction",
+    "domain_futile_states": ".search.domain_reduction",
     "feature_rows": ".features.feature_rows",
-    "futile_goal_probability": ".domain_reduction",
+    "futile_goal_probability": ".search.domain_reduction",
     "independent_features": ".features.feature_selection",
     "load_prior": ".priors.prior_file",
-    "minimised_domain": ".domain_reduction",
-    "minimised_transitions": ".domain_reduction",
+    "minimised_domain": ".search.domain_reduction",
+    "minimised_transitions": ".search.domain_reduction",
     "prior_report": ".priors.prior_report",
     "prior_rows": ".priors.exploration",
-    "reachable_states": ".domain_reduction",
+    "reachable_states": ".search.domain_reduction",
     "read_demonstrations": ".demonstrations.demonstrations",
     "save_prior": ".priors.prior_file",
     "why_uncertain": ".features.uncertainty",

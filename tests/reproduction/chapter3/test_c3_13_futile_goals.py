@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.action.domain_reduction import domain_futile_states
+from lifelore.action.search.domain_reduction import domain_futile_states
 from reproduction.chapter3.c3_13_futile_goals.run import (
     best_in,
     constructed,

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.action.domain_reduction import minimised_domain, tables_within
+from lifelore.action.search.domain_reduction import minimised_domain, tables_within
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 from lifelore.core.planning.planning import best_actions, optimal_q
 from reproduction.chapter3.c3_14_minimised_domains.minimised_worlds import Solved, TaskSet, task_set, with_goal

@@ -5,7 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.action.domain_reduction import (
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.action.priors.policy_counts import actions_to_count
+from lifelore.action.search.domain_reduction import (
     domain_futile_actions,
     domain_futile_states,
     futile_goal_probability,
@@ -17,8 +19,6 @@ from lifelore.action.domain_reduction import (
     task_futile_states,
     trap_states,
 )
-from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.action.priors.policy_counts import actions_to_count
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning.planning import optimal_q

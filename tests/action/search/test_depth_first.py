@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from lifelore.action.search.depth_first import Preferences, depth_first, preferences
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import TERMINAL, Tables
-from reproduction.chapter5.c5_03_priors_in_search.depth_first import Preferences, depth_first, preferences
 
 
 def tables_of(next_state, goal: int) -> Tables:
