@@ -73,13 +73,26 @@ class Connection:
     def insert(self, table: str, columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
         """Insert new rows; PostgreSQL copies them."""
         if self.is_sqlite:
-            places = ", ".join("?" * len(columns))
-            self.execute_many(f"INSERT INTO {table} ({', '.join(columns)}) VALUES ({places})", rows)
+            self.insert_also(table, columns, rows, "")
             return
         self.statements += 1
         with self._driver.cursor().copy(f"COPY {table} ({', '.join(columns)}) FROM STDIN") as copy:
             for row in rows:
                 copy.write_row(row)
+
+    def insert_also(
+        self, table: str, columns: Sequence[str], rows: Sequence[Sequence[Any]], also: str
+    ) -> list[tuple[Any, ...]]:
+        """Insert rows by statements of many that end with `also`; all that they return."""
+        found: list[tuple[Any, ...]] = []
+        places, step = f"({', '.join('?' * len(columns))})", MANY // len(columns)
+        for at in range(0, len(rows), step):
+            part = rows[at : at + step]
+            statement = (
+                f"INSERT INTO {table} ({', '.join(columns)}) VALUES {', '.join([places] * len(part))} {also}"
+            )
+            found += self.execute(statement, [value for row in part for value in row]).fetchall()
+        return found
 
     def change(
         self, table: str, setting: str, where: str, types: Mapping[str, str], rows: Sequence[Sequence[Any]]
