@@ -126,7 +126,7 @@ class StudyRows:
     def add_users(
         self, users: Sequence[tuple[str, str | None, Mapping[str, float] | None]], version: int
     ) -> dict[str, UserRow]:
-        """Add users (name, context, features) before their first outcome; all of them by name, locked as by `users`.
+        """Add users (name, context, features) before their first outcome; all by name, locked as by `users`.
 
         Users whom another program has added meanwhile stay as they are.
         """
