@@ -1,5 +1,6 @@
 """`lifelore reuse …`: choose a policy for each user, from a log of choices and outcomes."""
 
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Annotated, Any
@@ -242,6 +243,9 @@ def report(
             metavar="user|time|both", help="Count only users that the fit did not know, later decisions, or both."
         ),
     ] = None,
+    by: Annotated[
+        str | None, Option(metavar="day|week", help="Also compare in each day or week of decisions (UTC).")
+    ] = None,
     name: Name = "default",
     where: Where = None,
     seed: Unused = 0,
@@ -255,7 +259,7 @@ def report(
     from lifelore.app.console import print_json
 
     with _opened(name, where) as (memory, study):
-        document = reported(memory, study, out, log, incumbent=incumbent, split=split)
+        document = reported(memory, study, out, log, incumbent=incumbent, split=split, by=by)
     if as_json:
         print_json(document)
         return
@@ -501,6 +505,9 @@ def _print_report(document: dict[str, Any]) -> None:
     for row in sorted(rows, key=lambda row: -row["outcome"]["value"]):
         retired = "" if row["state"] == "active" else f" ({row['state']})"
         print(f"    {row['name']:{width}}  {_estimate(row['outcome'])}{retired}")
+    for period in document["by_time"] or ():
+        day = time.strftime("%Y-%m-%d", time.gmtime(period["time"]))
+        print(f"  from {day}: {period['decisions']} decisions, uplift {_estimate(period['uplift'])}")
 
 
 def _estimate(estimate: dict[str, Any] | None) -> str:
