@@ -142,7 +142,7 @@ def test_nobody_yet_and_nothing_that_varies(memory, study, tmp_path):
 def test_a_place_that_cannot_be_written(memory, study, tmp_path):
     (tmp_path / "file").write_text("")
     for places in ({"out": tmp_path / "file"}, {"log": tmp_path / "none" / "log.csv"}):
-        with pytest.raises(StoreError, match=r"cannot write .*; choose another place"):
+        with pytest.raises(StoreError, match=r"cannot be written to .*; choose another place"):
             report(memory, study, **places)
 
 

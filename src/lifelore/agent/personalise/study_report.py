@@ -18,8 +18,9 @@ from lifelore.agent.personalise.beliefs import learn
 from lifelore.agent.personalise.calibration import after_past, calibration, outcomes_of
 from lifelore.agent.personalise.decision_log import log_parts
 from lifelore.agent.personalise.histories import History, difference, sampled_histories
-from lifelore.agent.personalise.result_folder import write_file, write_picture, write_result
+from lifelore.agent.personalise.result_folder import write_picture, write_result
 from lifelore.agent.personalise.study import Study
+from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.intervals import LEAST_VALUES, t_interval, welch_ends
 from lifelore.core.metrics import Estimate, mean_estimate
@@ -107,7 +108,8 @@ def report(
         raise InputError(f"by must be one of {', '.join(PERIODS)}, got '{by}'")
     document = _document(memory, study, incumbent, split, by)
     if log is not None:
-        write_file(Path(log), log_parts(memory, study))
+        with atomic_write(log, "the log") as file:
+            file.writelines(log_parts(memory, study))
     if out is not None:
         from lifelore.figures.reuse_calibration import draw_calibration
         from lifelore.figures.reuse_report import draw_reuse_report
