@@ -1,8 +1,10 @@
 """`lifelore reuse …`: choose a policy for each user, from a log of choices and outcomes."""
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import wraps
+from inspect import signature
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -28,42 +30,78 @@ AsJson = Annotated[bool, Option("--json", help="One JSON document on stdout and 
 Logs = Annotated[
     list[str], typer.Argument(metavar="LOG.csv…", help="Logs with columns user,policy,outcome[,type,context].")
 ]
-Columns = Annotated[
-    list[str] | None,
-    Option(
-        metavar="OURS=THEIRS,…", help="Names of the log's columns, such as user=household,policy=brand,weight=ipw."
-    ),
-]
-Separator = Annotated[
-    str | None, Option(help="Between columns: comma, semicolon or tab; default: the one in the header.")
-]
-DecimalComma = Annotated[bool, Option("--decimal-comma", help="Outcomes have a comma before their decimals.")]
-Encoding = Annotated[str, Option(help="Encoding of the logs, such as latin-1.")]
-Missing = Annotated[
-    list[str] | None,
-    Option(metavar="WORD", help="Word that means a missing value, beside the empty field; may be repeated."),
-]
-MissingOutcome = Annotated[
-    str,
-    Option(
-        metavar="leave-out|refuse|NUMBER", help="Leave lines without an outcome out, refuse them, or use NUMBER."
-    ),
-]
-MissingPolicy = Annotated[
-    str,
-    Option(
-        metavar="refuse|leave-out|NAME", help="Refuse lines without a policy, leave them out, or use policy NAME."
-    ),
-]
 
 
-Features = Annotated[
-    list[str] | None,
-    Option(metavar="NAME,…", help="Columns of numbers that are known of a user beforehand, such as age,visits."),
-]
+def _log_options(
+    columns: Annotated[
+        list[str] | None,
+        Option(
+            metavar="OURS=THEIRS,…",
+            help="Names of the log's columns, such as user=household,policy=brand,weight=ipw.",
+        ),
+    ] = None,
+    separator: Annotated[
+        str | None, Option(help="Between columns: comma, semicolon or tab; default: the one in the header.")
+    ] = None,
+    decimal_comma: Annotated[
+        bool, Option("--decimal-comma", help="Outcomes have a comma before their decimals.")
+    ] = False,
+    encoding: Annotated[str, Option(help="Encoding of the logs, such as latin-1.")] = "utf-8",
+    missing: Annotated[
+        list[str] | None,
+        Option(metavar="WORD", help="Word that means a missing value, beside the empty field; may be repeated."),
+    ] = None,
+    missing_outcome: Annotated[
+        str,
+        Option(
+            metavar="leave-out|refuse|NUMBER",
+            help="Leave lines without an outcome out, refuse them, or use NUMBER.",
+        ),
+    ] = "leave-out",
+    missing_policy: Annotated[
+        str,
+        Option(
+            metavar="refuse|leave-out|NAME",
+            help="Refuse lines without a policy, leave them out, or use policy NAME.",
+        ),
+    ] = "refuse",
+    features: Annotated[
+        list[str] | None,
+        Option(
+            metavar="NAME,…", help="Columns of numbers that are known of a user beforehand, such as age,visits."
+        ),
+    ] = None,
+) -> "LogFormat":
+    """The format that the options of a log make."""
+    from lifelore.agent.personalise.log.log_format import LogFormat, parse_columns
+
+    columns_of_numbers = tuple(name.strip() for word in features or () for name in word.split(","))
+    return LogFormat(
+        parse_columns(columns or []), separator, decimal_comma, encoding, tuple(missing or ()), missing_outcome,
+        missing_policy, features=columns_of_numbers,
+    )  # fmt: skip
+
+
+def reads_logs(verb: Callable[..., None]) -> Callable[..., None]:
+    """The verb with the options of a log in place of its parameter `form`, which gets their format."""
+    options = signature(_log_options).parameters
+
+    @wraps(verb)
+    def reading(**given: Any) -> None:
+        form = _log_options(**{name: given.pop(name) for name in options})
+        verb(**given, form=form)
+
+    own = signature(verb)
+    parts = [
+        part for one in own.parameters.values() for part in (options.values() if one.name == "form" else [one])
+    ]
+    reading.__signature__ = own.replace(parameters=parts)  # pyright: ignore[reportAttributeAccessIssue]
+    reading.__annotations__ = {part.name: part.annotation for part in parts}
+    return reading
 
 
 @reuse.command()
+@reads_logs
 def fit(
     logs: Logs,
     name: Name = "default",
@@ -92,14 +130,7 @@ def fit(
         str,
         Option(help="thesis: the rule as printed [expected-improvement], plug-in models, and types that stay."),
     ] = "standard",
-    columns: Columns = None,
-    separator: Separator = None,
-    decimal_comma: DecimalComma = False,
-    encoding: Encoding = "utf-8",
-    missing: Missing = None,
-    missing_outcome: MissingOutcome = "leave-out",
-    missing_policy: MissingPolicy = "refuse",
-    features: Features = None,
+    form: Any = None,
     where: Where = None,
     seed: Seed = 0,
     as_json: AsJson = False,
@@ -121,25 +152,16 @@ def fit(
         rule, change, models = rule or "expected-improvement", "0", "plug-in"
     chosen = rule or DEFAULT_RULE, explore, _change(change), models
     settings = FitSettings(name, model, types, control, incumbent, *chosen, seed, variant)
-    form = log_format(
-        columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features
-    )
     with open_memory(where, durable=True) as memory:
         document = fitted(logs, memory, settings, form)
     print_json(document) if as_json else _print_fit(document)
 
 
 @reuse.command()
+@reads_logs
 def warm(
     logs: Logs,
-    columns: Columns = None,
-    separator: Separator = None,
-    decimal_comma: DecimalComma = False,
-    encoding: Encoding = "utf-8",
-    missing: Missing = None,
-    missing_outcome: MissingOutcome = "leave-out",
-    missing_policy: MissingPolicy = "refuse",
-    features: Features = None,
+    form: Any = None,
     name: Name = "default",
     where: Where = None,
     seed: Unused = 0,
@@ -153,9 +175,6 @@ def warm(
     from lifelore.agent.personalise.past import warm as warmed
     from lifelore.app.console import print_json
 
-    form = log_format(
-        columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features
-    )
     with _opened(name, where) as (memory, study):
         document = warmed(logs, memory, study, form)
     print_json(document) if as_json else _print_warm(document)
@@ -360,26 +379,6 @@ def _opened(name: str, where: str | None) -> "Iterator[tuple[Memory, Study]]":
 
     with open_memory(where, durable=True, create=False) as memory:
         yield memory, open_study(memory, name)
-
-
-def log_format(
-    columns: list[str] | None,
-    separator: str | None,
-    decimal_comma: bool,
-    encoding: str,
-    missing: list[str] | None,
-    missing_outcome: str,
-    missing_policy: str,
-    features: list[str] | None,
-) -> "LogFormat":
-    from lifelore.agent.personalise.log.log_format import LogFormat, parse_columns
-
-    names = parse_columns(columns or [])
-    columns_of_numbers = tuple(name.strip() for word in features or () for name in word.split(","))
-    return LogFormat(
-        names, separator, decimal_comma, encoding, tuple(missing or ()), missing_outcome, missing_policy,
-        features=columns_of_numbers,
-    )  # fmt: skip
 
 
 def _change(given: str) -> Any:

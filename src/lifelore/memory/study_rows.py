@@ -130,16 +130,16 @@ class StudyRows:
 
         Users whom another program has added meanwhile stay as they are.
         """
-        columns = (
-            "study", "name", "context", "features", "fitted", "version", "personal", "personal_sum", "control",
-            "control_sum",
-        )  # fmt: skip
+        types = {
+            "study": "bigint", "name": "text", "context": "text", "features": "text", "fitted": "bigint",
+            "version": "bigint", "personal": "bigint", "personal_sum": "float8", "control": "bigint",
+            "control_sum": "float8",
+        }  # fmt: skip
         rows = [
             (self._study, name, context, _json(features), 0, version, 0, 0, 0, 0)
             for name, context, features in sorted(users, key=itemgetter(0))
         ]
-        also = f"ON CONFLICT (study, name) DO NOTHING RETURNING {_USER}"
-        added = self._conn.insert_also("lifelore_study_users", columns, rows, also)
+        added = self._conn.insert_unless_there("lifelore_study_users", types, rows, "study, name", _USER)
         found = {row[1]: _user(*row) for row in added}
         others = [row[1] for row in rows if row[1] not in found]
         return found | self.users(others, lock=True) if others else found
