@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from lifelore.app.console import print_json, say
+from lifelore.app.options import AsJson, Where
+
 if TYPE_CHECKING:
     from lifelore.agent.personalise.log.log_format import LogFormat
     from lifelore.agent.personalise.study import Study
@@ -21,10 +24,8 @@ reuse = typer.Typer(
 
 Option = typer.Option
 Name = Annotated[str, Option(help="Name of the study.")]
-Where = Annotated[str | None, Option("--memory", metavar="FILE|URL", help="Memory; default: your own.")]
 Seed = Annotated[int, Option(help="Draws all random numbers.")]
 Unused = Annotated[int, Option("--seed", help="Without effect: this verb draws no random numbers.")]
-AsJson = Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")]
 
 
 Logs = Annotated[
@@ -141,7 +142,6 @@ def fit(
     """
     from lifelore.agent.personalise.fitting.fit import FitSettings
     from lifelore.agent.personalise.fitting.fit import fit as fitted
-    from lifelore.app.console import print_json
     from lifelore.core.errors import InputError
     from lifelore.interaction.selection import DEFAULT_RULE
     from lifelore.memory import open_memory
@@ -173,7 +173,6 @@ def warm(
     again changes nothing.
     """
     from lifelore.agent.personalise.past import warm as warmed
-    from lifelore.app.console import print_json
 
     with _opened(name, where) as (memory, study):
         document = warmed(logs, memory, study, form)
@@ -214,7 +213,7 @@ def choose(
     held = ", control group" if document["control"] else ""
     unknown = f"\nno known type fits: probability {document['novelty']:.3g}" if novelty else ""
     new = f"\ncontext {context} is not in the logs: the prior of all users is used"
-    _say(
+    say(
         document,
         f"{document['policy']}\ndecision {document['decision']} (probability {document['probability']:.3g}{held})"
         + (new if context not in (None, document["context"]) and not document["features"] else "")
@@ -241,7 +240,7 @@ def update(
         document = updated(memory, study, decision, value)
     likely = max(document["belief"], key=document["belief"].get)
     status = "stored" if document["taken"] else "was stored already, nothing changed"
-    _say(
+    say(
         document,
         f"outcome {document['outcome']:g} of {document['policy']} {status}; "
         f"{document['user']} is most likely {likely} ({document['belief'][likely]:.3g})",
@@ -275,7 +274,6 @@ def report(
     It compares with the control group, with the best single policy and with the incumbent.
     """
     from lifelore.agent.personalise.study_report import report as reported
-    from lifelore.app.console import print_json
 
     with _opened(name, where) as (memory, study):
         document = reported(memory, study, out, log, incumbent=incumbent, split=split, by=by)
@@ -303,7 +301,7 @@ def retire(
 
     with _opened(name, where) as (memory, study):
         study = retired(memory, study, policy)
-    _say({"policy": policy, "state": study.states[policy]}, f"{policy} is retired", as_json)
+    say({"policy": policy, "state": study.states[policy]}, f"{policy} is retired", as_json)
 
 
 @reuse.command()
@@ -323,7 +321,7 @@ def add(
         study = added(memory, study, policy)
     state = study.states[policy]
     use = "in use again" if state == "active" else "given to the control group until a fit has outcomes of it"
-    _say({"policy": policy, "state": state}, f"{policy} is {use}", as_json)
+    say({"policy": policy, "state": state}, f"{policy} is {use}", as_json)
 
 
 @reuse.command()
@@ -338,7 +336,7 @@ def forget(
 
     with _opened(name, where) as (memory, study):
         count = forgot(memory, study, user)
-    _say(
+    say(
         {"user": user, "forgotten": count},
         f"{user} and {count} decisions and lines of the past forgotten",
         as_json,
@@ -369,7 +367,7 @@ def studies(
             memory.studies.delete(delete)
         listed = study_states(memory)
     lines = [f"{name} ({state})" for name, state in sorted(listed.items())]
-    _say({"studies": listed}, "\n".join(lines) or "no study; begin with 'lifelore reuse fit'", as_json)
+    say({"studies": listed}, "\n".join(lines) or "no study; begin with 'lifelore reuse fit'", as_json)
 
 
 @contextmanager
@@ -391,12 +389,6 @@ def _change(given: str) -> Any:
         return float(given)
     except ValueError:
         raise InputError(f"--change must be a probability or 'learnt', got {given!r}") from None
-
-
-def _say(document: dict[str, Any], line: str, as_json: bool) -> None:
-    from lifelore.app.console import print_json
-
-    print_json(document) if as_json else print(line)
 
 
 def _print_fit(document: dict[str, Any]) -> None:

@@ -4,7 +4,8 @@ from typing import Annotated, Any
 
 import typer
 
-from lifelore.app.reuse_command import AsJson, Option, Seed, Where, reads_logs
+from lifelore.app.options import AsJson, Where
+from lifelore.app.reuse_command import Option, Seed, reads_logs
 
 Logs = Annotated[
     list[str], typer.Argument(metavar="LOG.csv…", help="Logs with columns user,policy,outcome,probability[,…].")

@@ -313,10 +313,6 @@ class StudyRows:
         )
         self._conn.execute_many(statement, [(self._study, *line[:5], int(line.fitted)) for line in sorted(lines)])
 
-    def n_past(self) -> int:
-        """Number of lines of the past."""
-        return int(self._conn.value("SELECT COUNT(*) FROM lifelore_study_past WHERE study = ?", (self._study,)))
-
     def known_past(self, ids: Sequence[bytes]) -> set[bytes]:
         """Which of these identities are in the past."""
         query = "SELECT id FROM lifelore_study_past WHERE study = ? AND id IN ({many})"
