@@ -28,6 +28,7 @@ from lifelore.app.service.error_documents import (
     without_places,
 )
 from lifelore.app.service.service_state import Service
+from lifelore.app.service.writer import PART
 from lifelore.core.errors import InputError, LifeloreError
 
 LARGEST_BATCH = 100_000
@@ -60,6 +61,10 @@ class OutcomeRequest(msgspec.Struct, forbid_unknown_fields=True):
 
     decision: Annotated[str, Meta(description="Identifier of the decision.")]
     outcome: Annotated[float, Meta(description="Outcome; larger is better.", examples=[7.5])]
+
+    def row(self) -> tuple[str, float]:
+        """The outcome as `observe` takes it."""
+        return self.decision, self.outcome
 
 
 class Decisions(msgspec.Struct, forbid_unknown_fields=True):
@@ -160,7 +165,7 @@ class HotRoute(NamedTuple):
 
 def hot_routes(service: Service) -> list[HotRoute]:
     """The routes of decisions and outcomes."""
-    writer = service.writer
+    writer, encode = service.writer, msgspec.json.Encoder().encode
 
     async def decide(study: str, document: DecisionRequest) -> Any:
         (answer,) = await writer.decide(study, [document.row()])
@@ -173,20 +178,25 @@ def hot_routes(service: Service) -> list[HotRoute]:
         return answer
 
     async def observe(study: str, document: OutcomeRequest) -> Any:
-        (answer,) = await writer.observe(study, [(document.decision, document.outcome)])
+        (answer,) = await writer.observe(study, [document.row()])
         if isinstance(answer, LifeloreError):
             raise answer
         return answer
 
     async def decide_many(study: str, document: Decisions) -> Any:
-        return items(await writer.decide(study, [item.row() for item in document.items], brief=True))
+        return await in_parts(writer.decide, study, document.items, DecisionRequest.row)
 
     async def observe_many(study: str, document: Outcomes) -> Any:
-        rows = [(item.decision, item.outcome) for item in document.items]
-        return items(await writer.observe(study, rows, brief=True))
+        return await in_parts(writer.observe, study, document.items, OutcomeRequest.row)
 
-    def items(answers: list[Any]) -> dict[str, Any]:
-        return {"items": [refused(one) if isinstance(one, LifeloreError) else one for one in answers]}
+    async def in_parts(store: Any, study: str, items: Sequence[Any], row: Callable[[Any], Any]) -> msgspec.Raw:
+        """The answers of a batch, read, stored and encoded a part at a time: other requests get their turns."""
+        parts = []
+        for at in range(0, len(items), PART):
+            answers = await store(study, [row(item) for item in items[at : at + PART]], brief=True)
+            listed = [refused(one) if isinstance(one, LifeloreError) else one for one in answers]
+            parts.append(encode(listed)[1:-1])
+        return msgspec.Raw(b'{"items":[' + b",".join(parts) + b"]}")
 
     def refused(error: LifeloreError) -> dict[str, Any]:
         message = without_places(str(error), service.memory.location)
