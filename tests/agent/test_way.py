@@ -287,5 +287,5 @@ def test_poses_as_csv(tmp_path):
         assert list(csv.reader(file)) == [
             ["x", "y", "heading"], ["1.0000", "2.0000", "-0.5000"], ["3.2500", "4.0000", "-0.5000"]
         ]  # fmt: skip
-    with pytest.raises(StoreError, match="csv: cannot write"):
+    with pytest.raises(StoreError, match="csv cannot be written"):
         write_poses(tmp_path / "no" / "way.csv", np.empty((0, 3)))

@@ -66,7 +66,7 @@ def test_what_runs_of_a_robot_taught_is_enough(ask, maps):
         (("new.yaml", "--old", "old.yaml", "--goals", "no.csv"), "goals: cannot read no.csv"),
         (
             ("new.yaml", "--old", "old.yaml", "--goals", "jobs.csv", "--out", "no/j.csv"),
-            "out: cannot write no/j.csv",
+            "out cannot be written to no/j.csv",
         ),
         (("new.yaml", "--old", "old.yaml", "--memory", "a.db"), "old and memory exclude each other"),
         (("new.yaml", "--memory", "none.db"), "does not exist"),

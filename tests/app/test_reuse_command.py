@@ -279,7 +279,7 @@ def test_bad_logs_keep_what_was_there(text, reuse, lived, tmp_path):
         (["choose", "--user", "ann", "--features", "age=3"], "was fitted without --features"),
         (["choose", "--user", "ann", "--features", "age"], "features must be NAME=NUMBER"),
         (["fit", "{log}", "--features", "age"], "it has no age"),
-        (["report", "--out", "{log}"], "cannot write"),
+        (["report", "--out", "{log}"], "the file cannot be written to"),
         (["report", "--name", "none"], "no study 'none'"),
         (["retire", "none"], "no policy 'none'; there are big, dark"),
         (["add", "big"], "'big' is there already (active)"),

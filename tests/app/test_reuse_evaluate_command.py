@@ -20,7 +20,7 @@ def log(tmp_path):
     return path
 
 
-COLUMNS = ("--columns", "user=visitor,policy=banner,outcome=clicked", "--probability", "propensity")
+COLUMNS = ("--columns", "user=visitor,policy=banner,outcome=clicked,probability=propensity")
 ESTIMATE = r"-?[\d.e-]+ \(-?[\d.e-]+ to -?[\d.e-]+\)"
 
 

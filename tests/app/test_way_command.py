@@ -65,7 +65,7 @@ def test_the_way_as_json_and_csv(ask, lived):
         (("--from", "dock", "--to", "0.05,1"), "the nearest free place is"),
         (("--from", "1,2,3", "--to", "lab"), "from must be X,Y"),
         (("--from", "dock", "--to", "lab", "--cell", "1"), "knows no moves of this building"),
-        (("--from", "dock", "--to", "lab", "--csv", "no/where.csv"), "csv: cannot write no/where.csv"),
+        (("--from", "dock", "--to", "lab", "--csv", "no/where.csv"), "csv cannot be written to no/where.csv"),
         (("--from", "dock", "--to", "lab", "--at", "08:30"), "at must be a date and time by the robot's clock"),
         (("--from", "dock", "--to", "lab", "--at", "2024-05-13T08:30Z"), "at must be a date and time by"),
         (("--from", "dock", "--to", "lab", "--footprint", "[[1,2]]"), "footprint must be three or more corners"),

@@ -62,7 +62,7 @@ def test_a_rich_figure_is_made_to_fit(limit, width, tmp_path, monkeypatch):
 
 def test_what_cannot_fit_or_be_written_is_one_line(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("", encoding="utf-8")
-    with pytest.raises(StoreError, match=r"cannot write .*; choose another place"):
+    with pytest.raises(StoreError, match=r"the picture cannot be written to .*; choose another place"):
         save_figure(plain_figure(), tmp_path / "file" / "figure.png")
     monkeypatch.setattr(style, "MAX_BYTES", 100)
     with pytest.raises(StoreError, match="exceeds 100 bytes"):

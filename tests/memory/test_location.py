@@ -29,6 +29,11 @@ def test_urls_are_taken_apart_and_hide_the_password(scheme):
     assert "s3cr" not in repr(server)
 
 
+def test_a_database_without_a_file_is_refused():
+    with pytest.raises(InputError, match=r"memory must be stored, got ':memory:'; name a file"):
+        locate(":memory:")
+
+
 @pytest.mark.parametrize(
     ("url", "options"),
     [

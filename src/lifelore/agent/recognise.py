@@ -18,7 +18,8 @@ from lifelore.agent.live.buildings.recognition import (
 )
 from lifelore.agent.live.goals.destinations import Destination, NamedPlaces, Point
 from lifelore.agent.live.goals.job_list import named_points, read_jobs
-from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.core.atomic_write import refused_writes
+from lifelore.core.errors import InputError, NotFoundError
 from lifelore.domains.buildings.floor import Floor, floor_of
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, read_occupancy_map
 from lifelore.domains.buildings.registration import Pose, inverse, moved
@@ -97,11 +98,8 @@ class Recognition:
                 header, *jobs = [row for row in csv.reader(file) if any(field.strip() for field in row)]
             column = {name.strip().lower(): at for at, name in enumerate(header)}
             rows = [header, *(self._in_new_frame(row, column) for row in jobs)]
-        try:
-            with Path(path).open("w", newline="", encoding="utf-8") as file:
-                csv.writer(file, lineterminator="\n").writerows(rows)
-        except OSError as error:
-            raise StoreError(f"out: cannot write {path}: {error.strerror}; choose another file") from None
+        with refused_writes(path, "out"), Path(path).open("w", newline="", encoding="utf-8") as file:
+            csv.writer(file, lineterminator="\n").writerows(rows)
 
     def _in_new_frame(self, row: list[str], column: dict[str, int]) -> list[str]:
         if "x" not in column or not row[column["x"]].strip():

@@ -14,7 +14,8 @@ from lifelore.agent.live.buildings.recognition import recognised_place
 from lifelore.agent.live.buildings.remembered_moves import RememberedMoves
 from lifelore.agent.live.goals.destinations import Destination, NamedPlaces
 from lifelore.agent.travel import Travel
-from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.core.atomic_write import refused_writes
+from lifelore.core.errors import InputError, NotFoundError
 from lifelore.domains.buildings.clear_path import clear_path
 from lifelore.domains.buildings.floor import Floor, floor_of
 from lifelore.domains.buildings.footprint import Footprint, footprint_path
@@ -249,10 +250,7 @@ def write_poses(path: str | Path, poses: NDArray[np.float64]) -> None:
     StoreError
         The file cannot be written.
     """
-    try:
-        with Path(path).open("w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(["x", "y", "heading"])
-            writer.writerows([f"{value:.4f}" for value in pose] for pose in poses.tolist())
-    except OSError as error:
-        raise StoreError(f"csv: cannot write {path}: {error.strerror}; choose another file") from None
+    with refused_writes(path, "csv"), Path(path).open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["x", "y", "heading"])
+        writer.writerows([f"{value:.4f}" for value in pose] for pose in poses.tolist())

@@ -22,6 +22,11 @@ def print_json(document: Any) -> None:
     print(json.dumps(document, indent=2, allow_nan=False))
 
 
+def say(document: Any, line: str, as_json: bool) -> None:
+    """Print a result as its JSON document, or as a line for people."""
+    print_json(document) if as_json else print(line)
+
+
 def print_json_line(document: Any) -> None:
     """Print a JSON document as one line of stdout and flush it, for readers of a stream."""
     print(json.dumps(document, allow_nan=False), flush=True)

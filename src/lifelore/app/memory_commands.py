@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from lifelore.app.console import print_json, say
 from lifelore.app.options import AsJson, Building, Cell, RobotRadius, Where
 
 if TYPE_CHECKING:
@@ -18,7 +19,6 @@ memory = typer.Typer(
 @memory.command()
 def show(where: Where = None, as_json: AsJson = False) -> None:
     """List robots, the buildings that they know, and records."""
-    from lifelore.app.console import print_json
     from lifelore.app.memory_table import print_memory
     from lifelore.memory import open_memory
 
@@ -42,7 +42,7 @@ def export(
 
     with open_memory(where, create=False) as opened:
         count = opened.export_to(path)
-    _say({"exported": count, "file": path}, f"{count} contributions written to {path}", as_json)
+    say({"exported": count, "file": path}, f"{count} contributions written to {path}", as_json)
 
 
 @memory.command()
@@ -64,7 +64,7 @@ def nav2(
 
     settings = WorldSettings("building", map, cell=cell, robot_radius=robot_radius)
     written = write_known_building(out, settings, where, building)
-    _say({"out": out, "files": written}, f"{len(written)} files written to {out}", as_json)
+    say({"out": out, "files": written}, f"{len(written)} files written to {out}", as_json)
 
 
 @memory.command("import")
@@ -122,14 +122,14 @@ def forget(
     with open_memory(where, create=False) as opened:
         if building is not None:
             done = forget_building(opened, building)
-            _say(done, f"building {building} forgotten: {done['records']} records", as_json)
+            say(done, f"building {building} forgotten: {done['records']} records", as_json)
             return
         if source is not None:
             count = forget_source(opened, source, robot)
-            _say({"forgotten": count, "source": source}, f"{count} runs of {source} forgotten", as_json)
+            say({"forgotten": count, "source": source}, f"{count} runs of {source} forgotten", as_json)
             return
         count = opened.forget(str(robot))
-    _say({"forgotten": count, "robot": robot}, f"{count} contributions of {robot} forgotten", as_json)
+    say({"forgotten": count, "robot": robot}, f"{count} contributions of {robot} forgotten", as_json)
 
 
 def _buildings(opened: "Memory") -> list[dict]:
@@ -151,10 +151,4 @@ def _merge(others: list[str], where: str | None, as_json: bool) -> None:
         counts_text += f", from {len(others)} memories"
         named = zip(others, each, strict=True)
         document["sources"] = [{"source": describe(locate(other))} | counts for other, counts in named]
-    _say(document, f"contributions: {counts_text}", as_json)
-
-
-def _say(document: dict, line: str, as_json: bool) -> None:
-    from lifelore.app.console import print_json
-
-    print_json(document) if as_json else print(line)
+    say(document, f"contributions: {counts_text}", as_json)

@@ -1,10 +1,16 @@
 """`lifelore reuse …`: choose a policy for each user, from a log of choices and outcomes."""
 
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import wraps
+from inspect import signature
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+from lifelore.app.console import print_json, say
+from lifelore.app.options import AsJson, Where
 
 if TYPE_CHECKING:
     from lifelore.agent.personalise.log.log_format import LogFormat
@@ -18,51 +24,85 @@ reuse = typer.Typer(
 
 Option = typer.Option
 Name = Annotated[str, Option(help="Name of the study.")]
-Where = Annotated[str | None, Option("--memory", metavar="FILE|URL", help="Memory; default: your own.")]
 Seed = Annotated[int, Option(help="Draws all random numbers.")]
 Unused = Annotated[int, Option("--seed", help="Without effect: this verb draws no random numbers.")]
-AsJson = Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")]
 
 
 Logs = Annotated[
     list[str], typer.Argument(metavar="LOG.csv…", help="Logs with columns user,policy,outcome[,type,context].")
 ]
-Columns = Annotated[
-    list[str] | None,
-    Option(
-        metavar="OURS=THEIRS,…", help="Names of the log's columns, such as user=household,policy=brand,weight=ipw."
-    ),
-]
-Separator = Annotated[
-    str | None, Option(help="Between columns: comma, semicolon or tab; default: the one in the header.")
-]
-DecimalComma = Annotated[bool, Option("--decimal-comma", help="Outcomes have a comma before their decimals.")]
-Encoding = Annotated[str, Option(help="Encoding of the logs, such as latin-1.")]
-Missing = Annotated[
-    list[str] | None,
-    Option(metavar="WORD", help="Word that means a missing value, beside the empty field; may be repeated."),
-]
-MissingOutcome = Annotated[
-    str,
-    Option(
-        metavar="leave-out|refuse|NUMBER", help="Leave lines without an outcome out, refuse them, or use NUMBER."
-    ),
-]
-MissingPolicy = Annotated[
-    str,
-    Option(
-        metavar="refuse|leave-out|NAME", help="Refuse lines without a policy, leave them out, or use policy NAME."
-    ),
-]
 
 
-Features = Annotated[
-    list[str] | None,
-    Option(metavar="NAME,…", help="Columns of numbers that are known of a user beforehand, such as age,visits."),
-]
+def _log_options(
+    columns: Annotated[
+        list[str] | None,
+        Option(
+            metavar="OURS=THEIRS,…",
+            help="Names of the log's columns, such as user=household,policy=brand,weight=ipw.",
+        ),
+    ] = None,
+    separator: Annotated[
+        str | None, Option(help="Between columns: comma, semicolon or tab; default: the one in the header.")
+    ] = None,
+    decimal_comma: Annotated[
+        bool, Option("--decimal-comma", help="Outcomes have a comma before their decimals.")
+    ] = False,
+    encoding: Annotated[str, Option(help="Encoding of the logs, such as latin-1.")] = "utf-8",
+    missing: Annotated[
+        list[str] | None,
+        Option(metavar="WORD", help="Word that means a missing value, beside the empty field; may be repeated."),
+    ] = None,
+    missing_outcome: Annotated[
+        str,
+        Option(
+            metavar="leave-out|refuse|NUMBER",
+            help="Leave lines without an outcome out, refuse them, or use NUMBER.",
+        ),
+    ] = "leave-out",
+    missing_policy: Annotated[
+        str,
+        Option(
+            metavar="refuse|leave-out|NAME",
+            help="Refuse lines without a policy, leave them out, or use policy NAME.",
+        ),
+    ] = "refuse",
+    features: Annotated[
+        list[str] | None,
+        Option(
+            metavar="NAME,…", help="Columns of numbers that are known of a user beforehand, such as age,visits."
+        ),
+    ] = None,
+) -> "LogFormat":
+    """The format that the options of a log make."""
+    from lifelore.agent.personalise.log.log_format import LogFormat, parse_columns
+
+    columns_of_numbers = tuple(name.strip() for word in features or () for name in word.split(","))
+    return LogFormat(
+        parse_columns(columns or []), separator, decimal_comma, encoding, tuple(missing or ()), missing_outcome,
+        missing_policy, features=columns_of_numbers,
+    )  # fmt: skip
+
+
+def reads_logs(verb: Callable[..., None]) -> Callable[..., None]:
+    """The verb with the options of a log in place of its parameter `form`, which gets their format."""
+    options = signature(_log_options).parameters
+
+    @wraps(verb)
+    def reading(**given: Any) -> None:
+        form = _log_options(**{name: given.pop(name) for name in options})
+        verb(**given, form=form)
+
+    own = signature(verb)
+    parts = [
+        part for one in own.parameters.values() for part in (options.values() if one.name == "form" else [one])
+    ]
+    reading.__signature__ = own.replace(parameters=parts)  # pyright: ignore[reportAttributeAccessIssue]
+    reading.__annotations__ = {part.name: part.annotation for part in parts}
+    return reading
 
 
 @reuse.command()
+@reads_logs
 def fit(
     logs: Logs,
     name: Name = "default",
@@ -91,14 +131,7 @@ def fit(
         str,
         Option(help="thesis: the rule as printed [expected-improvement], plug-in models, and types that stay."),
     ] = "standard",
-    columns: Columns = None,
-    separator: Separator = None,
-    decimal_comma: DecimalComma = False,
-    encoding: Encoding = "utf-8",
-    missing: Missing = None,
-    missing_outcome: MissingOutcome = "leave-out",
-    missing_policy: MissingPolicy = "refuse",
-    features: Features = None,
+    form: Any = None,
     where: Where = None,
     seed: Seed = 0,
     as_json: AsJson = False,
@@ -109,7 +142,6 @@ def fit(
     """
     from lifelore.agent.personalise.fitting.fit import FitSettings
     from lifelore.agent.personalise.fitting.fit import fit as fitted
-    from lifelore.app.console import print_json
     from lifelore.core.errors import InputError
     from lifelore.interaction.selection import DEFAULT_RULE
     from lifelore.memory import open_memory
@@ -120,25 +152,16 @@ def fit(
         rule, change, models = rule or "expected-improvement", "0", "plug-in"
     chosen = rule or DEFAULT_RULE, explore, _change(change), models
     settings = FitSettings(name, model, types, control, incumbent, *chosen, seed, variant)
-    form = log_format(
-        columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features
-    )
     with open_memory(where, durable=True) as memory:
         document = fitted(logs, memory, settings, form)
     print_json(document) if as_json else _print_fit(document)
 
 
 @reuse.command()
+@reads_logs
 def warm(
     logs: Logs,
-    columns: Columns = None,
-    separator: Separator = None,
-    decimal_comma: DecimalComma = False,
-    encoding: Encoding = "utf-8",
-    missing: Missing = None,
-    missing_outcome: MissingOutcome = "leave-out",
-    missing_policy: MissingPolicy = "refuse",
-    features: Features = None,
+    form: Any = None,
     name: Name = "default",
     where: Where = None,
     seed: Unused = 0,
@@ -150,11 +173,7 @@ def warm(
     again changes nothing.
     """
     from lifelore.agent.personalise.past import warm as warmed
-    from lifelore.app.console import print_json
 
-    form = log_format(
-        columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features
-    )
     with _opened(name, where) as (memory, study):
         document = warmed(logs, memory, study, form)
     print_json(document) if as_json else _print_warm(document)
@@ -194,7 +213,7 @@ def choose(
     held = ", control group" if document["control"] else ""
     unknown = f"\nno known type fits: probability {document['novelty']:.3g}" if novelty else ""
     new = f"\ncontext {context} is not in the logs: the prior of all users is used"
-    _say(
+    say(
         document,
         f"{document['policy']}\ndecision {document['decision']} (probability {document['probability']:.3g}{held})"
         + (new if context not in (None, document["context"]) and not document["features"] else "")
@@ -221,7 +240,7 @@ def update(
         document = updated(memory, study, decision, value)
     likely = max(document["belief"], key=document["belief"].get)
     status = "stored" if document["taken"] else "was stored already, nothing changed"
-    _say(
+    say(
         document,
         f"outcome {document['outcome']:g} of {document['policy']} {status}; "
         f"{document['user']} is most likely {likely} ({document['belief'][likely]:.3g})",
@@ -242,6 +261,9 @@ def report(
             metavar="user|time|both", help="Count only users that the fit did not know, later decisions, or both."
         ),
     ] = None,
+    by: Annotated[
+        str | None, Option(metavar="day|week", help="Also compare in each day or week of decisions (UTC).")
+    ] = None,
     name: Name = "default",
     where: Where = None,
     seed: Unused = 0,
@@ -252,10 +274,9 @@ def report(
     It compares with the control group, with the best single policy and with the incumbent.
     """
     from lifelore.agent.personalise.study_report import report as reported
-    from lifelore.app.console import print_json
 
     with _opened(name, where) as (memory, study):
-        document = reported(memory, study, out, log, incumbent=incumbent, split=split)
+        document = reported(memory, study, out, log, incumbent=incumbent, split=split, by=by)
     if as_json:
         print_json(document)
         return
@@ -280,7 +301,7 @@ def retire(
 
     with _opened(name, where) as (memory, study):
         study = retired(memory, study, policy)
-    _say({"policy": policy, "state": study.states[policy]}, f"{policy} is retired", as_json)
+    say({"policy": policy, "state": study.states[policy]}, f"{policy} is retired", as_json)
 
 
 @reuse.command()
@@ -300,7 +321,7 @@ def add(
         study = added(memory, study, policy)
     state = study.states[policy]
     use = "in use again" if state == "active" else "given to the control group until a fit has outcomes of it"
-    _say({"policy": policy, "state": state}, f"{policy} is {use}", as_json)
+    say({"policy": policy, "state": state}, f"{policy} is {use}", as_json)
 
 
 @reuse.command()
@@ -315,7 +336,7 @@ def forget(
 
     with _opened(name, where) as (memory, study):
         count = forgot(memory, study, user)
-    _say(
+    say(
         {"user": user, "forgotten": count},
         f"{user} and {count} decisions and lines of the past forgotten",
         as_json,
@@ -346,7 +367,7 @@ def studies(
             memory.studies.delete(delete)
         listed = study_states(memory)
     lines = [f"{name} ({state})" for name, state in sorted(listed.items())]
-    _say({"studies": listed}, "\n".join(lines) or "no study; begin with 'lifelore reuse fit'", as_json)
+    say({"studies": listed}, "\n".join(lines) or "no study; begin with 'lifelore reuse fit'", as_json)
 
 
 @reuse.command()
@@ -404,26 +425,6 @@ def _opened(name: str, where: str | None) -> "Iterator[tuple[Memory, Study]]":
         yield memory, open_study(memory, name)
 
 
-def log_format(
-    columns: list[str] | None,
-    separator: str | None,
-    decimal_comma: bool,
-    encoding: str,
-    missing: list[str] | None,
-    missing_outcome: str,
-    missing_policy: str,
-    features: list[str] | None,
-) -> "LogFormat":
-    from lifelore.agent.personalise.log.log_format import LogFormat, parse_columns
-
-    names = parse_columns(columns or [])
-    columns_of_numbers = tuple(name.strip() for word in features or () for name in word.split(","))
-    return LogFormat(
-        names, separator, decimal_comma, encoding, tuple(missing or ()), missing_outcome, missing_policy,
-        features=columns_of_numbers,
-    )  # fmt: skip
-
-
 def _change(given: str) -> Any:
     """A probability, or the word for dynamics that are learnt."""
     from lifelore.core.errors import InputError
@@ -441,12 +442,6 @@ def _number_or_name(given: str) -> float | str:
         return float(given)
     except ValueError:
         return given
-
-
-def _say(document: dict[str, Any], line: str, as_json: bool) -> None:
-    from lifelore.app.console import print_json
-
-    print_json(document) if as_json else print(line)
 
 
 def _print_fit(document: dict[str, Any]) -> None:
@@ -554,6 +549,9 @@ def _print_report(document: dict[str, Any]) -> None:
     for row in sorted(rows, key=lambda row: -row["outcome"]["value"]):
         retired = "" if row["state"] == "active" else f" ({row['state']})"
         print(f"    {row['name']:{width}}  {_estimate(row['outcome'])}{retired}")
+    for period in document["by_time"] or ():
+        day = time.strftime("%Y-%m-%d", time.gmtime(period["time"]))
+        print(f"  from {day}: {period['decisions']} decisions, uplift {_estimate(period['uplift'])}")
 
 
 def _estimate(estimate: dict[str, Any] | None) -> str:

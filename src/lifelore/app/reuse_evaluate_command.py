@@ -4,27 +4,15 @@ from typing import Annotated, Any
 
 import typer
 
-from lifelore.app.reuse_command import (
-    AsJson,
-    Columns,
-    DecimalComma,
-    Encoding,
-    Features,
-    Missing,
-    MissingOutcome,
-    MissingPolicy,
-    Option,
-    Seed,
-    Separator,
-    Where,
-    log_format,
-)
+from lifelore.app.options import AsJson, Where
+from lifelore.app.reuse_command import Option, Seed, reads_logs
 
 Logs = Annotated[
     list[str], typer.Argument(metavar="LOG.csv…", help="Logs with columns user,policy,outcome,probability[,…].")
 ]
 
 
+@reads_logs
 def evaluate(
     logs: Logs,
     policy: Annotated[
@@ -66,20 +54,10 @@ def evaluate(
             "alternative."
         ),
     ] = None,
-    probability: Annotated[
-        str | None, Option(metavar="COLUMN", help="Name of the log's column of probabilities.")
-    ] = None,
     out: Annotated[
         str | None, Option(metavar="FOLDER", help="Folder for evaluation.json and evaluation.png.")
     ] = None,
-    columns: Columns = None,
-    separator: Separator = None,
-    decimal_comma: DecimalComma = False,
-    encoding: Encoding = "utf-8",
-    missing: Missing = None,
-    missing_outcome: MissingOutcome = "leave-out",
-    missing_policy: MissingPolicy = "refuse",
-    features: Features = None,
+    form: Any = None,
     where: Where = None,
     seed: Seed = 0,
     as_json: AsJson = False,
@@ -101,10 +79,6 @@ def evaluate(
         raise NotFoundError(f"estimator must be one of {', '.join(ESTIMATORS)}, all, got '{estimator}'")
     policies, tables, rules = (tuple(names or ()) for names in (policy, target, rule))
     settings = EvaluateSettings(policies, tables, rules, study, first, model, types, explore, group, seed)
-    named = [*(columns or ()), *([f"probability={probability}"] if probability else [])]
-    form = log_format(
-        named, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features
-    )
     with open_memory(where, create=False) if study is not None else nullcontext() as memory:
         document = evaluated(logs, settings, form, memory, out=out)
     if as_json:

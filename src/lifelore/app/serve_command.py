@@ -6,6 +6,8 @@ from typing import Annotated
 
 import typer
 
+from lifelore.app.options import AsJson
+
 Option = typer.Option
 STDIN = 0
 """Descriptor of standard input."""
@@ -51,7 +53,7 @@ def serve(
     access_log: Annotated[
         bool, Option("--access-log", help="Log answered requests too, not errors alone.")
     ] = False,
-    as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Answer over HTTP, and show pages in a browser.
 

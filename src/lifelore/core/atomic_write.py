@@ -10,35 +10,45 @@ from lifelore.core.errors import InputError, StoreError
 
 
 @contextmanager
-def atomic_write(path: str | Path) -> Iterator[BinaryIO]:
+def atomic_write(path: str | Path, what: str = "the file") -> Iterator[BinaryIO]:
     """Open a file that replaces `path` when the block ends without an error; otherwise `path` stays as it was.
 
     A link is followed. The folder must exist.
 
     Raises
     ------
-    OSError
-        The disk refuses.
+    StoreError
+        The disk refuses; see `refused_writes`.
     """
     place = Path(os.path.realpath(path))
     partial = place.with_name(f"{place.name}.{os.getpid()}.part")
+    with refused_writes(path, what):
+        try:
+            with partial.open("wb") as file:
+                yield file
+            os.replace(partial, place)
+        except BaseException:
+            with suppress(OSError):
+                partial.unlink(missing_ok=True)
+            raise
+
+
+@contextmanager
+def refused_writes(path: str | Path, what: str = "the file") -> Iterator[None]:
+    """Turn an error of the disk inside the block into a StoreError of one line, which names `what` is written."""
     try:
-        with partial.open("wb") as file:
-            yield file
-        os.replace(partial, place)
-    except BaseException:
-        with suppress(OSError):
-            partial.unlink(missing_ok=True)
+        yield
+    except StoreError:
         raise
+    except OSError as error:
+        reason = error.strerror or error
+        raise StoreError(f"{what} cannot be written to {path}: {reason}; choose another place") from None
 
 
 def write_file(path: str | Path, content: bytes, what: str) -> None:
     """Write a file at once; StoreError, which names `what` is in it, where the disk refuses."""
-    try:
-        with atomic_write(path) as file:
-            file.write(content)
-    except OSError as error:
-        raise StoreError(f"{what} cannot be written to {path}: {error.strerror}") from None
+    with atomic_write(path, what) as file:
+        file.write(content)
 
 
 def read_file(path: str | Path, what: str) -> bytes:

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from lifelore.core.atomic_write import atomic_write
+from lifelore.core.atomic_write import refused_writes, write_file
 from lifelore.core.errors import NotFoundError, StoreError
 
 if TYPE_CHECKING:
@@ -163,12 +163,9 @@ def save_figure(figure: Figure, path: str | Path) -> Path:
     """
     path = Path(path)
     image = _small_enough(figure, path)
-    try:
+    with refused_writes(path, "the picture"):
         path.parent.mkdir(parents=True, exist_ok=True)
-        with atomic_write(path) as file:
-            file.write(image)
-    except OSError as error:
-        raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None
+        write_file(path, image, "the picture")
     return path
 
 

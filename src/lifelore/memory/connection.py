@@ -5,7 +5,7 @@ The drivers are used directly: a library above them would need most of the time 
 
 import re
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache
 from typing import Any
@@ -73,13 +73,44 @@ class Connection:
     def insert(self, table: str, columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
         """Insert new rows; PostgreSQL copies them."""
         if self.is_sqlite:
-            places = ", ".join("?" * len(columns))
-            self.execute_many(f"INSERT INTO {table} ({', '.join(columns)}) VALUES ({places})", rows)
+            self._insert_values(table, columns, rows, "")
             return
         self.statements += 1
         with self._driver.cursor().copy(f"COPY {table} ({', '.join(columns)}) FROM STDIN") as copy:
             for row in rows:
                 copy.write_row(row)
+
+    def insert_unless_there(
+        self, table: str, types: Mapping[str, str], rows: Sequence[Sequence[Any]], key: str, returning: str
+    ) -> list[tuple[Any, ...]]:
+        """Insert those of the rows whose `key` is new; columns of the inserted rows.
+
+        Parameters
+        ----------
+        types : mapping of str to str
+            Names of the columns, and their types on PostgreSQL.
+        key, returning : str
+            Columns with commas between.
+        """
+        also = f"ON CONFLICT ({key}) DO NOTHING RETURNING {returning}"
+        if self.is_sqlite:
+            return self._insert_values(table, list(types), rows, also)
+        statement = f"INSERT INTO {table} ({', '.join(types)}) SELECT * FROM {_unnested(types)} {also}"
+        return self.execute(statement, _columns(rows)).fetchall()
+
+    def _insert_values(
+        self, table: str, columns: Sequence[str], rows: Sequence[Sequence[Any]], also: str
+    ) -> list[tuple[Any, ...]]:
+        """Insert rows by statements of many, for SQLite; all that they return."""
+        found: list[tuple[Any, ...]] = []
+        places, step = f"({', '.join('?' * len(columns))})", MANY // len(columns)
+        for at in range(0, len(rows), step):
+            part = rows[at : at + step]
+            statement = (
+                f"INSERT INTO {table} ({', '.join(columns)}) VALUES {', '.join([places] * len(part))} {also}"
+            )
+            found += self.execute(statement, [value for row in part for value in row]).fetchall()
+        return found
 
     def change(
         self, table: str, setting: str, where: str, types: Mapping[str, str], rows: Sequence[Sequence[Any]]
@@ -100,12 +131,11 @@ class Connection:
             self._driver.executemany(statement, [dict(zip(types, row, strict=True)) for row in rows])
         elif rows:
             places = {name: f"v.new_{name}" for name in types}
-            arrays = ", ".join(f"CAST(? AS {kind}[])" for kind in types.values())
-            given = f"unnest({arrays}) AS v({', '.join(f'new_{name}' for name in types)})"
+            given = f"{_unnested(types)} AS v({', '.join(f'new_{name}' for name in types)})"
             statement = (
                 f"UPDATE {table} SET {setting.format(**places)} FROM {given} WHERE {where.format(**places)}"
             )
-            self.execute(statement, [list(column) for column in zip(*rows, strict=True)])
+            self.execute(statement, _columns(rows))
 
     def stream(self, sql: str, parameters: Sequence[Any] = ()) -> Iterator[list[tuple[Any, ...]]]:
         """The rows of a statement in parts of bounded size, inside a transaction."""
@@ -144,6 +174,15 @@ class Connection:
     def close(self) -> None:
         """Close the connection; what is not committed is lost."""
         self._driver.close()
+
+
+def _unnested(types: Mapping[str, str]) -> str:
+    """The rows whose columns are given as lists, for PostgreSQL."""
+    return f"unnest({', '.join(f'CAST(? AS {kind}[])' for kind in types.values())})"
+
+
+def _columns(rows: Iterable[Sequence[Any]]) -> list[list[Any]]:
+    return [list(column) for column in zip(*rows, strict=True)]
 
 
 @cache

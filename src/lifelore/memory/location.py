@@ -39,13 +39,17 @@ def locate(where: str | Path | None) -> Path | Server:
     Raises
     ------
     InputError
-        `where` is empty, or a URL of another kind.
+        `where` is empty, SQLite's name of a database without a file, or a URL of another kind.
     """
     if where is None:
         return default_path()
     if not str(where).strip() or "\0" in str(where):
         raise InputError(
             f"memory must name a file or a postgresql:// URL, got {where!r}; leave it out for the default"
+        )
+    if str(where) == ":memory:":
+        raise InputError(
+            "memory must be stored, got ':memory:'; name a file, in a temporary folder for a short life"
         )
     if isinstance(where, str) and "://" in where:
         return _postgresql_url(where)

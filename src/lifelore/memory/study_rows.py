@@ -108,7 +108,7 @@ class StudyRows:
             " WHERE study = ? AND name IN ({many})"
         )
         found = self._conn.matching(query + self._locked(lock, "KEY SHARE"), names, (self._study,))
-        return {row[1]: _user(row) for row in found}
+        return {row[1]: _user(*row) for row in found}
 
     def numbered(self, numbers: Iterable[int], *, lock: bool = False) -> dict[int, UserRow]:
         """Users by number; with `lock` no other transaction changes them before this one ends.
@@ -121,20 +121,28 @@ class StudyRows:
         )
         how = self._locked(lock, "NO KEY UPDATE")
         found = self._conn.matching(query + how, sorted(set(numbers)), (self._study,))
-        return {row[0]: _user(row) for row in found}
+        return {row[0]: _user(*row) for row in found}
 
-    def add_users(self, users: Sequence[tuple[str, str | None, Mapping[str, float] | None]], version: int) -> None:
-        """Add users (name, context, features) before their first outcome; those that exist stay as they are."""
-        statement = (
-            "INSERT INTO lifelore_study_users (study, name, context, features, fitted, version, personal,"
-            " personal_sum, control, control_sum) VALUES (?, ?, ?, ?, 0, ?, 0, 0, 0, 0)"
-            " ON CONFLICT (study, name) DO NOTHING"
-        )
+    def add_users(
+        self, users: Sequence[tuple[str, str | None, Mapping[str, float] | None]], version: int
+    ) -> dict[str, UserRow]:
+        """Add users (name, context, features) before their first outcome; all by name, locked as by `users`.
+
+        Users whom another program has added meanwhile stay as they are.
+        """
+        types = {
+            "study": "bigint", "name": "text", "context": "text", "features": "text", "fitted": "bigint",
+            "version": "bigint", "personal": "bigint", "personal_sum": "float8", "control": "bigint",
+            "control_sum": "float8",
+        }  # fmt: skip
         rows = [
-            (self._study, name, context, _json(features), version)
+            (self._study, name, context, _json(features), 0, version, 0, 0, 0, 0)
             for name, context, features in sorted(users, key=itemgetter(0))
         ]
-        self._conn.execute_many(statement, rows)
+        added = self._conn.insert_unless_there("lifelore_study_users", types, rows, "study, name", _USER)
+        found = {row[1]: _user(*row) for row in added}
+        others = [row[1] for row in rows if row[1] not in found]
+        return found | self.users(others, lock=True) if others else found
 
     def rename(self, names: Mapping[int, str]) -> None:
         """Give users other names, by their numbers."""
@@ -211,9 +219,11 @@ class StudyRows:
     def add_decisions(self, decisions: Iterable[DecisionRow]) -> None:
         """Store new decisions, without their outcomes."""
         rows = [
-            (self._study, *one[:4], int(one.control), *one[5:8], _json(one.available), one.request)
-            for one in decisions
-        ]
+            (self._study, id_, person, policy, probability, int(control), version, time, context,
+             _json(available), request)
+            for id_, person, policy, probability, control, version, time, context, available, request, *_
+            in decisions
+        ]  # fmt: skip
         self._conn.insert("lifelore_decisions", DECISION, rows)
 
     def locked_decisions(self, ids: Sequence[bytes]) -> tuple[dict[bytes, DecisionRow], dict[int, UserRow]]:
@@ -303,10 +313,6 @@ class StudyRows:
         )
         self._conn.execute_many(statement, [(self._study, *line[:5], int(line.fitted)) for line in sorted(lines)])
 
-    def n_past(self) -> int:
-        """Number of lines of the past."""
-        return int(self._conn.value("SELECT COUNT(*) FROM lifelore_study_past WHERE study = ?", (self._study,)))
-
     def known_past(self, ids: Sequence[bytes]) -> set[bytes]:
         """Which of these identities are in the past."""
         query = "SELECT id FROM lifelore_study_past WHERE study = ? AND id IN ({many})"
@@ -323,9 +329,8 @@ class StudyRows:
         self._change_users("fitted = 1", {}, ((number,) for number in numbers))
 
 
-def _user(row: Sequence[Any]) -> UserRow:
-    user = UserRow(*row)
-    return user if user.features is None else user._replace(features=json.loads(row[3]))
+def _user(number: int, name: str, context: str | None, features: str | None, *others: Any) -> UserRow:
+    return UserRow(number, name, context, None if features is None else json.loads(features), *others)
 
 
 def _decision(row: Sequence[Any]) -> DecisionRow:

@@ -111,6 +111,25 @@ class StudyTotals:
         )
         return self._columns(query, (self._study, policy, since)[: 3 if since else 2], 1)[0]
 
+    def by_period(
+        self, first: int, step: int, *, centre: float = 0.0, strangers: bool = False, since: int = 0
+    ) -> list[tuple[Any, ...]]:
+        """A row for each period of `step` milliseconds with a decision, counted from `first`, and each group.
+
+        The columns are: number of the period, 1 for the control group, users, decisions, users with an outcome,
+        and the sum and sum of squares of the mean outcomes of these users in the period, each less `centre`.
+        Further parameters as for `by_user`.
+        """
+        period = f"(time - {int(first)}) / {int(step)}"
+        query = (
+            "SELECT period, control, COUNT(*), SUM(n), COUNT(mean), COALESCE(SUM(mean - ?), 0),"
+            " COALESCE(SUM((mean - ?) * (mean - ?)), 0)"
+            f" FROM (SELECT {period} AS period, control, COUNT(*) AS n, AVG(outcome) AS mean"
+            f" FROM lifelore_decisions WHERE study = ? AND time >= ?{self._who(strangers)}"
+            f" GROUP BY {period}, control, person) AS means GROUP BY period, control ORDER BY period, control"
+        )
+        return self._conn.execute(query, (centre, centre, centre, self._study, since)).fetchall()
+
     def _who(self, strangers: bool) -> str:
         only = " AND person IN (SELECT number FROM lifelore_study_users WHERE study = {} AND fitted = 0)"
         return only.format(int(self._study)) if strangers else ""

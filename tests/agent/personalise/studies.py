@@ -11,6 +11,7 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.memory import Memory
+from lifelore.memory.study_rows import StudyRows
 
 POLICIES = ("big", "dark", "plain")
 MEANS = np.array([[8.0, 1.0, 4.0], [1.0, 8.0, 4.0]])
@@ -41,6 +42,11 @@ def one_more(memory: Memory, study: Study, user: str, outcome: float, **known: A
     made = choose(memory, study, user, **known)
     update(memory, study, made["decision"], outcome)
     return made["policy"]
+
+
+def n_past(rows: StudyRows) -> int:
+    """Number of lines of the past."""
+    return rows._conn.value("SELECT COUNT(*) FROM lifelore_study_past WHERE study = ?", (rows._study,))
 
 
 def twin(study: Study, shown: Iterable[tuple[str, float]], prior: Any = None) -> BayesianPolicyReuse:

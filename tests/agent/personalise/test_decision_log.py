@@ -14,7 +14,7 @@ from lifelore.agent.personalise.study import open_study
 from lifelore.agent.personalise.study_report import report
 from lifelore.core.errors import InputError
 
-from .studies import POLICIES, study_of
+from .studies import POLICIES, n_past, study_of
 
 USERS = ("eva", "=1+2", "+x", "-y", "@z", 'quote "me", please', "grüße 🙂", "'plain")
 FORMULAS = "=+-@"
@@ -96,7 +96,7 @@ def test_a_fit_reads_the_names_of_a_log_as_they_were(memory, clock, tmp_path):
     assert list(again.contexts) == ["-DE"]
     with memory.studies.reading(again.number) as rows:
         assert set(rows.users(users)) == set(users)
-        assert rows.n_past() == len(users) * 6
+        assert n_past(rows) == len(users) * 6
 
 
 @pytest.mark.parametrize("limit", [1, 3, 8, 9])

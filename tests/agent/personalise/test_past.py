@@ -14,7 +14,7 @@ from lifelore.agent.personalise.study_report import report
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import open_memory
 
-from .studies import one_more, study_of, twin
+from .studies import n_past, one_more, study_of, twin
 
 HEAD = "user,policy,outcome\n"
 SETTINGS = FitSettings(model="categorical", control=0.0, types=3)
@@ -52,9 +52,9 @@ def study(memory, log):
     return open_study(memory)
 
 
-def n_past(memory, study):
+def lines_of_the_past(memory, study):
     with memory.studies.reading(study.number) as rows:
-        return rows.n_past()
+        return n_past(rows)
 
 
 def same_as_twin(memory, study, user, shown, prior=None):
@@ -143,14 +143,14 @@ def test_words_of_times(word, milliseconds):
 def test_a_new_fit_replaces_the_lines_of_fits_and_keeps_those_of_warm(memory, study, log, tmp_path):
     later = written(tmp_path / "later.csv", households(100, 3))
     warm(later, memory, study)
-    assert n_past(memory, study) == 33 * 12
+    assert lines_of_the_past(memory, study) == 33 * 12
     fit(written(tmp_path / "shorter.csv", households()[:-12]), memory, SETTINGS)
     study = open_study(memory)
-    assert n_past(memory, study) == 32 * 12
+    assert lines_of_the_past(memory, study) == 32 * 12
     same_as_twin(memory, study, "h29", [])
     same_as_twin(memory, study, "h101", of_user(households(100, 3), "h101"))
     fit([*log, *later], memory, SETTINGS)
-    assert n_past(memory, open_study(memory)) == 33 * 12
+    assert lines_of_the_past(memory, open_study(memory)) == 33 * 12
     assert warm(log, memory, open_study(memory))["rows"] == 0
 
 
@@ -209,7 +209,7 @@ def test_forgetting_takes_the_past_too(memory, study):
     same_as_twin(memory, study, "h7", [])
     one_more(memory, study, "h8", 1.0)
     assert forget(memory, study, "h8") == 13
-    assert n_past(memory, study) == 28 * 12
+    assert lines_of_the_past(memory, study) == 28 * 12
 
 
 @pytest.mark.parametrize("line", [Line("", "b0", 1.0), Line("a", "b\n0", 1.0), Line("a", "b0", 1.0, context="\t")])
@@ -217,4 +217,4 @@ def test_bad_names_are_refused_and_nothing_is_stored(line, file_memory):
     study = study_of().keep(file_memory)
     with pytest.raises(InputError, match="printable"):
         add_lines(file_memory, study, [Line("good", "big", 1.0), line])
-    assert n_past(file_memory, study) == 0
+    assert lines_of_the_past(file_memory, study) == 0

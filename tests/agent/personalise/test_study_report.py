@@ -16,6 +16,7 @@ from lifelore.agent.personalise.study_report import report
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.figures.reuse_report import draw_reuse_report
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.memory import open_memory
 
 ONE_TYPE = FitSettings(model="gaussian", control=0.0, types=1)
 
@@ -141,7 +142,7 @@ def test_nobody_yet_and_nothing_that_varies(memory, study, tmp_path):
 def test_a_place_that_cannot_be_written(memory, study, tmp_path):
     (tmp_path / "file").write_text("")
     for places in ({"out": tmp_path / "file"}, {"log": tmp_path / "none" / "log.csv"}):
-        with pytest.raises(StoreError, match=r"cannot write .*; choose another place"):
+        with pytest.raises(StoreError, match=r"cannot be written to .*; choose another place"):
             report(memory, study, **places)
 
 
@@ -254,3 +255,38 @@ def test_a_large_study_is_reported_by_a_sample(memory, study, monkeypatch):
     assert document["sample"] == 10
     assert document["calibration"]["outcomes"]["groups"] == 10
     assert document == report(memory, study)
+
+
+@pytest.mark.parametrize(("by", "starts"), [("day", [0, 1, 9]), ("week", [-1, 6])])
+def test_periods_are_each_compared_by_users_means(where, clock, by, starts):
+    """Tuesday, Wednesday and Thursday of the next week, by SciPy's test of users' means in a period."""
+    begin = 1_699_920_000  # Tuesday, 2023-11-14
+    library = PolicyLibrary.from_means([[8.0, 2.0]], 1.0, policies=["x", "y"])
+    lived: dict[int, dict[tuple[bool, str], list[float]]] = {start: {} for start in starts}
+    with open_memory(where) as memory:
+        study = Study("s", library, {"x": "active", "y": "active"}, control=0.5, change=0.0).keep(memory)
+        generator = np.random.default_rng(1)
+        for day in (0, 1, 9):
+            clock[0] = (begin + 86_400 * day + 50_000) * 10**9
+            own = lived[max(start for start in starts if start <= day)]
+            for user in [*range(14), *range(5)]:
+                outcome = 1e6 + float(generator.normal())
+                made = choose(memory, study, f"u{user}")
+                update(memory, study, made["decision"], outcome)
+                own.setdefault((made["control"], f"u{user}"), []).append(outcome)
+            choose(memory, study, "no outcome")
+        document = report(memory, study, by=by)
+        assert report(memory, study)["by_time"] is None
+        with pytest.raises(InputError, match="by must be one of day, week, got 'month'"):
+            report(memory, study, by="month")
+    assert [one["time"] for one in document["by_time"]] == [begin + 86_400 * start for start in starts]
+    assert sum(one["decisions"] for one in document["by_time"]) == 3 * 20
+    for one, own in zip(document["by_time"], lived.values(), strict=True):
+        personal, control = ([np.mean(values) for (held, _), values in own.items() if held == c] for c in (0, 1))
+        welch = stats.ttest_ind(personal, control, equal_var=False).confidence_interval()
+        assert one["users"] == 15
+        assert one["uplift"]["n"] == [len(personal), len(control)]
+        assert one["uplift"]["value"] == pytest.approx(np.mean(personal) - np.mean(control), abs=1e-8)
+        assert one["uplift"]["ci95"] == pytest.approx([welch.low, welch.high], abs=1e-6)
+        mean = stats.ttest_1samp(control, 0).confidence_interval()
+        assert one["control"]["ci95"] == pytest.approx([mean.low, mean.high], abs=1e-6)

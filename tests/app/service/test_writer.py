@@ -84,7 +84,7 @@ def test_a_refused_transaction_answers_nobody_with_success(memory, monkeypatch):
     assert memory.robots() == []
 
 
-def test_rows_that_wait_together_are_one_batch_and_long_batches_give_way(memory, monkeypatch):
+def test_rows_that_wait_together_are_one_batch_and_parts_of_a_long_one_give_way(memory, monkeypatch):
     register(memory, "s", PolicyLibrary.from_means([[1.0, 0.0], [0.0, 1.0]], 1.0))
     batches, undone = [], []
     monkeypatch.setattr(
@@ -92,10 +92,15 @@ def test_rows_that_wait_together_are_one_batch_and_long_batches_give_way(memory,
     )
     writer, gate = a_writer(memory, undone), threading.Event()
 
+    async def in_parts():
+        users = [Request(f"u{n}") for n in range(2 * PART)]
+        parts = [await writer.decide("s", users[at : at + PART], brief=True) for at in (0, PART)]
+        return parts[0] + parts[1]
+
     async def ask():
         first = asyncio.ensure_future(writer.run(gate.wait))
         await asyncio.sleep(0.05)
-        many = asyncio.ensure_future(writer.decide("s", [Request(f"u{n}") for n in range(2 * PART)], brief=True))
+        many = asyncio.ensure_future(in_parts())
         single = [asyncio.ensure_future(writer.decide("s", [Request(f"v{n}")])) for n in range(3)]
         unknown = asyncio.ensure_future(writer.decide("t", [Request("ada")]))
         await asyncio.sleep(0.05)

@@ -242,7 +242,7 @@ def test_writing_refuses_what_breaks_a_rule(tmp_path):
     with pytest.raises(InputError, match="mode must be one of"):
         write_occupancy_map(tmp_path / "a.yaml", grey, 0.1, mode="grey")
     assert not list(tmp_path.iterdir())
-    with pytest.raises(StoreError, match="cannot write the map"):
+    with pytest.raises(StoreError, match="the map cannot be written to"):
         write_occupancy_map(tmp_path / "no" / "such" / "folder.yaml", grey, 0.1)
 
 

@@ -1,13 +1,13 @@
 """Writes the files of a perceived scene: a planning problem with its domain, graph, picture, label image, log."""
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
 
-from lifelore.core.errors import InputError, StoreError
+from lifelore.core.atomic_write import refused_writes
+from lifelore.core.errors import InputError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -211,25 +211,17 @@ def write_scene_files(
     if files.masks_out is not None and labels is not None:
         _write_image(files.masks_out, labels)
     if files.log is not None and files.recorder is not None:
-        with _file_errors(files.log):
+        with refused_writes(files.log):
             files.recorder(files.log, scene, document)
 
 
 def _write_text(path: str, text: str) -> None:
-    with _file_errors(path):
+    with refused_writes(path):
         Path(path).write_text(text, encoding="utf-8")
 
 
 def _write_image(path: str, numbers: "NDArray[np.uint16]") -> None:
     from PIL import Image
 
-    with _file_errors(path):
+    with refused_writes(path):
         Image.fromarray(numbers).save(path)
-
-
-@contextmanager
-def _file_errors(path: str) -> Iterator[None]:
-    try:
-        yield
-    except OSError as error:
-        raise StoreError(f"cannot write {path}: {error.strerror}; choose another folder") from None

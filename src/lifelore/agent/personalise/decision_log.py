@@ -30,6 +30,7 @@ ROWS = 10_000
 """Decisions of a part; more need more main memory."""
 GROUPS = ("personal", "control")
 Format = Literal["csv", "ndjson"]
+_encode = json.JSONEncoder(ensure_ascii=False).encode
 
 
 def log_parts(
@@ -127,4 +128,4 @@ def _document(names: Sequence[str], line: Sequence[Any]) -> bytes:
     document = dict(zip(names, line, strict=True))
     if document["available"] is not None:
         document["available"] = json.loads(document["available"])
-    return f"{json.dumps(document, ensure_ascii=False)}\n".encode()
+    return f"{_encode(document)}\n".encode()

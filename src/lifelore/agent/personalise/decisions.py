@@ -11,8 +11,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +19,7 @@ from numpy.typing import NDArray
 from lifelore.agent.personalise.beliefs import Beliefs, learn, open_beliefs, probabilities, stored_beliefs
 from lifelore.agent.personalise.identifiers import identifier, new_ids, parse_identifier
 from lifelore.agent.personalise.policy_states import checked_available
-from lifelore.agent.personalise.study import Study, known_users, share_of
+from lifelore.agent.personalise.study import Study, known_users, shares_of
 from lifelore.core.errors import InputError, LifeloreError, NotFoundError
 from lifelore.interaction.outcomes.outcome_model import LARGEST
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
@@ -34,8 +33,7 @@ ATTEMPTS = 3
 """Number of times that a decision is tried again where another program is faster."""
 
 
-@dataclass(frozen=True, slots=True)
-class Request:
+class Request(NamedTuple):
     """A user who needs a policy now.
 
     Parameters
@@ -68,9 +66,10 @@ class Request:
     def checked(self, study: Study) -> "Request":
         """The request with checked names; `InputError` or `NotFoundError` where one breaks its rule."""
         check_name("user", self.user)
-        for name in ("context", "request"):
-            if (word := getattr(self, name)) is not None:
-                check_name(name, word)
+        if self.context is not None:
+            check_name("context", self.context)
+        if self.request is not None:
+            check_name("request", self.request)
         features, available = self.features, self.available
         if features is None and available is None:
             return self
@@ -188,7 +187,7 @@ def _again_if_raced(function: Callable[..., Any], *arguments: Any) -> Any:
 def _decided(
     memory: Memory, study: Study, requests: Sequence[Request], seed: int, brief: bool
 ) -> list[Answer | LifeloreError]:
-    answers: list[Any] = [_or_error(request.checked, study) for request in requests]
+    answers: list[Any] = [_or_error(Request.checked, request, study) for request in requests]
     good = [place for place, one in enumerate(answers) if isinstance(one, Request)]
     if not good:
         return answers
@@ -196,24 +195,28 @@ def _decided(
     with memory.studies.writing(study.number) as rows:
         users = _users(memory, rows, study, checked)
         own = [users[request.user] for request in checked]
-        keys = [(user.number, request.request) for user, request in zip(own, checked, strict=True)]
-        asked = [key for key in keys if key[1] is not None]
-        made = rows.requested(asked) if asked else {}
+        keys = {at: (own[at].number, one.request) for at, one in enumerate(checked) if one.request is not None}
+        made = rows.requested(list(keys.values())) if keys else {}
         beliefs = open_beliefs(rows, study, list(users.values()))
         if beliefs.replayed:
             rows.keep_beliefs(stored_beliefs(beliefs, beliefs.replayed), study.version)
         row = np.array([beliefs.row[user.number] for user in own], np.int64)
         probs = probabilities(study, beliefs.algorithm, row, _may(study, checked))
-        first = {key: at for at, key in reversed([*enumerate(keys)])}
-        new = [at for at, key in enumerate(keys) if key[1] is None or (key not in made and first[key] == at)]
+        first = {key: at for at, key in reversed(keys.items())}
+        new = [at for at in range(len(own)) if at not in keys or (keys[at] not in made and first[keys[at]] == at)]
         drawn = _drawn(study, [own[at] for at in new], [checked[at] for at in new], probs[new], seed)
         rows.add_decisions(drawn)
-    by_place = dict(zip(new, drawn, strict=True))
-    made |= {keys[at]: one for at, one in by_place.items() if keys[at][1] is not None}
-    described = [{}] * len(good) if brief else _described(study, own, beliefs.algorithm, row, probs)
-    for at, (place, request, about) in enumerate(zip(good, checked, described, strict=True)):
-        decision = by_place[at] if at in by_place else made[keys[at]]
-        answers[place] = _or_error(_answer, request, decision, at not in by_place, about)
+    for at, decision in zip(new, drawn, strict=True):
+        answers[good[at]] = _answer(decision, repeated=False)
+        if at in keys:
+            made[keys[at]] = decision
+    for at in keys.keys() - set(new):
+        answers[good[at]] = _or_error(_repeated, checked[at], made[keys[at]])
+    if not brief:
+        described = _described(study, own, checked, beliefs.algorithm, row, probs)
+        for place, about in zip(good, described, strict=True):
+            if isinstance(answers[place], dict):
+                answers[place] |= about
     return answers
 
 
@@ -225,8 +228,7 @@ def _users(memory: Memory, rows: StudyRows, study: Study, requests: Sequence[Req
     if len(users) < len(names):
         new = [name for name in names if name not in users]
         strangers = [given.get(name, Request(name)) for name in new]
-        rows.add_users([(one.user, one.context, one.features) for one in strangers], study.version)
-        users |= rows.users(new, lock=True)
+        users |= rows.add_users([(one.user, one.context, one.features) for one in strangers], study.version)
         if len(users) < len(names):
             raise RacedError(f"memory {memory.location}: a user was forgotten at this moment; try again")
     touched = [users[name].number for name in _changed(given, users)]
@@ -266,26 +268,40 @@ def _drawn(
     study: Study, users: Sequence[UserRow], requests: Sequence[Request], probs: NDArray[np.float64], seed: int
 ) -> list[DecisionRow]:
     """A new decision for each user: the policy that a number in [0, 1) falls on, none of probability 0."""
-    counted = Counter({user.number: user.n_decisions for user in users})
-    draws = np.empty(len(users))
-    for place, user in enumerate(users):
-        draws[place] = share_of(seed, study.name, user.name, counted[user.number])
+    counted, numbers = Counter[int](), []
+    for user in users:
+        numbers.append(user.n_decisions + counted[user.number])
         counted[user.number] += 1
+    names = [user.name for user in users]
+    draws, held_out = shares_of((seed, study.name), names, numbers), study.held_out(names)
     ends = probs.cumsum(axis=1)
     last = probs.shape[1] - 1 - (probs[:, ::-1] > 0).argmax(axis=1)
     chosen = np.minimum((ends <= draws[:, None] * ends[:, -1:]).sum(axis=1), last)
     probability = probs[np.arange(len(chosen)), chosen].tolist()
     now, active, found = time.time_ns() // 10**6, study.active, []
-    for user, request, id_, place, own, draw in zip(
-        users, requests, new_ids(now, len(users)), chosen.tolist(), probability, draws.tolist(), strict=True
-    ):
-        policy, control = active[place], study.holds_out(user.name)
+    for user, request, id_, place, own, draw, control in zip(
+        users, requests, new_ids(now, len(users)), chosen.tolist(), probability, draws.tolist(), held_out.tolist(),
+        strict=True,
+    ):  # fmt: skip
+        policy = active[place]
         if control:
             policies = _for_control(study, request.available)
             policy, own = policies[int(draw * len(policies))], 1 / len(policies)
         available = None if request.available is None else tuple(request.available)
-        known = user.context, available, request.request
-        found.append(DecisionRow(id_, user.number, policy, own, control, study.version, now, *known))
+        found.append(
+            DecisionRow(
+                id_,
+                user.number,
+                policy,
+                own,
+                control,
+                study.version,
+                now,
+                user.context,
+                available,
+                request.request,
+            )
+        )
     return found
 
 
@@ -301,18 +317,22 @@ def _for_control(study: Study, available: Sequence[str] | None) -> list[str]:
 def _described(
     study: Study,
     users: Sequence[UserRow],
+    requests: Sequence[Request],
     algorithm: ReuseAlgorithm,
     rows: NDArray[np.int64],
     probs: NDArray[np.float64],
 ) -> list[Answer]:
-    """What answers say of the beliefs before the decisions."""
+    """What answers say of the users and of the beliefs before the decisions."""
     belief = algorithm.belief(rows)
     expected = algorithm.known(rows).performance.expected(belief)[:, study.active_numbers]
     learnt = set() if study.feature_prior is None else set(study.feature_prior.names)
     found = []
-    for user, *numbers in zip(users, belief.tolist(), expected.tolist(), probs.tolist(), strict=True):
+    for user, request, *numbers in zip(
+        users, requests, belief.tolist(), expected.tolist(), probs.tolist(), strict=True
+    ):
         by_features = bool(learnt) and set(user.features or ()) == learnt
         found.append({
+            "available": None if request.available is None else list(request.available),
             "user": user.name,
             "context": user.context if user.context in study.contexts and not by_features else None,
             "features": user.features if by_features else None,
@@ -323,21 +343,24 @@ def _described(
     return found
 
 
-def _answer(request: Request, decision: DecisionRow, repeated: bool, about: Answer) -> Answer:
+def _repeated(request: Request, decision: DecisionRow) -> Answer:
     available = None if request.available is None else tuple(request.available)
-    if repeated and available != decision.available:
+    if available != decision.available:
         raise InputError(
             f"request '{request.request}' of this user was made with other available policies; give this one "
             "another identifier"
         )
-    answer = {
+    return _answer(decision, repeated=True)
+
+
+def _answer(decision: DecisionRow, *, repeated: bool) -> Answer:
+    return {
         "decision": identifier(decision.id),
         "policy": decision.policy,
         "probability": decision.probability,
         "control": decision.control,
         "repeated": repeated,
     }
-    return answer | {"available": None if available is None else list(available)} | about if about else answer
 
 
 def update(memory: Memory, study: Study, decision: str, outcome: float) -> Answer:
@@ -427,9 +450,24 @@ def _observed(
         evidence = [(beliefs.row[found[id_].person], found[id_].policy, outcome) for id_, outcome in taken.items()]
         learn(beliefs.algorithm, study, evidence)
         rows.learn(_learnt(beliefs, found, taken), study.version)
-    for place in good:
-        if not isinstance(answers[place], LifeloreError):
-            answers[place] = _outcome_answer(study, users, beliefs, *answers[place], brief=brief)
+    ended = [place for place in good if isinstance(answers[place], tuple)]
+    if brief:
+        for place in ended:
+            decision, _, new = answers[place]
+            answers[place] = {"taken": new, "policy": decision.policy, "control": decision.control}
+        return answers
+    row = np.array([beliefs.row[answers[place][0].person] for place in ended], np.int64)
+    for place, belief in zip(ended, beliefs.algorithm.belief(row).tolist(), strict=True):
+        decision, outcome, new = answers[place]
+        answers[place] = {
+            "decision": identifier(decision.id),
+            "user": users[decision.person].name,
+            "policy": decision.policy,
+            "control": decision.control,
+            "outcome": outcome,
+            "taken": new,
+            "belief": dict(zip(study.library.types, belief, strict=True)),
+        }
     return answers
 
 
@@ -483,30 +521,6 @@ def _learnt(
         own[place] += 1
         own[place + 1] += outcome
     return [(number, state, *sums[number]) for number, state in stored_beliefs(beliefs, sums)]  # pyright: ignore
-
-
-def _outcome_answer(
-    study: Study,
-    users: Mapping[int, UserRow],
-    beliefs: Beliefs,
-    decision: DecisionRow,
-    outcome: float,
-    taken: bool,
-    *,
-    brief: bool,
-) -> Answer:
-    if brief:
-        return {"taken": taken, "policy": decision.policy, "control": decision.control}
-    belief = beliefs.algorithm.belief(beliefs.row[decision.person])
-    return {
-        "decision": identifier(decision.id),
-        "user": users[decision.person].name,
-        "policy": decision.policy,
-        "control": decision.control,
-        "outcome": outcome,
-        "taken": taken,
-        "belief": dict(zip(study.library.types, belief.tolist(), strict=True)),
-    }
 
 
 def forget(memory: Memory, study: Study, user: str) -> int:

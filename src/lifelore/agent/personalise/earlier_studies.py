@@ -174,8 +174,7 @@ def _batch(content: bytes, about: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _store(rows: StudyRows, study: Study, people: People) -> None:
-    rows.add_users([(own["name"], own["context"], own["features"]) for own in people.values()], 0)
-    users = rows.users([own["name"] for own in people.values()])
+    users = rows.add_users([(own["name"], own["context"], own["features"]) for own in people.values()], 0)
     numbers = {key: users[own["name"]].number for key, own in people.items()}
     rows.describe(
         (numbers[key], own["context"], own["features"], own["type"]) for key, own in people.items() if own["type"]

@@ -106,8 +106,7 @@ def _stored(rows: StudyRows, study: Study, lines: Sequence[Line], *, fitted: boo
     names = list({line.user: None for line in lines})
     users = known_users(rows, study, names, lock=True)
     if new := [name for name in names if name not in users]:
-        rows.add_users([(name, None, None) for name in new], 0)
-        users |= rows.users(new, lock=True)
+        users |= rows.add_users([(name, None, None) for name in new], 0)
     told = [(users[name], _told(own, users[name])) for name, own in _told_by_user(lines).items()]
     rows.describe((user.number, *own) for user, own in told if own != (user.context, user.features, user.type))
     if fitted:

@@ -2,12 +2,11 @@
 
 import json
 import warnings
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from lifelore.core.atomic_write import atomic_write
-from lifelore.core.errors import StoreError
+from lifelore.core.atomic_write import refused_writes, write_file
 
 
 def write_result(folder: Path, name: str, document: dict[str, Any], draw: Callable[[dict[str, Any]], Any]) -> None:
@@ -27,12 +26,11 @@ def write_result(folder: Path, name: str, document: dict[str, Any], draw: Callab
     StoreError
         The disk refuses.
     """
-    try:
+    path = folder / f"{name}.json"
+    with refused_writes(path):
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise StoreError(f"cannot write {folder}: {error.strerror}; choose another place") from None
     text = json.dumps(document, indent=2, allow_nan=False) + "\n"
-    write_file(folder / f"{name}.json", [text.encode()])
+    write_file(path, text.encode(), "the result")
     write_picture(folder / f"{name}.png", document, draw)
 
 
@@ -44,14 +42,3 @@ def write_picture(path: Path, document: dict[str, Any], draw: Callable[[dict[str
         # Names may be of any script; what the font lacks is drawn as a box, and the document has it.
         warnings.filterwarnings("ignore", "Glyph .* missing from")
         save_figure(draw(document), path)
-
-
-def write_file(path: Path, parts: Iterable[bytes]) -> None:
-    """Write the whole file or nothing; StoreError where the disk refuses."""
-    try:
-        with atomic_write(path) as file:
-            file.writelines(parts)
-    except OSError as error:
-        if isinstance(error, StoreError):
-            raise
-        raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None

@@ -183,7 +183,11 @@ class Study:
 
         A larger share holds out the same users and more.
         """
-        return share_of(self.name, user) < self.control
+        return bool(self.held_out([user])[0])
+
+    def held_out(self, users: Sequence[str]) -> NDArray[np.bool_]:
+        """`holds_out` for each of many users, (n_users,)."""
+        return shares_of((self.name,), users) < self.control if self.control else np.zeros(len(users), bool)
 
     def with_state(self, policy: str, state: str) -> "Study":
         """The study with another state of one policy."""
@@ -201,10 +205,12 @@ class Study:
         return replace(self, number=stored.number, version=stored.version)
 
 
-def share_of(*words: object) -> float:
-    """A number in [0, 1) drawn by words, the same for ever."""
-    text = "\x1f".join(map(str, words))
-    return int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big") / 2.0**64
+def shares_of(words: Sequence[object], *columns: Sequence[object]) -> NDArray[np.float64]:
+    """A number in [0, 1) for each row of columns, drawn by the words and the row, the same for ever."""
+    start = "".join(f"{word}\x1f" for word in words)
+    rows = columns[0] if len(columns) == 1 else ("\x1f".join(map(str, row)) for row in zip(*columns, strict=True))
+    digests = [hashlib.sha256(f"{start}{row}".encode()).digest() for row in rows]
+    return np.frombuffer(b"".join(digests), ">u8")[::4] / 2.0**64
 
 
 def user_key(study: str, user: str) -> str:

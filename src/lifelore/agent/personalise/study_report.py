@@ -6,9 +6,10 @@ from more than `MANY` users on). Means and uplifts are of all users; the curve b
 are of a random sample of at most `histories.SAMPLE` users.
 """
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,16 +18,21 @@ from lifelore.agent.personalise.beliefs import learn
 from lifelore.agent.personalise.calibration import after_past, calibration, outcomes_of
 from lifelore.agent.personalise.decision_log import log_parts
 from lifelore.agent.personalise.histories import History, difference, sampled_histories
-from lifelore.agent.personalise.result_folder import write_file, write_picture, write_result
+from lifelore.agent.personalise.result_folder import write_picture, write_result
 from lifelore.agent.personalise.study import Study
+from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.core.intervals import LEAST_VALUES, t_interval
+from lifelore.core.intervals import LEAST_VALUES, t_interval, welch_ends
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.memory import Memory
+from lifelore.memory.study_totals import StudyTotals
 
 Array = NDArray[np.float64]
 SPLITS = ("user", "time", "both")
 LONGEST_CURVE = 60
+DAY = 86_400_000
+PERIODS = {"day": (0, DAY), "week": (4 * DAY, 7 * DAY)}
+"""Start of a period after 1970-01-01 (a Thursday; weeks begin on Monday) and its length, in milliseconds."""
 MANY = 1000
 """Users up to which means are resampled; of more Student's interval says the same, and memory stays small."""
 
@@ -39,6 +45,7 @@ def report(
     *,
     incumbent: str | None = None,
     split: str | None = None,
+    by: str | None = None,
 ) -> dict[str, Any]:
     """Compare users served by belief with the control group, the best single policy and the incumbent.
 
@@ -59,6 +66,8 @@ def report(
     split : {"user", "time", "both"}, optional
         Count only users whom the fit did not know, decisions after the fit, or both; default: all. The log has
         all.
+    by : {"day", "week"}, optional
+        Also compare the groups in each day or week (from Monday) of decisions, UTC.
 
     Returns
     -------
@@ -70,12 +79,14 @@ def report(
         ``split``; ``policies``: in the control group each policy's mean outcome over users, fair where it draws
         at random; ``regret``: what the policy of the largest expectation under the user's last belief would have
         brought more, for each group, by the library and not measured; ``by_decision``: both groups' mean outcome
-        at each decision; ``calibration``, see `calibration.calibration`.
+        at each decision; ``by_time``: for each period with a decision its start, ``time`` in seconds since 1970,
+        ``users``, ``decisions``, and ``personal``, ``control`` and ``uplift`` by the users' mean outcomes in the
+        period (None without `by`); ``calibration``, see `calibration.calibration`.
 
     Raises
     ------
     InputError, NotFoundError
-        There is no such split or policy, or the study does not know when it was fitted.
+        There is no such split, period or policy, or the study does not know when it was fitted.
     StoreError
         The disk refuses.
 
@@ -93,9 +104,12 @@ def report(
     incumbent = incumbent or study.incumbent
     if incumbent is not None and incumbent not in study.states:
         raise NotFoundError(f"incumbent must be a policy of the study, got '{incumbent}'")
-    document = _document(memory, study, incumbent, split)
+    if by not in (None, *PERIODS):
+        raise InputError(f"by must be one of {', '.join(PERIODS)}, got '{by}'")
+    document = _document(memory, study, incumbent, split, by)
     if log is not None:
-        write_file(Path(log), log_parts(memory, study))
+        with atomic_write(log, "the log") as file:
+            file.writelines(log_parts(memory, study))
     if out is not None:
         from lifelore.figures.reuse_calibration import draw_calibration
         from lifelore.figures.reuse_report import draw_reuse_report
@@ -118,7 +132,9 @@ def _counting(study: Study, split: str | None) -> dict[str, Any]:
     return {"strangers": split in ("user", "both"), "since": since}
 
 
-def _document(memory: Memory, study: Study, incumbent: str | None, split: str | None) -> dict[str, Any]:
+def _document(
+    memory: Memory, study: Study, incumbent: str | None, split: str | None, by: str | None
+) -> dict[str, Any]:
     counting = _counting(study, split)
     with memory.studies.totals(study.number) as totals:
         if (totals.first_decision() or 0) >= counting["since"]:
@@ -126,7 +142,8 @@ def _document(memory: Memory, study: Study, incumbent: str | None, split: str | 
         decisions, pending = totals.n_decisions(**counting)
         users = totals.by_user(**counting)
         by_policy = {policy: np.sort(totals.control_means(policy, **counting)) for policy in study.states}
-    personal, control = _means(users.personal, users.personal_sum), _means(users.control, users.control_sum)
+        personal, control = _means(users.personal, users.personal_sum), _means(users.control, users.control_sum)
+        by_time = None if by is None else _by_time(totals, by, np.concatenate([personal, control]), counting)
     histories = sampled_histories(memory, study, users.person, since=counting["since"])
     return {
         "study": study.name,
@@ -144,6 +161,7 @@ def _document(memory: Memory, study: Study, incumbent: str | None, split: str | 
         ],
         "regret": _regret(study, histories),
         "by_decision": _by_decision(histories),
+        "by_time": by_time,
         "calibration": calibration(study, histories),
         "sample": len(histories),
         "split": split,
@@ -163,6 +181,58 @@ def _estimate(values: Sequence[float] | Array) -> dict[str, Any] | None:
     mean, error = float(np.mean(values)), float(np.std(values, ddof=1)) / len(values) ** 0.5
     low, high = map(float, t_interval(mean, error, len(values) - 1))
     return Estimate(mean, float(np.median(values)), (low, high) if error > 0 else None, len(values)).to_dict()
+
+
+def _by_time(totals: StudyTotals, by: str, means: Array, counting: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Both groups in each period; squares are summed about the mean of all users, so that no digits are lost."""
+    first, step = PERIODS[by]
+    centre = float(means.mean()) if len(means) else 0.0
+    periods: dict[int, dict[str, Any]] = {}
+    for period, control, users, decisions, *sums in totals.by_period(first, step, centre=centre, **counting):
+        own = periods.setdefault(int(period), {"users": 0, "decisions": 0, "personal": None, "control": None})
+        own["users"] += int(users)
+        own["decisions"] += int(decisions)
+        own["control" if control else "personal"] = _group_mean(centre, *sums)
+    return [
+        {
+            "time": (first + period * step) // 1000,
+            "users": own["users"],
+            "decisions": own["decisions"],
+            "personal": own["personal"] and own["personal"].to_dict(),
+            "control": own["control"] and own["control"].to_dict(),
+            "uplift": own["personal"] and own["control"] and own["personal"].less(own["control"]),
+        }
+        for period, own in periods.items()
+    ]
+
+
+class _GroupMean(NamedTuple):
+    """Mean over users of a group in a period, the variance of this mean (NaN: a single user), and their number."""
+
+    value: float
+    variance: float
+    n: int
+
+    def to_dict(self) -> dict[str, Any]:
+        ci95 = None
+        if self.n >= LEAST_VALUES and self.variance > 0:
+            ci95 = [float(end) for end in t_interval(self.value, self.variance**0.5, self.n - 1)]
+        return {"value": self.value, "ci95": ci95, "n": self.n}
+
+    def less(self, other: "_GroupMean") -> dict[str, Any]:
+        """The difference to another group, with Welch's interval."""
+        variances, numbers = np.array([self.variance, other.variance]), np.array([self.n, other.n])
+        value, ci95 = self.value - other.value, None
+        if numbers.min() >= LEAST_VALUES and variances.sum() > 0:
+            ci95 = list(welch_ends(value, variances, numbers))
+        return {"value": value, "ci95": ci95, "n": numbers.tolist()}
+
+
+def _group_mean(centre: float, n: int, total: float, squares: float) -> _GroupMean | None:
+    if not n:
+        return None
+    variance = max(squares - total**2 / n, 0.0) / (n - 1) / n if n > 1 else math.nan
+    return _GroupMean(centre + total / n, variance, int(n))
 
 
 def _beside(policy: str, personal: Array, by_policy: dict[str, Array]) -> dict[str, Any]:

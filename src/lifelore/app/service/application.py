@@ -13,9 +13,10 @@ from starlette.exceptions import HTTPException
 from starlette.routing import Match
 
 from lifelore import __version__
-from lifelore.app.service.decision_routes import hot_routes, starlette_route
+from lifelore.app.service.decision_routes import HotRoutes, hot_routes
 from lifelore.app.service.documentation import document_api
 from lifelore.app.service.error_documents import (
+    WRONG_METHOD,
     ErrorDocument,
     error_body,
     status_of,
@@ -70,12 +71,11 @@ def create_app(settings: ServiceSettings, open_paths: Collection[str] = ()) -> F
     app = FastAPI(
         title="Lifelore", version=__version__, description=DESCRIPTION, lifespan=lifespan, responses=ERRORS,
         docs_url=None, redoc_url=None, separate_input_output_schemas=False,
+        telemetry={"tracing": False, "metrics": False, "logs": False},
     )  # fmt: skip
     app.state.service = service
     _answer_errors(app, service)
     # A request is compared with the routes in this order; those that are asked most come first.
-    hot = hot_routes(service) if "personalise" in settings.only else []
-    app.router.routes[:0] = map(starlette_route, hot)
     for group, routes in (
         ("personalise", user_routes),
         (None, health_routes),
@@ -88,7 +88,9 @@ def create_app(settings: ServiceSettings, open_paths: Collection[str] = ()) -> F
     ):
         if group is None or group in settings.only:
             app.include_router(routes.router(service))
+    hot = hot_routes(service) if "personalise" in settings.only else []
     document_api(app, tokens is not None, hot)
+    app.add_middleware(HotRoutes, routes=hot, location=service.memory.location)
     app.add_middleware(Gate, settings=settings, tokens=tokens, metrics=service.metrics, open_paths=open_paths)
     return app
 
@@ -110,7 +112,7 @@ def _answer_errors(app: FastAPI, service: Service) -> None:
     def http(request: Request, error: HTTPException) -> Response:
         messages = {
             404: "there is no such address; /openapi.json lists all",
-            405: "the address does not take this method; /openapi.json lists all",
+            405: WRONG_METHOD,
         }
         headers = {"allow": _allowed(app, request)} if error.status_code == 405 else error.headers
         return answer(request, error.status_code, messages.get(error.status_code, str(error.detail)), headers)

@@ -1,29 +1,37 @@
-"""The routes of decisions and outcomes, and their batches: Starlette functions with msgspec, for speed.
+"""The routes of decisions and outcomes, and their batches: ASGI with msgspec, for speed.
 
-These four take nearly all requests. What they take and give is declared once, as msgspec types, which check
-requests and describe the routes in the OpenAPI document.
+These four take nearly all requests. They are answered before FastAPI looks for a route, which would take as long
+as the answer. What they take and give is declared once, as msgspec types, which check requests and describe the
+routes in the OpenAPI document.
 """
 
 import re
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Sequence
 from typing import Annotated, Any, NamedTuple
 
 import msgspec
 from msgspec import Meta
 from starlette.concurrency import run_in_threadpool
+from starlette.exceptions import HTTPException
 from starlette.requests import Request as HttpRequest
-from starlette.responses import Response
-from starlette.routing import Route
 
 from lifelore.agent.personalise.decisions import Request
 from lifelore.agent.personalise.explanation import novelty_of
+from lifelore.app.service.admission import STUDIES, Refused
 from lifelore.app.service.bodies import parsed
-from lifelore.app.service.error_documents import KINDS, status_of, without_places
+from lifelore.app.service.error_documents import (
+    KINDS,
+    WRONG_METHOD,
+    error_body,
+    send_json,
+    status_of,
+    without_places,
+)
 from lifelore.app.service.service_state import Service
+from lifelore.app.service.writer import PART
 from lifelore.core.errors import InputError, LifeloreError
 
 LARGEST_BATCH = 100_000
-PREFIX = "/v1/studies/{study}"
 Text = Annotated[str, Meta(min_length=1, max_length=200)]
 Policy = Annotated[str, Meta(description="Name of the policy.")]
 
@@ -53,6 +61,10 @@ class OutcomeRequest(msgspec.Struct, forbid_unknown_fields=True):
 
     decision: Annotated[str, Meta(description="Identifier of the decision.")]
     outcome: Annotated[float, Meta(description="Outcome; larger is better.", examples=[7.5])]
+
+    def row(self) -> tuple[str, float]:
+        """The outcome as `observe` takes it."""
+        return self.decision, self.outcome
 
 
 class Decisions(msgspec.Struct, forbid_unknown_fields=True):
@@ -137,18 +149,23 @@ class OutcomeItems(msgspec.Struct):
 
 
 class HotRoute(NamedTuple):
-    """A route with the types of its body and answer."""
+    """A route below a study, with the types of its body and answer."""
 
-    path: str
+    name: str
     summary: str
     body: type
     answer: type
     handle: Callable[[str, Any], Awaitable[Any]]
 
+    @property
+    def path(self) -> str:
+        """Template of the path, for metrics, the log and the OpenAPI document."""
+        return f"{STUDIES}{{study}}/{self.name}"
+
 
 def hot_routes(service: Service) -> list[HotRoute]:
     """The routes of decisions and outcomes."""
-    writer = service.writer
+    writer, encode = service.writer, msgspec.json.Encoder().encode
 
     async def decide(study: str, document: DecisionRequest) -> Any:
         (answer,) = await writer.decide(study, [document.row()])
@@ -161,49 +178,81 @@ def hot_routes(service: Service) -> list[HotRoute]:
         return answer
 
     async def observe(study: str, document: OutcomeRequest) -> Any:
-        (answer,) = await writer.observe(study, [(document.decision, document.outcome)])
+        (answer,) = await writer.observe(study, [document.row()])
         if isinstance(answer, LifeloreError):
             raise answer
         return answer
 
     async def decide_many(study: str, document: Decisions) -> Any:
-        return items(await writer.decide(study, [item.row() for item in document.items], brief=True))
+        return await in_parts(writer.decide, study, document.items, DecisionRequest.row)
 
     async def observe_many(study: str, document: Outcomes) -> Any:
-        rows = [(item.decision, item.outcome) for item in document.items]
-        return items(await writer.observe(study, rows, brief=True))
+        return await in_parts(writer.observe, study, document.items, OutcomeRequest.row)
 
-    def items(answers: list[Any]) -> dict[str, Any]:
-        return {"items": [refused(one) if isinstance(one, LifeloreError) else one for one in answers]}
+    async def in_parts(store: Any, study: str, items: Sequence[Any], row: Callable[[Any], Any]) -> msgspec.Raw:
+        """The answers of a batch, read, stored and encoded a part at a time: other requests get their turns."""
+        parts = []
+        for at in range(0, len(items), PART):
+            answers = await store(study, [row(item) for item in items[at : at + PART]], brief=True)
+            listed = [refused(one) if isinstance(one, LifeloreError) else one for one in answers]
+            parts.append(encode(listed)[1:-1])
+        return msgspec.Raw(b'{"items":[' + b",".join(parts) + b"]}")
 
     def refused(error: LifeloreError) -> dict[str, Any]:
         message = without_places(str(error), service.memory.location)
         return {"error": {"kind": KINDS[status_of(error)], "message": message}}
 
     return [
-        HotRoute("/decisions", "Choose a policy for a user, and store it", DecisionRequest, Decision, decide),
-        HotRoute("/outcomes", "Store the outcome of a decision, once", OutcomeRequest, Outcome, observe),
-        HotRoute("/decisions/batch", "Choose for each of many users", Decisions, DecisionItems, decide_many),
-        HotRoute("/outcomes/batch", "Store outcomes of many decisions", Outcomes, OutcomeItems, observe_many),
+        HotRoute("decisions", "Choose a policy for a user, and store it", DecisionRequest, Decision, decide),
+        HotRoute("outcomes", "Store the outcome of a decision, once", OutcomeRequest, Outcome, observe),
+        HotRoute("decisions/batch", "Choose for each of many users", Decisions, DecisionItems, decide_many),
+        HotRoute("outcomes/batch", "Store outcomes of many decisions", Outcomes, OutcomeItems, observe_many),
     ]
 
 
-def starlette_route(route: HotRoute) -> Route:
-    """The route as the application takes it."""
-    decode = msgspec.json.Decoder(route.body).decode
-    encode = msgspec.json.Encoder().encode
+class HotRoutes:
+    """ASGI middleware that answers the hot routes and hands all other requests on.
 
-    async def endpoint(request: HttpRequest) -> Response:
+    Parameters
+    ----------
+    app : ASGI application
+    routes : sequence of HotRoute
+    location : str
+        Of the memory, which messages leave out.
+    """
+
+    def __init__(self, app: Any, routes: Sequence[HotRoute], location: str) -> None:
+        self._app, self._location, self._encode = app, location, msgspec.json.Encoder().encode
+        self._routes = {route.name: (route, msgspec.json.Decoder(route.body).decode) for route in routes}
+
+    async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        study, found = "", None
+        if scope["type"] == "http" and scope["path"].startswith(STUDIES):
+            study, _, name = scope["path"].removeprefix(STUDIES).partition("/")
+            found = self._routes.get(name)
+        if not study or found is None:
+            await self._app(scope, receive, send)
+            return
+        if scope["method"] != "POST":
+            raise Refused(405, WRONG_METHOD, [(b"allow", b"POST")])
+        route, decode = found
+        scope["route"] = route  # for metrics and the log
         try:
-            document = await parsed(await request.body(), decode)
-        except (msgspec.ValidationError, msgspec.DecodeError, UnicodeDecodeError) as error:
-            raise InputError(_plain(str(error))) from None
-        request.scope["route"] = made  # for metrics and the log
-        answer = await route.handle(request.path_params["study"], document)
-        return Response(encode(answer), media_type="application/json")
+            document = await _document(HttpRequest(scope, receive), decode)
+            await send_json(send, 200, self._encode(await route.handle(study, document)))
+            return
+        except LifeloreError as error:
+            status, message = status_of(error), without_places(str(error), self._location)
+        except HTTPException as error:
+            status, message = error.status_code, str(error.detail)
+        await send_json(send, status, error_body(status, message, scope["state"]["request"]))
 
-    made = Route(PREFIX + route.path, endpoint, methods=["POST"])
-    return made
+
+async def _document(request: HttpRequest, decode: Callable[[bytes], Any]) -> Any:
+    try:
+        return await parsed(await request.body(), decode)
+    except (msgspec.ValidationError, msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise InputError(_plain(str(error))) from None
 
 
 def _plain(message: str) -> str:
@@ -227,11 +276,11 @@ def describe(document: dict[str, Any], routes: list[HotRoute]) -> None:
     failed = {"content": {"application/json": {"schema": {"$ref": "#/components/schemas/ErrorDocument"}}}}
     for number, route in enumerate(routes):
         body, answer = schemas[2 * number], schemas[2 * number + 1]
-        document["paths"][PREFIX + route.path] = {
+        document["paths"][route.path] = {
             "post": {
                 "tags": ["personalise"],
                 "summary": route.summary,
-                "operationId": route.path.strip("/").replace("/", "_"),
+                "operationId": route.name.replace("/", "_"),
                 "parameters": [study],
                 "requestBody": {"required": True, "content": {"application/json": {"schema": body}}},
                 "responses": {

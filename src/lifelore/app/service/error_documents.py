@@ -8,6 +8,7 @@ A message never names a file of the server: the location of the memory and tempo
 import json
 import re
 import tempfile
+from collections.abc import Awaitable, Callable, Iterable
 from typing import Any
 
 from pydantic import BaseModel, Field
@@ -21,6 +22,9 @@ KINDS = {
     504: "time",
 }  # fmt: skip
 """The kind of an error by its HTTP status."""
+
+
+WRONG_METHOD = "the address does not take this method; /openapi.json lists all"
 
 
 class ErrorFields(BaseModel):
@@ -47,6 +51,15 @@ def error_body(status: int, message: str, request: str) -> bytes:
     """The JSON document of an error."""
     fields = {"kind": KINDS.get(status, "input"), "message": " ".join(message.split()), "request": request}
     return json.dumps({"error": fields}).encode()
+
+
+async def send_json(
+    send: Callable[[Any], Awaitable[None]], status: int, body: bytes, headers: Iterable[tuple[bytes, bytes]] = ()
+) -> None:
+    """Answer a request of ASGI with a JSON document."""
+    lines = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode()), *headers]
+    await send({"type": "http.response.start", "status": status, "headers": lines})
+    await send({"type": "http.response.body", "body": body})
 
 
 def without_places(message: str, location: str) -> str:

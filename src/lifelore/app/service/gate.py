@@ -12,7 +12,7 @@ from collections.abc import Collection
 from typing import Any
 
 from lifelore.app.service.admission import Admission, Refused
-from lifelore.app.service.error_documents import error_body
+from lifelore.app.service.error_documents import error_body, send_json
 from lifelore.app.service.limits import Deadlines, limited_body
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.telemetry import Metrics, log_request
@@ -78,7 +78,7 @@ class Gate:
 
         async def refuse(code: int, message: str, further: Collection[tuple[bytes, bytes]] = ()) -> None:
             if not status:
-                await _refuse(answer, code, message, identifier, further)
+                await send_json(answer, code, error_body(code, message, identifier), further)
 
         try:
             client = self._admission.client_of(scope, headers)
@@ -121,12 +121,3 @@ class Gate:
             "ms": round(1e3 * seconds, 2),
         }  # fmt: skip
         log_request(fields, defect)
-
-
-async def _refuse(
-    answer: Any, status: int, message: str, identifier: str, headers: Collection[tuple[bytes, bytes]]
-) -> None:
-    body = error_body(status, message, identifier)
-    lines = [(b"content-type", b"application/json"), (b"content-length", str(len(body)).encode()), *headers]
-    await answer({"type": "http.response.start", "status": status, "headers": lines})
-    await answer({"type": "http.response.body", "body": body})

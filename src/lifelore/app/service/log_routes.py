@@ -87,9 +87,11 @@ def router(service: Service) -> APIRouter:
 
     @routes.get("/studies/{study}/report", summary="Uplift of a study's decisions with 95 % intervals")
     def report_study(
-        study: Name, split: Annotated[Literal["user", "time", "both"] | None, Query()] = None
+        study: Name,
+        split: Annotated[Literal["user", "time", "both"] | None, Query()] = None,
+        by: Annotated[Literal["day", "week"] | None, Query(description="Also compare in each period.")] = None,
     ) -> dict[str, Any]:
-        return report(memory, studies.get(study), split=split)
+        return report(memory, studies.get(study), split=split, by=by)
 
     @routes.get(
         "/studies/{study}/traffic",

@@ -4,15 +4,12 @@ import json
 import logging
 import sys
 import time
-from bisect import bisect_left
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from functools import cache
 from math import nan
 from typing import Any
 
-from prometheus_client import CollectorRegistry, Counter, Gauge, generate_latest
-from prometheus_client.metrics_core import CounterMetricFamily, HistogramMetricFamily
-from prometheus_client.registry import Collector
+from prometheus_client import CollectorRegistry, Counter, Gauge, Histogram, generate_latest
 
 log = logging.getLogger("lifelore.service")
 MOST_ARMS = 2000
@@ -29,44 +26,17 @@ _SECONDS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2.5, 5, 10
 _ARM = ("study", "policy", "group")
 
 
-class _Requests(Collector):
-    """Counts and times of requests; the event loop alone adds to them, so they need no locks."""
-
-    def __init__(self) -> None:
-        self.counts: dict[tuple[str, str, int], int] = {}
-        self.times: dict[str, list[float]] = {}
-
-    def add(self, method: str, route: str, status: int, seconds: float) -> None:
-        key = (method, route, status)
-        self.counts[key] = self.counts.get(key, 0) + 1
-        # A count for each bucket and one for longer times, and last the sum.
-        times = self.times.get(route) or self.times.setdefault(route, [0.0] * (len(_SECONDS) + 2))
-        times[bisect_left(_SECONDS, seconds)] += 1
-        times[-1] += seconds
-
-    def collect(self) -> Iterator[CounterMetricFamily | HistogramMetricFamily]:
-        requests = CounterMetricFamily("lifelore_requests", "Requests.", labels=("method", "route", "status"))
-        for (method, route, status), count in list(self.counts.items()):
-            requests.add_metric((method, route, str(status)), count)
-        yield requests
-        seconds = HistogramMetricFamily("lifelore_request_seconds", "Time of a request.", labels=("route",))
-        for route, times in list(self.times.items()):
-            below, buckets = 0.0, []
-            for bound, count in zip((*map(float, _SECONDS), "+Inf"), times, strict=False):
-                below += count
-                buckets.append((str(bound), below))
-            seconds.add_metric((route,), buckets, times[-1])
-        yield seconds
-
-
 class Metrics:
     """Counters of one application; labels are route templates, studies and policies, and never users."""
 
     def __init__(self) -> None:
         self.registry = CollectorRegistry()
-        self._requests = _Requests()
-        self.registry.register(self._requests)
-        self.count = self._requests.add
+        requests = Counter("lifelore_requests", "Requests.", ("method", "route", "status"), registry=self.registry)
+        seconds = Histogram(
+            "lifelore_request_seconds", "Time of a request.", ("route",), registry=self.registry, buckets=_SECONDS
+        )
+        # To look up the children of labels takes longer than to count.
+        self._of_route = cache(lambda *labels: (requests.labels(*labels), seconds.labels(labels[1])))
         self.running = Gauge("lifelore_requests_running", "Requests in progress.", registry=self.registry)
         self._decided = Counter(
             "lifelore_study_decisions", "Stored decisions of a study.", _ARM, registry=self.registry
@@ -83,10 +53,15 @@ class Metrics:
             for name, text in WATCHED.items()
         }
         self._arms: set[tuple[str, str]] = set()
-        # To look up the children of labels takes longer than to count.
         self._children = cache(
             lambda *arm: (self._decided.labels(*arm), self._observed.labels(*arm), self._total.labels(*arm))
         )
+
+    def count(self, method: str, route: str, status: int, seconds: float) -> None:
+        """Count an answered request and its time."""
+        requests, times = self._of_route(method, route, status)
+        requests.inc()
+        times.observe(seconds)
 
     def decided(self, study: str, policy: str, control: bool, n: float = 1) -> None:
         """Count stored decisions of a policy in the control group or in the treated one."""

@@ -67,20 +67,14 @@ class Writer:
         return await self._put(None, (function, *arguments))
 
     async def decide(self, study: str, requests: Sequence[Request], *, brief: bool = False) -> list[Any]:
-        """The answers of `decisions.decide`, once the decisions are committed; a long batch in parts."""
-        return await self._in_parts(("decisions", study, brief), requests)
+        """The answers of `decisions.decide`, once the decisions are committed."""
+        return await self._put(("decisions", study, brief), tuple(requests))
 
     async def observe(
         self, study: str, outcomes: Sequence[tuple[str, float]], *, brief: bool = False
     ) -> list[Any]:
-        """The answers of `decisions.observe`, once the outcomes are committed; a long batch in parts."""
-        return await self._in_parts(("outcomes", study, brief), outcomes)
-
-    async def _in_parts(self, kind: tuple[str, str, bool], rows: Sequence[Any]) -> list[Any]:
-        answers: list[Any] = []
-        for at in range(0, len(rows), PART):
-            answers += await self._put(kind, tuple(rows[at : at + PART]))
-        return answers
+        """The answers of `decisions.observe`, once the outcomes are committed."""
+        return await self._put(("outcomes", study, brief), tuple(outcomes))
 
     def _put(self, kind: tuple[str, str, bool] | None, rows: tuple[Any, ...]) -> asyncio.Future[Any]:
         loop = asyncio.get_running_loop()

@@ -21,7 +21,8 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError, StoreError
+from lifelore.core.atomic_write import refused_writes
+from lifelore.core.errors import InputError
 from lifelore.domains.buildings.map_image import brightness_levels
 
 FREE, OCCUPIED, UNKNOWN = 0, 1, 2
@@ -263,9 +264,7 @@ def write_occupancy_map(
         "free_thresh": 0.196,
     }
     header = f"P5\n{grey.shape[1]} {grey.shape[0]}\n255\n".encode()
-    try:
+    with refused_writes(path, "the map"):
         image.write_bytes(header + np.ascontiguousarray(grey).tobytes())
         path.write_text(yaml.safe_dump(settings, sort_keys=False), encoding="utf-8")
-    except OSError as error:
-        raise StoreError(f"cannot write the map {path}: {error.strerror}; choose another place") from None
     return image

@@ -10,8 +10,8 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from lifelore.core.atomic_write import atomic_write
-from lifelore.core.errors import InputError, StoreError
+from lifelore.core.atomic_write import write_file
+from lifelore.core.errors import InputError
 from lifelore.core.packed_arrays import PackedFormat
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.relations.displacement_relations import DisplacementRelations, NeighbourSettings
@@ -43,12 +43,7 @@ def write_model(model: RelationModel, path: str | Path, about: Mapping[str, Any]
     StoreError
         The disk refuses.
     """
-    content = model_bytes(model, about)
-    try:
-        with atomic_write(path) as file:
-            file.write(content)
-    except OSError as error:
-        raise StoreError(f"the model cannot be written to {path}: {error.strerror}") from None
+    write_file(path, model_bytes(model, about), "the model")
 
 
 def check_model_path(path: str | Path) -> None:

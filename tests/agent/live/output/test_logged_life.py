@@ -68,5 +68,5 @@ def test_a_file_that_cannot_be_written_is_named(life):
     def full(path, *fields):
         raise OSError(28, "No space left on device")
 
-    with pytest.raises(StoreError, match=r"log: cannot write a\.mcap: No space left"):
+    with pytest.raises(StoreError, match=r"log cannot be written to a\.mcap: No space left"):
         write_log(life, "a.mcap", full)

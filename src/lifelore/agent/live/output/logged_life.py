@@ -13,7 +13,8 @@ from lifelore.agent.live.output.exports import path_points
 from lifelore.agent.live.output.greedy_paths import GreedyPaths
 from lifelore.agent.live.output.known_building import KnownBuilding
 from lifelore.agent.live.output.nav2_masks import NO_OPINION, on_map, place_costs, place_masks
-from lifelore.core.errors import InputError, StoreError
+from lifelore.core.atomic_write import refused_writes
+from lifelore.core.errors import InputError
 from lifelore.domains.buildings.occupancy_map import OccupancyMap
 from lifelore.domains.grids.grid_world import MOVE_NAMES
 
@@ -51,10 +52,8 @@ def write_life_log(path: str, life: Life, last: list[GreedyPaths], recorder: Rec
     """
     if life.building is None:
         raise InputError(f"log needs a life in a building, got domain {life.report['domain']}; leave it out")
-    try:
+    with refused_writes(path, "log"):
         recorder(path, *logged_life(life, life.building, last))
-    except OSError as error:
-        raise StoreError(f"log: cannot write {path}: {error.strerror}; choose another file") from None
 
 
 def logged_life(life: Life, building: KnownBuilding, last: list[GreedyPaths]) -> LoggedLife:
