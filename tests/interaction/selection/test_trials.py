@@ -1,4 +1,4 @@
-"""Trials of the default rule: a policy that may pay a user more than its type says is tried while that pays."""
+"""Trials of information-directed selection: a policy that may pay a user more than the type says is tried."""
 
 import numpy as np
 import pytest
@@ -8,6 +8,8 @@ from lifelore.interaction.outcomes.prediction import NormalPrediction
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 from lifelore.interaction.selection.information_directed import AHEAD, InformationDirected, gain_of_trial
+
+TRIALS = InformationDirected(trials=True)
 
 
 class Outcomes(NormalPrediction):
@@ -47,12 +49,12 @@ def lived(agent, means, episodes, deviation=1.0):
 
 def test_a_user_whose_own_pay_differs_from_the_type_is_found_out(library):
     means = [1.0, 0.0, 2.0]
-    assert 2 not in lived(BayesianPolicyReuse(library, models="plug-in"), means, 60)
-    assert lived(BayesianPolicyReuse(library), means, 60)[-20:] == [2] * 20
+    assert 2 not in lived(BayesianPolicyReuse(library, TRIALS, models="plug-in"), means, 60)
+    assert lived(BayesianPolicyReuse(library, TRIALS), means, 60)[-20:] == [2] * 20
 
 
 def test_trials_end_for_a_user_who_is_as_the_type_says(library):
-    chosen = lived(BayesianPolicyReuse(library), [1.0, 0.0, 0.3], 200)
+    chosen = lived(BayesianPolicyReuse(library, TRIALS), [1.0, 0.0, 0.3], 200)
     assert chosen[-50:].count(0) >= 48
 
 
@@ -60,8 +62,9 @@ def test_a_trial_needs_episodes_left_in_which_it_pays(library):
     agent = BayesianPolicyReuse(library)
     for _ in range(30):
         agent.update(0, 1.0)
-    read, rule = agent.algorithm.known(0), InformationDirected()
-    without, net = (rule.scores(read, agent.belief, episodes_left=left) for left in (0, None))
+    read = agent.algorithm.known(0)
+    without, net = (TRIALS.scores(read, agent.belief, episodes_left=left) for left in (0, None))
+    assert (without == InformationDirected().scores(read, agent.belief)).all()
     assert (without <= 0).all()
     tried = net > 0
     assert tried.any()
@@ -73,12 +76,12 @@ def test_a_trial_needs_episodes_left_in_which_it_pays(library):
 
 
 def test_rows_of_users_and_parts_of_a_library_try_as_one_user_does(library):
-    agent, users = BayesianPolicyReuse(library), UserBeliefs(library, 3, "f8")
+    agent, users = BayesianPolicyReuse(library, TRIALS), UserBeliefs(library, 3, "f8")
     for pay in (1.2, 0.9, 1.1, 1.0) * 5:
         agent.update(0, pay)
         users.update(np.arange(3), np.zeros(3, int), np.full(3, pay))
     every = np.arange(3)
     for available in (None, [True, False, True]):
         alone = agent.probabilities(available)
-        assert users.probabilities(every, available=available) == pytest.approx(np.tile(alone, (3, 1)))
+        assert users.probabilities(every, TRIALS, available=available) == pytest.approx(np.tile(alone, (3, 1)))
     assert agent.probabilities([True, False, True]).tolist() == [0, 0, 1]

@@ -4,7 +4,7 @@ The deterministic form of Russo and Van Roy (2014). It has no κ and no horizon 
 in the thesis's experiments it does as well as expected improvement.
 
 Information about the type ends once the type is known, but a user's own mean pays may still differ from the type's
-where models are uncertain. So a policy that is not the best now is tried as soon as that pays by its own mean:
+where models are uncertain. With `trials`, a policy that is not the best now is tried while its own mean repays it:
 
     n G(π) > max Ũ − Ũ(π)      G(π) = E[max(m' − max Ũ, 0)], m' the mean pay that is expected after a trial
 
@@ -35,14 +35,15 @@ LARGEST_AHEAD = 50.0
 class InformationDirected(Deterministic):
     """−Δ(π) / √I(π) with Δ(π) = Σ β(τ) max_q E[U | τ, q] − Ũ(π): the order of Δ² / I, smallest first.
 
-    Where models are uncertain, what a trial of a policy gains by the policy's own mean pay comes first.
-
     Parameters
     ----------
     mass : float
         Share of the belief that is used, in (0, 1].
     n_bins : int
         Number of bins of real-valued signals.
+    trials : bool
+        Whether policies are also tried for their own mean pay, where models are uncertain. Together with
+        `with_unknown_type` it serves users whom no type fits; known users pay for it.
 
     Raises
     ------
@@ -61,6 +62,7 @@ class InformationDirected(Deterministic):
 
     mass: float = MASS
     n_bins: int = 8
+    trials: bool = False
     name: ClassVar[str] = "information-directed"
 
     def __post_init__(self) -> None:
@@ -76,7 +78,7 @@ class InformationDirected(Deterministic):
         lost = np.maximum(best - expected, 0.0)
         information = mutual_information(belief, library.table(self.n_bins), self.mass)
         scores = -lost / np.sqrt(np.maximum(information, LEAST_INFORMATION))
-        if outcomes.mean_variance is None:
+        if not self.trials or outcomes.mean_variance is None:
             return scores
         most = LARGEST_AHEAD if episodes_left is None else min(episodes_left, LARGEST_AHEAD)
         ahead = np.minimum(AHEAD * np.asarray(outcomes.n_shown)[..., None], most)

@@ -65,7 +65,8 @@ def with_unknown_type(library: PolicyLibrary, mass: float = 0.2) -> PolicyLibrar
     """A library with an additional type "unknown" that is as broad as all types together.
 
     An agent then learns the pays of a user whom no type fits, policy by policy; its belief in the last type is the
-    probability that no known type fits. Models must be uncertain, as they are by default.
+    probability that no known type fits. Choose by `InformationDirected(trials=True)`, so that policies are tried
+    on such users. Models must be uncertain, as they are by default.
 
     Parameters
     ----------
@@ -80,9 +81,10 @@ def with_unknown_type(library: PolicyLibrary, mass: float = 0.2) -> PolicyLibrar
     Examples
     --------
     >>> from lifelore import BayesianPolicyReuse
+    >>> from lifelore.interaction import InformationDirected
     >>> random = np.random.default_rng(0)
     >>> library = PolicyLibrary.from_samples(random.normal([[[9.0], [5.0]], [[4.0], [8.0]]], 1.0, (2, 2, 10)))
-    >>> agent = BayesianPolicyReuse(with_unknown_type(library))
+    >>> agent = BayesianPolicyReuse(with_unknown_type(library), InformationDirected(trials=True))
     >>> for _ in range(5):  # no known type is bad with both
     ...     agent.update(0, 4.0)
     ...     agent.update(1, 4.0)
