@@ -157,10 +157,10 @@ def scored(
     generator : numpy generator, optional
         Needed by rules that draw.
     """
-    values = partial(rule.scores, episodes_left=episodes_left, generator=generator)
-    if getattr(rule, "by_means", False):
-        scores = values(library, belief)
+    if available is None or getattr(rule, "by_means", False):
+        scores = rule.scores(library, belief, episodes_left=episodes_left, generator=generator)
         return scores if available is None or available.all() else np.where(available, scores, -np.inf)
+    values = partial(rule.scores, episodes_left=episodes_left, generator=generator)
     return _by_part(values, library, belief, available, -np.inf)
 
 
