@@ -11,6 +11,8 @@ from lifelore.interaction.finite_signals.signal_table import SignalTable
 class NormalOutcomes:
     """Normal outcomes (T, P), or of users (k, T, P), whose means are taken as exact."""
 
+    mean_variance, n_shown = None, 0.0
+
     def __init__(self, mean, deviation):
         self.mean = np.array(mean, float)
         self.deviation = np.broadcast_to(np.asarray(deviation, float), self.mean.shape)

@@ -231,13 +231,14 @@ class ReuseAlgorithm:
                 f"signal model {type(self.library.signal).__name__} gave NaN or infinity as a log likelihood; "
                 "minus infinity is allowed, they are not"
             ) from None
-        explained = log_evidence > -np.inf
-        if found.changed is not None:
-            changes = np.where(explained, (np.exp(after) * found.changed).sum(axis=-1), 0.0)
-            for model in self._models.values():
-                model.fade(users, 1 - np.minimum(changes, 1.0))
-        if self.signals.law.learns and explained.any():
-            self.signals.learn(*_explained(explained, users, policies, signals, found.gain))
+        if self.signals.law.learns:
+            explained = log_evidence > -np.inf
+            if found.changed is not None:
+                changes = np.where(explained, (np.exp(after) * found.changed).sum(axis=-1), 0.0)
+                for model in self._models.values():
+                    model.fade(users, 1 - np.minimum(changes, 1.0))
+            if explained.any():
+                self.signals.learn(*_explained(explained, users, policies, signals, found.gain))
         if outcomes is not None and self.outcomes is not self.signals and self.outcomes.law.learns:
             self._learn_outcomes(users, policies, outcomes, before)
         self.log_belief[users] = after

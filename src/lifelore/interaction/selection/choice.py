@@ -157,10 +157,10 @@ def scored(
     generator : numpy generator, optional
         Needed by rules that draw.
     """
-    values = partial(rule.scores, episodes_left=episodes_left, generator=generator)
-    if getattr(rule, "by_means", False):
-        scores = values(library, belief)
+    if available is None or getattr(rule, "by_means", False):
+        scores = rule.scores(library, belief, episodes_left=episodes_left, generator=generator)
         return scores if available is None or available.all() else np.where(available, scores, -np.inf)
+    values = partial(rule.scores, episodes_left=episodes_left, generator=generator)
     return _by_part(values, library, belief, available, -np.inf)
 
 
@@ -264,14 +264,23 @@ class PartOfLibrary:
 
 
 class PartOfOutcomes:
-    """The outcomes of some policies: the mean, and the methods of `Prediction`."""
+    """The outcomes of some policies: the moments, and the methods of `Prediction`."""
 
     def __init__(self, outcomes: "Prediction", policies: Mask) -> None:
-        self._outcomes, self._policies = outcomes, policies
+        self._outcomes, self._policies, self.n_shown = outcomes, policies, outcomes.n_shown
 
     @property
     def mean(self) -> Array:
         return self._outcomes.mean[..., self._policies]
+
+    @property
+    def deviation(self) -> Array:
+        return self._outcomes.deviation[..., self._policies]
+
+    @property
+    def mean_variance(self) -> Array | None:
+        variance = self._outcomes.mean_variance
+        return None if variance is None else variance[..., self._policies]
 
     def __getattr__(self, method: str) -> Callable[[Any], Array]:
         of_all = getattr(self._outcomes, method)

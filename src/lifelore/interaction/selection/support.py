@@ -21,12 +21,13 @@ def truncated(belief: Array, mass: float) -> Array:
 
     Types exactly as likely as the last of these are included. Types of belief 0 never are.
     """
-    rising = np.sort(belief, axis=-1)
+    rising = belief.copy()
+    rising.sort(axis=-1)
     held = np.add.accumulate(rising, axis=-1)
     # From below: the types left out may not exceed 1 - mass, and small numbers are summed first.
-    left_out = (held <= (1.0 - mass) * held[..., -1:]).sum(axis=-1, keepdims=True)
-    kept = np.where(belief >= np.take_along_axis(rising, left_out, axis=-1), belief, 0.0)
-    return kept / kept.sum(axis=-1, keepdims=True)
+    used = np.where(held > (1.0 - mass) * held[..., -1:], rising, np.inf)
+    kept = np.where(belief >= np.minimum.reduce(used, axis=-1, keepdims=True), belief, 0.0)
+    return kept / np.add.reduce(kept, axis=-1, keepdims=True)
 
 
 def check_mass(mass: float) -> None:
