@@ -1,6 +1,7 @@
-"""Bars stand at their values, groups side by side, and say their own words where they have some."""
+"""Bars stand at their values, groups side by side, coloured by group, by name, or by both."""
 
 import pytest
+from matplotlib.colors import to_hex
 
 from lifelore.figures.style import new_figure
 from reproduction.figures.interval_bars import draw_interval_bars
@@ -19,3 +20,19 @@ def test_groups_stand_side_by_side_and_none_leaves_its_place_empty():
     middles = [bar.get_x() + bar.get_width() / 2 for bar in axes.patches]
     assert middles == pytest.approx([-0.2, 0.8, 0.2])
     assert [list(line.get_ydata()) for line in axes.lines] == [[0.5, 2.0]]
+
+
+BARS = {"exact": [{"value": 1.0}, {"value": 2.0}], "learnt": [{"value": 3.0}, None]}
+
+
+@pytest.mark.parametrize(
+    ("colours", "found"),
+    [
+        ({"exact": "#ff0000", "learnt": "#00ff00"}, ["#ff0000", "#ff0000", "#00ff00"]),
+        ({"exact": ["#ff0000", "#0000ff"], "learnt": "#00ff00"}, ["#ff0000", "#0000ff", "#00ff00"]),
+        (["#ff0000", "#00ff00"], ["#ff0000", "#ff0000", "#00ff00"]),
+    ],
+)
+def test_colours(colours, found):
+    axes = drawn(BARS, colours=colours)
+    assert [to_hex(bar.get_facecolor()) for bar in axes.patches] == found
