@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache
+from itertools import chain
 from typing import Any
 
 Parameters = Mapping[str, Any] | Sequence[Any]
@@ -63,12 +64,22 @@ class Connection:
 
     def matching(self, sql: str, values: Sequence[Any], parameters: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
         """All rows of a statement whose ``{many}``, behind its other parameters, stands for a list of values."""
-        rows: list[tuple[Any, ...]] = []
-        for at in range(0, len(values), MANY):
-            part = values[at : at + MANY]
-            text = sql.replace("{many}", ", ".join("?" * len(part)))
-            rows += self.execute(text, [*parameters, *part]).fetchall()
-        return rows
+        return self._in_parts(sql, "?", [(value,) for value in values], parameters)
+
+    def matching_rows(self, sql: str, rows: Sequence[Sequence[Any]]) -> list[tuple[Any, ...]]:
+        """All rows of a statement whose ``{many}`` stands for rows of values, its only parameters."""
+        return self._in_parts(sql, f"({', '.join('?' * len(rows[0]))})", rows) if rows else []
+
+    def _in_parts(
+        self, sql: str, places: str, rows: Sequence[Sequence[Any]], parameters: Sequence[Any] = ()
+    ) -> list[tuple[Any, ...]]:
+        found: list[tuple[Any, ...]] = []
+        step = MANY // places.count("?")
+        for at in range(0, len(rows), step):
+            part = rows[at : at + step]
+            text = sql.replace("{many}", ", ".join([places] * len(part)))
+            found += self.execute(text, [*parameters, *chain.from_iterable(part)]).fetchall()
+        return found
 
     def insert(self, table: str, columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
         """Insert new rows; PostgreSQL copies them."""
@@ -102,15 +113,7 @@ class Connection:
         self, table: str, columns: Sequence[str], rows: Sequence[Sequence[Any]], also: str
     ) -> list[tuple[Any, ...]]:
         """Insert rows by statements of many, for SQLite; all that they return."""
-        found: list[tuple[Any, ...]] = []
-        places, step = f"({', '.join('?' * len(columns))})", MANY // len(columns)
-        for at in range(0, len(rows), step):
-            part = rows[at : at + step]
-            statement = (
-                f"INSERT INTO {table} ({', '.join(columns)}) VALUES {', '.join([places] * len(part))} {also}"
-            )
-            found += self.execute(statement, [value for row in part for value in row]).fetchall()
-        return found
+        return self.matching_rows(f"INSERT INTO {table} ({', '.join(columns)}) VALUES {{many}} {also}", rows)
 
     def change(
         self, table: str, setting: str, where: str, types: Mapping[str, str], rows: Sequence[Sequence[Any]]

@@ -259,18 +259,11 @@ class StudyRows:
     def requested(self, pairs: Sequence[tuple[int, str | None]]) -> dict[tuple[int, str | None], DecisionRow]:
         """The decisions that were made for (user, request)."""
         query = (
-            f"SELECT {_DECISION} FROM lifelore_decisions WHERE +study = ? AND request IS NOT NULL"
-            " AND person IN ({many})"
+            f"SELECT {_DECISION} FROM (VALUES {{many}}) AS asked CROSS JOIN lifelore_decisions"
+            " WHERE person = column1 AND request = column2 AND request IS NOT NULL"
         )
-        if len(pairs) == 1:
-            query = query.replace("request IS NOT NULL", "request = ?")
-            parameters: tuple[Any, ...] = (self._study, pairs[0][1])
-        else:
-            parameters = (self._study,)
-        people = sorted({person for person, _ in pairs})
-        found = map(_decision, self._conn.matching(query, people, parameters))
-        wanted = set(pairs)
-        return {pair: row for row in found if (pair := (row.person, row.request)) in wanted}
+        found = map(_decision, self._conn.matching_rows(query, pairs))
+        return {(row.person, row.request): row for row in found}
 
     def end_decisions(self, outcomes: Iterable[tuple[bytes, float, int]]) -> None:
         """Store (identifier, outcome, time in milliseconds) of decisions that have no outcome."""
