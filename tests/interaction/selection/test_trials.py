@@ -10,19 +10,19 @@ from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 from lifelore.interaction.selection.information_directed import AHEAD, InformationDirected, gain_of_trial
 
 TRIALS = InformationDirected(trials=True)
+MEAN, VARIANCE = np.array([[1.0, 0.4, -3.0]]), np.array([[0.1, 0.5, 0.5]])
 
 
 class Outcomes(NormalPrediction):
     """One type with noise of variance 1, and normal mean pays."""
 
-    mean, mean_variance = np.array([[1.0, 0.4, -3.0]]), np.array([[0.1, 0.5, 0.5]])
-    deviation = np.sqrt(mean_variance + 1)
+    mean, mean_variance = MEAN, VARIANCE
+    deviation = np.sqrt(VARIANCE + 1)
 
 
 def test_the_gain_of_a_trial_is_that_of_bayes_rule_over_all_outcomes():
-    outcomes, one = Outcomes(), np.ones(1)
-    found = gain_of_trial(outcomes, one, outcomes.mean[0])
-    for policy, (mean, variance) in enumerate(zip(outcomes.mean[0], outcomes.mean_variance[0], strict=True)):
+    found = gain_of_trial(Outcomes(), np.ones(1), MEAN[0])
+    for policy, (mean, variance) in enumerate(zip(MEAN[0], VARIANCE[0], strict=True)):
         seen = np.linspace(-12, 12, 200_001)
         density = np.exp(-0.5 * (seen - mean) ** 2 / (variance + 1)) / np.sqrt(2 * np.pi * (variance + 1))
         after = mean + variance / (variance + 1) * (seen - mean)

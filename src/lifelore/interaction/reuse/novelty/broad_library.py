@@ -65,7 +65,7 @@ def with_unknown_type(library: PolicyLibrary, mass: float = 0.2) -> PolicyLibrar
     """A library with an additional type "unknown" that is as broad as all types together.
 
     An agent then learns the pays of a user whom no type fits, policy by policy; its belief in the last type is the
-    probability that no known type fits. Choose by `InformationDirected(trials=True)`, so that policies are tried
+    probability that no known type fits. Choose by ``InformationDirected(trials=True)``, so that policies are tried
     on such users. Models must be uncertain, as they are by default.
 
     Parameters
