@@ -399,7 +399,7 @@ def adapt(
     line {"user": "ada", "forget": true} deletes what is stored of a user.
     """
     from lifelore.agent.personalise import adaptation
-    from lifelore.app.console import print_json, print_json_line
+    from lifelore.app.console import print_json_line
     from lifelore.core.json_lines import lines_of
     from lifelore.memory import open_memory
 
