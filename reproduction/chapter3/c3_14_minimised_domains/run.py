@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.action import domain_reduction
+from lifelore.action.search import domain_reduction
 from lifelore.action.search.domain_reduction import MinimisedDomain, tables_within, trap_states
 from lifelore.core.learning.curve import Curve, new_curve
 from lifelore.core.learning.learning_metrics import episodes_to_threshold

@@ -73,8 +73,10 @@ def convex_objects(
     if camera is not None:
         pairs += parted_pairs(patches, regions, fragment, camera, points if seen is None else seen)
     joined = connected_parts(np.array(pairs, np.int64).reshape(-1, 2), int(regions.max()) + 1)
+    regions = joined[regions]
+    n_cut = int((_voxels(patches, regions) * surface.size**2 >= min_area).sum())
     regions = absorbed(
-        joined[regions],
+        regions,
         patches.pairs,
         patches.borders,
         lambda own: _below(LEAST_SURE, cut_confidence(patches, odds, own)),
@@ -86,7 +88,7 @@ def convex_objects(
     label[kept] = np.arange(2, 2 + len(kept))
     sure = cut_confidence(patches, odds, regions)
     confidence = {int(label[region]): float(sure[region]) for region in kept}
-    return CutCloud(label[regions][patches.of_voxel][surface.inverse], confidence)
+    return CutCloud(label[regions][patches.of_voxel][surface.inverse], confidence, n_cut)
 
 
 def _voxels(patches: Supervoxels, regions: NDArray[np.int64]) -> NDArray[np.float64]:

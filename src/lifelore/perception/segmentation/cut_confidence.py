@@ -30,10 +30,13 @@ class CutCloud:
     confidence : mapping of int to float
         Probability in 0–1 that an object has an IoU of at least 0.5 with a true object, by its label; empty if the
         method gives none.
+    n_cut : int
+        Number of objects before unsure ones joined their neighbours; 0 if the method joins none.
     """
 
     labels: NDArray[np.int64]
     confidence: Mapping[int, float] = field(default_factory=dict)
+    n_cut: int = 0
 
 
 def cut_confidence(

@@ -5,7 +5,7 @@ The methods have modules of their own: `convexity_segmentation`, `distance_segme
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -106,7 +106,7 @@ def cut_cloud(
         tests.append(standing[few, 2] > RISE * noise(standing[few], camera))
     cut = _standing(cut, cut.labels[few], tests)
     labels[above] = cut.labels
-    return CutCloud(labels, cut.confidence)
+    return replace(cut, labels=labels)
 
 
 def _objects(
@@ -150,4 +150,4 @@ def _standing(cut: CutCloud, labels: NDArray[np.int64], shares: Iterable[NDArray
     number = np.full(n, UNLABELLED, np.int64)
     number[kept] = np.arange(2, 2 + len(kept))
     confidence = {int(number[label]): sure for label, sure in cut.confidence.items() if number[label]}
-    return CutCloud(number[cut.labels], confidence)
+    return replace(cut, labels=number[cut.labels], confidence=confidence)

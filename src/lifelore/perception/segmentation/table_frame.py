@@ -182,7 +182,7 @@ def _upright_scene(
         scene = LabelledCloud(scene_points, labels, cloud.colours, camera, others, origin)
         return SegmentedScene(scene, False, search.table, search.tilted, up_given=up_given)
     cut = _cut(points, scene_points, cloud, camera, search.table, segmentation or SegmentationSettings())
-    _check_number(cut.labels, region, search)
+    _check_number(cut, region, search)
     scene = LabelledCloud(scene_points, cut.labels, cloud.colours, camera, others, origin)
     return SegmentedScene(scene, True, search.table, search.tilted, cut.confidence, up_given=up_given)
 
@@ -202,10 +202,12 @@ def _check_camera(camera: NDArray[np.float64] | None) -> None:
         )
 
 
-def _check_number(labels: NDArray[np.int64], region: Region, search: Search) -> None:
-    n = len(np.unique(labels[labels > TABLE]))
+def _check_number(cut: CutCloud, region: Region, search: Search) -> None:
+    n, hint = len(np.unique(cut.labels[cut.labels > TABLE])), ""
+    if search.table is None:
+        # Of a cloud that stands askew, most objects are unsure and have joined their neighbours.
+        n, hint = max(n, cut.n_cut), "check up, which no plane is level with (--up); "
     if n > region.max_objects:
-        hint = "" if search.table is not None else "check up, which no plane is level with (--up); "
         raise InputError(
             f"the cloud was cut into {n} objects, but at most {region.max_objects} are perceived; {hint}crop it to"
             " the table (--roi, --max-range), or give labels"
@@ -239,7 +241,7 @@ def _cut(
     colours = None if cloud.colours is None else cloud.colours.take(chosen, axis=0)
     cut = cut_cloud(upright_points, colours, settings, camera)
     labels[chosen] = cut.labels
-    return CutCloud(labels if table is None else with_feet(labels, scene_points, bands), cut.confidence)
+    return replace(cut, labels=labels if table is None else with_feet(labels, scene_points, bands))
 
 
 def table_plane(cloud: PointCloud) -> Plane:
