@@ -23,7 +23,9 @@ def main(where: str, robot: str, tasks: int, slots: int) -> None:
     with open_memory(where) as memory:
         for seq in range(tasks) if tasks else itertools.count():
             memory.contribute(robot, [ones], process=process, seq=seq, task={"index": seq})
-            print(seq, flush=True)
+            print(
+                f"{seq}\n", end="", flush=True
+            )  # in one piece, also where Python does not buffer: a kill cuts no line
 
 
 if __name__ == "__main__":
