@@ -1,6 +1,7 @@
 """JSON documents, progress on a terminal and in a pipe, and Ctrl-C."""
 
 import contextlib
+import io
 import json
 import os
 import pty
@@ -54,13 +55,32 @@ def test_remaining_time_is_that_of_the_open_pieces(monkeypatch):
     assert pace.text() == "0:00:10 elapsed, about 0:00:00 left"
 
 
-def test_the_first_interrupt_asks_and_the_second_insists(capsys):
+class InterruptedStream(io.RawIOBase):
+    """A stream to which each write is interrupted by Ctrl-C."""
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, content) -> int:
+        signal.raise_signal(signal.SIGINT)
+        return len(content)
+
+
+def test_an_interrupt_within_a_note_is_no_error(monkeypatch):
+    stream = io.TextIOWrapper(io.BufferedWriter(InterruptedStream()), line_buffering=True)
+    monkeypatch.setattr("sys.stderr", stream)
+    with stop_on_interrupt() as stop:
+        print("a note", file=stream, flush=True)
+        assert stop.is_set()
+
+
+def test_the_first_interrupt_asks_and_the_second_insists(capfd):
     before = signal.getsignal(signal.SIGINT)
     with stop_on_interrupt() as stop:
         assert not stop.is_set()
         signal.raise_signal(signal.SIGINT)
         assert stop.is_set()
-        assert "Ctrl-C again" in capsys.readouterr().err
+        assert "Ctrl-C again" in capfd.readouterr().err
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
     assert signal.getsignal(signal.SIGINT) is before

@@ -1,6 +1,7 @@
 """Output of the command line: JSON documents on stdout, notes and progress on stderr, and stopping by Ctrl-C."""
 
 import json
+import os
 import signal
 import sys
 import time
@@ -110,7 +111,8 @@ def stop_on_interrupt() -> Iterator[Event]:
         if stop.is_set():
             raise KeyboardInterrupt
         stop.set()
-        print("stopping: finished work is stored (press Ctrl-C again to quit at once)", file=sys.stderr)
+        # Not by print, which fails where the signal interrupts a write to the same stream.
+        os.write(2, b"stopping: finished work is stored (press Ctrl-C again to quit at once)\n")
 
     before = signal.signal(signal.SIGINT, interrupted)
     try:
