@@ -428,9 +428,9 @@ class StudyClient:
         """Deliver these outcomes; the messages of those that the service refuses are added to `refused`."""
         if not items:
             return
-        read = _each(len(items), lambda _: None) if route == "/outcomes/batch" else lambda _: []
+        read = _errors_of(len(items)) if route == "/outcomes/batch" else lambda _: []
         try:
-            errors = [error for error in self._link.ask("POST", route, {"items": items}, PATIENCE, read) if error]
+            errors = self._link.ask("POST", route, {"items": items}, PATIENCE, read)
         except ServiceRefusal as error:
             if error.status in (404, 405):  # no such study now: not the fault of the outcomes
                 raise ServiceUnavailable(str(error)) from error
@@ -496,19 +496,17 @@ class _Made:
         self.probabilities = _row(document["probabilities"]) if document.get("probabilities") else None
 
 
-def _each(number: int, read: Callable[[Any], Any]) -> Callable[[Any], list[Any]]:
-    """A reader of the answers to a batch of this number: each is read, or is the error's (kind, message)."""
+def _errors_of(number: int) -> Callable[[Any], list[tuple[str, str]]]:
+    """A reader of the answer to a batch of this number: the errors' (kind, message)."""
 
-    def read_all(document: Mapping[str, Any]) -> list[Any]:
+    def read(document: Mapping[str, Any]) -> list[tuple[str, str]]:
         items = document["items"]
         if len(items) != number:
             raise ValueError(f"{number} items were sent, {len(items)} came back")
-        return [
-            (str(item["error"]["kind"]), str(item["error"]["message"])) if "error" in item else read(item)
-            for item in items
-        ]
+        errors = [item["error"] for item in items if "error" in item]
+        return [(str(error["kind"]), str(error["message"])) for error in errors]
 
-    return read_all
+    return read
 
 
 class _Table:

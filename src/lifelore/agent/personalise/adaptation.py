@@ -155,9 +155,7 @@ def _learn_line(memory: Memory, adaptation: Adaptation, user: str, line: dict[st
     if line.keys() != {"action_set", "signal"}:
         fields = "user, action_set, signal[, step, ends_episode]"
         raise InputError(f"a move must have {fields}, got {', '.join(['user', *line])}")
-    if step is None:
-        step = _beat(memory, adaptation, user).step
-    if isinstance(step, bool) or not isinstance(step, int) or step < 0:
+    if step is not None and (isinstance(step, bool) or not isinstance(step, int) or step < 0):
         raise InputError(f"step must be a whole number from 0, got {step!r}")
     if not isinstance(ends, bool):
         raise InputError(f"ends_episode must be true or false, got {ends!r}")
@@ -192,7 +190,7 @@ def learn_moves(
     memory: Memory,
     adaptation: Adaptation,
     user: str,
-    step: int,
+    step: int | None,
     moves: Sequence[tuple[str, Any]],
     *,
     ends_episode: bool = False,
@@ -201,8 +199,8 @@ def learn_moves(
 
     Parameters
     ----------
-    step : int
-        Number of the first of the moves, from 0.
+    step : int, optional
+        Number of the first of the moves, from 0; None: they follow those that are stored.
     moves : sequence of (action set, signal)
     ends_episode : bool
         Whether the last of the moves ends an episode.
@@ -224,11 +222,12 @@ def learn_moves(
         raise InputError("moves must hold at least one move, got none")
     for _ in range(ATTEMPTS):
         beat = _beat(memory, adaptation, user)
-        if step + len(moves) <= beat.step:
+        first = beat.step if step is None else step
+        if first + len(moves) <= beat.step:
             return {"user": user, "taken": False, **_state(adaptation, beat)}
-        if step != beat.step:
+        if first != beat.step:
             raise InputError(
-                f"step must be {beat.step}, the number of moves so far, got {step}; give the moves from there"
+                f"step must be {beat.step}, the number of moves so far, got {first}; give the moves from there"
             )
         for action_set, signal in moves:
             beat.update(action_set, signal)
@@ -237,7 +236,7 @@ def learn_moves(
         record = _record(adaptation, user, beat)
         robot, task = _robot(adaptation, user), {"adaptation": adaptation.name, "moves": len(moves)}
         process = _process(memory, adaptation, robot)
-        if memory.contribute(robot, [record], process=process, seq=step, task=task):
+        if memory.contribute(robot, [record], process=process, seq=first, task=task):
             return {"user": user, "taken": True, **_state(adaptation, beat)}
     raise StoreError(f"memory {memory.location}: too many programs move for one user at once; try again")
 

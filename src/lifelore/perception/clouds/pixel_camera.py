@@ -21,7 +21,9 @@ _FEW = 100
 
 
 def camera_from_pixels(cloud: PointCloud) -> NDArray[np.float64] | None:
-    """(3,) metres, the camera of an organised cloud, in the frame of its points; None where it cannot be told.
+    """The position of the camera of an organised cloud, (3,) in metres in the frame of its points.
+
+    None for a cloud without a grid, with few points, of a single plane, or not of a pinhole camera.
 
     Examples
     --------
