@@ -7,7 +7,7 @@ of their times; with several programs that serve a study, read up to a minute ag
 import csv
 import io
 import json
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Literal
 
 from lifelore.agent.personalise.identifiers import identifier, parse_identifier
@@ -30,7 +30,6 @@ ROWS = 10_000
 """Decisions of a part; more need more main memory."""
 GROUPS = ("personal", "control")
 Format = Literal["csv", "ndjson"]
-_encode = json.JSONEncoder(ensure_ascii=False).encode
 
 
 def log_parts(
@@ -79,7 +78,6 @@ def _parts(
     names = () if study.feature_prior is None else study.feature_prior.names
     features = [name for name in names if name.strip().lower() not in COLUMNS]
     columns = (*_READ, "u.features") if features else _READ
-    word = escaped if form == "csv" else _same
     head = [*COLUMNS, *features]
     if form == "csv":
         yield _csv([head])
@@ -89,33 +87,32 @@ def _parts(
         with memory.studies.totals(study.number) as totals:
             rows = totals.log(columns, after, before, size)
         if rows:
-            lines = [_line(row, rules, features, word) for row in rows]
-            yield _csv(lines) if form == "csv" else b"".join(_document(head, line) for line in lines)
+            lines = _lines(rows, rules, features, form)
+            yield _csv(lines) if form == "csv" else _documents(head, lines)
             after = rows[-1][_READ.index("d.id")]
         if len(rows) < size:
             return
         left = None if left is None else left - len(rows)
 
 
-def _line(
-    row: Sequence[Any], rules: dict[int, str], features: Sequence[str], word: Callable[[Any], Any]
-) -> list[Any]:
+def _lines(
+    rows: Sequence[Sequence[Any]], rules: dict[int, str], features: Sequence[str], form: Format
+) -> Iterator[tuple[Any, ...]]:
+    """Lines of the log, made a column at a time."""
     user, policy, outcome, context, time, probability, control, id_, version, ended, available, request, *known = (
-        row
+        zip(*rows, strict=True)
     )
-    line = [
-        word(user), word(policy), outcome, word(context), time / 1000, probability, GROUPS[control],
-        identifier(id_), version, rules.get(version), None if ended is None else ended / 1000, available,
-        word(request),
-    ]  # fmt: skip
-    if features:
-        own = json.loads(known[0] or "{}")
-        line += [own.get(name) for name in features]
-    return line
-
-
-def _same(word: Any) -> Any:
-    return word
+    if form == "csv":
+        user, policy, context, request = (map(escaped, column) for column in (user, policy, context, request))
+    else:
+        available = [None if one is None else json.loads(one) for one in available]
+    own = [json.loads(one or "{}") for one in known[0]] if features else []
+    return zip(
+        user, policy, outcome, context, [one / 1000 for one in time], probability,
+        [GROUPS[one] for one in control], map(identifier, id_), version, map(rules.get, version),
+        [None if one is None else one / 1000 for one in ended], available, request,
+        *([one.get(name) for one in own] for name in features), strict=True,
+    )  # fmt: skip
 
 
 def _csv(lines: Iterable[Sequence[Any]]) -> bytes:
@@ -124,8 +121,7 @@ def _csv(lines: Iterable[Sequence[Any]]) -> bytes:
     return text.getvalue().encode()
 
 
-def _document(names: Sequence[str], line: Sequence[Any]) -> bytes:
-    document = dict(zip(names, line, strict=True))
-    if document["available"] is not None:
-        document["available"] = json.loads(document["available"])
-    return f"{_encode(document)}\n".encode()
+def _documents(names: Sequence[str], lines: Iterable[Sequence[Any]]) -> bytes:
+    import msgspec  # of the extra web, as the service that asks for this format
+
+    return msgspec.json.Encoder().encode_lines([dict(zip(names, line, strict=True)) for line in lines])
