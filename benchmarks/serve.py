@@ -7,6 +7,7 @@ each row, the other all rows that wait.
 
 import asyncio
 import itertools
+import json
 import time
 from collections.abc import AsyncIterator
 from pathlib import Path
@@ -130,7 +131,8 @@ def _bare(path: str) -> SCENARIO:
 
 async def _pairs(connection: Connection, number: int) -> AsyncIterator[None]:
     for n in itertools.count():
-        made = await connection.post("/v1/studies/bench/decisions", {"user": f"user {number} {n % 50}"})
+        answer = await connection.post("/v1/studies/bench/decisions", {"user": f"user {number} {n % 50}"})
+        made = json.loads(answer)
         ended = {"decision": made["decision"], "outcome": float(n % 10)}
         await connection.post("/v1/studies/bench/outcomes", ended)
         yield
