@@ -12,8 +12,9 @@ DECISION = (
     "request",
 )  # fmt: skip
 """Columns of a decision without its outcome."""
-_USER = "number, name, context, features, type, fitted, version, state"
-_COUNT = ", (SELECT COUNT(*) FROM lifelore_decisions d WHERE d.person = u.number)"
+_FIELDS = "number, name, context, features, type, fitted, version, state, "
+_USER = _FIELDS + "0"
+_COUNTED = _FIELDS + "(SELECT COUNT(*) FROM lifelore_decisions d WHERE d.person = u.number)"
 _DECISION = "id, person, policy, probability, control, version, time, context, available, request, outcome, ended"
 
 
@@ -104,11 +105,11 @@ class StudyRows:
         With `lock` nobody deletes them before the transaction ends; with `count` their decisions are counted.
         """
         query = (
-            f"SELECT {_USER}{_COUNT if count else ''} FROM lifelore_study_users u"
+            f"SELECT {_COUNTED if count else _USER} FROM lifelore_study_users u"
             " WHERE study = ? AND name IN ({many})"
         )
         found = self._conn.matching(query + self._locked(lock, "KEY SHARE"), names, (self._study,))
-        return {row[1]: _user(*row) for row in found}
+        return {row[1]: _user(row) for row in found}
 
     def numbered(self, numbers: Iterable[int], *, lock: bool = False) -> dict[int, UserRow]:
         """Users by number; with `lock` no other transaction changes them before this one ends.
@@ -121,7 +122,7 @@ class StudyRows:
         )
         how = self._locked(lock, "NO KEY UPDATE")
         found = self._conn.matching(query + how, sorted(set(numbers)), (self._study,))
-        return {row[0]: _user(*row) for row in found}
+        return {row[0]: _user(row) for row in found}
 
     def add_users(
         self, users: Sequence[tuple[str, str | None, Mapping[str, float] | None]], version: int
@@ -140,7 +141,7 @@ class StudyRows:
             for name, context, features in sorted(users, key=itemgetter(0))
         ]
         added = self._conn.insert_unless_there("lifelore_study_users", types, rows, "study, name", _USER)
-        found = {row[1]: _user(*row) for row in added}
+        found = {row[1]: _user(row) for row in added}
         others = [row[1] for row in rows if row[1] not in found]
         return found | self.users(others, lock=True) if others else found
 
@@ -219,11 +220,9 @@ class StudyRows:
     def add_decisions(self, decisions: Iterable[DecisionRow]) -> None:
         """Store new decisions, without their outcomes."""
         rows = [
-            (self._study, id_, person, policy, probability, int(control), version, time, context,
-             _json(available), request)
-            for id_, person, policy, probability, control, version, time, context, available, request, *_
-            in decisions
-        ]  # fmt: skip
+            (self._study, *one[:4], int(one.control), *one[5:8], _json(one.available), one.request)
+            for one in decisions
+        ]
         self._conn.insert("lifelore_decisions", DECISION, rows)
 
     def locked_decisions(self, ids: Sequence[bytes]) -> tuple[dict[bytes, DecisionRow], dict[int, UserRow]]:
@@ -322,8 +321,9 @@ class StudyRows:
         self._change_users("fitted = 1", {}, ((number,) for number in numbers))
 
 
-def _user(number: int, name: str, context: str | None, features: str | None, *others: Any) -> UserRow:
-    return UserRow(number, name, context, None if features is None else json.loads(features), *others)
+def _user(row: Sequence[Any]) -> UserRow:
+    user = UserRow._make(row)
+    return user if user.features is None else user._replace(features=json.loads(row[3]))
 
 
 def _decision(row: Sequence[Any]) -> DecisionRow:

@@ -11,6 +11,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from itertools import repeat, starmap
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -62,29 +63,6 @@ class Request(NamedTuple):
     features: Mapping[str, float] | None = None
     available: Sequence[str] | None = None
     request: str | None = None
-
-    def checked(self, study: Study) -> "Request":
-        """The request with checked names; `InputError` or `NotFoundError` where one breaks its rule."""
-        check_name("user", self.user)
-        if self.context is not None:
-            check_name("context", self.context)
-        if self.request is not None:
-            check_name("request", self.request)
-        features, available = self.features, self.available
-        if features is None and available is None:
-            return self
-        if features is not None:
-            if study.feature_prior is None:
-                raise InputError(f"features must be left out: study '{study.name}' was fitted without --features")
-            features = study.feature_prior.checked(features)
-        if available is not None:
-            available = checked_available(study, available)
-            if not set(available) & set(study.active) and not study.holds_out(self.user):
-                raise InputError(
-                    f"available must name a policy in use, got {', '.join(available)}, which the control group "
-                    f"alone gets; in use are {', '.join(study.active)}"
-                )
-        return Request(self.user, self.context, features, available, self.request)
 
 
 def choose(
@@ -187,8 +165,8 @@ def _again_if_raced(function: Callable[..., Any], *arguments: Any) -> Any:
 def _decided(
     memory: Memory, study: Study, requests: Sequence[Request], seed: int, brief: bool
 ) -> list[Answer | LifeloreError]:
-    answers: list[Any] = [_or_error(Request.checked, request, study) for request in requests]
-    good = [place for place, one in enumerate(answers) if isinstance(one, Request)]
+    answers: list[Any] = [_or_error(_checked, request, study) for request in requests]
+    good = [place for place, one in enumerate(answers) if not isinstance(one, LifeloreError)]
     if not good:
         return answers
     checked: list[Request] = [answers[place] for place in good]
@@ -218,6 +196,30 @@ def _decided(
             if isinstance(answers[place], dict):
                 answers[place] |= about
     return answers
+
+
+def _checked(request: Request, study: Study) -> Request:
+    """The request with checked names; `InputError` or `NotFoundError` where one breaks its rule."""
+    check_name("user", request.user)
+    if request.context is not None:
+        check_name("context", request.context)
+    if request.request is not None:
+        check_name("request", request.request)
+    features, available = request.features, request.available
+    if features is None and available is None:
+        return request
+    if features is not None:
+        if study.feature_prior is None:
+            raise InputError(f"features must be left out: study '{study.name}' was fitted without --features")
+        features = study.feature_prior.checked(features)
+    if available is not None:
+        available = checked_available(study, available)
+        if not set(available) & set(study.active) and not study.holds_out(request.user):
+            raise InputError(
+                f"available must name a policy in use, got {', '.join(available)}, which the control group "
+                f"alone gets; in use are {', '.join(study.active)}"
+            )
+    return Request(request.user, request.context, features, available, request.request)
 
 
 def _users(memory: Memory, rows: StudyRows, study: Study, requests: Sequence[Request]) -> dict[str, UserRow]:
@@ -278,31 +280,18 @@ def _drawn(
     last = probs.shape[1] - 1 - (probs[:, ::-1] > 0).argmax(axis=1)
     chosen = np.minimum((ends <= draws[:, None] * ends[:, -1:]).sum(axis=1), last)
     probability = probs[np.arange(len(chosen)), chosen].tolist()
-    now, active, found = time.time_ns() // 10**6, study.active, []
-    for user, request, id_, place, own, draw, control in zip(
-        users, requests, new_ids(now, len(users)), chosen.tolist(), probability, draws.tolist(), held_out.tolist(),
-        strict=True,
-    ):  # fmt: skip
-        policy = active[place]
-        if control:
-            policies = _for_control(study, request.available)
-            policy, own = policies[int(draw * len(policies))], 1 / len(policies)
-        available = None if request.available is None else tuple(request.available)
-        found.append(
-            DecisionRow(
-                id_,
-                user.number,
-                policy,
-                own,
-                control,
-                study.version,
-                now,
-                user.context,
-                available,
-                request.request,
-            )
-        )
-    return found
+    policies = [study.active[place] for place in chosen.tolist()]
+    for row in np.flatnonzero(held_out).tolist():
+        among = _for_control(study, requests[row].available)
+        policies[row], probability[row] = among[int(draws[row] * len(among))], 1 / len(among)
+    now = time.time_ns() // 10**6
+    columns = zip(
+        new_ids(now, len(users)), [user.number for user in users], policies, probability, held_out.tolist(),
+        repeat(study.version), repeat(now), [user.context for user in users],
+        [None if one.available is None else tuple(one.available) for one in requests],
+        [request.request for request in requests],
+    )  # fmt: skip
+    return list(starmap(DecisionRow, columns))
 
 
 def _for_control(study: Study, available: Sequence[str] | None) -> list[str]:

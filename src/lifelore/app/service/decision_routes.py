@@ -15,7 +15,6 @@ from starlette.concurrency import run_in_threadpool
 from starlette.exceptions import HTTPException
 from starlette.requests import Request as HttpRequest
 
-from lifelore.agent.personalise.decisions import Request
 from lifelore.agent.personalise.explanation import novelty_of
 from lifelore.app.service.admission import STUDIES, Refused
 from lifelore.app.service.bodies import parsed
@@ -36,8 +35,8 @@ Text = Annotated[str, Meta(min_length=1, max_length=200)]
 Policy = Annotated[str, Meta(description="Name of the policy.")]
 
 
-class DecisionRequest(msgspec.Struct, forbid_unknown_fields=True):
-    """A user who needs a policy now."""
+class DecisionRequest(msgspec.Struct, forbid_unknown_fields=True, gc=False):
+    """A user who needs a policy now, with the fields of `decisions.Request`."""
 
     user: Annotated[str, Meta(description="Name of the user.", examples=["ada"])]
     request: Annotated[
@@ -51,12 +50,8 @@ class DecisionRequest(msgspec.Struct, forbid_unknown_fields=True):
     ] = None
     novelty: Annotated[bool, Meta(description="Also compute the probability that no known type fits.")] = False
 
-    def row(self) -> Request:
-        """The request as `decide` takes it."""
-        return Request(self.user, self.context, self.features, self.available, self.request)
 
-
-class OutcomeRequest(msgspec.Struct, forbid_unknown_fields=True):
+class OutcomeRequest(msgspec.Struct, forbid_unknown_fields=True, gc=False):
     """How a decision ended."""
 
     decision: Annotated[str, Meta(description="Identifier of the decision.")]
@@ -168,7 +163,7 @@ def hot_routes(service: Service) -> list[HotRoute]:
     writer, encode = service.writer, msgspec.json.Encoder().encode
 
     async def decide(study: str, document: DecisionRequest) -> Any:
-        (answer,) = await writer.decide(study, [document.row()])
+        (answer,) = await writer.decide(study, [document])
         if isinstance(answer, LifeloreError):
             raise answer
         answer["novelty"] = None
@@ -184,16 +179,16 @@ def hot_routes(service: Service) -> list[HotRoute]:
         return answer
 
     async def decide_many(study: str, document: Decisions) -> Any:
-        return await in_parts(writer.decide, study, document.items, DecisionRequest.row)
+        return await in_parts(writer.decide, study, document.items)
 
     async def observe_many(study: str, document: Outcomes) -> Any:
-        return await in_parts(writer.observe, study, document.items, OutcomeRequest.row)
+        return await in_parts(writer.observe, study, [item.row() for item in document.items])
 
-    async def in_parts(store: Any, study: str, items: Sequence[Any], row: Callable[[Any], Any]) -> msgspec.Raw:
+    async def in_parts(store: Any, study: str, rows: Sequence[Any]) -> msgspec.Raw:
         """The answers of a batch, read, stored and encoded a part at a time: other requests get their turns."""
         parts = []
-        for at in range(0, len(items), PART):
-            answers = await store(study, [row(item) for item in items[at : at + PART]], brief=True)
+        for at in range(0, len(rows), PART):
+            answers = await store(study, rows[at : at + PART], brief=True)
             listed = [refused(one) if isinstance(one, LifeloreError) else one for one in answers]
             parts.append(encode(listed)[1:-1])
         return msgspec.Raw(b'{"items":[' + b",".join(parts) + b"]}")

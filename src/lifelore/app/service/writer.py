@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
 from typing import Any, NamedTuple
 
-from lifelore.agent.personalise.decisions import Request, decide, observe
+from lifelore.agent.personalise.decisions import decide, observe
 from lifelore.agent.personalise.open_studies import OpenStudies
 from lifelore.app.service.telemetry import Metrics
 from lifelore.core.errors import LifeloreError
@@ -22,8 +22,9 @@ MOST = 256
 """Largest number of requests in a transaction; more let each of them wait longer."""
 PATIENCE = 0.001
 """Seconds to wait for another request where the last transaction had several; a commit takes about as long."""
-PART = 500
-"""Rows of a long batch that are stored at a time, between which other requests get their turn."""
+PART = 1000
+"""Rows of a long batch that are stored at a time, between which other requests get their turn; fewer wait for the
+disk more often."""
 
 
 class _Job(NamedTuple):
@@ -66,8 +67,8 @@ class Writer:
         """The result of a function, once all that it stored is committed; its errors as it raised them."""
         return await self._put(None, (function, *arguments))
 
-    async def decide(self, study: str, requests: Sequence[Request], *, brief: bool = False) -> list[Any]:
-        """The answers of `decisions.decide`, once the decisions are committed."""
+    async def decide(self, study: str, requests: Sequence[Any], *, brief: bool = False) -> list[Any]:
+        """The answers of `decisions.decide`, once the decisions are committed; requests have its fields."""
         return await self._put(("decisions", study, brief), tuple(requests))
 
     async def observe(
