@@ -1,37 +1,33 @@
 """Interface adaptation (BEAT) for users in memory: choose an action set for the next step, learn from moves.
 
-    adapt_library/NAME        the library's file, eight bytes in a value; about: id, bytes, epsilon
-    adapt_user/NAME/USER      slots: step, episode, surprises, and the bits of the log belief by type
+An adaptation is a study of its own in memory, of the name ``adapt/NAME``: the library is its version, a user's
+belief is the state of the user's row, and holds for one version.
 
 The choice follows from the belief, the seed and the number of the step, so that asking twice changes nothing.
 Moves are numbered, so that moves that come twice count once. Thesis: §4.8.4, Alg. 9.
 """
 
-import hashlib
 import json
-import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from lifelore.agent.personalise.library_document import library_of
-from lifelore.agent.personalise.study import check_study_name, user_key
+from lifelore.agent.personalise.study import ADAPTATION, check_study_name
 from lifelore.core.atomic_write import read_file
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.json_lines import Lines, read_objects
-from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
 from lifelore.interaction.adaptation.beat import Beat, rule_at
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.memory import Memory
-from lifelore.memory.byte_words import bytes_of, words_of
 from lifelore.memory.record_rules import check_name
+from lifelore.memory.study_rows import UserRow
 
-LIBRARY, USER, VERSION = "adapt_library", "adapt_user", 1
 _HEADER = 3
-ATTEMPTS = 100
+"""Numbers of a state before the log belief: step, episode, surprises."""
 Epsilon = float | str
 
 
@@ -46,14 +42,15 @@ class Adaptation:
         Its policies are the action sets, its signal is a move.
     epsilon : float or str
         As for `Beat`.
-    id : str
-        Changes with each other library of this name; a user's belief holds for one of them.
+    number, version : int
+        Of the study in memory; the version changes with each other library or ε.
     """
 
     name: str
     library: PolicyLibrary
     epsilon: Epsilon
-    id: str
+    number: int
+    version: int
 
 
 def register_adaptation(memory: Memory, name: str, library: PolicyLibrary, epsilon: Epsilon = 0.0) -> Adaptation:
@@ -66,36 +63,24 @@ def register_adaptation(memory: Memory, name: str, library: PolicyLibrary, epsil
     """
     check_study_name(name)
     rule_at(epsilon)
-    content = library.to_bytes()
-    digest = hashlib.sha256(content + repr(epsilon).encode()).hexdigest()[:32]
-    earlier = memory.recall(LIBRARY, name, VERSION, slots=(0, 0))
-    if earlier is not None and earlier.about["digest"] == digest:
-        return open_adaptation(memory, name)
-    values = words_of(content)
-    about = {"bytes": len(content), "epsilon": epsilon, "digest": digest, "id": f"{digest[:8]}-{time.time_ns()}"}
-    record = Record(LIBRARY, name, VERSION, "newest", np.arange(len(values)), values, about)
-    robot = f"adapt {name}"
-    seq = memory.tasks(robot)
-    while not memory.contribute(robot, [record], process="library", seq=seq, task={"adaptation": name}):
-        seq += 1
-    return open_adaptation(memory, name)
+    stored = memory.studies.keep(ADAPTATION + name, {"epsilon": epsilon}, library.to_bytes())
+    return Adaptation(name, library, epsilon, stored.number, stored.version)
 
 
 def open_adaptation(memory: Memory, name: str) -> Adaptation:
     """The adaptation of that name; NotFoundError where there is none."""
     check_study_name(name)
-    record = memory.recall(LIBRARY, name, VERSION)
-    if record is None:
-        known = ", ".join(key for key, version, _ in memory.keys(LIBRARY) if version == VERSION)
-        raise NotFoundError(f"no adaptation '{name}'; known: {known or 'none'}; register its library first")
-    about: Mapping[str, Any] = record.about
-    # Cells beyond the content are those of an earlier, larger library.
-    content = bytes_of(record.values, about["bytes"])
+    found = memory.studies.newest(ADAPTATION + name)
+    if found is None:
+        known = [one.removeprefix(ADAPTATION) for one in memory.studies.states() if one.startswith(ADAPTATION)]
+        raise NotFoundError(
+            f"no adaptation '{name}'; known: {', '.join(known) or 'none'}; register its library first"
+        )
     try:
-        library = PolicyLibrary.from_bytes(content, f"adaptation '{name}'")
+        library = PolicyLibrary.from_bytes(found.content, f"adaptation '{name}'")
     except InputError as error:
         raise StoreError(f"{error}; register the library again") from None
-    return Adaptation(name, library, about["epsilon"], about["id"])
+    return Adaptation(name, library, found.about["epsilon"], found.number, found.version)
 
 
 def read_library(path: str) -> PolicyLibrary:
@@ -172,9 +157,11 @@ def select(memory: Memory, adaptation: Adaptation, user: str, seed: int = 0) -> 
         ``user``, ``action_set``, its ``probability``, ``step`` (number of moves so far), ``episode``,
         ``surprises`` (moves that no type explains), ``belief`` and ``expected`` value of each action set.
     """
-    beat = _beat(memory, adaptation, user)
+    check_name("user", user)
+    with memory.studies.reading(adaptation.number) as rows:
+        beat = _beat(adaptation, rows.users([user]).get(user))
     library, probs = adaptation.library, beat.algorithm.propensities(0, beat.rule)
-    generator = stream(seed, "adapt", adaptation.name, adaptation.id, user, beat.step)
+    generator = stream(seed, "adapt", adaptation.name, adaptation.version, user, beat.step)
     chosen = int(generator.choice(len(probs), p=probs))
     expected = beat.belief @ library.performance.mean
     return {
@@ -220,8 +207,13 @@ def learn_moves(
     """
     if not moves:
         raise InputError("moves must hold at least one move, got none")
-    for _ in range(ATTEMPTS):
-        beat = _beat(memory, adaptation, user)
+    check_name("user", user)
+    with memory.studies.writing(adaptation.number) as rows:
+        known = rows.users([user]).get(user) or rows.add_users([(user, None, None)], 0)[user]
+        known = rows.numbered([known.number], lock=True).get(known.number)
+        if known is None:
+            raise StoreError(f"memory {memory.location}: the user was forgotten at this moment; try again")
+        beat = _beat(adaptation, known)
         first = beat.step if step is None else step
         if first + len(moves) <= beat.step:
             return {"user": user, "taken": False, **_state(adaptation, beat)}
@@ -233,54 +225,30 @@ def learn_moves(
             beat.update(action_set, signal)
         if ends_episode:
             beat.end_episode()
-        record = _record(adaptation, user, beat)
-        robot, task = _robot(adaptation, user), {"adaptation": adaptation.name, "moves": len(moves)}
-        process = _process(memory, adaptation, robot)
-        if memory.contribute(robot, [record], process=process, seq=first, task=task):
-            return {"user": user, "taken": True, **_state(adaptation, beat)}
-    raise StoreError(f"memory {memory.location}: too many programs move for one user at once; try again")
+        state = np.concatenate([[beat.step, beat.episode, beat.surprises], beat.log_belief]).astype("<f8")
+        rows.keep_beliefs([(known.number, state.tobytes())], adaptation.version)
+    return {"user": user, "taken": True, **_state(adaptation, beat)}
 
 
 def forget_adaptation(memory: Memory, adaptation: Adaptation, user: str) -> int:
-    """Forget a user; the number of contributions removed. NotFoundError where nothing is stored."""
+    """Forget a user; the number of moves forgotten. NotFoundError where nothing is stored."""
     check_name("user", user)
-    robot = _robot(adaptation, user)
-    if not memory.tasks(robot):
-        raise NotFoundError(f"nothing is stored of user '{user}' in adaptation '{adaptation.name}'")
-    return memory.forget(robot)
+    with memory.studies.writing(adaptation.number) as rows:
+        known = rows.users([user]).get(user)
+        if known is None or rows.forget(known.number) is None:
+            raise NotFoundError(f"nothing is stored of user '{user}' in adaptation '{adaptation.name}'")
+    memory.studies.forgotten()
+    return _beat(adaptation, known).step
 
 
-def _robot(adaptation: Adaptation, user: str) -> str:
-    return f"adapt {adaptation.name}: {user_key(adaptation.name, user)}"
-
-
-def _process(memory: Memory, adaptation: Adaptation, robot: str) -> str:
-    """A name for each time that a user was forgotten, since memory stores nothing forgotten again."""
-    process, number = adaptation.id, 0
-    while memory.times_forgotten(robot, process):
-        number += 1
-        process = f"{adaptation.id} {number}"
-    return process
-
-
-def _beat(memory: Memory, adaptation: Adaptation, user: str) -> Beat:
+def _beat(adaptation: Adaptation, known: UserRow | None) -> Beat:
     """The learner as the user's stored moves leave it."""
-    check_name("user", user)
     beat = Beat(adaptation.library, epsilon=adaptation.epsilon)
-    key = f"{adaptation.name}/{user_key(adaptation.name, user)}"
-    record = memory.recall(USER, key, VERSION)
-    if record is not None and record.slots.size and record.about["id"] == adaptation.id:
-        beat.step, beat.episode, beat.surprises = record.values[:_HEADER].tolist()
-        log_belief = record.values[_HEADER : _HEADER + adaptation.library.n_types].view(np.float64)
-        beat.algorithm.restore(0, log_belief, {})
+    if known is not None and known.state is not None and known.version == adaptation.version:
+        state = np.frombuffer(known.state, "<f8")
+        beat.step, beat.episode, beat.surprises = state[:_HEADER].astype(int).tolist()
+        beat.algorithm.restore(0, state[_HEADER:], {})
     return beat
-
-
-def _record(adaptation: Adaptation, user: str, beat: Beat) -> Record:
-    values = np.concatenate([[beat.step, beat.episode, beat.surprises], beat.log_belief.view(np.int64)])
-    key = f"{adaptation.name}/{user_key(adaptation.name, user)}"
-    about = {"adaptation": adaptation.name, "user": user, "id": adaptation.id}
-    return Record(USER, key, VERSION, "newest", np.arange(len(values)), values.astype(np.int64), about)
 
 
 def _state(adaptation: Adaptation, beat: Beat) -> dict[str, Any]:

@@ -31,6 +31,8 @@ ACTIVE, PILOT, RETIRED = "active", "pilot", "retired"
 """A policy is chosen from; or given to the control group alone, till a fit knows it; or given to nobody."""
 LONGEST_NAME = 60
 EARLIER = "earlier user "
+ADAPTATION = "adapt/"
+"""Beginning of the names in memory of adaptations, which no study has."""
 MODELS = ("uncertain", "plug-in")
 """Whether models of few runs are known to be uncertain, or taken for the truth."""
 NAMED_TYPE = 0.99
@@ -315,7 +317,9 @@ def study_states(memory: Memory) -> dict[str, str]:
     """The state of each study, "active" or "archived", by its name."""
     from lifelore.agent.personalise.earlier_studies import earlier_studies
 
-    return dict.fromkeys(earlier_studies(memory), ACTIVE) | memory.studies.states()
+    states = memory.studies.states().items()
+    named = {name: state for name, state in states if not name.startswith(ADAPTATION)}
+    return dict.fromkeys(earlier_studies(memory), ACTIVE) | named
 
 
 def check_study_name(name: str) -> str:
