@@ -13,7 +13,7 @@ from typing import Any
 
 from lifelore.app.service.admission import Admission, Refused
 from lifelore.app.service.error_documents import error_body, send_json
-from lifelore.app.service.limits import Deadlines, limited_body
+from lifelore.app.service.limits import limited_body
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.telemetry import Metrics, log_request
 from lifelore.app.service.tokens import TokenFile
@@ -24,7 +24,6 @@ CLIENT_LEFT = 499
 _IDENTIFIER = re.compile(rb"[A-Za-z0-9_.:-]{1,100}")
 _HEADERS = [(b"x-content-type-options", b"nosniff"), (b"cache-control", b"no-store")]
 _METHODS = {"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"}
-_STOPPING = "the service stops; try again"
 
 
 class Gate:
@@ -51,8 +50,8 @@ class Gate:
     ) -> None:
         self._app, self._settings, self._metrics = app, settings, metrics
         self._admission = Admission(settings, tokens, open_paths)
-        self._deadlines = Deadlines(settings.seconds)
-        metrics.running.set_function(lambda: self._deadlines.running)
+        self._running = 0
+        metrics.running.set_function(lambda: self._running)
         self._first, self._numbers = secrets.token_hex(5), itertools.count()
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
@@ -65,15 +64,16 @@ class Gate:
         scope.setdefault("state", {})["request"] = identifier
         added = [(b"x-request-id", identifier.encode()), *_HEADERS]
         status, client, defect = 0, "", None
-        task = self._deadlines.begin()
+        loop, limit = asyncio.get_running_loop(), asyncio.timeout(self._settings.seconds)
+        self._running += 1
 
         async def answer(message: Any) -> None:
             nonlocal status
             if message["type"] == "http.response.start":
                 status = message["status"]
                 message["headers"] = [*message.get("headers", ()), *added]
-            elif message.get("more_body"):
-                self._deadlines.renew(task)
+            elif message.get("more_body") and not limit.expired():
+                limit.reschedule(loop.time() + self._settings.seconds)
             await send(message)
 
         async def refuse(code: int, message: str, further: Collection[tuple[bytes, bytes]] = ()) -> None:
@@ -84,19 +84,23 @@ class Gate:
             client = self._admission.client_of(scope, headers)
             if b"content-length" not in headers or b"transfer-encoding" in headers:
                 receive = limited_body(receive, self._settings.largest_body)
-            await self._app(scope, receive, answer)
+            async with limit:
+                await self._app(scope, receive, answer)
         except Refused as refused:
             await refuse(refused.status, str(refused), refused.headers)
         except asyncio.CancelledError:
-            late = f"the request took longer than {self._settings.seconds:g} s; send less, or try again"
-            await (refuse(504, late) if self._deadlines.end(task) else refuse(503, _STOPPING))
+            await refuse(503, "the service stops; try again")
         except ClientLeft:
             status = status or CLIENT_LEFT
         except Exception as error:
-            defect = error
-            await refuse(500, "Lifelore failed; the log of the service has the traceback under this request")
+            if limit.expired():
+                late = f"the request took longer than {self._settings.seconds:g} s; send less, or try again"
+                await refuse(504, late)
+            else:
+                defect = error
+                await refuse(500, "Lifelore failed; the log of the service has the traceback under this request")
         finally:
-            self._deadlines.end(task)
+            self._running -= 1
             self._note(scope, identifier, client, status, time.perf_counter() - began, defect)
 
     def _identifier(self, headers: dict[bytes, bytes]) -> str:

@@ -1,6 +1,5 @@
-"""Limits of a request: the size of its body, its time, and the rate of a client."""
+"""Limits of a request: the size of its body and the rate of its client."""
 
-import asyncio
 import time
 from collections import OrderedDict
 from collections.abc import Callable
@@ -44,69 +43,6 @@ class RateLimit:
         if len(self._buckets) > CLIENTS:
             self._buckets.popitem(last=False)
         return wait
-
-
-class Deadlines:
-    """Cancels requests that take too long; one timer looks after all of them, since one for each is dear.
-
-    Parameters
-    ----------
-    seconds : float
-        Time of a request; it is cancelled at most a twentieth of this time, or a second, later.
-    """
-
-    def __init__(self, seconds: float) -> None:
-        self._seconds = seconds
-        self._pause = min(1.0, seconds / 20)
-        # In the order of their times, so that the timer looks at the first ones alone.
-        self._began: dict[asyncio.Task[Any], float] = {}
-        self._overdue: set[asyncio.Task[Any]] = set()
-        self._loop: asyncio.AbstractEventLoop | None = None
-
-    def begin(self) -> asyncio.Task[Any]:
-        """Begin the time of the task that runs now."""
-        loop = asyncio.get_running_loop()
-        task = asyncio.current_task(loop)
-        assert task is not None, "requests are tasks"
-        self._began[task] = loop.time()
-        if self._loop is not loop:
-            self._loop = loop
-            loop.call_later(self._pause, self._look, loop)
-        return task
-
-    def renew(self, task: asyncio.Task[Any]) -> None:
-        """Begin the time of a task again, which has just sent a piece of a long answer."""
-        if self._began.pop(task, None) is not None:
-            self._began[task] = task.get_loop().time()
-
-    def end(self, task: asyncio.Task[Any]) -> bool:
-        """End the time of a task; whether it was cancelled for its time."""
-        self._began.pop(task, None)
-        if task not in self._overdue:
-            return False
-        self._overdue.remove(task)
-        task.uncancel()
-        return True
-
-    @property
-    def running(self) -> int:
-        """Number of requests in progress."""
-        return len(self._began)
-
-    def _look(self, loop: asyncio.AbstractEventLoop) -> None:
-        if self._loop is not loop:
-            return
-        last = loop.time() - self._seconds
-        for task, began in list(self._began.items()):
-            if began > last:
-                break
-            del self._began[task]
-            self._overdue.add(task)
-            task.cancel()
-        if self._began:
-            loop.call_later(self._pause, self._look, loop)
-        else:
-            self._loop = None
 
 
 def too_large(largest: int) -> str:
