@@ -458,7 +458,6 @@ def _print_fit(document: dict[str, Any]) -> None:
         print(f"  {kind['name']}: {kind['users']} users, best served by {kind['best']}")
     _print_counts(
         document,
-        ("of users without a named type used: their type follows from the outcomes", "guessed"),
         *LEFT_OUT,
         ("of unknown type left out", "left_out"),
     )

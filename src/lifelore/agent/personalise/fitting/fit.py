@@ -107,9 +107,9 @@ def fit(
     Returns
     -------
     dict
-        Plain data: ``study``; ``rows`` learnt from, ``guessed`` and ``left_out`` (of users whose type the log
-        does not name: their outcomes showed it, or did not); ``pending`` (lines left out without an outcome),
-        ``filled_outcomes``, ``filled_policies``, ``without_policy`` (see `ReuseLog`); ``users``; ``model``;
+        Plain data: ``study``; ``rows`` learnt from, ``left_out`` (of users whose type the log does not name);
+        ``pending`` (lines left out without an outcome), ``filled_outcomes``, ``filled_policies``,
+        ``without_policy`` (see `ReuseLog`); ``users``; ``model``;
         ``types_found``, ``held_out``: how models
         were compared on users held out (None where they were not): number of ``users`` and mean ``value`` of the
         chosen model's choices, its difference and 95 % interval to the best single policy (``over_single``) and
@@ -246,7 +246,6 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
         "filled_outcomes": log.filled_outcomes,
         "filled_policies": log.filled_policies,
         "without_policy": log.without_policy,
-        "guessed": typed.guessed,
         "left_out": len(log) - _used(log, typed),
         "users": len(log.user.names),
         "model": library.performance.kind,  # type: ignore[attr-defined]

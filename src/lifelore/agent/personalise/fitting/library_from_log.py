@@ -1,4 +1,4 @@
-"""A policy library from the rows of a log whose users' types are known, found or guessed."""
+"""A policy library from the rows of a log whose users' types are known or found."""
 
 from typing import NamedTuple
 
@@ -23,7 +23,6 @@ class TypedRows(NamedTuple):
     rows : (n,) int64 places in the log
     types : (n,) int64, places in `names`
     names : of the types
-    guessed : how many rows' types were guessed from outcomes
     found : whether the types themselves were found
     contexts : how many contexts have types of their own, numbered context by context; 0: types are everybody's
     """
@@ -31,7 +30,6 @@ class TypedRows(NamedTuple):
     rows: NDArray[np.int64]
     types: NDArray[np.int64]
     names: tuple[str, ...]
-    guessed: int = 0
     found: bool = False
     contexts: int = 0
 

@@ -160,7 +160,7 @@ def _parted(log: ReuseLog, typed: TypedRows, contexts: list[int]) -> TypedRows:
     words = [log.context.names[context] for context in contexts]
     names = [word if n_types == 1 else f"{name}, {word}" for word in words for name in typed.names]
     types = of_row[known] * n_types + typed.types[known]
-    return TypedRows(typed.rows[known], types, tuple(names), typed.guessed, typed.found, len(contexts))
+    return TypedRows(typed.rows[known], types, tuple(names), typed.found, len(contexts))
 
 
 def _rows(log: ReuseLog, parted: TypedRows, wide: PolicyLibrary) -> tuple[OutcomeRows, NDArray[np.int64]]:
