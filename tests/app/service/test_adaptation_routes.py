@@ -3,10 +3,6 @@
 import numpy as np
 import pytest
 
-from lifelore.interaction.adaptation.beat import Beat
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.signals.category_signal import CategorySignal
-
 LIBRARY = {
     "types": ["steady", "shaky"], "policies": ["slow", "fast"],
     "means": [[0.4, 1.0], [0.8, 0.3]], "deviations": 0.1,
@@ -28,20 +24,6 @@ def game(serve, where):
 def move(client, step, moves, **fields):
     listed = [{"action_set": action_set, "signal": signal} for action_set, signal in moves]
     return client.post("/v1/adaptations/game/moves", json={"user": "ada", "step": step, "moves": listed} | fields)
-
-
-def test_moves_teach_as_the_learner_itself(game):
-    signal = CategorySignal(LIBRARY["signals"], LIBRARY["categories"])
-    library = PolicyLibrary.from_means(LIBRARY["means"], 0.1, policies=LIBRARY["policies"], signal=signal)
-    beat = Beat(library)
-    assert game.get(USER).json()["action_set"] == "fast"
-    for step, (action_set, seen) in enumerate(MOVES):
-        beat.update(action_set, seen)
-        answer = move(game, step, [(action_set, seen)]).json()
-        assert answer["taken"]
-        assert list(answer["belief"].values()) == beat.belief.tolist()
-    assert game.get(USER).json()["action_set"] == library.policies[beat.select()] == "slow"
-    assert np.isclose(game.get(USER).json()["probability"], 1.0)
 
 
 def test_moves_count_once(game, serve, where):

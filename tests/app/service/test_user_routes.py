@@ -5,10 +5,7 @@ import io
 import json
 import math
 
-from lifelore.agent.personalise.decisions import choose
-from lifelore.agent.personalise.study import open_study
 from lifelore.interaction.beliefs.learnt_dynamics import HAZARD_WEIGHTS, HAZARDS
-from lifelore.memory import open_memory
 
 LIBRARY = {"types": ["calm", "lively"], "means": [[8.0, 2.0], [3.0, 8.5]], "deviations": 2.0}
 
@@ -32,16 +29,6 @@ def belief_after(policy: int, outcome: float) -> float:
     return (1 - change) * posterior + change * 0.5
 
 
-def test_an_outcome_moves_the_belief_by_bayes_rule(client):
-    made = decide(client)
-    assert made["belief"] == {"calm": 0.5, "lively": 0.5}
-    assert made["probability"] == 1.0
-    policy = ["slow", "fast"].index(made["policy"])
-    after = observe(client, made["decision"], 8.0).json()
-    assert after["taken"]
-    assert math.isclose(after["belief"]["calm"], belief_after(policy, 8.0), abs_tol=1e-12)
-
-
 def test_a_request_keeps_its_decision_after_a_restart_and_after_others(client, serve, place):
     first = decide(client, request="monday", available=["fast"])
     assert first["policy"] == "fast"
@@ -49,23 +36,6 @@ def test_a_request_keeps_its_decision_after_a_restart_and_after_others(client, s
     again = decide(serve(place), request="monday", available=["fast"])
     assert again["repeated"]
     assert (again["decision"], again["policy"], again["available"]) == (first["decision"], "fast", ["fast"])
-
-
-def test_only_available_policies_are_chosen(client):
-    for policy in ("slow", "fast"):
-        made = decide(client, available=[policy])
-        assert (made["policy"], made["probability"], made["available"]) == (policy, 1.0, [policy])
-    refused = client.post("/v1/studies/s/decisions", json={"user": "ada", "available": ["brisk"]})
-    assert refused.status_code == 404
-    assert "brisk" in refused.json()["error"]["message"]
-
-
-def test_the_command_line_sees_the_same_user(client, place):
-    made = decide(client)
-    observe(client, made["decision"], 8.0)
-    with open_memory(place) as memory:
-        choose(memory, open_study(memory, "s"), "ada")
-    assert client.get("/v1/studies/s/user?name=ada").json()["decisions"] == 2
 
 
 def test_a_batch_answers_each_item(client):
