@@ -82,13 +82,9 @@ def router(service: Service) -> APIRouter:
         return select(memory, open_adaptation(memory, name), user, service.settings.seed)
 
     @routes.post("/moves", summary="Learn from moves of a user, each once")
-    async def moves(name: Name, document: Moves) -> dict[str, Any]:
-        return await service.writer.run(learn, name, document.user, document)
-
-    def learn(name: str, user: str, document: Moves) -> dict[str, Any]:
-        listed = [(move.action_set, move.signal) for move in document.moves]
-        adaptation = open_adaptation(memory, name)
-        return learn_moves(memory, adaptation, user, document.step, listed, ends_episode=document.ends_episode)
+    def moves(name: Name, document: Moves) -> dict[str, Any]:
+        found, listed = open_adaptation(memory, name), [(move.action_set, move.signal) for move in document.moves]
+        return learn_moves(memory, found, document.user, document.step, listed, ends_episode=document.ends_episode)
 
     @routes.delete("/user", summary="Forget all that is stored of a user, for ever")
     def delete(name: Name, user: User) -> dict[str, Any]:
