@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.beliefs import probabilities, start_at_priors
+from lifelore.agent.personalise.beliefs import learn_turn, probabilities, start_at_priors
 from lifelore.agent.personalise.fitting.fit import FitSettings, study_of_log
 from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.agent.personalise.study import Study
@@ -69,13 +69,11 @@ def replayed_choices(
         inside = np.flatnonzero(user_of // USERS_AT_ONCE == first // USERS_AT_ONCE)
         for number in range(turn[inside].max() + 1):
             at = inside[turn[inside] == number]
-            own, known = user_of[at] - first, policies[at] >= 0
+            own = user_of[at] - first
             expected[at] = algorithm.known(own).performance.expected(algorithm.belief(own))
             if choose:
                 probs[np.ix_(at, np.array(study.active_numbers))] = probabilities(study, algorithm, own)
-            if known.any():
-                algorithm.observe(own[known], policies[at[known]], outcomes[at[known]])
-            algorithm.end_episode(own)
+            learn_turn(algorithm, own, policies[at], outcomes[at])
     return _by_policy_of_log(expected, probs, np.where(np.append(usable, False)[to_library], to_library, -1))
 
 
