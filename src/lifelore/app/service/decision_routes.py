@@ -27,7 +27,7 @@ from lifelore.app.service.error_documents import (
     without_places,
 )
 from lifelore.app.service.service_state import Service
-from lifelore.app.service.writer import PART
+from lifelore.app.service.writer import PART, WHOLE
 from lifelore.core.errors import InputError, LifeloreError
 
 LARGEST_BATCH = 100_000
@@ -186,9 +186,9 @@ def hot_routes(service: Service) -> list[HotRoute]:
 
     async def in_parts(store: Any, study: str, rows: Sequence[Any]) -> msgspec.Raw:
         """The answers of a batch, read, stored and encoded a part at a time: other requests get their turns."""
-        parts = []
-        for at in range(0, len(rows), PART):
-            answers = await store(study, rows[at : at + PART], brief=True)
+        parts, step = [], WHOLE if len(rows) <= WHOLE else PART
+        for at in range(0, len(rows), step):
+            answers = await store(study, rows[at : at + step], brief=True)
             listed = [refused(one) if isinstance(one, LifeloreError) else one for one in answers]
             parts.append(encode(listed)[1:-1])
         return msgspec.Raw(b'{"items":[' + b",".join(parts) + b"]}")

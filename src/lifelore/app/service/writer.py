@@ -22,9 +22,9 @@ MOST = 256
 """Largest number of requests in a transaction; more let each of them wait longer."""
 PATIENCE = 0.001
 """Seconds to wait for another request where the last transaction had several; a commit takes about as long."""
-PART = 1000
-"""Rows of a long batch that are stored at a time, between which other requests get their turn; fewer wait for the
-disk more often."""
+WHOLE, PART = 1000, 500
+"""Rows of the longest batch that is stored at once, and rows of a longer one that are stored at a time, between
+which other requests get their turn; more let these wait longer, fewer wait for the disk more often."""
 
 
 class _Job(NamedTuple):
