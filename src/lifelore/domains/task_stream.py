@@ -1,8 +1,7 @@
 """Streams of tasks with an observable context and a hidden type, for worlds in which an agent lives long.
 
 Contexts are as frequent as the powers of their rank (Zipf); each has a usual type. A type may arrive late, and the
-usual types may be dealt anew. The type may change between the episodes of a task. Any task can be drawn without
-those before it.
+usual types may be dealt anew. Any task can be drawn without those before it.
 """
 
 from collections.abc import Mapping
@@ -71,9 +70,6 @@ class TaskStream:
         First task of types that arrive late; this task is surely of that type.
     changes : tuple of int
         Tasks from which on every context's usual type is dealt anew.
-    change : float
-        Probability in [0, 1] that before an episode, other than the first, the type becomes another; it is drawn
-        as a task's type is, from the others.
 
     Raises
     ------
@@ -94,7 +90,6 @@ class TaskStream:
     loyalty: float = 0.8
     arrivals: Mapping[str, int] = field(default_factory=dict)
     changes: tuple[int, ...] = ()
-    change: float = 0.0
 
     def __post_init__(self) -> None:
         if self.n_contexts < 1 or not self.zipf >= 0 or not 0 <= self.loyalty <= 1:
@@ -102,8 +97,6 @@ class TaskStream:
                 "n_contexts must be at least 1, zipf at least 0 and loyalty in [0, 1], got "
                 f"{self.n_contexts}, {self.zipf} and {self.loyalty}"
             )
-        if not 0 <= self.change <= 1:
-            raise InputError(f"change must lie in [0, 1], got {self.change}")
         for name, first in self.arrivals.items():
             if name not in self.types or first < 1:
                 raise InputError(f"arrivals must name a type and a task from 1, got {name!r}: {first}")
@@ -125,8 +118,8 @@ class TaskStream:
         deals = [rng.permutation(len(born)) for _ in range(-(-self.n_contexts // len(born)))]
         return born[int(np.concatenate(deals)[context])]
 
-    def draw(self, number: int, context: int | None = None, episode: int = 0) -> DrawnTask:
-        """Task `number`, from 0; in a given context, if one is chosen in place of drawn; its type in an episode.
+    def draw(self, number: int, context: int | None = None) -> DrawnTask:
+        """Task `number`, from 0; in a given context, if one is chosen in place of drawn.
 
         Raises
         ------
@@ -143,19 +136,4 @@ class TaskStream:
         drawn = present[int(rng.integers(len(present)))]
         arriving = next((name for name, first in self.arrivals.items() if first == number), None)
         usual = self.usual_type(context, number) if loyal else drawn
-        first = arriving or usual
-        return DrawnTask(number, context, self._changed(first, number, context, episode) if self.change else first)
-
-    def _changed(self, first: str, number: int, context: int, episode: int) -> str:
-        """The type of a task in an episode, from its type in the first."""
-        present, usual = self.present(number), self.usual_type(context, number)
-        law = np.array([self.loyalty * (name == usual) + (1 - self.loyalty) / len(present) for name in present])
-        rng, now = stream(self.seed, "task stream", "changes in a task", number), present.index(first)
-        for changes, place in rng.random((episode, 2)):
-            others = np.where(np.arange(len(present)) == now, 0.0, law)
-            if changes < self.change and len(present) > 1:
-                # A wholly loyal context that has left its usual type has no other to go to but that one.
-                others = others if others.any() else np.arange(len(present)) != now
-                cumulative = np.cumsum(others)
-                now = int(np.searchsorted(cumulative / cumulative[-1], place, side="right"))
-        return present[now]
+        return DrawnTask(number, context, arriving or usual)

@@ -306,11 +306,3 @@ class TaskFamily(ABC):
     def effect_name(self, cause: int, effect: int) -> str:
         """An effect in words. Default: its number."""
         return f"effect {effect}"
-
-
-class ChangingFamily(TaskFamily):
-    """Tasks whose type may change between episodes."""
-
-    @abstractmethod
-    def episodes(self, number: int, n_episodes: int, context: int | None = None) -> list[tuple[str, float]]:
-        """Hidden type and best possible return of each episode, for scoring; the agent never asks."""

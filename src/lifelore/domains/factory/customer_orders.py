@@ -138,8 +138,8 @@ class FactoryCustomers:
     stream: TaskStream
     seed: int = 0
 
-    def task(self, number: int, context: int | None = None, episode: int = 0) -> tuple[DrawnTask, CustomerOrder]:
-        """Task `number` and its world in an episode, in a chosen context if given; the same for the same number.
+    def task(self, number: int, context: int | None = None) -> tuple[DrawnTask, CustomerOrder]:
+        """Task `number` and its world, in a chosen context if given; the same for the same number.
 
         Examples
         --------
@@ -148,7 +148,7 @@ class FactoryCustomers:
         >>> order.customer == drawn.hidden_type
         True
         """
-        drawn = self.stream.draw(number, context, episode)
+        drawn = self.stream.draw(number, context)
         return drawn, CustomerOrder(self.layout(number), drawn.hidden_type)
 
     def layout(self, number: int) -> Factory:
