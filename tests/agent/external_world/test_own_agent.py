@@ -2,7 +2,7 @@
 
 import pytest
 
-from lifelore.agent.external_world.live_in import TEXTBOOK, live_in
+from lifelore.agent.any_tasks.live_in import TEXTBOOK, live_in
 from lifelore.core.errors import InputError
 
 pytestmark = pytest.mark.filterwarnings("ignore:(The action prior is empty|Nothing that was observed)")
