@@ -6,40 +6,11 @@ usual types may be dealt anew. Any task can be drawn without those before it.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
-
-
-@runtime_checkable
-class LivedTask(Protocol):
-    """A task in progress: actions are the integers in [0, n_actions), of which some are available at a time."""
-
-    n_actions: int
-
-    def reset(self) -> Any:
-        """Begin an episode; the first observation."""
-        ...
-
-    def available(self) -> NDArray[np.bool_]:
-        """(n_actions,) whether each action can be taken now."""
-        ...
-
-    def step(self, action: int) -> tuple[Any, float, bool]:
-        """Take an action: observation, reward, and whether the episode ended."""
-        ...
-
-    def copy_state(self) -> Any:
-        """All that `restore` needs; it can be pickled."""
-        ...
-
-    def restore(self, state: Any) -> None:
-        """Go on from a copied state."""
-        ...
 
 
 @dataclass(frozen=True)
