@@ -10,7 +10,6 @@ for each episode:
         β, p and the task's own counts take in the effects of the act
 an alarm, or effects that tell the task from its type: a new type; else as believed    learn
 count the effects, the best acts, and the belief in this context                       remember
-keep the scenes in which acts have shown relations, as examples                         remember
 """
 
 from dataclasses import dataclass
@@ -22,7 +21,7 @@ from lifelore.agent.long_lived.check_family import checked_plan, checked_step
 from lifelore.agent.long_lived.knowledge import Knowledge, TaskNews
 from lifelore.agent.long_lived.known_types import Effects, KnownTypes
 from lifelore.agent.long_lived.recognition import Recognition
-from lifelore.agent.long_lived.task_family import Abilities, AgentTask, ShowsRelations
+from lifelore.agent.long_lived.task_family import Abilities, AgentTask
 from lifelore.agent.long_lived.task_log import Decision, TaskLog
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
@@ -92,8 +91,7 @@ def live_task(
         What happened, and the records by which memory adds what was learnt.
     """
     lived, news = attempt_task(knowledge, drawn, task, abilities, settings, name, seed)
-    examples = task.relation_examples() if isinstance(task, ShowsRelations) else []
-    return lived, [*knowledge.learn(news), *examples]
+    return lived, knowledge.learn(news)
 
 
 def attempt_task(

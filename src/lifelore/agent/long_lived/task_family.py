@@ -9,13 +9,12 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Protocol, TypeVar, cast, runtime_checkable
+from typing import Any, Protocol, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.core.protocols import Record
 from lifelore.domains.task_stream import DrawnTask
 
 Array = NDArray[np.float64]
@@ -184,15 +183,6 @@ class AgentTask(Protocol):
     def describe(self) -> str:
         """The perceived scene in a few words, for explanations. Default: none."""
         return ""
-
-
-@runtime_checkable
-class ShowsRelations(AgentTask, Protocol):
-    """A task whose acts show how objects are related."""
-
-    def relation_examples(self) -> list[Record]:
-        """Records by which memory keeps the perceived scenes, with labels of the pairs that acts have shown."""
-        ...
 
 
 def _default(compute: Callable[[Any], Value]) -> Value:
