@@ -189,35 +189,6 @@ class LongLivedAgent(AbstractContextManager):
             raise StoreError(f"{lost[0]}; live it again") if lost else Stopped
         return task.result
 
-    def informed(self, env: gymnasium.Env, type: str, *, episodes: int | None = None) -> TaskResult:
-        """Live the next task as if somebody told its type, for scoring; nothing is learnt or stored.
-
-        Parameters
-        ----------
-        env : gymnasium.Env
-        type : str
-            Name of a known type, or of joined ones.
-        episodes : int, optional
-            Number of episodes to play, ≥ 1; by default those of a task.
-
-        Raises
-        ------
-        NotFoundError
-            No known type has this name.
-        """
-        world = self.world(env)
-        experience = self._recalled(world.n_actions)
-        name = type.split("+")[0]
-        if name not in experience.types:
-            raise NotFoundError(f"type must be one of {', '.join(experience.types)}, got {type!r}")
-        learning = self.settings.learning
-        settings = replace(self.settings, learning=replace(learning, episodes=episodes or learning.episodes))
-        task = OneTask(
-            experience, world, self._codes, settings, TaskResult(self._lived, None), 0, Event(), name
-        )  # fmt: skip
-        task.live("")
-        return task.result
-
     def world(self, env: gymnasium.Env | Callable[[int], gymnasium.Env]) -> GymnasiumWorld:
         """An environment, or one for each task, with the states, features and resets of this agent."""
         return GymnasiumWorld(env, self._features, self._state, seed=self.seed, reset_by=self._reset_by)
@@ -228,8 +199,8 @@ class LongLivedAgent(AbstractContextManager):
             self._experience = Experience.recalled(self.key, self._memory)
             self._revision = self._memory.revision()
 
-    def _recalled(self, n_actions: int) -> Experience:
-        """What is known for environments of so many actions."""
+    def experience_for(self, n_actions: int) -> Experience:
+        """What is known for environments of so many actions; InputError if the tasks before had others."""
         self._recall()
         if self._experience is None:
             self._experience = Experience(self.key, n_actions)
@@ -305,7 +276,7 @@ class _NextTask:
         """Live the task and learn from it."""
         agent = self.agent
         number = number if agent._memory is not None else agent._lived
-        experience, result = agent._recalled(self.world.n_actions), TaskResult(number, self.context)
+        experience, result = agent.experience_for(self.world.n_actions), TaskResult(number, self.context)
         task = OneTask(
             experience, self.world, agent._codes, agent.settings, result, agent._contexts[self.context], stop
         )  # fmt: skip

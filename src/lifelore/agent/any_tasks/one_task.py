@@ -16,6 +16,7 @@ from threading import Event
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.any_tasks.contest import Contest
@@ -68,8 +69,6 @@ class OneTask:
         Code of the task's context.
     stop : threading.Event
         Set it to drop the task: `live` raises `Stopped`.
-    given : str, optional
-        The type, if it is told: nothing is recognised and no alarm is raised.
     seeds : sequence of int, optional
         With which the world is reset, one for each episode; by default those of `episode_seeds`.
     """
@@ -83,12 +82,11 @@ class OneTask:
         result: TaskResult,
         context: int,
         stop: Event,
-        given: str | None = None,
         seeds: Sequence[int] | None = None,
     ) -> None:
         self.experience, self.world, self.codes, self.settings = experience, world, codes, settings
         self.abilities, self.result, self.context = settings.abilities, result, context
-        self.stop, self.given = stop, given
+        self.stop = stop
         self.seeds = seeds or episode_seeds(settings, result.number)
         self.generator = stream(settings.seed, "task", result.number, "own")
         self.reuse: TaskReuse | None = None
@@ -117,16 +115,18 @@ class OneTask:
         if not self.abilities.reuse or not experience.policies:
             return
         known = KnownTypes(experience)
-        prior = known.type_prior().prior(self.context if self.abilities.context else NOWHERE, self.result.number)
-        if self.given is not None:
-            prior = np.array([float(self.given in one.members) for one in known.types])
+        prior = self.prior_over(known)
         self.reuse = TaskReuse(experience, known, prior, self.settings)
         self.result.prior = self.reuse.by_name(prior)
+
+    def prior_over(self, known: KnownTypes) -> NDArray[np.float64]:
+        """The prior over the known types, given the context and the date."""
+        return known.type_prior().prior(self.context if self.abilities.context else NOWHERE, self.result.number)
 
     @property
     def alarmed(self) -> bool:
         """Whether no known type fits."""
-        return self.reuse is not None and self.given is None and self.reuse.alarmed
+        return self.reuse is not None and self.reuse.alarmed
 
     # ---- reuse, and notice -------------------------------------------------------------------------
 
@@ -284,7 +284,7 @@ class OneTask:
 
     def remember(self, name: str) -> TaskNews | None:
         """What the task has taught; None where the agent carries nothing from task to task."""
-        if not self.abilities.memory or self.given is not None:
+        if not self.abilities.memory:
             return None
         result, experience = self.result, self.experience
         by_moves = self.settings.signals == "moves" and self.abilities.reuse
