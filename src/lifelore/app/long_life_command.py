@@ -29,7 +29,7 @@ def live_long_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_
         pictures = "; --json prints all numbers, and --serve draws the life at /life" if "out" in values else ""
         raise InputError(f"{names} does not apply to domain {values['domain']}; leave it out{pictures}")
     memory = values.get("memory")
-    family = family_named(values["domain"], values["seed"], labelled=values.get("labels", False))
+    family = family_named(values["domain"], values["seed"])
     stored = {"memory": default_path() if memory is None else memory}
     arguments: dict[str, Any] = keys.arguments(live_long, values | stored) | {"family": family}
     beside = pages_beside(serve, values.get("port"), memory)

@@ -113,19 +113,19 @@ def text_by_hand(record, code):
 @pytest.mark.parametrize("context", [3, None, "däche", ("free", 2.5, (True, None)), b"\x00\xff", ("a",) * 15])
 def test_features_are_read_back_as_they_were(context):
     code = context_code(context)
-    record = labels_record("k", {5: "before", code: context, 2**47 - 1: "behind"}, {})
+    record = labels_record("k", {5: "before", code: context, 2**47 - 1: "behind"})
     labels = ContextLabels(record)
     assert (labels[code], text_by_hand(record, code)) == (context, repr(context))
     assert (len(labels), set(labels), labels.get(6)) == (3, {5, code, 2**47 - 1}, None)
 
 
 def test_long_features_are_cut_and_others_are_text():
-    record = labels_record("k", {1: ("x" * 500,), 2: frozenset({4}), 3: (np.int64(7), np.float64(0.5))}, {})
+    record = labels_record("k", {1: ("x" * 500,), 2: frozenset({4}), 3: (np.int64(7), np.float64(0.5))})
     labels = ContextLabels(record)
     assert labels[1] == "('" + "x" * (MOST_BYTES - 2)
     assert (labels[2], labels[3]) == ("frozenset({4})", (7, 0.5))
     assert (record.slots // SLOTS == 1).sum() == SLOTS
-    assert len(ContextLabels(labels_record("k", {}, {}))) == 0
+    assert len(ContextLabels(labels_record("k", {}))) == 0
     with pytest.raises(InputError, match="record must be context_labels version 1, got action_prior 1"):
         ContextLabels(Record("action_prior", "k", 1, "add", np.array([1]), np.array([1])))
 
@@ -134,7 +134,7 @@ def test_the_newest_text_wins_whole(tmp_path):
     """A short text over a long one: the rest of the long one must not show."""
     with open_memory(tmp_path / "m.db") as memory:
         for seq, text in enumerate(("a very long text of many words", "short")):
-            memory.contribute("r", [labels_record("k", {9: text}, {})], process="p", seq=seq, task={})
+            memory.contribute("r", [labels_record("k", {9: text})], process="p", seq=seq, task={})
         record = memory.recall("context_labels", "k", 1)
     assert record is not None
     assert dict(ContextLabels(record)) == {9: "short"}

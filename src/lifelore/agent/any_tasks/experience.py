@@ -162,8 +162,8 @@ class Experience:
         yield news.prior.to_record({"prior": "tasks", "means": self.key})
         features = {code: one for code, one in news.prior.labels.items() if code not in self.prior.labels}
         contexts = {} if news.context in self.labels else {news.context: news.label}
-        yield labels_record(f"{self.key}/features", features, {})
-        yield labels_record(f"{self.key}/contexts", contexts, {})
+        yield labels_record(f"{self.key}/features", features)
+        yield labels_record(f"{self.key}/contexts", contexts)
 
     def _policy_records(self, name: str, policy: Any) -> Iterable[Record]:
         if isinstance(policy, dict):

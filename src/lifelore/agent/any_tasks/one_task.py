@@ -136,10 +136,8 @@ class OneTask:
         seed = self.seeds[len(self.result.returns)]
         began = self.reuse.begin_episode() if self.learner is None and self.reuse is not None else LEARNER
         self.whole = True
-        codes, most = self.codes, self.settings.learning.step_cap
-        steps = play(
-            self.world, number, seed, codes.states, most, self.stop, self.act, self.take_in, codes.state
-        )  # fmt: skip
+        most = self.settings.learning.step_cap
+        steps = play(self.world, number, seed, self.codes.states, most, self.stop, self.act, self.take_in)
         earned = discounted(steps, self.settings.discount)
         self.running.end_episode(steps, earned, steps[-1].ended)
         self.end_episode(steps, earned, began)

@@ -18,13 +18,8 @@ TABLETOP_TYPES = (
 FAMILIES = ("tabletop", "factory-customers", "building-days")
 
 
-def family_named(name: str, seed: int, *, labelled: bool = False) -> TaskFamily:
+def family_named(name: str, seed: int) -> TaskFamily:
     """The family of a name, with its default stream.
-
-    Parameters
-    ----------
-    labelled : bool
-        See `TabletopFamily`.
 
     Raises
     ------
@@ -37,7 +32,7 @@ def family_named(name: str, seed: int, *, labelled: bool = False) -> TaskFamily:
     if name == "tabletop":
         from lifelore.agent.long_lived.families.tabletop import TabletopFamily
 
-        return TabletopFamily(TaskStream(TABLETOP_TYPES, seed=seed), seed, labelled)
+        return TabletopFamily(TaskStream(TABLETOP_TYPES, seed=seed), seed, labelled=False)
     if name == "factory-customers":
         from lifelore.agent.long_lived.families.factory_customers import FactoryFamily
         from lifelore.domains.factory.customer_orders import CUSTOMERS
