@@ -1,4 +1,4 @@
-"""Streams of tasks: frequencies by hand, late types, changes, random access."""
+"""Streams of tasks: frequencies by hand, late types, random access."""
 
 import numpy as np
 import pytest
@@ -15,9 +15,9 @@ def test_contexts_follow_zipf_and_tasks_their_contexts():
     shares = np.bincount([task.context for task in drawn]) / 3000
     # Shares 6 : 3 : 2; four standard errors are at most 4 * 0.5 / sqrt(3000) = 0.037.
     assert shares == pytest.approx([6 / 11, 3 / 11, 2 / 11], abs=0.037)
-    usual = np.mean([task.hidden_type == jobs.usual_type(task.context, task.number) for task in drawn])
+    usual = np.mean([task.hidden_type == jobs.usual_type(task.context) for task in drawn])
     assert usual == pytest.approx(0.7 + 0.3 / 4, abs=0.037)
-    assert len({jobs.usual_type(context, 0) for context in range(3)}) == 3
+    assert len({jobs.usual_type(context) for context in range(3)}) == 3
 
 
 def test_a_task_depends_on_its_number_alone():

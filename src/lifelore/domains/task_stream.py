@@ -1,7 +1,7 @@
 """Streams of tasks with an observable context and a hidden type, for worlds in which an agent lives long.
 
-Contexts are as frequent as the powers of their rank (Zipf); each has a usual type. A type may arrive late, and the
-usual types may be dealt anew. Any task can be drawn without those before it.
+Contexts are as frequent as the powers of their rank (Zipf); each has a usual type. A type may arrive late. Any
+task can be drawn without those before it.
 """
 
 from collections.abc import Mapping
@@ -39,8 +39,6 @@ class TaskStream:
         Probability in [0, 1] that a task is of its context's usual type; otherwise all types are equally likely.
     arrivals : mapping of str to int
         First task of types that arrive late; this task is surely of that type.
-    changes : tuple of int
-        Tasks from which on every context's usual type is dealt anew.
 
     Raises
     ------
@@ -60,7 +58,6 @@ class TaskStream:
     zipf: float = 1.0
     loyalty: float = 0.8
     arrivals: Mapping[str, int] = field(default_factory=dict)
-    changes: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         if self.n_contexts < 1 or not self.zipf >= 0 or not 0 <= self.loyalty <= 1:
@@ -80,11 +77,10 @@ class TaskStream:
         """Types that task `number` may have."""
         return tuple(name for name in self.types if self.arrivals.get(name, 0) <= number)
 
-    def usual_type(self, context: int, number: int) -> str:
-        """The usual type of a context at the time of a task."""
-        changes = [change for change in self.changes if change <= number]
-        born = tuple(name for name in self.types if self.arrivals.get(name, 0) <= max(changes, default=0))
-        rng = stream(self.seed, "task stream", "usual types", len(changes))
+    def usual_type(self, context: int) -> str:
+        """The usual type of a context, one of those that are there from the start."""
+        born = self.present(0)
+        rng = stream(self.seed, "task stream", "usual types", 0)
         # Deal all types out before any is dealt again.
         deals = [rng.permutation(len(born)) for _ in range(-(-self.n_contexts // len(born)))]
         return born[int(np.concatenate(deals)[context])]
@@ -106,5 +102,5 @@ class TaskStream:
         present, loyal = self.present(number), rng.random() < self.loyalty
         drawn = present[int(rng.integers(len(present)))]
         arriving = next((name for name, first in self.arrivals.items() if first == number), None)
-        usual = self.usual_type(context, number) if loyal else drawn
+        usual = self.usual_type(context) if loyal else drawn
         return DrawnTask(number, context, arriving or usual)

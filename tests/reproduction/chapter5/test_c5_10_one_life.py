@@ -95,9 +95,9 @@ def test_contexts_show_their_usual_type_four_times_of_five(family):
     """Of 1,000 tasks; the bound is four standard errors of a share of 0.8."""
     tasks = family.stream(7)
     draws = [tasks.draw(number) for number in range(1000)]
-    usual = [one.hidden_type == tasks.usual_type(one.context, one.number) for one in draws]
+    usual = [one.hidden_type == tasks.usual_type(one.context) for one in draws]
     assert np.mean(usual) == pytest.approx(0.8, abs=4 * (0.8 * 0.2 / 1000) ** 0.5)
-    of_context = {one.context: tasks.usual_type(one.context, 0) for one in draws}
+    of_context = {one.context: tasks.usual_type(one.context) for one in draws}
     assert sorted(of_context.values()) == sorted(family.types)
 
 
