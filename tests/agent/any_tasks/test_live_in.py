@@ -149,6 +149,23 @@ def test_two_lives_on_one_memory_are_one_life_also_after_a_stop_and_an_exception
         assert (memory.tasks("robot"), memory.check()) == (5, [])
 
 
+def test_a_task_that_is_stopped_teaches_nobody():
+    """The user's agent lives last, and stops the second task after the others have lived it."""
+    stop = Event()
+
+    def idle(world, task, seeds, max_steps):
+        if task:
+            stop.set()
+        for seed in seeds:
+            world.reset(task, seed)
+            world.step(0)
+
+    world = Doors()
+    world.context = lambda state, last_reward: world.resets[-1][0]  # each task has a context of its own
+    report = live_in(world, tasks=3, episodes=60, agents={"idle": idle}, stop=stop)
+    assert (len(report["tasks"]), report["n_contexts"]) == (1, 1)
+
+
 @pytest.mark.filterwarnings("ignore:The action prior is empty")
 def test_lore_is_shared_by_key_only(tmp_path):
     path = tmp_path / "m.db"

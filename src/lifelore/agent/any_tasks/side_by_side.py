@@ -4,7 +4,7 @@ from collections.abc import Hashable, Mapping, Sequence
 from threading import Event
 from typing import NamedTuple
 
-from lifelore.agent.any_tasks.experience import Experience
+from lifelore.agent.any_tasks.experience import Experience, TaskNews
 from lifelore.agent.any_tasks.moves import MoveCodes
 from lifelore.agent.any_tasks.one_task import OneTask
 from lifelore.agent.any_tasks.task_result import TaskResult
@@ -21,7 +21,7 @@ class LivedBeside(NamedTuple):
     measures : see `task_measures`
     returns : discounted return of each episode
     tasks : the agents' own view of it; those of the user have none
-    records : what those that remember have learnt
+    records : what those have learnt that remember
     """
 
     measures: dict[str, dict]
@@ -69,18 +69,20 @@ class SideBySide:
         Stopped
             The stop event is set.
         """
-        found = LivedBeside({}, {}, {}, {})
+        found, taught = LivedBeside({}, {}, {}, {}), dict[str, TaskNews]()
         for name, settings in self.agents.items():
             experience, result = self.experience[name], TaskResult(number, context)
             code = self._contexts[context]
             task = OneTask(experience, self.world, self._codes, settings, result, code, stop, seeds=seeds)
-            news = task.live(f"{name}.{number}")
+            if (news := task.live(f"{name}.{number}")) is not None:
+                taught[name] = news
             found.tasks[name], found.returns[name] = task, result.returns
-            found.records[name] = [] if news is None else experience.learn(news)
             found.measures[name] = task_measures(result.returns, result.reached)
         for name, agent in self.own.items():
             most = self.common.learning.step_cap
             watched = WatchedWorld(name, self.world, number, seeds, most, self.common.discount, stop)
             found.returns[name] = live_own(agent, watched)
             found.measures[name] = task_measures(found.returns[name], watched.reached)
+        # A task that was stopped has taught nobody.
+        found.records.update({name: self.experience[name].learn(news) for name, news in taught.items()})
         return found
