@@ -14,11 +14,11 @@ if TYPE_CHECKING:
     from lifelore.action.features.learnt_contexts import LearntContexts as LearntContexts
     from lifelore.action.priors.action_prior import ActionPrior as ActionPrior
     from lifelore.agent.any_tasks.comparison import compare_agents as compare_agents
+    from lifelore.agent.any_tasks.live_in import live_in as live_in
     from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent as LongLivedAgent
+    from lifelore.agent.any_tasks.stored_prior import BatchContexts as BatchContexts
+    from lifelore.agent.any_tasks.stored_prior import prior_from_memory as prior_from_memory
     from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld as GymnasiumWorld
-    from lifelore.agent.external_world.live_in import live_in as live_in
-    from lifelore.agent.external_world.stored_prior import BatchContexts as BatchContexts
-    from lifelore.agent.external_world.stored_prior import prior_from_memory as prior_from_memory
     from lifelore.agent.live.life_settings import LifeSettings as LifeSettings
     from lifelore.agent.live.life_settings import MemorySettings as MemorySettings
     from lifelore.agent.long_lived.check_family import check_family as check_family
@@ -69,7 +69,7 @@ __version__ = "0.2.0"
 _HOME = {
     "ActionPrior": "lifelore.action.priors.action_prior",
     "AgentTask": "lifelore.agent.long_lived.task_family",
-    "BatchContexts": "lifelore.agent.external_world.stored_prior",
+    "BatchContexts": "lifelore.agent.any_tasks.stored_prior",
     "BayesianPolicyReuse": "lifelore.interaction.reuse.bayesian_policy_reuse",
     "Beat": "lifelore.interaction.adaptation.beat",
     "CloudOrigin": "lifelore.core.cloud_origin",
@@ -107,14 +107,14 @@ _HOME = {
     "contact_networks": "lifelore.perception.contacts.pair_networks",
     "learn_from": "lifelore.verbs",
     "live": "lifelore.verbs",
-    "live_in": "lifelore.agent.external_world.live_in",
+    "live_in": "lifelore.agent.any_tasks.live_in",
     "live_long": "lifelore.agent.long_lived.long_life",
     "make_world": "lifelore.domains.worlds",
     "open_memory": "lifelore.memory",
     "perceive": "lifelore.agent.perceive.perceive",
     "perceived_scene": "lifelore.perception.scene_perception",
     "plot_prior": "lifelore.figures.lives.prior_table",
-    "prior_from_memory": "lifelore.agent.external_world.stored_prior",
+    "prior_from_memory": "lifelore.agent.any_tasks.stored_prior",
     "read_cloud": "lifelore.perception.clouds.cloud_file",
     "recognise": "lifelore.agent.recognise",
     "to_scene": "lifelore.perception.segmentation.table_frame",

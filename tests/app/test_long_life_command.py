@@ -37,21 +37,6 @@ def test_spare_time_goes_to_contexts_that_were_met(ask, where):
     assert {task["context"] for task in document["tasks"][4:]} <= met
 
 
-def test_customers_who_change_are_followed(ask, where):
-    document = live(ask, where, "--set", "change=0.9", "--set", "episodes=4", tasks=3)
-    assert [set(task) for task in document["tasks"]] == [TASK | {"changes", "hidden_types", "best_returns"}] * 3
-    hidden = [task["hidden_types"] for task in document["tasks"]]
-    assert [len(one) for one in hidden] == [4] * 3
-    assert [one[0] for one in hidden] == [task["hidden_type"] for task in document["tasks"]]
-    assert any(len(set(one)) > 1 for one in hidden)
-    number, changes = next((task["task"], task["changes"]) for task in document["tasks"] if task["changes"])
-    words = ask("explain", str(number), "--memory", where).out
-    assert f"from episode {changes[0][0] + 1} on it believed another type to be there, {changes[0][1]}" in words
-    assert f"the task until episode {changes[0][0]} " in words
-    last = [task["best_returns"][-1] - task["returns"][-1] for task in document["tasks"][1:]]
-    assert document["summary"]["second half"]["last_episode_below_best"] == pytest.approx(sum(last) / 2, abs=1e-3)
-
-
 def test_explain_says_why(ask, where):
     live(ask, where)
     run = ask("explain", "3", "--memory", where)
@@ -70,9 +55,7 @@ def test_explain_says_why(ask, where):
         (["live", "--domain", "factory-customers", "--out", "a"], "--serve draws the life at /life"),
         (["live", "--domain", "factory-customers", "--agent", "lore"], "agent must be one of full"),
         (["live", "--domain", "factory-customers", "--set", "spare=1", "--agent", "scratch"], "must be full"),
-        (["live", "--domain", "building-days", "--set", "change=0.1"], "take domain factory-customers"),
-        (["live", "--domain", "factory-customers", "--set", "change=1"], "change must be at least 0 and below 1"),
-        (["live", "--domain", "building", "--set", "change=0.1"], "applies to jobs with hidden types alone"),
+        (["live", "--domain", "building", "--set", "spare=1"], "applies to jobs with hidden types alone"),
         (["live", "--domain", "building-days", "--tasks", "0"], "tasks must be at least 1"),
         (["explain", "9"], "has no task 9"),
     ],

@@ -1,6 +1,4 @@
-"""Streams of tasks: frequencies by hand, late types, changes, random access."""
-
-import itertools
+"""Streams of tasks: frequencies by hand, late types, random access."""
 
 import numpy as np
 import pytest
@@ -17,9 +15,9 @@ def test_contexts_follow_zipf_and_tasks_their_contexts():
     shares = np.bincount([task.context for task in drawn]) / 3000
     # Shares 6 : 3 : 2; four standard errors are at most 4 * 0.5 / sqrt(3000) = 0.037.
     assert shares == pytest.approx([6 / 11, 3 / 11, 2 / 11], abs=0.037)
-    usual = np.mean([task.hidden_type == jobs.usual_type(task.context, task.number) for task in drawn])
+    usual = np.mean([task.hidden_type == jobs.usual_type(task.context) for task in drawn])
     assert usual == pytest.approx(0.7 + 0.3 / 4, abs=0.037)
-    assert len({jobs.usual_type(context, 0) for context in range(3)}) == 3
+    assert len({jobs.usual_type(context) for context in range(3)}) == 3
 
 
 def test_a_task_depends_on_its_number_alone():
@@ -44,28 +42,8 @@ def test_a_late_type_arrives_on_time_and_no_sooner():
         {"arrivals": {"z": 3}},
         {"arrivals": {"a": 3, "b": 3}},
         {"zipf": -1.0},
-        {"change": 1.1},
     ],
 )
 def test_wrong_settings_are_refused(wrong):
     with pytest.raises(InputError):
         TaskStream(TYPES, **wrong)
-
-
-def test_the_type_changes_between_episodes_as_often_as_stated():
-    jobs, still = TaskStream(TYPES, seed=3, loyalty=0.5, change=0.2), TaskStream(TYPES, seed=3, loyalty=0.5)
-    rows = [[jobs.draw(k, episode=e).hidden_type for e in range(6)] for k in range(300)]
-    assert [row[0] for row in rows] == [still.draw(k).hidden_type for k in range(300)]
-    assert len({still.draw(7, episode=e) for e in range(6)}) == 1
-    changed = [a != b for row in rows for a, b in itertools.pairwise(row)]
-    # Four standard errors of 1500 draws are 4 * sqrt(0.2 * 0.8 / 1500) = 0.041.
-    assert np.mean(changed) == pytest.approx(0.2, abs=0.041)
-    # From a type that is not usual: 0.5 + 0.125 usual, 0.125 each of two others.
-    following = [
-        (jobs.usual_type(jobs.draw(k).context, k), b)
-        for k, row in enumerate(rows)
-        for a, b in itertools.pairwise(row)
-        if a != b and a != jobs.usual_type(jobs.draw(k).context, k)
-    ]
-    usual = np.mean([b == name for name, b in following])
-    assert usual == pytest.approx(0.625 / 0.875, abs=4 * 0.5 / len(following) ** 0.5)

@@ -3,11 +3,19 @@
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import closing
+from dataclasses import replace
+from threading import Event
 from typing import Any
 
+import gymnasium
 import numpy as np
+from numpy.typing import NDArray
 
+from lifelore.agent.any_tasks.known_types import KnownTypes
 from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent
+from lifelore.agent.any_tasks.moves import MoveCodes
+from lifelore.agent.any_tasks.one_task import OneTask
+from lifelore.agent.any_tasks.task_result import TaskResult
 from reproduction.chapter5.c5_10_one_life.worlds import FAMILIES
 
 FULL, SCRATCH, TEXTBOOK = "full", "scratch", "textbook"
@@ -90,7 +98,36 @@ def _informed(
     if name is None:
         return None
     with closing(FAMILIES[family].make(types[-1], life)) as env:
-        return _rounded(one.informed(env, type=name, episodes=1).returns[0])
+        return _rounded(first_return_told(one, env, name, len(types) - 1))
+
+
+class ToldTask(OneTask):
+    """A task whose type somebody tells: nothing is recognised or learnt, and no alarm is raised."""
+
+    told: str
+
+    @property
+    def alarmed(self) -> bool:
+        """Never."""
+        return False
+
+    def prior_over(self, known: KnownTypes) -> NDArray[np.float64]:
+        """Certainty of the told type."""
+        return np.array([float(self.told in one.members) for one in known.types])
+
+    def remember(self, name: str) -> None:
+        """Nothing."""
+
+
+def first_return_told(agent: LongLivedAgent, env: gymnasium.Env, name: str, number: int) -> float:
+    """What an agent earns in the first episode of a task whose type, of this name, it is told."""
+    world = agent.world(env)
+    once = replace(agent.settings, learning=replace(agent.settings.learning, episodes=1))
+    result = TaskResult(number, None)
+    task = ToldTask(agent.experience_for(world.n_actions), world, MoveCodes(), once, result, 0, Event())
+    task.told = name.split("+")[0]
+    task.live("")
+    return result.returns[0]
 
 
 def _most_believed(beliefs: Sequence[dict[str, float]]) -> str | None:

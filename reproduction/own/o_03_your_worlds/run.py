@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.external_world.live_in import AGENTS, live_in
+from lifelore.agent.any_tasks.live_in import AGENTS, live_in
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate
 from reproduction.own.o_03_your_worlds.worlds import WORLDS
 

@@ -11,11 +11,11 @@ from lifelore.core.lazy_exports import lazy_exports
 
 if TYPE_CHECKING:
     from lifelore.agent.any_tasks.comparison import compare_agents as compare_agents
+    from lifelore.agent.any_tasks.live_in import live_in as live_in
     from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent as LongLivedAgent
+    from lifelore.agent.any_tasks.stored_prior import BatchContexts as BatchContexts
+    from lifelore.agent.any_tasks.stored_prior import prior_from_memory as prior_from_memory
     from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld as GymnasiumWorld
-    from lifelore.agent.external_world.live_in import live_in as live_in
-    from lifelore.agent.external_world.stored_prior import BatchContexts as BatchContexts
-    from lifelore.agent.external_world.stored_prior import prior_from_memory as prior_from_memory
     from lifelore.agent.live.life_settings import LifeSettings as LifeSettings
     from lifelore.agent.live.output.l2_log import L2Log as L2Log
     from lifelore.agent.long_lived.check_family import check_family as check_family
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 _HOME = {
     "AgentTask": ".long_lived.task_family",
-    "BatchContexts": ".external_world.stored_prior",
+    "BatchContexts": ".any_tasks.stored_prior",
     "GymnasiumWorld": ".external_world.gymnasium_world",
     "L2Log": ".live.output.l2_log",
     "LifeSettings": ".live.life_settings",
@@ -41,9 +41,9 @@ _HOME = {
     "TypePrior": ".long_lived.type_prior",
     "check_family": ".long_lived.check_family",
     "compare_agents": ".any_tasks.comparison",
-    "live_in": ".external_world.live_in",
+    "live_in": ".any_tasks.live_in",
     "live_long": ".long_lived.long_life",
-    "prior_from_memory": ".external_world.stored_prior",
+    "prior_from_memory": ".any_tasks.stored_prior",
 }
 
 __all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]

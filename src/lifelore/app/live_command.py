@@ -110,11 +110,8 @@ def setting_keys(domain: str) -> "SettingKeys":
 
     port = Setting("port", int, "Port of --serve, 8321 by default; 0: any free port.")
     l2log = Setting("l2log", str, "Folder for a log of every episode in L2Logger's format.")
-    labels = Setting(
-        "labels", bool, "Whether the points of the pictures carry the objects' labels, for tabletop.", False
-    )
     life = SettingKeys((LifeSettings,), LIFE_KEYS, (l2log, port))
-    long_life = SettingKeys((live_long,), {"location": "memory", "family": "domain"}, (labels, port))
+    long_life = SettingKeys((live_long,), {"location": "memory", "family": "domain"}, (port,))
     if domain in FAMILIES:
         own, other, where = long_life, life, f"does not apply to domain {domain}; leave it out"
     else:

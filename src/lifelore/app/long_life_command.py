@@ -28,8 +28,8 @@ def live_long_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_
         names = ", ".join(foreign)
         pictures = "; --json prints all numbers, and --serve draws the life at /life" if "out" in values else ""
         raise InputError(f"{names} does not apply to domain {values['domain']}; leave it out{pictures}")
-    labels, change, memory = values.get("labels", False), values.get("change", 0.0), values.get("memory")
-    family = family_named(values["domain"], values["seed"], labelled=labels, change=change)
+    memory = values.get("memory")
+    family = family_named(values["domain"], values["seed"])
     stored = {"memory": default_path() if memory is None else memory}
     arguments: dict[str, Any] = keys.arguments(live_long, values | stored) | {"family": family}
     beside = pages_beside(serve, values.get("port"), memory)
@@ -51,8 +51,6 @@ def _print_report(report: dict[str, Any], robot: str) -> None:
     table = Table("task", "context", "first return", "last return", "best possible", "learnt by", "")
     for task in report["tasks"]:
         new = ", ".join(["spare time"] * task["spare"] + ["a new type"] * task["new_type"])
-        if changes := [str(episode + 1) for episode, _ in task.get("changes", [])]:
-            new += f"{', ' if new else ''}another type from episode {', '.join(changes)}"
         returns = (f"{value:.2f}" for value in (task["returns"][0], task["returns"][-1], task["best_return"]))
         table.add_row(str(task["task"]), str(task["context"]), *returns, task["learnt"], new)
     console.print(table)

@@ -37,14 +37,11 @@ def serve(
         list[str] | None, Option(metavar="NAME", help="Only study of the new token; may be repeated.")
     ] = None,
     only: Annotated[
-        str, Option(metavar="GROUPS", help="Routes to serve: some of personalise,perceive,advise,memory,pages.")
-    ] = "personalise,perceive,advise,memory,pages",
+        str, Option(metavar="GROUPS", help="Routes to serve: some of personalise,perceive,memory,pages.")
+    ] = "personalise,perceive,memory,pages",
     body: Annotated[float, Option(help="Size of the largest request in MiB.")] = 64.0,
     rate: Annotated[float, Option(help="Requests per second of a client; 0: no limit.")] = 1000.0,
     seconds: Annotated[float, Option(help="Longest time that a request may take.")] = 60.0,
-    map: Annotated[
-        list[str] | None, Option(metavar="NAME=YAML", help="A ROS map for advice; may be repeated.")
-    ] = None,
     seed: Annotated[int, Option(help="Draws all random numbers.")] = 0,
     until_eof: Annotated[
         bool,
@@ -85,15 +82,9 @@ def serve(
     from lifelore.app.service.server import serve as served
     from lifelore.app.service.settings import ServiceSettings
 
-    maps: dict[str, str] = {}
-    for part in map or ():
-        name, _, file = part.partition("=")
-        maps[name] = file
-        if not name or not Path(file).is_file():
-            raise InputError(f"map must be NAME=YAML with a file that exists, got '{part}'")
     settings = ServiceSettings(
         where if memory_file is None else _location_in(memory_file),
-        token_file, seed, int(body * (1 << 20)), rate, seconds, maps, only.split(","), access_log,
+        token_file, seed, int(body * (1 << 20)), rate, seconds, only.split(","), access_log,
     )  # fmt: skip
 
     def ready(url: str) -> None:

@@ -1,46 +1,16 @@
 """Streams of tasks with an observable context and a hidden type, for worlds in which an agent lives long.
 
-Contexts are as frequent as the powers of their rank (Zipf); each has a usual type. A type may arrive late, and the
-usual types may be dealt anew. The type may change between the episodes of a task. Any task can be drawn without
-those before it.
+Contexts are as frequent as the powers of their rank (Zipf); each has a usual type. A type may arrive late. Any
+task can be drawn without those before it.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
-
-
-@runtime_checkable
-class LivedTask(Protocol):
-    """A task in progress: actions are the integers in [0, n_actions), of which some are available at a time."""
-
-    n_actions: int
-
-    def reset(self) -> Any:
-        """Begin an episode; the first observation."""
-        ...
-
-    def available(self) -> NDArray[np.bool_]:
-        """(n_actions,) whether each action can be taken now."""
-        ...
-
-    def step(self, action: int) -> tuple[Any, float, bool]:
-        """Take an action: observation, reward, and whether the episode ended."""
-        ...
-
-    def copy_state(self) -> Any:
-        """All that `restore` needs; it can be pickled."""
-        ...
-
-    def restore(self, state: Any) -> None:
-        """Go on from a copied state."""
-        ...
 
 
 @dataclass(frozen=True)
@@ -69,11 +39,6 @@ class TaskStream:
         Probability in [0, 1] that a task is of its context's usual type; otherwise all types are equally likely.
     arrivals : mapping of str to int
         First task of types that arrive late; this task is surely of that type.
-    changes : tuple of int
-        Tasks from which on every context's usual type is dealt anew.
-    change : float
-        Probability in [0, 1] that before an episode, other than the first, the type becomes another; it is drawn
-        as a task's type is, from the others.
 
     Raises
     ------
@@ -93,8 +58,6 @@ class TaskStream:
     zipf: float = 1.0
     loyalty: float = 0.8
     arrivals: Mapping[str, int] = field(default_factory=dict)
-    changes: tuple[int, ...] = ()
-    change: float = 0.0
 
     def __post_init__(self) -> None:
         if self.n_contexts < 1 or not self.zipf >= 0 or not 0 <= self.loyalty <= 1:
@@ -102,8 +65,6 @@ class TaskStream:
                 "n_contexts must be at least 1, zipf at least 0 and loyalty in [0, 1], got "
                 f"{self.n_contexts}, {self.zipf} and {self.loyalty}"
             )
-        if not 0 <= self.change <= 1:
-            raise InputError(f"change must lie in [0, 1], got {self.change}")
         for name, first in self.arrivals.items():
             if name not in self.types or first < 1:
                 raise InputError(f"arrivals must name a type and a task from 1, got {name!r}: {first}")
@@ -116,17 +77,16 @@ class TaskStream:
         """Types that task `number` may have."""
         return tuple(name for name in self.types if self.arrivals.get(name, 0) <= number)
 
-    def usual_type(self, context: int, number: int) -> str:
-        """The usual type of a context at the time of a task."""
-        changes = [change for change in self.changes if change <= number]
-        born = tuple(name for name in self.types if self.arrivals.get(name, 0) <= max(changes, default=0))
-        rng = stream(self.seed, "task stream", "usual types", len(changes))
+    def usual_type(self, context: int) -> str:
+        """The usual type of a context, one of those that are there from the start."""
+        born = self.present(0)
+        rng = stream(self.seed, "task stream", "usual types", 0)
         # Deal all types out before any is dealt again.
         deals = [rng.permutation(len(born)) for _ in range(-(-self.n_contexts // len(born)))]
         return born[int(np.concatenate(deals)[context])]
 
-    def draw(self, number: int, context: int | None = None, episode: int = 0) -> DrawnTask:
-        """Task `number`, from 0; in a given context, if one is chosen in place of drawn; its type in an episode.
+    def draw(self, number: int, context: int | None = None) -> DrawnTask:
+        """Task `number`, from 0; in a given context, if one is chosen in place of drawn.
 
         Raises
         ------
@@ -142,20 +102,5 @@ class TaskStream:
         present, loyal = self.present(number), rng.random() < self.loyalty
         drawn = present[int(rng.integers(len(present)))]
         arriving = next((name for name, first in self.arrivals.items() if first == number), None)
-        usual = self.usual_type(context, number) if loyal else drawn
-        first = arriving or usual
-        return DrawnTask(number, context, self._changed(first, number, context, episode) if self.change else first)
-
-    def _changed(self, first: str, number: int, context: int, episode: int) -> str:
-        """The type of a task in an episode, from its type in the first."""
-        present, usual = self.present(number), self.usual_type(context, number)
-        law = np.array([self.loyalty * (name == usual) + (1 - self.loyalty) / len(present) for name in present])
-        rng, now = stream(self.seed, "task stream", "changes in a task", number), present.index(first)
-        for changes, place in rng.random((episode, 2)):
-            others = np.where(np.arange(len(present)) == now, 0.0, law)
-            if changes < self.change and len(present) > 1:
-                # A wholly loyal context that has left its usual type has no other to go to but that one.
-                others = others if others.any() else np.arange(len(present)) != now
-                cumulative = np.cumsum(others)
-                now = int(np.searchsorted(cumulative / cumulative[-1], place, side="right"))
-        return present[now]
+        usual = self.usual_type(context) if loyal else drawn
+        return DrawnTask(number, context, arriving or usual)

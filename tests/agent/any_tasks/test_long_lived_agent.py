@@ -91,19 +91,6 @@ def test_ablations_keep_what_they_lack():
         assert life(2, learner=learner)[1][0][1].new
 
 
-def test_the_informed_agent_knows_the_type_and_learns_nothing(full):
-    agent, found = full
-    before = {name: one.tasks for name, one in agent.types.items()}
-    wind, result = found[-1]
-    name = result.type.split("+")[0]
-    told = agent.informed(WindyGrid(wind), name, episodes=3)
-    assert len(told.returns) == 3
-    assert told.prior == pytest.approx({one: float(name in one.split("+")) for one in agent.types})
-    assert {name: one.tasks for name, one in agent.types.items()} == before
-    with pytest.raises(NotFoundError, match="type must be one of"):
-        agent.informed(WindyGrid(wind), "nobody")
-
-
 # ---- memory ----------------------------------------------------------------------------------------------
 
 

@@ -8,8 +8,8 @@ from lifelore.agent.external_world.episode import Step
 
 def test_codes_tell_moves_apart():
     codes = MoveCodes()
-    state = codes.state(("a", 1))
-    step = Step(state, 0, 2, 0.5, codes.state("b"), False)
+    state = codes.states[("a", 1)]
+    step = Step(state, 0, 2, 0.5, codes.states["b"], False)
     assert codes.cause(state, 2) != codes.cause(state, 3)
     moved, paid = codes.pairs(step)
     assert moved[0] == codes.cause(state, 2)
@@ -19,7 +19,7 @@ def test_codes_tell_moves_apart():
         assert codes.pairs(other)[1][0] == paid[0]
         assert codes.pairs(other)[1][1] != paid[1]
     assert codes.pairs(step._replace(reward=0.5 + 1e-9)) == (moved, paid)
-    elsewhere = codes.pairs(step._replace(following=codes.state("c")))
+    elsewhere = codes.pairs(step._replace(following=codes.states["c"]))
     assert elsewhere[0][0] == moved[0]
     assert elsewhere[0][1] != moved[1]
     assert elsewhere[1][0] != paid[0]
@@ -35,7 +35,7 @@ def test_counts_survive_a_record_and_add_up():
 
 def test_a_task_counts_a_cause_so_often_at_most():
     codes = MoveCodes()
-    step = Step(codes.state(0), 0, 1, 0.0, codes.state(1), False)
+    step = Step(codes.states[0], 0, 1, 0.0, codes.states[1], False)
     other = step._replace(reward=1.0)
     moved, paid = codes.pairs(step)
     found = counted([step] * (3 * MOST_REPEATS) + [other] * MOST_REPEATS, codes)

@@ -67,7 +67,7 @@ def test_codes_of_states_and_moves_are_the_same_in_a_process_of_another_hash_see
         "from lifelore.agent.external_world.gymnasium_world import hashable\n"
         "from lifelore.agent.any_tasks.moves import MoveCodes\n"
         "codes = MoveCodes()\n"
-        "found = context_code(frozenset(('left', 'right', ('far', 2.5)))), codes.cause(codes.state(('a', 1)), 2)\n"
+        "found = context_code(frozenset(('left', 'right', ('far', 2.5)))), codes.cause(codes.states['a', 1], 2)\n"
         "found += hashable({'b': np.eye(2), 'a': 'x', 'c': np.int8(3)})\n"
     )
     here: dict = {}

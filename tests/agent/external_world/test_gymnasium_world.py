@@ -143,47 +143,7 @@ def test_hashable_by_hand():
         hashable(np.array([object()]))
 
 
-# ---- what contexts mean --------------------------------------------------------------------------
-
-
-def key(context=None, env=None, state=None):
-    return GymnasiumWorld(env or Probe(), context=context, state=state).context_key
-
-
-def test_key_knows_what_contexts_mean_and_ignores_comments_and_layout():
-    one, same, other = (
-        lambda seen: (seen, seen % 2),
-        lambda seen: (
-            seen,  # the same, laid out otherwise
-            seen % 2,
-        ),
-        lambda seen: (seen, seen % 3),
-    )
-    assert key(one) == key(same) != key(other)
-    first, second = (lambda seen: seen[0]), (lambda seen: seen[1])  # two on a line
-    outer = lambda seen: (lambda part: part)(seen)  # noqa: E731
-
-    def parity(seen):
-        return seen % 2
-
-    def sign(seen):
-        return seen % 2
-
-    wrapped = gymnasium.wrappers.TransformReward(Probe(), lambda reward: reward)
-    keys = [key(parity), key(sign), key(parity, wrapped), key(parity, lake(0)), key(parity, Probe(Discrete(4)))]
-    assert len({key(first), key(second), key(outer), *keys}) == 8
-    assert key(parity) == key(parity)
-    assert key(parity).startswith("Probe-")
-    # Where states are the contexts, observations and `state` give them their meaning.
-    larger = gymnasium.make("FrozenLake-v1", desc=generate_random_map(5, seed=0))
-    assert key(env=lake(0)) == key(env=lake(1)) != key(env=larger)
-    assert key(state=lambda seen: seen) != key(state=lambda seen: -seen)
-
-
-@pytest.mark.parametrize("context", [eval("lambda seen: seen"), len, type("Callable", (), {"__call__": id})()])
-def test_key_of_a_function_without_source_is_asked_for(context):
-    with pytest.raises(InputError, match="source of context cannot be read; pass key="):
-        key(context)
+# ---- refusals ---------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(

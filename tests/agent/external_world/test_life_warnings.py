@@ -4,10 +4,10 @@ import gymnasium
 import numpy as np
 import pytest
 
+from lifelore.agent.any_tasks.live_in import live_in
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
 from lifelore.agent.external_world.life_summary import summarise_life
 from lifelore.agent.external_world.life_warnings import ContextNovelty, life_warnings
-from lifelore.agent.external_world.live_in import live_in
 
 pytestmark = pytest.mark.filterwarnings("ignore:(Nothing that was observed|The action prior is empty)")
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from lifelore.agent.external_world.live_in import TEXTBOOK, live_in
+from lifelore.agent.any_tasks.live_in import TEXTBOOK, live_in
 from lifelore.core.errors import InputError
 
 pytestmark = pytest.mark.filterwarnings("ignore:(The action prior is empty|Nothing that was observed)")
@@ -68,17 +68,20 @@ def test_textbook_is_q_learning_with_a_constant_epsilon():
 @pytest.mark.parametrize(
     ("agent", "said"),
     [
-        (lambda world, task, seeds: None, "agent 'mine' must live 3 episodes, one a seed, got 0"),
-        (lambda world, task, seeds: world.reset(task, -1), r"got reset\(0, -1\)"),
+        (lambda world, task, seeds: None, "an end after 0 resets with 0 steps left in task 0"),
+        (lambda world, task, seeds: world.reset(task, -1), r"got reset\(0, -1\) with 0"),
         (lambda world, task, seeds: world.reset(task + 1, seeds[0]), r"got reset\(1, "),
+        (lambda world, task, seeds: world.step(1), "got a step with 0 steps left"),
+        (lambda world, task, seeds: world.reset(task, seeds[0]), "an end after 1 resets with 9 steps left"),
         (
-            lambda world, task, seeds: world.step(1),
-            "must end an episode when it is terminated",
+            lambda world, task, seeds: [world.reset(task, seed) for seed in seeds],
+            r"got reset\(.* with 9 steps left",
         ),
-        (lambda world, task, seeds: world.reset(task, seeds[0]), "got an end 9 steps before"),
-        (lambda world, task, seeds: [world.reset(task, seed) for seed in seeds], "must live each episode until"),
         (lambda world, task, seeds: [world.reset(task, seeds[0]), *map(world.step, [0] * 10)], "9 steps long"),
-        (lambda world, task, seeds: [rightwards(world, task, seeds, 9), world.reset(task, 1)], "no further reset"),
+        (
+            lambda world, task, seeds: [rightwards(world, task, seeds, 9), world.reset(task, 1)],
+            r"reset\(0, 1\) with 0",
+        ),
     ],
 )
 def test_an_agent_that_lives_other_episodes_is_refused(agent, said):

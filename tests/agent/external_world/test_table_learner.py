@@ -87,27 +87,30 @@ def test_learning_is_the_kernels(guided, ties):
     visited = np.flatnonzero(expected.visits.any(axis=1))
     assert len(visited) > 64
     for state in visited:
-        assert learner.q[state].tolist() == [expected.q[state].tolist()]
+        assert learner.q[codes[int(state)]].tolist() == [expected.q[state].tolist()]
     assert learner.returns.returns == curve.returns.tolist()
     assert ended_well == curve.reached.astype(bool).tolist()
 
 
 def test_context_is_asked_with_the_reward_just_received():
-    world, learner = Countdown(), learner_of(2, QLearning(1))
-    steps = lived(world, learner, ContextCodes(), 9)
+    world, learner, codes = Countdown(), learner_of(2, QLearning(1)), ContextCodes()
+    steps = lived(world, learner, codes, 9)
     assert world.asked == [(3, 0.0), (2, 0.5), (1, 1.5)]
     assert learner.returns.returns == [pytest.approx(0.5 + 0.95 * 1.5 + 0.95**2 * 2.5)]
-    assert (steps[-1].following, reached(steps)) == (0, True)
+    assert (steps[-1].following, reached(steps)) == (codes[0], True)
     # Each state's first value is half its reward, for nothing is known of what follows; the end has no value.
-    assert {state: row.max() for state, row in learner.q.items()} == {3: 0.25, 2: 0.75, 1: 1.25}
+    assert {code: row.max() for code, row in learner.q.items()} == {codes[3]: 0.25, codes[2]: 0.75, codes[1]: 1.25}
 
 
 def test_an_episode_is_replayed_backwards_at_a_falling_rate():
-    learner = TableLearner(2, None, QLearning(1), 0.95, PriorSettings(), stream(1, "own"), "q")
-    lived(Countdown(), learner, ContextCodes(), 9)
+    learner, codes = (
+        TableLearner(2, None, QLearning(1), 0.95, PriorSettings(), stream(1, "own"), "q"),
+        ContextCodes(),
+    )
+    lived(Countdown(), learner, codes, 9)
     rate, last = 0.5 / 1.1, 1.25 + 0.5 / 1.1 * (2.5 - 1.25)  # the second time that a move is learnt
     middle = 0.75 + rate * (1.5 + 0.95 * last - 0.75)
-    found = [learner.q[state].max() for state in (1, 2, 3)]
+    found = [learner.q[codes[state]].max() for state in (1, 2, 3)]
     assert found == pytest.approx([last, middle, 0.25 + rate * (0.5 + 0.95 * middle - 0.25)])
 
 
@@ -116,9 +119,9 @@ def test_an_episode_is_replayed_backwards_at_a_falling_rate():
     [((0, 0, 1), False, True), ((1, 1, 0), False, False), ((0, 0, 1), True, False)],
 )
 def test_reached_is_a_positive_end_that_no_clock_called(rewards, truncated, well):
-    learner = learner_of(2, QLearning(1))
-    assert reached(lived(Countdown(rewards, truncated), learner, ContextCodes(), 9)) is well
-    assert (0 in learner.q) == truncated  # the end of a truncated episode may have had a future
+    learner, codes = learner_of(2, QLearning(1)), ContextCodes()
+    assert reached(lived(Countdown(rewards, truncated), learner, codes, 9)) is well
+    assert (codes[0] in learner.q) == truncated  # the end of a truncated episode may have had a future
 
 
 def test_stop_is_heard_within_an_episode():
@@ -158,13 +161,13 @@ def test_a_cautious_learner_trusts_the_prior_by_half_and_not_where_all_earn_the_
 
 # ---- which actions teach the prior -----------------------------------------------------------------
 
-HALL, STAIRS = ("hall", 0), ("stairs", 1)
+HALL, STAIRS = (5, 0), (6, 1)
 
 
 def returns_of(*episodes):
     returns = EpisodeReturns(3)
     for steps, earned, ended in episodes:
-        returns.add([Step(*place, action, 0.0, None, False) for place, action in steps], earned, ended)
+        returns.add([Step(*place, action, 0.0, 7, False) for place, action in steps], earned, ended)
     return returns
 
 

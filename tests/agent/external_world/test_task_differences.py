@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from gymnasium.envs.toy_text.frozen_lake import generate_random_map
 
+from lifelore.agent.any_tasks.live_in import live_in
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
-from lifelore.agent.external_world.live_in import live_in
 from lifelore.agent.external_world.task_differences import CERTAIN, TaskDifferences, homogeneity
 
 

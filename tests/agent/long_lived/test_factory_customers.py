@@ -140,21 +140,6 @@ def test_context_and_reuse_and_memory_pay():
     assert full < 0.3 * no_reuse
 
 
-def test_another_customer_may_come_between_episodes():
-    stream_ = TaskStream(("carts", "lamps"), n_contexts=1, loyalty=1.0, change=1.0)
-    family = FactoryFamily(stream_, changing=True)
-    drawn, task = family.meet(3, FULL)
-    (one, best), (two, other_best) = family.episodes(3, 2)
-    assert {one, two} == {"carts", "lamps"}
-    assert one == drawn.hidden_type
-    factory = family.order(3)[1].factory
-    assert (best, other_best) == (family.best_return(3), CustomerOrder(factory, two).best_return)
-    for name in (one, two, one):
-        task.begin()
-        assert (task.known == UNKNOWN).all()
-        assert task.act(CUSTOMERS[name][0]).effects == ((CUSTOMERS[name][0], PAID),)
-
-
 def test_tables_of_orders_met_last_are_kept(monkeypatch):
     monkeypatch.setattr(factory_customers, "MOST_TABLES", 2)
     family = FactoryFamily(TaskStream(tuple(CUSTOMERS)))

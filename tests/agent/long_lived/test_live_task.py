@@ -7,7 +7,7 @@ import pytest
 
 from lifelore.agent.long_lived.curiosity import context_to_practise, curious_contexts, curious_types
 from lifelore.agent.long_lived.explanation import explained, task_document, type_words
-from lifelore.agent.long_lived.knowledge import Knowledge, SpanNews, TaskNews
+from lifelore.agent.long_lived.knowledge import Knowledge, TaskNews
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task
 from lifelore.agent.long_lived.long_life import recalled
 from lifelore.agent.long_lived.task_family import AGENTS
@@ -105,7 +105,7 @@ def test_the_explanation_names_belief_act_and_novelty(settled):
 def test_types_are_named_by_the_tasks_that_showed_them_first():
     assert type_words("robot.0") == "type 0 of robot"
     assert type_words("ann.0+ann.4+bo.2") == "type 0+4 of ann, 2 of bo"
-    assert type_words("big.robot.5-3") == "type 5-3 of big.robot"  # a type that began in episode 3 of the task
+    assert type_words("big.robot.5") == "type 5 of big.robot"
 
 
 # ---- curiosity ---------------------------------------------------------------------------------------
@@ -113,7 +113,7 @@ def test_types_are_named_by_the_tasks_that_showed_them_first():
 
 def news_of(context, date, belief):
     """A task that showed nothing but how much types were believed at its end."""
-    return TaskNews(context, date, (SpanNews(belief, []),), np.zeros(0, np.int64), np.zeros((0, 4), np.bool_))
+    return TaskNews(context, date, belief, [], np.zeros(0, np.int64), np.zeros((0, 4), np.bool_))
 
 
 def test_spare_time_goes_where_the_type_is_in_doubt(settled):
@@ -137,7 +137,6 @@ def test_curiosity_tells_disagreement_from_ignorance(settled):
     torn, clear, once = (next(f for f in curious_contexts(knowledge) if f.context == c) for c in (7, 8, 9))
     assert torn.interest > 2 * clear.interest
     assert torn.disagreement > torn.unsure
-    assert torn.learnable == torn.unsure * torn.frequency
     assert once.disagreement == 0
     assert once.unsure > 1.5 * often
     untried = [found.untried for found in curious_types(knowledge)]

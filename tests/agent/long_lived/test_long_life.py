@@ -102,7 +102,6 @@ def test_the_summary_by_hand():
         ({"spare": -1}, InputError, "spare must be at least 0, got -1"),
         ({"spare": 1, "agent": "scratch"}, InputError, "the agent must be full, got scratch"),
         ({"episodes": 0}, InputError, "episodes must be at least 1, got 0"),
-        ({"change": 1.0}, InputError, "change must be at least 0 and below 1, got 1.0"),
         ({"false_alarm": 0.0}, InputError, "false_alarm must lie between 0 and 1, got 0.0"),
     ],
 )

@@ -11,24 +11,20 @@ pytest.importorskip("mujoco", reason="needs the extra sim")
 pytestmark = pytest.mark.sim
 
 from lifelore.agent.long_lived.families import tray_states as tray_  # noqa: E402
-from lifelore.agent.long_lived.families.pick_lessons import LIVED  # noqa: E402
 from lifelore.agent.long_lived.families.tabletop import TabletopFamily  # noqa: E402
 from lifelore.agent.long_lived.families.tabletop_task import TabletopTask, reward_bin  # noqa: E402
 from lifelore.agent.long_lived.families.tray_features import look_at_raw_cloud, look_with_labels  # noqa: E402
 from lifelore.agent.long_lived.families.tray_features import look_without_relations as look_at_places  # noqa: E402
 from lifelore.agent.long_lived.knowledge import Knowledge  # noqa: E402
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task  # noqa: E402
-from lifelore.agent.long_lived.task_family import AGENTS, ShowsRelations  # noqa: E402
-from lifelore.agent.perceive.relation_memory import recall_scenes  # noqa: E402
+from lifelore.agent.long_lived.task_family import AGENTS  # noqa: E402
 from lifelore.core.errors import InputError  # noqa: E402
 from lifelore.core.labelled_cloud import LabelledCloud  # noqa: E402
-from lifelore.domains.tabletop.photograph import FIRST_OBJECT  # noqa: E402
 from lifelore.domains.tabletop_job.best_return import OutcomeTree  # noqa: E402
 from lifelore.domains.tabletop_job.job import TabletopJob  # noqa: E402
 from lifelore.domains.tabletop_job.job_replay import JobReplay  # noqa: E402
 from lifelore.domains.tabletop_job.tray import sample_tray, tray_of  # noqa: E402
 from lifelore.domains.task_stream import TaskStream  # noqa: E402
-from lifelore.memory import open_memory  # noqa: E402
 from lifelore.perception.clouds.point_cloud import PointCloud  # noqa: E402
 from lifelore.perception.segmentation.table_frame import to_scene  # noqa: E402
 
@@ -161,33 +157,3 @@ def test_the_hidden_type_is_not_read():
         found.append((task.context, task.describe(), task.plan(laws, np.ones(family.n_causes, bool), 1, shared)))
     assert found[0][:2] == found[1][:2]
     np.testing.assert_array_equal(found[0][2].values, found[1][2].values)
-
-
-def test_what_picks_have_shown_is_stored_as_examples_of_relations(family, tmp_path):
-    """A scene that comes after two ways is one example, with the labels of both."""
-    lifted = 0
-    for number in range(12):
-        _, task = family.meet(number, AGENTS["full"])
-        assert isinstance(task, ShowsRelations)
-        assert task.relation_examples() == []
-        target, seen = task.job.tree.tray.target, task.state.tray
-        task.act(tray_.PICK_TARGET)
-        task.begin()
-        task.act(tray_.PICK_TARGET)
-        scenes = stored(task.relation_examples(), tmp_path / f"{number}.db")
-        if task.job.observation.held != target:
-            assert scenes == []
-        elif scenes:
-            lifted += 1
-            (scene,) = scenes
-            assert np.array_equal(scene.pairs.features.matrix, seen.pairs.pairs.features.matrix)
-            assert all(target + FIRST_OBJECT in (label.a, label.b) for label in scene.truth)
-        if lifted == 2:
-            return
-    pytest.fail("fewer than two picks have shown a relation")
-
-
-def stored(records, path):
-    with open_memory(path) as memory:
-        memory.contribute("ada", records, process="p", seq=0, task={})
-        return recall_scenes(memory, LIVED)

@@ -58,7 +58,7 @@ def test_a_large_body_is_decoded_on_another_thread():
     assert not asyncio.run(found(bodies.LARGE + 1))
 
 
-@pytest.mark.parametrize("name", ["adaptation", "advice", "log", "perceive"])
+@pytest.mark.parametrize("name", ["adaptation", "log", "perceive"])
 def test_all_routes_with_documents_take_large_ones(serve, name):
     service = serve().app.state.service
     routes = import_module(f"lifelore.app.service.{name}_routes").router(service).routes

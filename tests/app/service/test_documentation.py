@@ -20,7 +20,7 @@ OWN = (
 )
 GROUP_OF = {
     "/v1/studies": "personalise", "/v1/adaptations/{name}": "personalise", "/v1/evaluate": "personalise",
-    "/v1/perceive/cloud": "perceive", "/v1/advice/{name}": "advise", "/v1/memory": "memory", "/v1/lives": "pages",
+    "/v1/perceive/cloud": "perceive", "/v1/memory": "memory", "/v1/lives": "pages",
 }  # fmt: skip
 
 

@@ -11,7 +11,16 @@ from gymnasium.utils.env_checker import check_env
 
 from lifelore.core.streams import stream
 from reproduction.chapter5.c5_10_one_life import lives
-from reproduction.chapter5.c5_10_one_life.lives import AGENTS, FULL, SCRATCH, drawn_tasks, lived, own_name
+from reproduction.chapter5.c5_10_one_life.lives import (
+    AGENTS,
+    FULL,
+    SCRATCH,
+    agent_of,
+    drawn_tasks,
+    first_return_told,
+    lived,
+    own_name,
+)
 from reproduction.chapter5.c5_10_one_life.run import first_returns, is_recognised, measure, pairs, readings, seen
 from reproduction.chapter5.c5_10_one_life.worlds import FAMILIES, taxi, windy_grid
 from reproduction.chapter5.c5_10_one_life.worlds.grid_preference import ACTIONS
@@ -86,9 +95,9 @@ def test_contexts_show_their_usual_type_four_times_of_five(family):
     """Of 1,000 tasks; the bound is four standard errors of a share of 0.8."""
     tasks = family.stream(7)
     draws = [tasks.draw(number) for number in range(1000)]
-    usual = [one.hidden_type == tasks.usual_type(one.context, one.number) for one in draws]
+    usual = [one.hidden_type == tasks.usual_type(one.context) for one in draws]
     assert np.mean(usual) == pytest.approx(0.8, abs=4 * (0.8 * 0.2 / 1000) ** 0.5)
-    of_context = {one.context: tasks.usual_type(one.context, 0) for one in draws}
+    of_context = {one.context: tasks.usual_type(one.context) for one in draws}
     assert sorted(of_context.values()) == sorted(family.types)
 
 
@@ -184,15 +193,10 @@ class Fake:
 
         return Result
 
-    def informed(self, env, type, episodes):
-        class Result:
-            returns = [100.0 + int(type.split()[-1])]  # noqa: RUF012
-
-        return Result
-
 
 def test_a_life_stores_what_happened_in_each_task(monkeypatch):
     monkeypatch.setattr(lives, "agent_of", lambda *_: Fake())
+    monkeypatch.setattr(lives, "first_return_told", lambda agent, env, name, number: 100.0)
     found = lived("surveillance", FULL, 4, 6, 0.05)
     types, contexts = drawn_tasks("surveillance", 4, 6)
     assert found["first"] == [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]
@@ -201,6 +205,16 @@ def test_a_life_stores_what_happened_in_each_task(monkeypatch):
     assert found["soon"] == [None] + ["b"] * 5
     assert [value is not None for value in found["informed"]] == seen(types).tolist()
     assert set(lived("surveillance", SCRATCH, 4, 2, 0.05)) == {"first", "mean"}
+
+
+def test_who_is_told_the_type_runs_its_policy_and_learns_nothing():
+    agent, streams = agent_of("surveillance", FULL, 4, 0.05), drawn_tasks("surveillance", 4, 6)
+    for hidden, context in zip(*streams, strict=True):
+        result = agent.live(FAMILIES["surveillance"].make(hidden, 4), context=context)
+    before = {name: one.tasks for name, one in agent.types.items()}
+    told = first_return_told(agent, FAMILIES["surveillance"].make(hidden, 4), result.type, 6)
+    assert told >= result.returns[0]
+    assert {name: one.tasks for name, one in agent.types.items()} == before
 
 
 def test_the_own_name_of_a_type():

@@ -1,4 +1,4 @@
 """The verb `advise`: steps of agents with unknown goals in, advice out.
 
-Read in this order: `advise`, `step_lines`, `expert_trajectories`, `advice_desk` (advice over HTTP).
+Read in this order: `advise`, `step_lines`, `expert_trajectories`.
 """

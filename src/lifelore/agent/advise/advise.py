@@ -4,7 +4,7 @@ Thesis: §3.7.
 """
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -22,8 +22,6 @@ from lifelore.domains.grids.grid_world import MOVES, GridWorld
 from lifelore.domains.worlds import WorldSettings, domain_names, world_from_settings
 
 METHODS = ("better", "thesis", "classes")
-Source = str | Sequence[Mapping[str, Any]]
-"""A file of JSON lines, or their objects."""
 
 
 @dataclass(frozen=True)
@@ -34,11 +32,10 @@ class AdviseSettings:
     ----------
     world : str
         A ROS map (YAML), or a world's name and seed, ``"advice:3"``.
-    experts : str or sequence of dict
-        File of JSON lines, see `step_lines`, or their objects.
-    goals : str or sequence of dict, optional
-        File of JSON lines ``{"state": …}``, or their objects; default: the ends of the experts' walks, near
-        ends joined.
+    experts : str
+        File of JSON lines, see `step_lines`.
+    goals : str, optional
+        File of JSON lines ``{"state": …}``; default: the ends of the experts' walks, near ends joined.
     method : {"better", "thesis", "classes"}
         One goal at a time, dropping goals that the agent has passed; one prior over all goals (§3.7.1); or one
         goal at a time by class of agent, which the lines of the experts name (``"class": "staff"``).
@@ -55,8 +52,8 @@ class AdviseSettings:
     """
 
     world: str
-    experts: Source
-    goals: Source | None = None
+    experts: str
+    goals: str | None = None
     method: str = "better"
     kappa: float = 0.5
     window: int = 300
@@ -102,10 +99,10 @@ class AdviceSession:
 
     def __init__(self, settings: AdviseSettings) -> None:
         self.world = world_of(settings)
-        name = _name_of(settings.experts, "experts")
-        walks = trajectories(read_steps(_lines_of(settings.experts), self.world, name), self.world)
+        experts = settings.experts
+        walks = trajectories(read_steps(lines_of(experts), self.world, experts), self.world)
         if not walks:
-            raise InputError(f"{name} must hold at least one step with an action, got none")
+            raise InputError(f"{experts} must hold at least one step with an action, got none")
         self.n_experts = len(walks)
         self.goals = _goals(settings, walks, self.world)
         self.classes: tuple[str, ...] = ()
@@ -140,10 +137,6 @@ class AdviceSession:
         if self._class_advisor is not None:
             answer["classes"] = self._class_advisor.probs(agent)
         return answer
-
-    def forget(self, agent: str | int) -> None:
-        """Forget the steps of an agent."""
-        self._agents.pop(agent, None)
 
 
 def advise(lines: Lines, settings: AdviseSettings, name: str = "input") -> Iterator[dict[str, Any]]:
@@ -194,20 +187,11 @@ def world_settings(settings: AdviseSettings) -> WorldSettings:
     return WorldSettings(domain, None, settings.cell, settings.robot_radius, seed=int(seed or 0))
 
 
-def _name_of(source: Source, name: str) -> str:
-    """What messages call a source: its file, or `name`."""
-    return source if isinstance(source, str) else name
-
-
-def _lines_of(source: Source) -> Lines:
-    return lines_of(source) if isinstance(source, str) else source
-
-
 def _goals(settings: AdviseSettings, walks: list[Trajectory], world: GridWorld) -> list[int]:
     if settings.goals is None:
         return goals_of_ends(walks, world)
-    goals, name = [], _name_of(settings.goals, "goals")
-    for number, document in read_objects(_lines_of(settings.goals), name):
+    goals, name = [], settings.goals
+    for number, document in read_objects(lines_of(name), name):
         try:
             goals.append(state_number(document, world))
         except InputError as error:
@@ -227,9 +211,9 @@ def _advisor(settings: AdviseSettings, walks: list[Trajectory], goals: list[int]
 
 def _class_advisor(settings: AdviseSettings, goals: list[int], world: GridWorld) -> ClassAdvisor:
     """Goal models of each class, classes by name."""
-    name = _name_of(settings.experts, "experts")
-    class_of = read_classes(_lines_of(settings.experts), name)
-    steps = list(read_steps(_lines_of(settings.experts), world, name))
+    name = settings.experts
+    class_of = read_classes(lines_of(name), name)
+    steps = list(read_steps(lines_of(name), world, name))
     names = sorted(set(class_of.values()))
     if settings.shown is not None and settings.shown not in names:
         raise NotFoundError(f"shown must be a class of the experts, {', '.join(names)}, got '{settings.shown}'")

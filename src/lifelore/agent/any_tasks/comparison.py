@@ -1,17 +1,18 @@
 """`compare_agents`: the agent beside its ablations, a textbook's learner and the user's own, on the same tasks."""
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from contextlib import closing
+from dataclasses import replace
 from threading import Event
 from typing import Any
 
 import gymnasium
 
 from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent
-from lifelore.agent.any_tasks.one_task import episode_seed
+from lifelore.agent.any_tasks.one_task import episode_seeds
+from lifelore.agent.any_tasks.side_by_side import SideBySide
 from lifelore.agent.any_tasks.task_settings import AGENTS
-from lifelore.agent.external_world.life_summary import summarise_life, task_measures
-from lifelore.agent.external_world.own_agent import OwnAgent, WatchedWorld, check_own_agents, live_own
+from lifelore.agent.external_world.life_summary import summarise_life
+from lifelore.agent.external_world.own_agent import OwnAgent, check_own_agents
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress
 
@@ -30,7 +31,7 @@ def compare_agents(
     Parameters
     ----------
     make : callable
-        Task number to its environment; called once for each agent, and closed after the task.
+        Task number to its environment, in which all agents live; closed after the task.
     contexts : sequence of hashable
         The context of each task.
     agents : sequence of str, or mapping
@@ -74,27 +75,15 @@ def compare_agents(
     if settings.pop("memory", None) is not None:
         raise InputError("compare_agents stores nothing; leave out memory, or use LongLivedAgent.live")
     settings.pop("agent", None)
-    lived = {name: LongLivedAgent(agent=name, **settings) for name in given if name not in own}
-    known = LongLivedAgent(**settings)
+    usual = LongLivedAgent(**settings)
+    common = usual.settings
+    lived = {name: replace(common, abilities=AGENTS[name]) for name in given if name not in own}
     tasks: list[dict] = []
-    for number, context in enumerate(contexts):
-        found = {}
-        for name in given:
-            with closing(make(number)) as env:
-                if name in lived:
-                    result = lived[name].live(env, context, stop=stop)
-                    found[name] = task_measures(result.returns, result.reached)
-                else:
-                    found[name] = _own(name, own[name], known, env, number, stop or Event())
-        tasks.append({"index": number, "context": context, "agents": found})
-        if progress:
-            progress(number + 1, len(contexts), f"task {number}")
+    with usual.world(make) as world:
+        beside = SideBySide(world, lived, own, common, usual.key)
+        for number, context in enumerate(contexts):
+            found = beside.live(number, context, episode_seeds(common, number), stop or Event()).measures
+            tasks.append({"index": number, "context": context, "agents": {name: found[name] for name in given}})
+            if progress:
+                progress(number + 1, len(contexts), f"task {number}")
     return {"tasks": tasks, "summary": summarise_life(tasks, list(given))}
-
-
-def _own(name: str, agent: OwnAgent, known: LongLivedAgent, env: gymnasium.Env, number: int, stop: Event) -> dict:
-    """The measures of an agent of the user in one task, with the episodes that the others have."""
-    learning = known.settings.learning
-    seeds = [episode_seed(known.seed, number, episode) for episode in range(learning.episode_cap)]
-    watched = WatchedWorld(name, known.world(env), number, seeds, learning.step_cap, known.settings.discount, stop)
-    return task_measures(live_own(agent, watched), watched.reached)

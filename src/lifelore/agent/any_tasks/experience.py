@@ -4,7 +4,7 @@ Counts add up and the newest value of a policy's cell wins, so that robots can m
 that nothing tells apart are joined when experience is read, never in memory.
 """
 
-from collections import Counter
+from collections import ChainMap, Counter
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -20,6 +20,7 @@ from lifelore.agent.any_tasks.policies import StoredPolicy, StoresItself, stored
 from lifelore.agent.external_world.context_labels import KIND as LABELS
 from lifelore.agent.external_world.context_labels import VERSION as LABELS_VERSION
 from lifelore.agent.external_world.context_labels import ContextLabels, labels_record
+from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.memory import Memory
 
@@ -96,6 +97,7 @@ class Experience:
         self.key, self.n_actions = key, n_actions
         self.types: dict[str, TypeExperience] = {}
         self.prior = ActionPrior(n_actions, alpha0, f"{key}/prior")
+        self.prior.labels = self._features = ChainMap[int, Any]({})
         self.causes: Counts = Counter()  # tasks that showed each cause, with outcome 0
         self.labels: dict[int, Any] = {}  # contexts of tasks as they were given, by code
         self.n_tasks = 0
@@ -154,13 +156,14 @@ class Experience:
             sums = _fixed([len(news.fresh), np.sum(news.fresh)])
             yield Record(COUNTS, f"{self.key}/fresh", VERSION, "add", np.arange(2), sums)
         yield counts_record(COUNTS, f"{self.key}/causes", Counter({(cause, 0) for cause, _ in news.moves}))
-        one, about = np.ones(1, np.int64), {"n_actions": self.n_actions}
-        yield Record(COUNTS, f"{self.key}/tasks", VERSION, "add", 0 * one, one, about)
+        # Tasks of agents that keep no types do not count: they have shown no causes.
+        one, about = np.array([bool(news.belief)], np.int64), {"n_actions": self.n_actions}
+        yield Record(COUNTS, f"{self.key}/tasks", VERSION, "add", np.zeros(1, np.int64), one, about)
         yield news.prior.to_record({"prior": "tasks", "means": self.key})
         features = {code: one for code, one in news.prior.labels.items() if code not in self.prior.labels}
         contexts = {} if news.context in self.labels else {news.context: news.label}
-        yield labels_record(f"{self.key}/features", features, {})
-        yield labels_record(f"{self.key}/contexts", contexts, {})
+        yield labels_record(f"{self.key}/features", features)
+        yield labels_record(f"{self.key}/contexts", contexts)
 
     def _policy_records(self, name: str, policy: Any) -> Iterable[Record]:
         if isinstance(policy, dict):
@@ -177,7 +180,12 @@ class Experience:
             if record.kind == PRIOR_KIND and record.key == self.prior.key:
                 self.prior.merge(ActionPrior.from_record(record, self.n_actions, self.prior.alpha0))
             elif record.kind == LABELS and record.key == f"{self.key}/features":
-                self.prior.labels = {**self.prior.labels, **ContextLabels(record)}
+                # The first ones, which may be all of a memory, are decoded when somebody asks for them.
+                new: Any = ContextLabels(record)
+                if self._features:
+                    self._features.maps[0].update(new)
+                else:
+                    self._features.maps.append(new)
             elif record.kind == LABELS and record.key == f"{self.key}/contexts":
                 self.labels |= ContextLabels(record)
             elif record.kind in (COUNTS, POLICIES) and record.key.startswith(f"{self.key}/"):
@@ -212,9 +220,24 @@ class Experience:
     def _type(self, name: str) -> TypeExperience:
         return self.types.setdefault(name, TypeExperience())
 
+    @staticmethod
+    def keys(memory: Memory) -> list[str]:
+        """The keys of the lives in a memory."""
+        return sorted(name.removesuffix("/tasks") for name, _, _ in memory.keys(COUNTS) if name.endswith("/tasks"))
+
+    def check_actions(self, n_actions: int) -> None:
+        """InputError if an environment has another number of actions."""
+        if self.n_actions != n_actions:
+            raise InputError(f"env must have the {self.n_actions} actions of the tasks before, got {n_actions}")
+
     @classmethod
-    def recalled(cls, key: str, memory: Memory, alpha0: float = 0.1) -> "Experience | None":
-        """What a memory holds under this key; None where it holds nothing."""
+    def recalled(
+        cls, key: str, memory: Memory, alpha0: float = 0.1, *, labels: bool = True
+    ) -> "Experience | None":
+        """What a memory holds under this key; None where it holds nothing.
+
+        Without `labels` contexts have their codes alone, which a memory of many contexts reads five times as fast.
+        """
         about = {
             (kind, name, version): about
             for kind in (COUNTS, POLICIES)
@@ -226,7 +249,8 @@ class Experience:
             return None
         made = cls(key, int(tasks["n_actions"]), alpha0)
         keys = list(about)
-        keys += [(LABELS, f"{key}/{part}", LABELS_VERSION) for part in ("features", "contexts")]
+        if labels:
+            keys += [(LABELS, f"{key}/{part}", LABELS_VERSION) for part in ("features", "contexts")]
         found = (memory.recall(*name) for name in [*keys, (PRIOR_KIND, made.prior.key, PRIOR_VERSION)])
         made.add([record for record in found if record is not None])
         return made

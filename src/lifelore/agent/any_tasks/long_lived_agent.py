@@ -17,8 +17,8 @@ from lifelore.agent.any_tasks.moves import MoveCodes
 from lifelore.agent.any_tasks.one_task import OneTask
 from lifelore.agent.any_tasks.reuse import SIGNALS
 from lifelore.agent.any_tasks.task_result import TaskResult
-from lifelore.agent.any_tasks.task_settings import AGENTS, TaskSettings
-from lifelore.agent.external_world.context_code import context_code
+from lifelore.agent.any_tasks.task_settings import AGENTS, TaskSettings, check_names
+from lifelore.agent.external_world.context_code import CONTEXT_BITS, ContextCodes
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld, ResetBy
 from lifelore.agent.life.loop import LivedTask, Stopped, run_life
 from lifelore.agent.live.life_settings import PriorSettings
@@ -26,9 +26,6 @@ from lifelore.agent.long_lived.curiosity import CuriousContext, curious_contexts
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.memory import open_memory
-
-CONTEXT_BITS = 31
-"""Bits of the code of a task's context; with a thousand contexts, two share a code in 0.02 % of lives."""
 
 
 class TypeSummary(NamedTuple):
@@ -134,9 +131,7 @@ class LongLivedAgent(AbstractContextManager):
         for name, value, least in (("discount", discount, 0.0), ("false_alarm", false_alarm, 1e-4)):
             if not least <= value <= 1 or (name == "false_alarm" and value == 1):
                 raise InputError(f"{name} must lie between {least:g} and 1, got {value}")
-        for name, value in {"key": key, "robot": robot}.items():
-            if not value.strip() or "/" in value:
-                raise InputError(f"{name} must be a name without '/', got {value!r}")
+        check_names(key=key, robot=robot)
         self.settings = TaskSettings(
             QLearning(episodes, max_steps, learning_rate, epsilon, 1.0, epsilon),
             PriorSettings(form="support", ties="prior"),
@@ -150,7 +145,7 @@ class LongLivedAgent(AbstractContextManager):
         self.key, self.robot, self.seed = key, robot, seed
         self._state, self._features = state, features
         self._reset_by: ResetBy = reset_by
-        self._codes, self._contexts = MoveCodes(), dict[int, Hashable]()
+        self._codes, self._contexts = MoveCodes(), ContextCodes(CONTEXT_BITS)
         self._experience: Experience | None = None
         self._memory = None if memory is None else open_memory(memory)
         self._revision = ""
@@ -186,52 +181,17 @@ class LongLivedAgent(AbstractContextManager):
         StoreError
             Memory cannot store the task, or another process has taken it over.
         """
+        if not isinstance(env, gymnasium.Env):
+            raise InputError(f"env must be a gymnasium.Env, got {type(env).__name__}; pass gymnasium.make(...)")
         task, lost = _NextTask(self, self.world(env), context), list[str]()
         run_life(task, 1, memory=self._memory, robot=self.robot, stop=stop, notify=lost.append)
         if task.result is None:
             raise StoreError(f"{lost[0]}; live it again") if lost else Stopped
         return task.result
 
-    def informed(self, env: gymnasium.Env, type: str, *, episodes: int | None = None) -> TaskResult:
-        """Live the next task as if somebody told its type, for scoring; nothing is learnt or stored.
-
-        Parameters
-        ----------
-        env : gymnasium.Env
-        type : str
-            Name of a known type, or of joined ones.
-        episodes : int, optional
-            Number of episodes to play, ≥ 1; by default those of a task.
-
-        Raises
-        ------
-        NotFoundError
-            No known type has this name.
-        """
-        world = self.world(env)
-        experience = self._recalled(world.n_actions)
-        name = type.split("+")[0]
-        if name not in experience.types:
-            raise NotFoundError(f"type must be one of {', '.join(experience.types)}, got {type!r}")
-        learning = self.settings.learning
-        settings = replace(self.settings, learning=replace(learning, episodes=episodes or learning.episodes))
-        task = OneTask(
-            experience, world, self._codes, settings, TaskResult(self._lived, None), 0, Event(), name
-        )  # fmt: skip
-        task.live("")
-        return task.result
-
-    def world(self, env: gymnasium.Env) -> GymnasiumWorld:
-        """An environment with the states, features and resets of this agent."""
-        if not isinstance(env, gymnasium.Env):
-            raise InputError(f"env must be a gymnasium.Env, got {type(env).__name__}; pass gymnasium.make(...)")
+    def world(self, env: gymnasium.Env | Callable[[int], gymnasium.Env]) -> GymnasiumWorld:
+        """An environment, or one for each task, with the states, features and resets of this agent."""
         return GymnasiumWorld(env, self._features, self._state, seed=self.seed, reset_by=self._reset_by)
-
-    def _context_code(self, context: Hashable) -> int:
-        code = context_code(context, CONTEXT_BITS)
-        if self._contexts.setdefault(code, context) != context:
-            raise InputError(f"contexts {self._contexts[code]!r} and {context!r} share a code; rename one")
-        return code
 
     def _recall(self) -> None:
         """Read what is known again where another process has changed the memory."""
@@ -239,15 +199,12 @@ class LongLivedAgent(AbstractContextManager):
             self._experience = Experience.recalled(self.key, self._memory)
             self._revision = self._memory.revision()
 
-    def _recalled(self, n_actions: int) -> Experience:
-        """What is known for environments of so many actions."""
+    def experience_for(self, n_actions: int) -> Experience:
+        """What is known for environments of so many actions; InputError if the tasks before had others."""
         self._recall()
         if self._experience is None:
             self._experience = Experience(self.key, n_actions)
-        if self._experience.n_actions != n_actions:
-            raise InputError(
-                f"env must have the {self._experience.n_actions} actions of the tasks before, got {n_actions}"
-            )
+        self._experience.check_actions(n_actions)
         return self._experience
 
     # ---- what is known -----------------------------------------------------------------------------
@@ -299,7 +256,7 @@ class LongLivedAgent(AbstractContextManager):
 
     def _label(self, code: int) -> Any:
         known = {} if self._experience is None else self._experience.labels
-        return self._contexts.get(code, known.get(code, code))
+        return self._contexts.contexts.get(code, known.get(code, code))
 
 
 @dataclass
@@ -319,9 +276,9 @@ class _NextTask:
         """Live the task and learn from it."""
         agent = self.agent
         number = number if agent._memory is not None else agent._lived
-        experience, result = agent._recalled(self.world.n_actions), TaskResult(number, self.context)
+        experience, result = agent.experience_for(self.world.n_actions), TaskResult(number, self.context)
         task = OneTask(
-            experience, self.world, agent._codes, agent.settings, result, agent._context_code(self.context), stop
+            experience, self.world, agent._codes, agent.settings, result, agent._contexts[self.context], stop
         )  # fmt: skip
         news = task.live(f"{agent.robot}.{number}")
         records = [] if news is None else experience.learn(news)

@@ -6,7 +6,6 @@ episode ended, is all three. Where moves are noisy, rewards mostly are not: they
 
 import hashlib
 from collections import Counter
-from collections.abc import Hashable
 
 import numpy as np
 
@@ -35,10 +34,6 @@ class MoveCodes:
         self.states = ContextCodes()
         self._causes: dict[tuple[int, int], int] = {}
         self._pairs: dict[tuple[int, int, int, float, bool], Pairs] = {}
-
-    def state(self, state: Hashable) -> int:
-        """The code of a state; InputError for a state without a stable code."""
-        return self.states[state]
 
     def cause(self, state: int, action: int) -> int:
         """The code of the cause of the next state."""

@@ -16,6 +16,7 @@ from threading import Event
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.any_tasks.contest import Contest
@@ -32,6 +33,7 @@ from lifelore.agent.external_world.episode import Step, discounted, play, reache
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
 from lifelore.agent.external_world.table_learner import TableLearner
 from lifelore.core.errors import InputError
+from lifelore.core.protocols import World
 from lifelore.core.streams import stream
 
 NOWHERE = -1
@@ -57,7 +59,7 @@ class OneTask:
     ----------
     experience : Experience
         Only read.
-    world : GymnasiumWorld
+    world : World
         Its hidden type stays.
     codes : MoveCodes
     settings : TaskSettings
@@ -67,24 +69,25 @@ class OneTask:
         Code of the task's context.
     stop : threading.Event
         Set it to drop the task: `live` raises `Stopped`.
-    given : str, optional
-        The type, if it is told: nothing is recognised and no alarm is raised.
+    seeds : sequence of int, optional
+        With which the world is reset, one for each episode; by default those of `episode_seeds`.
     """
 
     def __init__(
         self,
         experience: Experience,
-        world: GymnasiumWorld,
+        world: World,
         codes: MoveCodes,
         settings: TaskSettings,
         result: TaskResult,
         context: int,
         stop: Event,
-        given: str | None = None,
+        seeds: Sequence[int] | None = None,
     ) -> None:
         self.experience, self.world, self.codes, self.settings = experience, world, codes, settings
         self.abilities, self.result, self.context = settings.abilities, result, context
-        self.stop, self.given = stop, given
+        self.stop = stop
+        self.seeds = seeds or episode_seeds(settings, result.number)
         self.generator = stream(settings.seed, "task", result.number, "own")
         self.reuse: TaskReuse | None = None
         self.players: dict[str, Player] = {}  # policies that ran; each learns from the moves that it makes
@@ -112,29 +115,29 @@ class OneTask:
         if not self.abilities.reuse or not experience.policies:
             return
         known = KnownTypes(experience)
-        prior = known.type_prior().prior(self.context if self.abilities.context else NOWHERE, self.result.number)
-        if self.given is not None:
-            prior = np.array([float(self.given in one.members) for one in known.types])
+        prior = self.prior_over(known)
         self.reuse = TaskReuse(experience, known, prior, self.settings)
         self.result.prior = self.reuse.by_name(prior)
+
+    def prior_over(self, known: KnownTypes) -> NDArray[np.float64]:
+        """The prior over the known types, given the context and the date."""
+        return known.type_prior().prior(self.context if self.abilities.context else NOWHERE, self.result.number)
 
     @property
     def alarmed(self) -> bool:
         """Whether no known type fits."""
-        return self.reuse is not None and self.given is None and self.reuse.alarmed
+        return self.reuse is not None and self.reuse.alarmed
 
     # ---- reuse, and notice -------------------------------------------------------------------------
 
     def live_episode(self) -> None:
         """Play an episode by the learner, or by the policy that is worth most; take in each move."""
         number = self.result.number
-        seed = episode_seed(self.settings.seed, number, len(self.result.returns))
+        seed = self.seeds[len(self.result.returns)]
         began = self.reuse.begin_episode() if self.learner is None and self.reuse is not None else LEARNER
         self.whole = True
-        codes, most = self.codes, self.settings.learning.step_cap
-        steps = play(
-            self.world, number, seed, codes.states, most, self.stop, self.act, self.take_in, codes.state
-        )  # fmt: skip
+        most = self.settings.learning.step_cap
+        steps = play(self.world, number, seed, self.codes.states, most, self.stop, self.act, self.take_in)
         earned = discounted(steps, self.settings.discount)
         self.running.end_episode(steps, earned, steps[-1].ended)
         self.end_episode(steps, earned, began)
@@ -235,7 +238,7 @@ class OneTask:
 
         return TableLearner(
             self.experience.n_actions, prior, settings.learning, settings.discount, settings.guidance,
-            self.generator, own, cautious=True, start=start, met=met,
+            self.generator, own, cautious=settings.cautious, start=start, met=met,
         )  # fmt: skip
 
     def taught(self, learner: Callable[..., Any], start: Any) -> FixedPolicy:
@@ -246,7 +249,7 @@ class OneTask:
             played.append((steps, earned, ended))
             self.end_episode(steps, earned, LEARNER)
 
-        env = RecordedEnv(self.world, self.codes, self.result.number, self.settings.discount, record)
+        env = RecordedEnv(self.gymnasium_world, self.codes, self.result.number, self.settings.discount, record)
         made = self.fixed(learner(env, self.experience.prior, start))
         for steps, earned, ended in played:
             made.end_episode(steps, earned, ended)
@@ -254,8 +257,14 @@ class OneTask:
 
     def fixed(self, policy: Callable[[Any], int]) -> FixedPolicy:
         """A policy of the user's learner."""
-        world = self.world
+        world = self.gymnasium_world
         return FixedPolicy(policy, lambda: world.observation, world.first_action, self.experience.n_actions)
+
+    @property
+    def gymnasium_world(self) -> GymnasiumWorld:
+        """The world, whose environment and observations the user's learner knows."""
+        assert isinstance(self.world, GymnasiumWorld), "a learner of the user lives in a Gymnasium environment"
+        return self.world
 
     def known_policy(self, name: str) -> Any:
         """A known policy by name, made again by the user's learner where memory holds its bytes."""
@@ -273,10 +282,10 @@ class OneTask:
 
     def remember(self, name: str) -> TaskNews | None:
         """What the task has taught; None where the agent carries nothing from task to task."""
-        if not self.abilities.memory or self.given is not None:
+        if not self.abilities.memory:
             return None
         result, experience = self.result, self.experience
-        by_moves = self.settings.signals == "moves"
+        by_moves = self.settings.signals == "moves" and self.abilities.reuse
         moves = counted(self.steps, self.codes) if by_moves else Counter()
         belief = self.learning_types(name, moves)
         if result.new and self.learner is None:
@@ -324,9 +333,10 @@ class OneTask:
         return {name: 1.0}
 
 
-def episode_seed(seed: int, task: int, episode: int) -> int:
-    """With what an environment is reset; the same for all agents of a seed."""
-    return int(stream(seed, "task", task, "world", episode).integers(2**31))
+def episode_seeds(settings: TaskSettings, task: int) -> list[int]:
+    """With what a world is reset for each episode of a task; the same for all agents of a seed."""
+    streams = (stream(settings.seed, "task", task, "world", k) for k in range(settings.learning.episode_cap))
+    return [int(one.integers(2**31)) for one in streams]
 
 
 def gained(late: Sequence[float], before: Any) -> bool:

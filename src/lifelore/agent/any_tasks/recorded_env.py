@@ -45,13 +45,13 @@ class RecordedEnv(gymnasium.Wrapper):
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict]:
         """Take a step, and record it."""
-        state = self.codes.state(self._state)
+        state = self.codes.states[self._state]
         context = self.codes.states[self.world.context(self._state, self._reward)]
         observation, reward, terminated, truncated, info = self.env.step(action)
         self._state, self._reward = self.world.see(observation), float(reward)
         number = int(action) - self.world.first_action
         check_reward(self._reward, number, self.task)
-        step = Step(state, context, number, self._reward, self.codes.state(self._state), bool(terminated))
+        step = Step(state, context, number, self._reward, self.codes.states[self._state], bool(terminated))
         self._steps.append(step)
         if terminated or truncated:
             self._finish(bool(terminated))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from lifelore.agent.live.life_settings import PriorSettings
+from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learner import QLearning
 
 
@@ -36,9 +37,19 @@ AGENTS: Mapping[str, Abilities] = {
 """The agent, its ablations, and a textbook's Q-learning with ε = 0.1 and no past."""
 
 
+def check_names(**names: str) -> None:
+    """InputError if a name is empty, or has a ``/``, which separates the parts of a key in memory."""
+    for name, value in names.items():
+        if not value.strip() or "/" in value:
+            raise InputError(f"{name} must be a name without '/', got {value!r}")
+
+
 @dataclass(frozen=True)
 class TaskSettings:
-    """How a task is lived; the fields as the arguments of `LongLivedAgent`, and what the agent is able to do."""
+    """How a task is lived; the fields as the arguments of `LongLivedAgent`, and what the agent is able to do.
+
+    With ``cautious`` the action prior is trusted as `TableLearner` says.
+    """
 
     learning: QLearning
     guidance: PriorSettings
@@ -48,3 +59,4 @@ class TaskSettings:
     false_alarm: float
     seed: int
     abilities: Abilities
+    cautious: bool = True

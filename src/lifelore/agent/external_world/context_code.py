@@ -14,6 +14,8 @@ from lifelore.core.errors import InputError
 CODE_BITS = 47
 """Bits of a code. With a million contexts, two share a code by chance in 0.4 % of lives; `ContextCodes` refuses
 it."""
+CONTEXT_BITS = 31
+"""Bits of the code of a task's context; with a thousand contexts, two share a code in 0.02 % of lives."""
 MOST_ACTIONS = 2**16 - 1
 """Maximum number of actions for which code · n_actions + action fits a 64-bit integer."""
 

@@ -23,7 +23,7 @@ MOST_BYTES = 8 * (SLOTS - 1)
 """Bytes of a stored text; longer texts are cut. More need more memory: eight bytes a value and some 30 beside."""
 
 
-def labels_record(key: str, contexts: Mapping[int, Hashable], about: Mapping[str, Any]) -> Record:
+def labels_record(key: str, contexts: Mapping[int, Hashable]) -> Record:
     """The record of the features of some contexts; codes must lie in [0, 2**59)."""
     slots: list[NDArray[np.int64]] = []
     values: list[NDArray[np.int64]] = []
@@ -33,15 +33,7 @@ def labels_record(key: str, contexts: Mapping[int, Hashable], about: Mapping[str
         slots.append(code * SLOTS + np.arange(len(own)))
         values.append(own)
     empty = np.empty(0, np.int64)
-    return Record(
-        KIND,
-        key,
-        VERSION,
-        "newest",
-        np.concatenate([empty, *slots]),
-        np.concatenate([empty, *values]),
-        dict(about),
-    )
+    return Record(KIND, key, VERSION, "newest", np.concatenate([empty, *slots]), np.concatenate([empty, *values]))
 
 
 def _plain(part: Any) -> Any:
@@ -59,7 +51,7 @@ class ContextLabels(Mapping[int, Any]):
 
     Examples
     --------
-    >>> labels = ContextLabels(labels_record("k", {7: ("free", 1, np.int64(3)), 9: None}, {}))
+    >>> labels = ContextLabels(labels_record("k", {7: ("free", 1, np.int64(3)), 9: None}))
     >>> labels[7], list(labels), labels.get(8, "unknown")
     (('free', 1, 3), [7, 9], 'unknown')
     """

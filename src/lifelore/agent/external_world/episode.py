@@ -1,9 +1,9 @@
 """One episode in a world of the user: states and contexts as they are met, returns as they are observed."""
 
 import math
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Sequence
 from threading import Event
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from lifelore.agent.external_world.context_code import ContextCodes
 from lifelore.agent.life.loop import Stopped
@@ -17,16 +17,15 @@ STOP_CHECK = 200
 class Step(NamedTuple):
     """A step of an episode.
 
-    state, following : as the world gave them, or their codes
-    context : code of the context
+    state, following, context : their codes
     ended : whether the world terminated the episode
     """
 
-    state: Any
+    state: int
     context: int
     action: int
     reward: float
-    following: Any
+    following: int
     ended: bool
 
 
@@ -37,32 +36,29 @@ def play(
     codes: ContextCodes,
     most_steps: int,
     stop: Event,
-    act: Callable[[Any, int], int],
+    act: Callable[[int, int], int],
     observe: Callable[[Step], None],
-    state_of: Callable[[Hashable], Any] = lambda state: state,
 ) -> list[Step]:
     """Play an episode of a task.
 
     Parameters
     ----------
     codes : ContextCodes
-        Of the contexts.
+        Of states and contexts.
     act : callable
         ``act(state, context)`` to an action.
     observe : callable
         Called with each step.
-    state_of : callable
-        What stands for a state of the world in steps; by default the state.
 
     Raises
     ------
     InputError
-        A reward is not finite, or a context has no code.
+        A reward is not finite, or a state or context has no code.
     Stopped
         The stop event is set.
     """
     state, reward, steps = world.reset(task, seed), 0.0, list[Step]()
-    name = state_of(state)
+    name = codes[state]
     for count in range(most_steps):
         if count % STOP_CHECK == 0 and stop.is_set():
             raise Stopped
@@ -70,7 +66,7 @@ def play(
         action = act(name, context)
         state, reward, ended, truncated = world.step(action)
         check_reward(reward, action, task)
-        following = state_of(state)
+        following = codes[state]
         steps.append(Step(name, context, action, reward, following, ended))
         observe(steps[-1])
         name = following

@@ -5,13 +5,9 @@ all its episodes, so each episode is reset with the seed of the task. Then the e
 seed of the episode, so that outcomes (slips, dealt cards) differ.
 """
 
-import ast
-import hashlib
 import inspect
-import textwrap
 from collections.abc import Callable, Hashable, Mapping
 from contextlib import AbstractContextManager
-from types import CodeType
 from typing import Any, Literal, SupportsFloat, get_args
 
 import gymnasium
@@ -109,29 +105,6 @@ class GymnasiumWorld(AbstractContextManager):
     def name(self) -> str:
         """The environment's registered id, else the name of its class."""
         return self._env.spec.id if self._env.spec else type(self._env.unwrapped).__name__
-
-    @property
-    def context_key(self) -> str:
-        """A key for the meaning of the contexts; priors of different keys never mix.
-
-        A hash of the environment's id, the names of its wrappers, the number of actions, and the source of
-        `context` (without comments and layout). If contexts are states (the default), the source of
-        `state` and the observation space replace it. The key does not depend on values that these functions
-        *read* (global names, enclosed values, results of wrappers), nor on the environment's arguments: if their
-        meaning may change, pass your own key to `live_in`.
-
-        Raises
-        ------
-        InputError
-            The source of the function cannot be read (typed at a prompt, compiled, a callable object).
-        """
-        if self._context is not None:
-            meaning = ("context", _definition("context", self._context))
-        else:
-            state = _definition("state", self._state) if self._state else "as observed"
-            meaning = ("state", state, repr(self._env.observation_space))
-        parts = ("gymnasium", self.name, _wrappers(self._env), self.n_actions, *meaning)
-        return f"{self.name}-{hashlib.sha256(repr(parts).encode()).hexdigest()[:24]}"
 
     def reset(self, task: int, seed: int) -> Hashable:
         """Start an episode of a task; the same task and seed give the same episode for the same actions."""
@@ -253,40 +226,3 @@ def _takes_two(function: Callable) -> bool:
         return False
     places = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
     return sum(p.kind in places and p.default is p.empty for p in parameters) == 2
-
-
-def _wrappers(env: gymnasium.Env) -> tuple[str, ...]:
-    """Names of the wrappers, outermost first."""
-    names = []
-    while isinstance(env, gymnasium.Wrapper):
-        names.append(type(env).__name__)
-        env = env.env
-    return tuple(names)
-
-
-def _definition(argument: str, function: Any) -> str:
-    """A function's qualified name and source, without comments and layout."""
-    try:
-        node = _node(function, function.__code__)
-    except (AttributeError, OSError, TypeError, SyntaxError):
-        node = None
-    if node is None:
-        raise InputError(
-            f"key cannot be made: the source of {argument} cannot be read; pass key= to name their meaning"
-        )
-    return f"{function.__qualname__}: {ast.unparse(node)}"
-
-
-def _node(function: Callable, code: CodeType) -> ast.AST | None:
-    """The part of the syntax tree that a function was compiled from."""
-    if function.__name__ != "<lambda>":
-        return ast.parse(textwrap.dedent(inspect.getsource(function)))
-    lines, _ = inspect.findsource(function)
-    # A line may hold several lambdas; the positions of the instructions identify the body.
-    spans = set(code.co_positions())
-    for node in ast.walk(ast.parse("".join(lines))):
-        if isinstance(node, ast.Lambda):
-            body = node.body
-            if (body.lineno, body.end_lineno, body.col_offset, body.end_col_offset) in spans:
-                return node
-    return None

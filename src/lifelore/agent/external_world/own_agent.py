@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from threading import Event
-from typing import Any
+from typing import Any, NoReturn
 
 from lifelore.agent.external_world.episode import check_reward
 from lifelore.agent.life.loop import Stopped
@@ -39,36 +39,32 @@ class WatchedWorld:
 
     def reset(self, task: int, seed: int) -> Hashable:
         """Start the next episode; task and seed must be those that the agent was given, in their order."""
-        self.check_ended()
         number = len(self.returns)
-        due = self.seeds[number] if number < len(self.seeds) else None
-        if task != self.task or seed != due:
-            wanted = f"reset({self.task}, {due})" if due is not None else "no further reset"
-            raise InputError(
-                f"agent '{self.name}' must reset the world once for each of its seeds, in their order: {wanted} "
-                f"was due, got reset({task}, {seed})"
-            )
+        due = number < len(self.seeds) and (task, seed) == (self.task, self.seeds[number])
+        if self._steps_left or not due:
+            # An episode that is given up would escape its costs.
+            self._refuse(f"reset({task}, {seed}) with {self._steps_left} steps left")
         self.returns.append(0.0)
         self._steps_left, self._factor = self.max_steps, 1.0
         return self.world.reset(task, seed)
 
-    def check_ended(self) -> None:
-        """InputError if an episode is in progress: one that is given up would escape its costs."""
-        if self._steps_left:
-            raise InputError(
-                f"agent '{self.name}' must live each episode until it is terminated, truncated or "
-                f"{self.max_steps} steps long, got an end {self._steps_left} steps before; step on"
-            )
+    def check_lived(self) -> None:
+        """InputError if the agent has not lived all its episodes to their end."""
+        if self._steps_left or len(self.returns) != len(self.seeds):
+            self._refuse(f"an end after {len(self.returns)} resets with {self._steps_left} steps left")
+
+    def _refuse(self, got: str) -> NoReturn:
+        raise InputError(
+            f"agent '{self.name}' must live an episode for each of its {len(self.seeds)} seeds, in their order, "
+            f"until it is terminated, truncated or {self.max_steps} steps long, got {got} in task {self.task}"
+        )
 
     def step(self, action: int) -> tuple[Hashable, float, bool, bool]:
         """Take an action; the reward counts for the return of the episode."""
         if self.stop.is_set():
             raise Stopped
         if not self._steps_left:
-            raise InputError(
-                f"agent '{self.name}' must end an episode when it is terminated, truncated or {self.max_steps} "
-                "steps long, got a further step; reset the world with the next seed"
-            )
+            self._refuse("a step with 0 steps left")
         state, reward, terminated, truncated = self.world.step(action)
         check_reward(reward, action, self.task)
         self.returns[-1] += self._factor * reward
@@ -91,12 +87,7 @@ def live_own(agent: OwnAgent, watched: WatchedWorld) -> list[float]:
         The agent did not live all episodes, or broke their order or their length.
     """
     agent(watched, watched.task, list(watched.seeds), watched.max_steps)
-    watched.check_ended()
-    if len(watched.returns) != len(watched.seeds):
-        raise InputError(
-            f"agent '{watched.name}' must live {len(watched.seeds)} episodes, one a seed, got "
-            f"{len(watched.returns)} in task {watched.task}; call world.reset(task, seed) for each seed"
-        )
+    watched.check_lived()
     return watched.returns
 
 

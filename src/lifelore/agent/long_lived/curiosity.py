@@ -51,11 +51,6 @@ class CuriousContext:
         """Part of the entropy that more episodes or better features would remove, nats."""
         return max(0.0, self.entropy - self.disagreement)
 
-    @property
-    def learnable(self) -> float:
-        """Unsure part × frequency."""
-        return self.unsure * self.frequency
-
 
 @dataclass(frozen=True)
 class CuriousType:

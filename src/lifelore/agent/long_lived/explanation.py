@@ -35,19 +35,6 @@ def task_document(lived: TaskLog, family: TaskFamily, best: float) -> dict[str, 
     }
 
 
-def episodes_document(lived: TaskLog, episodes: list[tuple[str, float]]) -> dict[str, Any]:
-    """What a task's document has more where types may change: a value an episode, and the changes noticed.
-
-    ``changes`` are pairs: the number of an episode from which another type was believed to be there, and the name
-    of the type that learnt most from then on. ``hidden_types`` and ``best_returns`` are for scoring.
-    """
-    return {
-        "changes": [[episode, type_words(learnt)] for episode, learnt in lived.changes],
-        "hidden_types": [hidden for hidden, _ in episodes],
-        "best_returns": [round(best, 4) for _, best in episodes],
-    }
-
-
 def type_words(name: str) -> str:
     """A type's name in memory in words: ``"ann.0+ann.4+bo.2"`` is "type 0+4 of ann, 2 of bo".
 
@@ -103,11 +90,8 @@ def explained(document: dict[str, Any]) -> list[str]:
                 f"       → {step['act']}, as for {step['as_for']} (expected {step['expected']:.2f}{rival}); "
                 f"reward {step['reward']:.2f}"
             )
-    for episode, learnt in document.get("changes", []):
-        lines.append(f"  from episode {episode + 1} on it believed another type to be there, {learnt}")
     fitted = "no known type fitted" if document["alarm"] else "known types were not ruled out"
-    what = f"the task until episode {document['changes'][0][0]}" if document.get("changes") else "it"
-    taught = f"{what} became the new type" if document["new_type"] else f"{what} taught most to"
+    taught = "it became the new type" if document["new_type"] else "it taught most to"
     lines.append(f"  {fitted} (surprise {document['alarm_score']:.1f} deviations); {taught} {document['learnt']}")
     return lines
 

@@ -4,7 +4,7 @@ All of it is counts that add up: effects of causes and sightings for each type, 
 can therefore merge them in any order. Types that are alike are joined when knowledge is read, never in memory.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, Self
 
@@ -25,35 +25,22 @@ LEAST_BELIEF = 0.01
 """Types of less belief learn nothing from a task."""
 
 
-class SpanNews(NamedTuple):
-    """What a span of episodes of one type has taught.
-
-    belief : mapping of str to float
-        Belief in each type, by name, at the end of the span: as much does each learn from it.
-    effects : sequence of (int, int)
-        Causes and effects, in their order.
-    """
-
-    belief: Mapping[str, float]
-    effects: Effects
-
-
-@dataclass(frozen=True, eq=False)
-class TaskNews:
+class TaskNews(NamedTuple):
     """What a task has taught.
 
-    Parameters
-    ----------
     context, date : int
-    spans : sequence of SpanNews
-        At least one; the context's usual types are learnt from the first, with which the task began.
+    belief : mapping of str to float
+        Belief in each type, by name, at the end of the task: as much does each learn from it.
+    effects : sequence of (int, int)
+        Causes and effects, in their order.
     contexts, best : (n,) int64, (n, n_acts) bool
         Best acts in the contexts of the task.
     """
 
     context: int
     date: int
-    spans: Sequence[SpanNews]
+    belief: Mapping[str, float]
+    effects: Effects
     contexts: NDArray[np.int64]
     best: NDArray[np.bool_]
 
@@ -135,15 +122,11 @@ class Knowledge:
     def _parts(self, news: TaskNews) -> dict[str, ActionPrior]:
         family, parts = self.family, dict[str, ActionPrior]()
         code = news.date * MOST_CONTEXTS + news.context
-        for place, span in enumerate(news.spans):
-            for name, belief in span.belief.items():
-                if belief < LEAST_BELIEF:
-                    continue
-                counts, earlier = effect_counts(family, span.effects, belief), parts.get(f"type/{name}")
-                parts[f"type/{name}"] = counts if earlier is None else ActionPrior.merged([earlier, counts])
-                if not place:
-                    parts[f"sightings/{name}"] = _counted([code], [0], 1, belief)
-        shown = {cause for span in news.spans for cause, _ in span.effects}
+        for name, belief in news.belief.items():
+            if belief >= LEAST_BELIEF:
+                parts[f"type/{name}"] = effect_counts(family, news.effects, belief)
+                parts[f"sightings/{name}"] = _counted([code], [0], 1, belief)
+        shown = {cause for cause, _ in news.effects}
         causes = np.array([*sorted(shown), family.n_causes])
         parts["causes"] = _counted(causes, np.zeros_like(causes), 1)
         acts = ActionPrior(len(family.acts))

@@ -103,7 +103,7 @@ class KnownTypes:
 
     def tried(self, own: Array) -> NDArray[np.bool_]:
         """(n_causes,) whether anything is known of each cause or its group, after the task's own counts."""
-        seen = self.counts.any(axis=(0, 2)) | own.reshape(-1, *own.shape[-2:]).any(axis=(0, 2))
+        seen = self.counts.any(axis=(0, 2)) | own.any(axis=1)
         groups = self.family.groups
         return np.isin(groups, groups[seen])
 
@@ -111,7 +111,6 @@ class KnownTypes:
         """P(effect | cause), (n_types + 1, n_causes, n_effects), after the task's `own` counts.
 
         The last row is of an unknown type. With a generator, laws are drawn from what the counts leave possible.
-        Own counts are (n_causes, n_effects), or have a row for each type where types change within the task.
         """
         unknown = NEW * self.concentrations.kappa[:, None] * (self.family.possible - self.pooled)
         rows = np.concatenate([self.counts, unknown[None]])
@@ -119,7 +118,7 @@ class KnownTypes:
         if generator is not None:
             rows = _drawn(rows, generator)
         rows *= self.family.constancy[:, None] / rows.sum(axis=2, keepdims=True)
-        rows += self.family.smoothed(own.reshape(-1, *own.shape[-2:]))
+        rows += self.family.smoothed(own[None])
         if generator is not None:
             rows = _drawn(rows, generator)
         return rows / rows.sum(axis=2, keepdims=True)

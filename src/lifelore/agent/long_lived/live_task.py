@@ -10,10 +10,6 @@ for each episode:
         β, p and the task's own counts take in the effects of the act
 an alarm, or effects that tell the task from its type: a new type; else as believed    learn
 count the effects, the best acts, and the belief in this context                       remember
-keep the scenes in which acts have shown relations, as examples                         remember
-
-Where types may change between the episodes of a task, the belief follows them (`recognition`), and types
-learn by span: from the episodes between two changes.
 """
 
 from dataclasses import dataclass
@@ -22,10 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.long_lived.check_family import checked_plan, checked_step
-from lifelore.agent.long_lived.knowledge import Knowledge, SpanNews, TaskNews
+from lifelore.agent.long_lived.knowledge import Knowledge, TaskNews
 from lifelore.agent.long_lived.known_types import Effects, KnownTypes
-from lifelore.agent.long_lived.recognition import Recognition, Span
-from lifelore.agent.long_lived.task_family import Abilities, AgentTask, ShowsRelations
+from lifelore.agent.long_lived.recognition import Recognition
+from lifelore.agent.long_lived.task_family import Abilities, AgentTask
 from lifelore.agent.long_lived.task_log import Decision, TaskLog
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
@@ -47,8 +43,6 @@ class LivingSettings:
         Probability of an alarm in a task of a known type, in (0, 1).
     unknown : float
         Prior probability that no known type fits, in (0, 1).
-    change : float
-        Probability that the type changes between two episodes of a task, in [0, 1). With 0 it is taken to stay.
 
     Raises
     ------
@@ -59,13 +53,10 @@ class LivingSettings:
     n_episodes: int = 8
     false_alarm: float = 0.05
     unknown: float = 0.05
-    change: float = 0.0
 
     def __post_init__(self) -> None:
         if self.n_episodes < 1:
             raise InputError(f"episodes must be at least 1, got {self.n_episodes}")
-        if not 0 <= self.change < 1:
-            raise InputError(f"change must be at least 0 and below 1, got {self.change}")
         for name in ("false_alarm", "unknown"):
             if not 0 < getattr(self, name) < 1:
                 raise InputError(f"{name} must lie between 0 and 1, got {getattr(self, name)}")
@@ -100,8 +91,7 @@ def live_task(
         What happened, and the records by which memory adds what was learnt.
     """
     lived, news = attempt_task(knowledge, drawn, task, abilities, settings, name, seed)
-    examples = task.relation_examples() if isinstance(task, ShowsRelations) else []
-    return lived, [*knowledge.learn(news), *examples]
+    return lived, knowledge.learn(news)
 
 
 def attempt_task(
@@ -121,18 +111,13 @@ def attempt_task(
     lived.prior = np.full(len(known), 1 / max(len(known), 1))
     if abilities.prior and len(known):
         lived.prior = knowledge.type_prior().prior(drawn.context, drawn.number)
-    recognition = Recognition(
-        knowledge, lived.prior, settings.false_alarm, settings.unknown, seed, settings.change, settings.n_episodes
-    )
+    recognition = Recognition(knowledge, lived.prior, settings.false_alarm, settings.unknown, seed)
     shared.guided = abilities.prior
 
     # Act: perceive, reuse the behaviours of the known types, and let every effect tell more of the type.
     effects: list[tuple[int, int]] = []
-    began: list[int] = []  # number of effects before each episode
     for episode in range(settings.n_episodes):
         task.begin()
-        recognition.begin_episode()
-        began.append(len(effects))
         between = 0 < episode < settings.n_episodes - 1
         decisions, ended = [], False
         while not ended:
@@ -148,28 +133,20 @@ def attempt_task(
 
     # Notice: does any known type fit?
     lived.alarm, lived.alarm_score = recognition.alarmed, recognition.highest
-    spans, taught = recognition.spans(), list[SpanNews]()
-    began.append(len(effects))
-    for span, last in zip(spans, [*(one.first for one in spans[1:]), settings.n_episodes], strict=True):
-        own = effects[began[span.first] : began[last]]
-        own_name = f"{name}-{span.first}" if span.first else name
-        taught.append(SpanNews(_learning(known, span, own, own_name, abilities), own))
-    learners = [max(one.belief, key=one.belief.__getitem__) for one in taught]
-    lived.learnt = learners[0]
-    lived.changes = [(span.first, learnt) for span, learnt in zip(spans, learners, strict=True)][1:]
+    belief = _learning(recognition, effects, name, abilities)
+    lived.learnt = max(belief, key=belief.__getitem__)
 
     # Learn and remember: types learn the effects as far as they are believed, contexts their best acts and types.
-    row = _row(known, learners[-1])
+    row = _row(known, lived.learnt)
     contexts, best = task.best_acts(known.laws(recognition.own)[row], shared)
-    return lived, TaskNews(drawn.context, drawn.number, tuple(taught), contexts, best)
+    return lived, TaskNews(drawn.context, drawn.number, belief, effects, contexts, best)
 
 
-def _learning(
-    known: KnownTypes, span: Span, effects: Effects, name: str, abilities: Abilities
-) -> dict[str, float]:
-    """How much each type, by name, learns from the effects of a span; a type that is new has the given name."""
-    believed = span.belief[:-1] / max(float(span.belief[:-1].sum()), 1e-300)
-    fits = len(known) > 0 and not span.alarmed and not known.differs(int(believed.argmax()), effects)
+def _learning(recognition: Recognition, effects: Effects, name: str, abilities: Abilities) -> dict[str, float]:
+    """How much each type, by name, learns from the effects of a task; a type that is new has the given name."""
+    known, belief = recognition.known, recognition.belief
+    believed = belief[:-1] / max(float(belief[:-1].sum()), 1e-300)
+    fits = len(known) > 0 and not recognition.alarmed and not known.differs(int(believed.argmax()), effects)
     if not fits and (abilities.reuse or not len(known)):
         return {name: 1.0}
     believed = believed if abilities.reuse else np.ones(1)

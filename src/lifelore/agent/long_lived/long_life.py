@@ -12,11 +12,11 @@ from lifelore.action.priors.action_prior import KIND
 from lifelore.agent.life.loop import LivedTask, opened_memory, run_life
 from lifelore.agent.long_lived.check_family import check_constants, checked_best_return, checked_meeting
 from lifelore.agent.long_lived.curiosity import context_to_practise
-from lifelore.agent.long_lived.explanation import episodes_document, task_document
+from lifelore.agent.long_lived.explanation import task_document
 from lifelore.agent.long_lived.families.by_name import family_named
 from lifelore.agent.long_lived.knowledge import Knowledge
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task
-from lifelore.agent.long_lived.task_family import AGENTS, ChangingFamily, TaskFamily
+from lifelore.agent.long_lived.task_family import AGENTS, TaskFamily
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream
@@ -34,7 +34,6 @@ def live_long(
     robot: str = "robot",
     refresh: bool = False,
     spare: int = 0,
-    change: float = 0.0,
     false_alarm: float = 0.05,
     progress: Progress | None = None,
     stop: Event | None = None,
@@ -65,8 +64,6 @@ def live_long(
         Whether to recall before each task what other robots and processes have stored.
     spare : int
         Tasks of spare time after those, in contexts that the agent is curious about, at least 0.
-    change : float
-        Probability that the hidden type changes between two episodes of a task, in [0, 1); the agent knows it.
     false_alarm : float
         Probability of an alarm in a task of a known type, in (0, 1).
     progress : callable, optional
@@ -95,10 +92,10 @@ def live_long(
     >>> report["summary"].keys() >= {"second half"}
     True
     """
-    family = family_named(family, seed, change=change) if isinstance(family, str) else family
+    family = family_named(family, seed) if isinstance(family, str) else family
     check_constants(family)
     _check_settings(family, tasks, agent, spare)
-    living = LivingSettings(episodes, false_alarm, change=change)
+    living = LivingSettings(episodes, false_alarm)
     with opened_memory(memory) as opened:
         life = _FamilyLife(family, agent, tasks, living, seed, robot, opened, watch)
         run_life(life, tasks + spare, memory=opened, robot=robot, refresh=refresh, progress=progress, stop=stop)
@@ -156,8 +153,6 @@ class _FamilyLife:
         lived, records = live_task(self.knowledge, drawn, task, abilities, self.living, name, self.seed)
         best = checked_best_return(family, number, family.best_return(number, context))
         document = task_document(lived, family, best) | {"spare": context is not None}
-        if isinstance(family, ChangingFamily) and self.living.change:
-            document |= episodes_document(lived, family.episodes(number, self.living.n_episodes, context))
         return LivedTask(
             # An agent without some part stores its documents alone, so that it teaches no other agent.
             records if self.agent == "full" else [],
@@ -196,10 +191,7 @@ def summary(tasks: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _below(tasks: list[dict[str, Any]], episode: int) -> float:
-    best = [task.get("best_returns", [task["best_return"]])[episode] for task in tasks]
-    return round(
-        float(np.mean([high - task["returns"][episode] for high, task in zip(best, tasks, strict=True)])), 4
-    )
+    return round(float(np.mean([task["best_return"] - task["returns"][episode] for task in tasks])), 4)
 
 
 def stored_task(number: int, robot: str = "robot", memory: str | None = None) -> dict[str, Any]:

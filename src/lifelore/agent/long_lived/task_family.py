@@ -9,13 +9,12 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Protocol, TypeVar, cast, runtime_checkable
+from typing import Any, Protocol, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.core.protocols import Record
 from lifelore.domains.task_stream import DrawnTask
 
 Array = NDArray[np.float64]
@@ -186,15 +185,6 @@ class AgentTask(Protocol):
         return ""
 
 
-@runtime_checkable
-class ShowsRelations(AgentTask, Protocol):
-    """A task whose acts show how objects are related."""
-
-    def relation_examples(self) -> list[Record]:
-        """Records by which memory keeps the perceived scenes, with labels of the pairs that acts have shown."""
-        ...
-
-
 def _default(compute: Callable[[Any], Value]) -> Value:
     """An attribute that is computed once, unless a subclass has an attribute or a property of this name."""
     return cast(Value, cached_property(compute))
@@ -306,11 +296,3 @@ class TaskFamily(ABC):
     def effect_name(self, cause: int, effect: int) -> str:
         """An effect in words. Default: its number."""
         return f"effect {effect}"
-
-
-class ChangingFamily(TaskFamily):
-    """Tasks whose type may change between episodes."""
-
-    @abstractmethod
-    def episodes(self, number: int, n_episodes: int, context: int | None = None) -> list[tuple[str, float]]:
-        """Hidden type and best possible return of each episode, for scoring; the agent never asks."""

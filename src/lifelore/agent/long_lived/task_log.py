@@ -53,9 +53,7 @@ class TaskLog:
     alarm_score : float
         Largest score of the detector, in deviations of known tasks.
     learnt : str
-        Name of the type that learnt most from the task, up to the first change.
-    changes : list of (int, str)
-        First episodes of later spans, in which another type was believed to be there, and who learnt most there.
+        Name of the type that learnt most from the task.
     """
 
     drawn: DrawnTask
@@ -66,4 +64,3 @@ class TaskLog:
     alarm: bool = False
     alarm_score: float = 0.0
     learnt: str = ""
-    changes: list[tuple[int, str]] = field(default_factory=list)

@@ -4,5 +4,5 @@ Read in this order: `settings`, `application` (the factory), `service_state`, `g
 and log of every request), `admission` (who may ask what), `tokens`, `limits`, `bodies`, `telemetry`,
 `error_documents`, `documentation`, `writer` (the thread that stores), `worker_process` (long work and uploads),
 `server`, `connections`; then one file for each group of routes: `decision_routes`, `user_routes`, `study_routes`,
-`log_routes`, `health_routes`, `adaptation_routes`, `perceive_routes`, `advice_routes`, `memory_routes`.
+`log_routes`, `health_routes`, `adaptation_routes`, `perceive_routes`, `memory_routes`.
 """

@@ -30,7 +30,7 @@ from lifelore.app.service.tokens import TokenFile
 from lifelore.core.errors import LifeloreError
 from lifelore.memory import open_memory
 
-DESCRIPTION = """Personalise, perceive, advise and remember over HTTP; the memory is that of the command line."""
+DESCRIPTION = """Personalise, perceive and remember over HTTP; the memory is that of the command line."""
 ERRORS: dict[int | str, dict[str, Any]] = {
     "4XX": {"model": ErrorDocument, "description": "The request breaks a rule."},
     "5XX": {"model": ErrorDocument, "description": "The service cannot answer now."},
@@ -49,7 +49,6 @@ def create_app(settings: ServiceSettings, open_paths: Collection[str] = ()) -> F
     """
     from lifelore.app.service import (
         adaptation_routes,
-        advice_routes,
         health_routes,
         log_routes,
         memory_routes,
@@ -83,7 +82,6 @@ def create_app(settings: ServiceSettings, open_paths: Collection[str] = ()) -> F
         ("personalise", adaptation_routes),
         ("personalise", log_routes),
         ("perceive", perceive_routes),
-        ("advise", advice_routes),
         ("memory", memory_routes),
     ):
         if group is None or group in settings.only:

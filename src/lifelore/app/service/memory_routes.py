@@ -101,13 +101,13 @@ def router(service: Service) -> APIRouter:
     @routes.post("/merge", summary="Add an exported file, all or none", openapi_extra=body_of(BYTES, SQLITE))
     async def merge(request: Request) -> Merged:
         counts = await run_in_threadpool(merged, await file_of(request, BYTES, SQLITE))
-        service.read_again()
+        service.studies.drop_all()
         return counts
 
     @routes.delete("/robots", summary="Forget all contributions of a robot, for ever")
     def forget_robot(robot: Text) -> ForgottenRobot:
         count = memory.forget(robot)
-        service.read_again()
+        service.studies.drop_all()
         return {"robot": robot, "forgotten": count}
 
     @routes.delete("/buildings", summary="Forget the map and the transitions of a building, for ever")

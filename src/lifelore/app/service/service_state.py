@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, field
 
-from lifelore.agent.advise.advice_desk import AdviceDesk
 from lifelore.agent.personalise.open_studies import OpenStudies
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.study_watch import StudyWatch
@@ -32,12 +31,6 @@ class Service:
     watch: StudyWatch = field(init=False)
 
     def __post_init__(self) -> None:
-        self.desks: dict[str, AdviceDesk] = {}
         self.studies = OpenStudies(self.memory)
         self.watch = StudyWatch(self.memory, self.studies, self.metrics)
-        self.writer = Writer(self.memory, self.studies, self.metrics, self.read_again, self.settings.seed)
-
-    def read_again(self) -> None:
-        """Read studies and desks again at their next use."""
-        self.studies.drop_all()
-        self.desks.clear()
+        self.writer = Writer(self.memory, self.studies, self.metrics, self.studies.drop_all, self.settings.seed)

@@ -1,14 +1,14 @@
 """Settings of the service: its memory, tokens and limits."""
 
 import ipaddress
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection
+from dataclasses import dataclass
 
 from lifelore.core.errors import InputError
 
 LOOPBACK_NAMES = ("localhost", "127.0.0.1", "[::1]", "::1")
 MEBIBYTE = 1 << 20
-GROUPS = ("personalise", "perceive", "advise", "memory", "pages")
+GROUPS = ("personalise", "perceive", "memory", "pages")
 """Groups of routes that can be served alone."""
 
 
@@ -30,8 +30,6 @@ class ServiceSettings:
         Requests per second of a client, over ten seconds; 0: no limit.
     seconds : float
         Longest time that a request may take.
-    maps : mapping of str to str
-        Files of ROS maps by the name that advice desks give them.
     only : collection of str
         Groups of routes that the service has, some of `GROUPS`; health, metrics and ``/docs`` are always there.
     access_log : bool
@@ -49,7 +47,6 @@ class ServiceSettings:
     largest_body: int = 64 * MEBIBYTE
     rate: float = 1000.0
     seconds: float = 60.0
-    maps: Mapping[str, str] = field(default_factory=dict)
     only: Collection[str] = GROUPS
     access_log: bool = False
 

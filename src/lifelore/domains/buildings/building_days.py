@@ -115,10 +115,6 @@ class BuildingWay:
         self._now = (self.start, 0, False)
         return WayObservation(self.start, self.destination)
 
-    def available(self) -> NDArray[np.bool_]:
-        """(4,) all moves until the end; the day may refuse them."""
-        return np.full(4, not self.ended)
-
     def step(self, action: int) -> tuple[WayObservation, float, bool]:
         """Move north, south, east or west: observation, points, and whether the way ended.
 
@@ -129,21 +125,13 @@ class BuildingWay:
         """
         cell, taken, ended = self._now
         if ended or not 0 <= action < 4:
-            raise InputError(f"action must lie in [0, 4) before the end, got {action}; see available()")
+            raise InputError(f"action must lie in [0, 4) before the end, got {action}")
         target = int(self._day.neighbour[cell, action])
         refused = target < 0
         cell = cell if refused else target
         reward = REFUSED if refused else CROWD if self._day.crowded[cell] else MOVE
         self._now = (cell, taken + 1, cell == self.destination or taken + 1 >= LONGEST)
         return WayObservation(cell, self.destination, refused), reward, self.ended
-
-    def copy_state(self) -> tuple[int, int, bool]:
-        """All that `restore` needs."""
-        return self._now
-
-    def restore(self, state: tuple[int, int, bool]) -> None:
-        """Go on from a copied state of the same way."""
-        self._now = state
 
 
 @dataclass(frozen=True, eq=False)

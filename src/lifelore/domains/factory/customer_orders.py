@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from types import MappingProxyType
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.mdp import COLLISION, TERMINAL
@@ -82,10 +81,6 @@ class CustomerOrder:
         self._now = (self.factory.start, 0, False)
         return self._observation(False)
 
-    def available(self) -> NDArray[np.bool_]:
-        """(6,) all actions until the end."""
-        return np.full(self.n_actions, not self.ended)
-
     def step(self, action: int) -> tuple[OrderObservation, float, bool]:
         """Take an action: observation, reward, and whether the order ended.
 
@@ -96,9 +91,7 @@ class CustomerOrder:
         """
         state, taken, ended = self._now
         if ended or not 0 <= action < self.n_actions:
-            raise InputError(
-                f"action must lie in [0, {self.n_actions}) before the end, got {action}; see available()"
-            )
+            raise InputError(f"action must lie in [0, {self.n_actions}) before the end, got {action}")
         state, reward, event = self._step(self._task.params, state, int(action), 0.5)
         self._now = (int(state), taken + 1, bool(event & TERMINAL) or taken + 1 >= LONGEST)
         return self._observation(bool(event & COLLISION)), float(reward), self.ended
@@ -113,14 +106,6 @@ class CustomerOrder:
             frozenset(items[stages == ASSEMBLED].tolist()),
             collision,
         )
-
-    def copy_state(self) -> tuple[int, int, bool]:
-        """All that `restore` needs."""
-        return self._now
-
-    def restore(self, state: tuple[int, int, bool]) -> None:
-        """Go on from a copied state of the same order."""
-        self._now = state
 
 
 @dataclass(frozen=True)
@@ -138,8 +123,8 @@ class FactoryCustomers:
     stream: TaskStream
     seed: int = 0
 
-    def task(self, number: int, context: int | None = None, episode: int = 0) -> tuple[DrawnTask, CustomerOrder]:
-        """Task `number` and its world in an episode, in a chosen context if given; the same for the same number.
+    def task(self, number: int, context: int | None = None) -> tuple[DrawnTask, CustomerOrder]:
+        """Task `number` and its world, in a chosen context if given; the same for the same number.
 
         Examples
         --------
@@ -148,7 +133,7 @@ class FactoryCustomers:
         >>> order.customer == drawn.hidden_type
         True
         """
-        drawn = self.stream.draw(number, context, episode)
+        drawn = self.stream.draw(number, context)
         return drawn, CustomerOrder(self.layout(number), drawn.hidden_type)
 
     def layout(self, number: int) -> Factory:

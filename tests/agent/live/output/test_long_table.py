@@ -5,7 +5,7 @@ from collections import defaultdict
 
 import pytest
 
-from lifelore.agent.external_world.live_in import live_in
+from lifelore.agent.any_tasks.live_in import live_in
 from lifelore.agent.live.life import live
 from lifelore.agent.live.output.long_table import COLUMNS, LongTable
 from lifelore.core.errors import StoreError

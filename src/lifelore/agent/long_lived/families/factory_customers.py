@@ -3,11 +3,9 @@
 The floor and its points are known, the components that a customer wants are not. An act walks the shortest way to
 a point and uses it: "procure component k", or "assemble component k". Each act is a cause, whose effect is that it
 is paid or refused. An order answers the same act alike in all its episodes, so only new answers are effects; and
-when an order ends, all components that it did not ask for are known to be unwanted. Where the customer may change
-between episodes, answers are sure for one episode: every episode shows its effects anew.
+when an order ends, all components that it did not ask for are known to be unwanted.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -22,7 +20,7 @@ from lifelore.agent.long_lived.families.order_planning import (
     OrderTable,
     set_weights,
 )
-from lifelore.agent.long_lived.task_family import Abilities, AgentTask, ChangingFamily, Plan, SharedKnowledge, Step
+from lifelore.agent.long_lived.task_family import Abilities, AgentTask, Plan, SharedKnowledge, Step, TaskFamily
 from lifelore.domains.factory.customer_orders import CustomerOrder, FactoryCustomers
 from lifelore.domains.factory.factory import ASSEMBLE, ASSEMBLED, N_COMPONENTS, PROCURE, PROCURED, RAW
 from lifelore.domains.task_stream import DrawnTask, TaskStream
@@ -37,7 +35,7 @@ MOST_TABLES = 32
 
 
 @dataclass(eq=False)
-class FactoryFamily(ChangingFamily):
+class FactoryFamily(TaskFamily):
     """Orders of factory customers; rewards are discounted, so that those of an episode add up to its return.
 
     Parameters
@@ -46,13 +44,10 @@ class FactoryFamily(ChangingFamily):
         Its types are keys of `customer_orders.CUSTOMERS`.
     seed : int
         Of the layouts.
-    changing : bool
-        Whether the customer may change between the episodes of an order.
     """
 
     stream: TaskStream
     seed: int = 0
-    changing: bool = False
 
     name = "factory-customers"
     acts = ACTS
@@ -65,33 +60,18 @@ class FactoryFamily(ChangingFamily):
         self.table = lru_cache(MOST_TABLES)(lambda number: OrderTable.of(world.layout(number)))
         """Best acts in an order, by its number."""
 
-    def order(self, number: int, context: int | None = None, episode: int = 0) -> tuple[DrawnTask, CustomerOrder]:
-        """Order `number` in an episode, drawn and as the world has it."""
-        return FactoryCustomers(self.stream, self.seed).task(number, context, episode)
+    def order(self, number: int, context: int | None = None) -> tuple[DrawnTask, CustomerOrder]:
+        """Order `number`, drawn and as the world has it."""
+        return FactoryCustomers(self.stream, self.seed).task(number, context)
 
     def meet(self, number: int, abilities: Abilities, context: int | None = None) -> "tuple[DrawnTask, OrderTask]":
         """Order `number`, drawn and met; there are no relations to perceive."""
         table, drawn = self.table(number), self.stream.draw(number, context)
-
-        def in_episode(episode: int) -> CustomerOrder:
-            return CustomerOrder(table.factory, self.stream.draw(number, context, episode).hidden_type)
-
-        return drawn, OrderTask(in_episode(0), table, in_episode if self.changing else None)
+        return drawn, OrderTask(CustomerOrder(table.factory, drawn.hidden_type), table)
 
     def best_return(self, number: int, context: int | None = None) -> float:
-        """The best discounted return, in the first episode."""
+        """The best discounted return."""
         return self.order(number, context)[1].best_return
-
-    def episodes(self, number: int, n_episodes: int, context: int | None = None) -> list[tuple[str, float]]:
-        """See `ChangingFamily`."""
-        best: dict[str, float] = {}
-        found = []
-        for episode in range(n_episodes):
-            drawn, order = self.order(number, context, episode)
-            if drawn.hidden_type not in best:
-                best[drawn.hidden_type] = order.best_return
-            found.append((drawn.hidden_type, best[drawn.hidden_type]))
-        return found
 
     def effect_name(self, cause: int, effect: int) -> str:
         """An effect in words."""
@@ -107,26 +87,15 @@ class OrderTask(AgentTask):
         Of its hidden list nothing is read.
     table : OrderTable
         Of the order's factory.
-    in_episode : callable, optional
-        The order in an episode, by its number, where the customer may change between episodes.
     """
 
-    def __init__(
-        self, order: CustomerOrder, table: OrderTable, in_episode: Callable[[int], CustomerOrder] | None = None
-    ) -> None:
-        self.order, self.table, self._in_episode, self._n_begun = order, table, in_episode, 0
+    def __init__(self, order: CustomerOrder, table: OrderTable) -> None:
+        self.order, self.table = order, table
         self.known = np.full(order.factory.n_components, UNKNOWN)
-        self._start()
+        self.begin()
 
     def begin(self) -> None:
         """Begin an episode at the start."""
-        if self._in_episode is not None:
-            self.order = self._in_episode(self._n_begun)
-            self.known = np.full(self.order.factory.n_components, UNKNOWN)
-            self._n_begun += 1
-        self._start()
-
-    def _start(self) -> None:
         self.seen = self.order.reset()
         self._place, self._discount = self.table.start, 1.0
 

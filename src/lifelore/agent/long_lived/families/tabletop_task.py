@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.long_lived.families.outcome_planning import OutcomePlanner
-from lifelore.agent.long_lived.families.pick_lessons import LIVED, TrayPairs
 from lifelore.agent.long_lived.families.tray_features import (
     PerceivedTray,
     look_with_labels,
@@ -29,7 +28,6 @@ from lifelore.agent.long_lived.families.tray_states import (
     KNOCK,
     LOAD_NAMES,
     N_SITUATED,
-    PUSH_TARGET,
     QUIET,
     RESULTS,
     ROOM_NAMES,
@@ -39,9 +37,6 @@ from lifelore.agent.long_lived.families.tray_states import (
     result_of,
 )
 from lifelore.agent.long_lived.task_family import Plan, SharedKnowledge, Step
-from lifelore.agent.perceive.relation_memory import LabelledScene, scene_record
-from lifelore.core.protocols import Record
-from lifelore.core.relations import PairLabel
 from lifelore.domains.tabletop_job.events import Events
 from lifelore.domains.tabletop_job.job import LONGEST, TabletopJob
 from lifelore.domains.tabletop_job.job_replay import JobReplay
@@ -102,7 +97,6 @@ class TabletopTask:
     ) -> None:
         self.job, self._look = job, look
         self._graph = TrayGraph()
-        self._shown: dict[str, tuple[TrayPairs, dict[frozenset[int], PairLabel]]] = {}
         self.begin()
 
     # ---- the scene ----------------------------------------------------------------------------------
@@ -146,8 +140,6 @@ class TabletopTask:
         assert events is not None, "an action was taken"
         # A hand that holds something is in the picture: look when it is free again.
         looked = None if ended or observation.held is not None else self._looked()
-        if act < PUSH_TARGET and observation.held == number:
-            self._note_relations(number, events)
         self._seen = looked
         result = result_of(events, act, looked is None or looked.room(looked.target, looked.objects) == 0)
         payment = before.payments(act)[result]
@@ -165,21 +157,6 @@ class TabletopTask:
             self._graph.saw(self._done, after)
         self._graph.answered(self._done, Answer(result, reward, ended))
         return Step(reward, effects, ended)
-
-    def _note_relations(self, lifted: int, events: Events) -> None:
-        if self._seen is not None and self._seen.pairs is not None:
-            tray = self._seen.pairs
-            found = tray.shown_by(lifted, events.spilled, events.knocked)
-            _, labels = self._shown.setdefault(LabelledScene(tray.pairs, ()).digest, (tray, {}))
-            labels |= {frozenset((label.a, label.b)): label for label in found}
-
-    def relation_examples(self) -> list[Record]:
-        """See `ShowsRelations`; a scene that came after several ways is one example, with the labels of all."""
-        return [
-            scene_record(LIVED, LabelledScene(tray.pairs, tuple(labels.values())))
-            for tray, labels in self._shown.values()
-            if labels
-        ]
 
     # ---- plans --------------------------------------------------------------------------------------
 

@@ -4,7 +4,6 @@ Features are of one object among those that are still on the tray, so that the a
 another is gone. They are measured on perceived relations and on the points that the camera sees.
 """
 
-from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,13 +13,11 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from lifelore.agent.long_lived.families.finger_room import Grasp, grasp_of, reach_into
-from lifelore.agent.long_lived.families.pick_lessons import TrayPairs
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import BOTH, ON
 from lifelore.domains.tabletop_job.job import TabletopJob
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.pairs.scene_pairs import scene_pairs
 from lifelore.perception.scene import Scene
 from lifelore.perception.scene_perception import perceived_scene
 from lifelore.perception.segmentation.table_frame import to_scene
@@ -54,15 +51,12 @@ class PerceivedTray:
         Probability that the second object carries part of the first's weight; 0 where left out.
     related : bool
         Whether relations were perceived; without, every object is taken to be free.
-    pairs : TrayPairs, optional
-        What a model of relations can learn from, once a pick has shown what lies on what.
     """
 
     target: int
     points: Mapping[int, NDArray[np.floating]]
     carries: dict[tuple[int, int], float]
     related: bool = True
-    pairs: TrayPairs | None = None
 
     @cached_property
     def objects(self) -> frozenset[int]:
@@ -222,10 +216,7 @@ def tray_of_scene(scene: Scene, number: dict[int, int], target: int, held: int |
         if relation.relation in (ON, BOTH) and relation.b != TABLE:
             carried(relation.a, relation.b, relation.confidence)
     seen = {name: _thinned(np.concatenate(parts)) for name, parts in points.items()}
-    parts_of = Counter(number.values())
-    label = {name: part for part, name in number.items() if parts_of[name] == 1 and name != held}
-    pairs = TrayPairs(scene_pairs(cloud, scene.interfaces), scene.beliefs, label)
-    return PerceivedTray(target, seen, carries, pairs=pairs)
+    return PerceivedTray(target, seen, carries)
 
 
 def _thinned(points: Array) -> NDArray[np.floating]:

@@ -8,22 +8,21 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from threading import Event
 
-from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.agent.external_world.context_code import MOST_ACTIONS, ContextCodes
-from lifelore.agent.external_world.context_labels import labels_record
-from lifelore.agent.external_world.episode import discounted, play, reached
-from lifelore.agent.external_world.life_summary import summarise_life, task_measures
+from lifelore.agent.any_tasks.experience import Experience
+from lifelore.agent.any_tasks.side_by_side import LivedBeside, SideBySide
+from lifelore.agent.any_tasks.task_settings import AGENTS as ABLATIONS
+from lifelore.agent.any_tasks.task_settings import TaskSettings, check_names
+from lifelore.agent.external_world.context_code import MOST_ACTIONS
+from lifelore.agent.external_world.life_summary import summarise_life
 from lifelore.agent.external_world.life_warnings import ContextNovelty, life_warnings
-from lifelore.agent.external_world.own_agent import OwnAgent, WatchedWorld, check_own_agents, live_own
-from lifelore.agent.external_world.stored_prior import recalled_prior
-from lifelore.agent.external_world.table_learner import TableLearner
+from lifelore.agent.external_world.own_agent import OwnAgent, check_own_agents
 from lifelore.agent.external_world.task_differences import TaskDifferences
 from lifelore.agent.life.loop import LivedTask, opened_memory, run_life
 from lifelore.agent.live.life_settings import PriorSettings
 from lifelore.agent.live.output.long_table import LongTable
 from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learner import QLearning
-from lifelore.core.protocols import Progress, Record, World
+from lifelore.core.protocols import Progress, World
 from lifelore.core.streams import stream
 from lifelore.memory import Memory
 
@@ -81,9 +80,8 @@ def live_in(
     robot : str
         Name of the robot in memory.
     key : str, optional
-        The meaning of the contexts. Lives with the same key and number of actions share their prior. Default:
-        ``world.context_key``, which `GymnasiumWorld` has; its documentation names what that key cannot
-        distinguish. Not needed without a memory.
+        Meaning of actions and contexts, needed with a memory. Lives of one key share their prior, also with
+        `LongLivedAgent`.
     agents : mapping of str to callable, optional
         Your own agents by name, each called once a task as ``agent(world, task, seeds, max_steps)``. It lives one
         episode a seed, in their order: it calls ``world.reset(task, seed)``, then ``world.step(action)`` until the
@@ -127,9 +125,9 @@ def live_in(
     Raises
     ------
     InputError
-        A setting breaks its rule; an agent of yours lives other episodes; a reward is not finite; a context
-        has no stable code (see `lifelore.agent.external_world.context_code.context_code`); a memory is given
-        without a key.
+        A setting breaks its rule; an agent of yours lives other episodes; a reward is not finite; a state or
+        context has no stable code (see `lifelore.agent.external_world.context_code.context_code`); a memory is
+        given without a key, or its key has another number of actions.
     StoreError
         Memory cannot store the task, or the CSV file cannot be written; earlier tasks stay stored.
 
@@ -149,35 +147,43 @@ def live_in(
         raise InputError(f"tasks must be a whole number from 1 to 10^9, got {tasks}")
     if not 0 <= discount <= 1:
         raise InputError(f"discount must lie in [0, 1], got {discount}")
-    if not robot.strip():
-        raise InputError("robot must have a name, got an empty text; name the robot")
+    if memory is not None and key is None:
+        raise InputError('key must name the meaning of the contexts in the memory, got none; pass key="..."')
+    name = str(getattr(world, "name", type(world).__name__))
+    check_names(robot=robot, **({} if key is None else {"key": key}))
     own_agents = check_own_agents(agents or {}, AGENTS)
     learning = QLearning(episodes, max_steps, learning_rate, epsilon, epsilon_decay, epsilon_floor)
     guidance = PriorSettings("observation", alpha0, weight, form, ties)
-    key = _key_of(world, key, needed=memory is not None)
     names = [*AGENTS, *own_agents]
     settings = {"tasks": tasks, "robot": robot, "key": key, "discount": discount}
     settings |= asdict(learning) | asdict(guidance) | {"agents": names}
     del settings["annealed"], settings["condition"]
+    lore = TaskSettings(
+        learning, guidance, discount, "textbook", "moves", 0.05, seed, ABLATIONS["no-reuse"], cautious=False
+    )  # fmt: skip
+    scratch = replace(lore, abilities=ABLATIONS["scratch"])
+    lived = {
+        "lore": lore,
+        "scratch": scratch,
+        "textbook": replace(scratch, learning=replace(learning, **TEXTBOOK)),
+    }
     with (
         LongTable(csv, seed) if csv is not None else nullcontext() as table,
         opened_memory(memory) as opened,
     ):
-        life = _ExternalLife(world, learning, guidance, discount, seed, key, own_agents, opened, table)
+        life = _ExternalLife(name, SideBySide(world, lived, own_agents, lore, key or name), opened, table)
         before = opened.tasks(robot) if opened else 0
         run_life(life, tasks, memory=opened, robot=robot, progress=progress, stop=stop)
-    done = life.finished
+    done, n_contexts = life.finished, len(life.lore.prior)
     summary = summarise_life(done, names) if done else {}
-    found = life_warnings(
-        life.name, len(done), len(life.prior), life.novelty.late, life.differences.one_task, summary
-    )  # fmt: skip
+    found = life_warnings(name, len(done), n_contexts, life.novelty.late, life.differences.one_task, summary)
     for sentence in found:
         warnings.warn(sentence, stacklevel=2)
     return {
-        "domain": life.name,
+        "domain": name,
         "map": None,
         "n_states": len(life.states),
-        "n_contexts": len(life.prior),
+        "n_contexts": n_contexts,
         "seed": seed,
         "settings": settings | {"memory": opened.location if opened else None},
         "tasks": done,
@@ -198,101 +204,53 @@ def _check_world(world: World) -> None:
         raise InputError(f"world.n_actions must lie in [1, {MOST_ACTIONS}], got {world.n_actions}")
 
 
-def _key_of(world: World, key: str | None, needed: bool) -> str | None:
-    if key is None and needed:
-        key = getattr(world, "context_key", None)
-        if not key:
-            raise InputError(
-                f"key must name the meaning of the contexts of {type(world).__name__} for the memory, "
-                'got none; pass key="..."'
-            )
-    elif key is not None and not key.strip():
-        raise InputError(
-            "key must name the meaning of the contexts, got an empty text; leave it out for the key of the world"
-        )
-    return key
-
-
 @dataclass(eq=False)
 class _ExternalLife:
-    """A life in progress: its prior, and the memory that stores it."""
+    """A life in progress; memory stores what ``lore`` learns."""
 
-    world: World
-    learning: QLearning
-    guidance: PriorSettings
-    discount: float
-    seed: int
-    key: str | None
-    own_agents: Mapping[str, OwnAgent]
+    name: str
+    beside: SideBySide
     memory: Memory | None
     table: LongTable | None
 
     def __post_init__(self) -> None:
-        self.name = str(getattr(self.world, "name", type(self.world).__name__))
-        self.codes, self.states, self.finished = ContextCodes(), set[Hashable](), list[dict]()
+        self.states, self.finished = set[Hashable](), list[dict]()
         self.differences = TaskDifferences()
-        self.labelled = set[int]()  # contexts whose features this life has stored
+
+    @property
+    def lore(self) -> Experience:
+        """What ``lore`` knows."""
+        return self.beside.experience["lore"]
 
     def recall(self) -> None:
-        """Read the prior of the key; an empty one without a memory."""
-        self.prior = recalled_prior(self.memory, self.key, self.world.n_actions, self.guidance.alpha0)
+        """Read what memory holds under the key."""
+        if self.memory is not None:
+            key, n_actions, alpha0 = self.lore.key, self.lore.n_actions, self.beside.common.guidance.alpha0
+            found = Experience.recalled(key, self.memory, alpha0, labels=False)
+            found = found or Experience(key, n_actions, alpha0)
+            found.check_actions(n_actions)
+            self.beside.experience["lore"] = found
         if not self.finished:
-            self.novelty = ContextNovelty(self.prior.contexts.tolist())
+            self.novelty = ContextNovelty(self.lore.prior.contexts.tolist())
 
     def live(self, number: int, seq: int, stop: Event) -> LivedTask:
         """Live a task with each agent."""
-        drawn = stream(self.seed, "task", number, "world").integers(2**31, size=self.learning.episode_cap)
-        seeds, agents, returns = drawn.tolist(), {}, {}
-        learners = {name: self._learner(name, number) for name in AGENTS}
-        for name, learner in learners.items():
-            ended_well = [self._episode(name, learner, number, seed, stop) for seed in seeds]
-            returns[name] = learner.returns.returns
-            agents[name] = task_measures(returns[name], any(ended_well))
-        for name, agent in self.own_agents.items():
-            watched = WatchedWorld(name, self.world, number, seeds, self.learning.step_cap, self.discount, stop)
-            returns[name] = live_own(agent, watched)
-            agents[name] = task_measures(returns[name], watched.reached)
-        self.differences.end_task()
-        lore = learners["lore"]
-        self.novelty.end_task([context for _, context in lore.visited])
-        # The policy of the finished task counts in the prior (Eq. 3.5, 3.7).
-        news = ActionPrior(self.prior.n_actions, self.prior.alpha0, self.prior.key)
-        news.update(*lore.best(), self.guidance.weight)
-        self.prior.merge(news)
-        about = {"index": number, "world": self.name}
-        return LivedTask(self._records(news), about, (number, agents, learners, returns, news.contexts.tolist()))
-
-    def _learner(self, name: str, number: int) -> TableLearner:
-        learning = replace(self.learning, **TEXTBOOK) if name == "textbook" else self.learning
-        prior = self.prior if name == "lore" else None
-        # Equal streams for all agents make their comparison paired.
-        own = stream(self.seed, "task", number, "own")
-        return TableLearner(self.world.n_actions, prior, learning, self.discount, self.guidance, own)
-
-    def _episode(self, name: str, learner: TableLearner, number: int, seed: int, stop: Event) -> bool:
-        """An episode of a learner; whether it was terminated with a positive reward."""
-        most = self.learning.step_cap
-        steps = play(self.world, number, seed, self.codes, most, stop, learner.act, learner.observe)
-        learner.end_episode(steps, discounted(steps, self.discount), steps[-1].ended)
+        common = self.beside.common
+        drawn = stream(common.seed, "task", number, "world").integers(2**31, size=common.learning.episode_cap)
+        lived = self.beside.live(number, None, drawn.tolist(), stop)
         # Transitions are compared where exploration is uniform.
-        for step in steps if name == "scratch" else ():
+        for step in lived.tasks["scratch"].steps:
             self.differences.see(step.state, step.action, step.following, step.reward, step.ended)
-        return reached(steps)
+        self.differences.end_task()
+        self.novelty.end_task(lived.tasks["lore"].running.best()[0].tolist())
+        return LivedTask(lived.records["lore"], {"index": number, "world": self.name}, (number, lived))
 
     def finish(self, lived: LivedTask) -> None:
         """Report a task, which memory has stored."""
-        number, agents, learners, returns, contexts = lived.result
-        self.labelled.update(contexts)
-        for learner in learners.values():
-            self.states.update(learner.q)
-        self.finished.append({"index": number, "goal": None, "optimal_return": None, "agents": agents})
+        number, found = lived.result
+        assert isinstance(found, LivedBeside), "a task was lived side by side"
+        for task in found.tasks.values():
+            self.states.update(task.running.policy())
+        self.finished.append({"index": number, "goal": None, "optimal_return": None, "agents": found.measures})
         if self.table:
-            self.table.add(self.finished[-1], {name: {"return": values} for name, values in returns.items()})
-
-    def _records(self, news: ActionPrior) -> list[Record]:
-        """A task's counts, and the features of contexts that this life has not stored."""
-        about = {"prior": "foreign", "world": self.name, "means": self.key}
-        contexts = self.codes.contexts
-        new = {code: contexts[code] for code in news.contexts.tolist() if code not in self.labelled}
-        records = [news.to_record(about)] if len(news) else []
-        return records + ([labels_record(news.key, new, about)] if new else [])
+            self.table.add(self.finished[-1], {name: {"return": values} for name, values in found.returns.items()})

@@ -10,9 +10,9 @@ from gymnasium.envs.toy_text.frozen_lake import generate_random_map
 from scipy.stats import binomtest
 
 from lifelore.action.priors.action_prior import ONE
+from lifelore.agent.any_tasks.live_in import AGENTS, live_in
 from lifelore.agent.external_world.context_code import context_code
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
-from lifelore.agent.external_world.live_in import AGENTS, live_in
 from lifelore.core.errors import InputError
 from lifelore.memory import open_memory
 
@@ -73,7 +73,7 @@ def test_only_what_is_worth_something_is_counted(tmp_path):
     assert record is not None
     assert record.slots.tolist() == [context_code("hall") * 8 + 3]
     assert record.values.tolist() == [5 * ONE]
-    assert about == {"prior": "foreign", "world": "doors", "means": "doors"}
+    assert (key, about) == ("doors/prior", {"prior": "tasks", "means": "doors"})
 
 
 def test_a_world_whose_returns_are_all_equal_teaches_nothing_and_warns():
@@ -135,12 +135,12 @@ def test_two_lives_on_one_memory_are_one_life_also_after_a_stop_and_an_exception
         if done == 2:
             stop.set()
 
-    key = lakes().context_key
+    key = "tiles around"
     whole = live_in(lakes(), tasks=5, **size)
-    first = live_in(lakes(), tasks=9, **size, memory=path, progress=after_two, stop=stop)
+    first = live_in(lakes(), tasks=9, **size, memory=path, key=key, progress=after_two, stop=stop)
     with pytest.raises(RuntimeError, match="battery empty"):
         live_in(Breaks(lake, lambda seen: seen[1], lambda seen: seen[0]), tasks=9, **size, memory=path, key=key)
-    last = live_in(lakes(), tasks=2, **size, memory=path)
+    last = live_in(lakes(), tasks=2, **size, memory=path, key=key)
     assert first["memory"] == {"tasks_before": 0, "tasks_after": 2}
     assert last["memory"] == {"tasks_before": 3, "tasks_after": 5}
     assert first["tasks"] + whole["tasks"][2:3] + last["tasks"] == whole["tasks"]
@@ -149,19 +149,37 @@ def test_two_lives_on_one_memory_are_one_life_also_after_a_stop_and_an_exception
         assert (memory.tasks("robot"), memory.check()) == (5, [])
 
 
+def test_a_task_that_is_stopped_teaches_nobody():
+    """The user's agent lives last, and stops the second task after the others have lived it."""
+    stop = Event()
+
+    def idle(world, task, seeds, max_steps):
+        if task:
+            stop.set()
+        for seed in seeds:
+            world.reset(task, seed)
+            world.step(0)
+
+    world = Doors()
+    world.context = lambda state, last_reward: world.resets[-1][0]  # each task has a context of its own
+    report = live_in(world, tasks=3, episodes=60, agents={"idle": idle}, stop=stop)
+    assert (len(report["tasks"]), report["n_contexts"]) == (1, 1)
+
+
 @pytest.mark.filterwarnings("ignore:The action prior is empty")
-def test_lore_is_shared_by_key_and_number_of_actions_only(tmp_path):
+def test_lore_is_shared_by_key_only(tmp_path):
     path = tmp_path / "m.db"
     live_in(Doors(), tasks=4, episodes=60, memory=path, key="doors", robot="a")
     same = live_in(Doors(), tasks=1, episodes=1, memory=path, key="doors", robot="b")
     other = live_in(Doors(), tasks=1, episodes=1, memory=path, key="gates", robot="c")
-    fewer = live_in(Doors(5), tasks=1, episodes=1, memory=path, key="doors", robot="d")
     assert same["n_contexts"] == 1
     assert (same["memory"]["tasks_before"], other["memory"]["tasks_before"]) == (0, 0)
-    # One episode of ε = 1 may itself find the door; what the three had to start from is in the memory's keys.
+    # One episode of ε = 1 may itself find the door; what the two had to start from is in the memory's keys.
     assert same["tasks"][0]["agents"]["lore"]["first_return"] == 1.0
     assert other["settings"]["key"] == "gates"
-    assert max(other["n_contexts"], fewer["n_contexts"]) <= 1
+    assert other["n_contexts"] <= 1
+    with pytest.raises(InputError, match="env must have the 8 actions of the tasks before, got 5"):
+        live_in(Doors(5), tasks=1, episodes=1, memory=path, key="doors", robot="d")
 
 
 # ---- the report ----------------------------------------------------------------------------------
@@ -203,8 +221,8 @@ def test_report_is_plain_json_of_the_shape_of_live():
         ({"weight": float("nan")}, "weight must lie in"),
         ({"form": "best"}, "form must be one of proportion"),
         ({"ties": "none"}, "ties must be one of uniform, prior"),
-        ({"robot": " "}, "robot must have a name"),
-        ({"key": ""}, "key must name the meaning of the contexts, got an empty text"),
+        ({"robot": " "}, "robot must be a name without '/', got ' '"),
+        ({"key": "a/b"}, "key must be a name without '/', got 'a/b'"),
     ],
 )
 def test_settings_that_break_their_rule(settings, said):
@@ -219,6 +237,6 @@ def test_what_is_no_world_is_refused_and_a_memory_needs_the_meaning_of_contexts(
         live_in(Doors(2**16))
     with pytest.raises(InputError, match="context must be"):
         live_in(Doors(context=object()))
-    with pytest.raises(InputError, match="key must name the meaning of the contexts of Doors"):
+    with pytest.raises(InputError, match="key must name the meaning of the contexts in the memory"):
         live_in(Doors(), memory=tmp_path / "m.db")
     assert not (tmp_path / "m.db").exists()
