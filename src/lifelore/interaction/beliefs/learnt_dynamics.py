@@ -154,7 +154,9 @@ class LearntRows:
             weights = np.concatenate([(1 - WEIGHT_OF_TABLES) * weights, of_tables])
         rates = np.concatenate([HAZARDS, np.zeros(len(wanted))])
         stay = np.concatenate([1 - HAZARDS, np.zeros(len(wanted))])
-        self._rates, self._stay = rates.astype(dtype), stay.astype(dtype)[:, None]
+        # A row for each type: products of equal shapes are faster.
+        self._rates, self._stay = rates.astype(dtype), np.repeat(stay[:, None], n_types, axis=1).astype(dtype)
+        self._anew, self._ones = self._rates[:, None] * self._prior, np.ones(n_types, dtype)
         self._categories: dict[Hashable, int] = {None: 0}
         for category in settings.categories:
             self._categories.setdefault(category, len(self._categories))
@@ -175,10 +177,10 @@ class LearntRows:
         outcome : hashable, or for many users a sequence of these, optional
             How the episode ended, such as ``"won"``.
         """
-        joint = self._joint(users, log_belief)
-        weights = np.add.reduce(joint, axis=-1)
+        joint = np.exp(log_belief)[..., None, :] * self.shares[users]
+        weights = joint.dot(self._ones)
         after = joint * self._stay
-        after += (weights * self._rates)[..., None] * self._prior
+        after += weights[..., None] * self._anew
         moved: Any = 0.0
         if self.tables:
             category = self._category(outcome)
@@ -191,7 +193,7 @@ class LearntRows:
         self.shares[users] = after
         if self.tables:
             self.moved[users] = moved / total
-        return np.log(total / np.add.reduce(total, axis=-1, keepdims=True))
+        return np.log(total)
 
     def changed_share(self, log_belief: Array, users: Any) -> Array:
         """P(the type was another | it is now this type) after a `step`, (..., n_types)."""
@@ -201,7 +203,7 @@ class LearntRows:
         before = (joint - weights * rates * self._prior) / np.maximum(self._stay, LEAST)
         others = (rates * (weights - before)).sum(axis=-2) * self._prior
         share = others / np.maximum(np.exp(log_belief), LEAST)
-        return np.clip(share + self.moved[users] if self.tables else share, 0.0, 1.0)
+        return np.minimum(np.maximum(share + self.moved[users] if self.tables else share, 0.0), 1.0)
 
     def _joint(self, users: Any, log_belief: Array) -> Array:
         """p(way, type), (..., n_ways, n_types)."""

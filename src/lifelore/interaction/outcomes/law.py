@@ -166,18 +166,12 @@ class FixedLaw(Law):
         check: Callable[[Any], Any] | None = None,
     ) -> None:
         self.model, self.n_types, self.spread = model, n_types, Spread.known(0.0)
-        self._many, self._check, self.single = log_likelihoods, check, check is not None
+        self.single = check is not None
+        # The model's own functions, so that a signal passes through no others.
+        self.checked: Any = check or super().checked
+        self.log_likelihoods: Callable[..., Array] = log_likelihoods or self._one_by_one
 
-    def checked(self, signals: Any) -> Any:
-        """The signals as the model takes them."""
-        return signals if self._check is None else self._check(signals)
-
-    def log_likelihoods(
-        self, policies: Numbers, signals: Any, shown: Array | None = None, users: Numbers = None
-    ) -> Array:
-        """The model's own log likelihoods, (..., n_types): there are no spreads."""
-        if self._many is not None:
-            return self._many(policies, signals)
+    def _one_by_one(self, policies: Numbers, signals: Any) -> Array:
         if np.ndim(policies) == 0:
             return self._one(policies, signals)
         return np.array([self._one(*pair) for pair in zip(policies.tolist(), signals, strict=True)])
@@ -189,6 +183,11 @@ class FixedLaw(Law):
             raise InputError(
                 f"signal model {type(self.model).__name__} must give ({self.n_types},) log likelihoods, gave "
                 f"{found.shape}"
+            )
+        if not (found < np.inf).all():
+            raise InputError(
+                f"signal model {type(self.model).__name__} gave NaN or infinity as a log likelihood; "
+                "minus infinity is allowed, they are not"
             )
         return found
 

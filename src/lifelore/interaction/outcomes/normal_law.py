@@ -147,13 +147,15 @@ class NormalLaw(PolicyLaw):
         """Add outcomes of distinct users (Welford's update)."""
         n, mean, squares = _parts(shown[users, policies])
         before = self._scaled(policies, signals) - mean
-        after = n + 1, mean + before / (n + 1), squares + before * before * (n / (n + 1))
-        shown[users, policies] = np.stack(after, axis=-1)
+        after = n + 1
+        # The mean and the squares first: of a single user `n` is a view.
+        shown[users, policies, 2] = squares + before * before * (n / after)
+        shown[users, policies, 1] = mean + before / after
+        shown[users, policies, 0] = after
 
     def fade(self, shown: Array, users: Numbers, keep: ArrayLike) -> None:
         """Let what distinct `users` have shown count `keep` (...) of what it did."""
-        share = self._stored(keep)
-        shown[users] *= np.stack([share, np.ones_like(share), share], axis=-1)[..., None, :]
+        shown[users, :, ::2] *= self._stored(keep)[..., None, None]
 
     # ---- what rules read -----------------------------------------------------------------------------------
 
