@@ -55,11 +55,9 @@ if TYPE_CHECKING:
     from lifelore.interaction.selection.value_of_perfect_information import (
         ValueOfPerfectInformation as ValueOfPerfectInformation,
     )
-    from lifelore.interaction.signals.category_signal import CategoryModel as CategoryModel
     from lifelore.interaction.signals.category_signal import CategorySignal as CategorySignal
     from lifelore.interaction.signals.joint_signal import JointSignal as JointSignal
     from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal as LikelihoodSignal
-    from lifelore.interaction.signals.ordered_normal_signal import OrderedNormalSignal as OrderedNormalSignal
     from lifelore.interaction.signals.return_signal import ReturnSignal as ReturnSignal
     from lifelore.interaction.signals.reward_signal import RewardSignal as RewardSignal
     from lifelore.interaction.signals.step_reward_signal import StepRewardSignal as StepRewardSignal
@@ -72,7 +70,6 @@ _HOME = {
     "Beat": ".adaptation.beat",
     "BeliefEntropy": ".selection.belief_entropy",
     "BeliefSampling": ".selection.belief_sampling",
-    "CategoryModel": ".signals.category_signal",
     "CategorySignal": ".signals.category_signal",
     "Deterministic": ".selection.rule",
     "EXP3": ".baselines.exp3",
@@ -91,7 +88,6 @@ _HOME = {
     "LikelihoodSignal": ".signals.likelihood_signal",
     "LinUCB": ".baselines.lin_ucb",
     "NoveltyDetector": ".reuse.novelty.novelty_detector",
-    "OrderedNormalSignal": ".signals.ordered_normal_signal",
     "PolicyLibrary": ".library.policy_library",
     "ProbabilisticPolicyReuse": ".baselines.probabilistic_policy_reuse",
     "ProbabilityOfImprovement": ".selection.probability_of_improvement",
