@@ -155,7 +155,8 @@ class NormalLaw(Law):
 
     def fade(self, shown: Array, users: Numbers, keep: ArrayLike) -> None:
         """Let what distinct `users` have shown count `keep` (...) of what it did."""
-        shown[users, :, ::2] *= self._stored(keep)[..., None, None]
+        share = self._stored(keep)
+        shown[users] *= np.stack([share, np.ones_like(share), share], axis=-1)[..., None, :]
 
     # ---- what rules read -----------------------------------------------------------------------------------
 

@@ -79,11 +79,11 @@ class UserModel:
         else:
             gain = np.logaddexp.reduce(found + log_belief[..., None, :], axis=-1)
             stayed = found + self.log_weights[users][..., None].astype(found.dtype, copy=False)
-        stayed = np.logaddexp.reduce(stayed, axis=-2)
+        stayed = _over_spreads(stayed)
         if changed is None:
             return Evidence(stayed, None, gain)
         first = law.log_likelihoods(policies, signals) + self._log_first[:, None].astype(found.dtype, copy=False)
-        anew = np.logaddexp.reduce(first, axis=-2)
+        anew = _over_spreads(first)
         top = np.maximum(stayed, np.where(changed > 0, anew, -np.inf))
         top = np.where(top > -np.inf, top, 0.0)
         new = changed * np.exp(anew - top)
@@ -139,3 +139,8 @@ class UserModel:
         except (KeyError, IndexError, ValueError, TypeError) as error:
             raise InputError(f"the user's state is not of this library: {error}") from None
         self.log_weights[user] = log_weights
+
+
+def _over_spreads(terms: Array) -> Array:
+    """log Σ exp over the spreads, (..., n_spreads, n_types) to (..., n_types)."""
+    return terms[..., 0, :] if terms.shape[-2] == 1 else np.logaddexp.reduce(terms, axis=-2)
