@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from lifelore.interaction.adaptation.beat import Beat as Beat
     from lifelore.interaction.baselines.bayes_okr import BayesOKR as BayesOKR
     from lifelore.interaction.baselines.bpr_plus import BPRPlus as BPRPlus
-    from lifelore.interaction.baselines.epsilon_greedy_means import EpsilonGreedyMeans as EpsilonGreedyMeans
     from lifelore.interaction.baselines.exp3 import EXP3 as EXP3
     from lifelore.interaction.baselines.gp_ucb import GPUCB as GPUCB
     from lifelore.interaction.baselines.interval_estimation import IntervalEstimation as IntervalEstimation
@@ -74,7 +73,6 @@ _HOME = {
     "Deterministic": ".selection.rule",
     "EXP3": ".baselines.exp3",
     "EpsilonGreedy": ".selection.epsilon_greedy",
-    "EpsilonGreedyMeans": ".baselines.epsilon_greedy_means",
     "ExpectedImprovement": ".selection.expected_improvement",
     "FeaturePrior": ".beliefs.feature_prior",
     "GPUCB": ".baselines.gp_ucb",
