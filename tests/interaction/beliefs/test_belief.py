@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import entropy, log_prior, update
+from lifelore.interaction.beliefs.belief import log_prior, update
 
 from ..twins import naive_reuse as naive
 
@@ -69,7 +69,3 @@ def test_agrees_with_the_slow_twin(pairs):
 def test_priors_that_are_none_are_refused(prior, rule):
     with pytest.raises(InputError, match=rule):
         log_prior(prior)
-
-
-def test_entropy_by_hand():
-    assert entropy([[0.5, 0.5, 0.0], [1.0, 0.0, 0.0]]) == pytest.approx([math.log(2), 0.0])

@@ -1,4 +1,4 @@
-"""Beliefs over types in log space: the prior, Bayes' rule for any number of users, entropy.
+"""Beliefs over types in log space: the prior, and Bayes' rule for any number of users.
 
     β'(τ) = F(σ | τ, π) β(τ) / Σ F(σ | τ', π) β(τ')                                            Eq. 4.1, 4.2
 
@@ -115,9 +115,3 @@ def log_sum(terms: Array) -> Array:
     top = np.where(top > -np.inf, top, 0.0)
     with np.errstate(divide="ignore"):
         return np.log(np.add.reduce(np.exp(terms - top), axis=-1)) + top[..., 0]
-
-
-def entropy(belief: ArrayLike) -> Array:
-    """Entropy in nats of beliefs (..., n_types), (...); 0 log 0 is 0."""
-    belief = np.asarray(belief, np.float64)
-    return -(belief * np.log(np.where(belief > 0, belief, 1.0))).sum(axis=-1)
