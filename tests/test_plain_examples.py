@@ -25,7 +25,7 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.selection.belief_entropy import BeliefEntropy
 from lifelore.interaction.selection.expected_improvement import ExpectedImprovement
 from lifelore.interaction.selection.knowledge_gradient import KnowledgeGradient
-from lifelore.interaction.signals.category_signal import CategoryModel
+from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.transition_signal import TransitionSignal
 from lifelore.perception.relations.displacement import votes
 
@@ -126,7 +126,7 @@ def test_votes_of_the_nearest_displacements():
 
 def random_library(generator: np.random.Generator) -> tuple[PolicyLibrary, np.ndarray, np.ndarray]:
     U, F = generator.normal(0, 10, (4, 3)), generator.dirichlet(np.ones(5), (4, 3))
-    return PolicyLibrary.from_means(U, 1.0, signal=CategoryModel(F)), U, F
+    return PolicyLibrary.from_means(U, 1.0, signal=CategorySignal(F)), U, F
 
 
 @pytest.mark.parametrize("seed", range(8))

@@ -5,9 +5,9 @@ from itertools import product
 
 import numpy as np
 
-from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.core.metrics import Estimate, entropy, mean_estimate
 from lifelore.core.streams import stream
-from lifelore.interaction.beliefs.belief import entropy, log_prior, update
+from lifelore.interaction.beliefs.belief import log_prior, update
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import Greedy, tied_shares
 from reproduction.chapter4.golf.rounds import IRON, WOOD, exact_library, learnt_library, play_greedily

@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.intervals import LEAST_VALUES, RESAMPLES, percentile_interval
-from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.core.metrics import Estimate, entropy, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.interaction.baselines import Baseline
-from lifelore.interaction.beliefs.belief import entropy
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Models

@@ -86,6 +86,8 @@ def _mean_ratio(tops: NDArray[np.float64], bottoms: NDArray[np.float64], axis: i
     return np.divide(tops.mean(axis=axis), below, out=np.full_like(below, np.nan), where=below != 0)
 
 
-def entropy(probs: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Entropy in nats of each row of `probs` (n, n_outcomes), rows sum to 1; 0 log 0 is 0."""
-    return -(probs * np.log(np.where(probs > 0, probs, 1.0))).sum(axis=1)
+def entropy(probs: ArrayLike) -> NDArray[np.float64]:
+    """Entropy in nats of distributions (..., n), (...); 0 log 0 is 0."""
+    probs = np.asarray(probs, np.float64)
+    # With any finite number in place of the logarithm of 0.
+    return 0.0 - np.vecdot(probs, np.log(np.maximum(probs, 1e-300)))

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from lifelore.interaction.adaptation.beat import Beat as Beat
     from lifelore.interaction.baselines.bayes_okr import BayesOKR as BayesOKR
     from lifelore.interaction.baselines.bpr_plus import BPRPlus as BPRPlus
-    from lifelore.interaction.baselines.epsilon_greedy_means import EpsilonGreedyMeans as EpsilonGreedyMeans
     from lifelore.interaction.baselines.exp3 import EXP3 as EXP3
     from lifelore.interaction.baselines.gp_ucb import GPUCB as GPUCB
     from lifelore.interaction.baselines.interval_estimation import IntervalEstimation as IntervalEstimation
@@ -55,11 +54,9 @@ if TYPE_CHECKING:
     from lifelore.interaction.selection.value_of_perfect_information import (
         ValueOfPerfectInformation as ValueOfPerfectInformation,
     )
-    from lifelore.interaction.signals.category_signal import CategoryModel as CategoryModel
     from lifelore.interaction.signals.category_signal import CategorySignal as CategorySignal
     from lifelore.interaction.signals.joint_signal import JointSignal as JointSignal
     from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal as LikelihoodSignal
-    from lifelore.interaction.signals.ordered_normal_signal import OrderedNormalSignal as OrderedNormalSignal
     from lifelore.interaction.signals.return_signal import ReturnSignal as ReturnSignal
     from lifelore.interaction.signals.reward_signal import RewardSignal as RewardSignal
     from lifelore.interaction.signals.step_reward_signal import StepRewardSignal as StepRewardSignal
@@ -72,12 +69,10 @@ _HOME = {
     "Beat": ".adaptation.beat",
     "BeliefEntropy": ".selection.belief_entropy",
     "BeliefSampling": ".selection.belief_sampling",
-    "CategoryModel": ".signals.category_signal",
     "CategorySignal": ".signals.category_signal",
     "Deterministic": ".selection.rule",
     "EXP3": ".baselines.exp3",
     "EpsilonGreedy": ".selection.epsilon_greedy",
-    "EpsilonGreedyMeans": ".baselines.epsilon_greedy_means",
     "ExpectedImprovement": ".selection.expected_improvement",
     "FeaturePrior": ".beliefs.feature_prior",
     "GPUCB": ".baselines.gp_ucb",
@@ -91,7 +86,6 @@ _HOME = {
     "LikelihoodSignal": ".signals.likelihood_signal",
     "LinUCB": ".baselines.lin_ucb",
     "NoveltyDetector": ".reuse.novelty.novelty_detector",
-    "OrderedNormalSignal": ".signals.ordered_normal_signal",
     "PolicyLibrary": ".library.policy_library",
     "ProbabilisticPolicyReuse": ".baselines.probabilistic_policy_reuse",
     "ProbabilityOfImprovement": ".selection.probability_of_improvement",

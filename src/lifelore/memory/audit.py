@@ -70,9 +70,8 @@ def _cache_problems(conn: Connection, numbers: list[int]) -> Iterator[str]:
 
 def _orphans(conn: Connection) -> Iterator[str]:
     for table in ("cells", "mentions"):
-        # In an older memory that is only read, the state of a key has the negative of its number.
-        known = "ABS(lore) IN (SELECT number FROM lifelore_lore)"
-        if count := conn.value(f"SELECT COUNT(*) FROM lifelore_{table} WHERE lore IS NOT NULL AND NOT {known}"):
+        unknown = "lore NOT IN (SELECT number FROM lifelore_lore)"
+        if count := conn.value(f"SELECT COUNT(*) FROM lifelore_{table} WHERE {unknown}"):
             yield f"{count} rows of lifelore_{table} belong to no key; rebuild the memory"
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
-from lifelore.memory import ledger, schema
+from lifelore.memory import ledger
 from lifelore.memory.connection import Connection
 from lifelore.memory.folding import Folded, LoreKey, fold, require_one_merge
 from lifelore.memory.record_rules import described
@@ -42,7 +42,6 @@ _UPSERT = {
 }
 _MENTION = "INSERT INTO lifelore_mentions (contribution, lore) VALUES (?, ?)"
 _MENTIONS = "SELECT contribution FROM lifelore_mentions WHERE lore = :lore"
-_BESIDE = " UNION SELECT number FROM lifelore_contributions WHERE lore = :lore"
 _NAMED = "kind = ? AND key = ? AND version = ?"
 _FIND = f"SELECT number, merge, about FROM lifelore_lore WHERE {_NAMED}"
 _READ = "SELECT slot, value FROM lifelore_cells WHERE lore = ? AND slot BETWEEN ? AND ? ORDER BY slot"
@@ -108,8 +107,7 @@ def mentions(conn: Connection, name: LoreKey) -> set[int]:
 
 def mentions_of(conn: Connection, lore: int) -> set[int]:
     """`mentions` by the number of the key."""
-    sql = _MENTIONS + (_BESIDE if schema.version(conn) in schema.BESIDE else "")
-    return {row[0] for row in conn.execute(sql, {"lore": lore})}
+    return {row[0] for row in conn.execute(_MENTIONS, {"lore": lore})}
 
 
 def rebuild(conn: Connection, only: set[LoreKey] | None = None) -> None:

@@ -7,7 +7,6 @@ from itertools import islice
 from typing import TypeVar
 
 from lifelore.core.errors import StoreError
-from lifelore.memory import schema
 from lifelore.memory.connection import Connection
 from lifelore.memory.contribution import Contribution, Identity, LoreKey, Offer, Order
 from lifelore.memory.folding import Stored
@@ -149,8 +148,6 @@ def add_tombstones(conn: Connection, identities: Iterable[Identity]) -> None:
 
 def forgotten_records(conn: Connection) -> dict[LoreKey, int]:
     """The keys of forgotten records, and the last stamp of the contributions that lose them."""
-    if schema.version(conn) < schema.FORGOTTEN_RECORDS:
-        return {}
     rows = conn.execute("SELECT kind, key, version, stamp FROM lifelore_forgotten_records")
     return {(row[0], row[1], int(row[2])): int(row[3]) for row in rows}
 

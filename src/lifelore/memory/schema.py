@@ -16,16 +16,21 @@ CREATE TABLE IF NOT EXISTS lifelore_migrations (
     number {int} PRIMARY KEY, name {text} NOT NULL, applied {int} NOT NULL)
 """
 
-_FIRST = """
+_LORE = """
 CREATE TABLE lifelore_contributions (
     number {serial},
     robot {text} NOT NULL, process {text} NOT NULL, seq {int} NOT NULL, stamp {int} NOT NULL,
-    task {text} NOT NULL, blob {blob} NOT NULL, digest {text} NOT NULL,
+    task {text} NOT NULL, blob {blob} NOT NULL, digest {text} NOT NULL, lore {int},
     UNIQUE (robot, process, seq));
 CREATE INDEX lifelore_contributions_stamp ON lifelore_contributions (stamp);
+CREATE INDEX lifelore_contributions_lore ON lifelore_contributions (lore, stamp);
 CREATE TABLE lifelore_tombstones (
     robot {text} NOT NULL, process {text} NOT NULL, seq {int} NOT NULL,
     PRIMARY KEY (robot, process, seq));
+CREATE TABLE lifelore_forgotten_records (
+    kind {text} NOT NULL, key {text} NOT NULL, version {int} NOT NULL, stamp {int} NOT NULL,
+    PRIMARY KEY (kind, key, version));
+CREATE INDEX lifelore_forgotten_records_stamp ON lifelore_forgotten_records (stamp);
 CREATE TABLE lifelore_lore (
     number {serial},
     kind {text} NOT NULL, key {text} NOT NULL, version {int} NOT NULL,
@@ -36,37 +41,11 @@ CREATE TABLE lifelore_mentions (
     PRIMARY KEY (contribution, lore));
 CREATE INDEX lifelore_mentions_lore ON lifelore_mentions (lore);
 CREATE TABLE lifelore_cells (
-    lore {int} NOT NULL, slot {int} NOT NULL, value {int} NOT NULL{whole}, origin {int} NOT NULL,
-    PRIMARY KEY (lore, slot)){clustered}
-"""
-
-_SECOND = """
-CREATE TABLE lifelore_forgotten_records (
-    kind {text} NOT NULL, key {text} NOT NULL, version {int} NOT NULL, stamp {int} NOT NULL,
-    PRIMARY KEY (kind, key, version))
-"""
-
-_STATES = """
-ALTER TABLE lifelore_lore ADD COLUMN token {int} NOT NULL DEFAULT 0;
-ALTER TABLE lifelore_lore ADD COLUMN state {blob}
-"""
-
-_TOGETHER = """
-ALTER TABLE lifelore_lore DROP COLUMN token;
-ALTER TABLE lifelore_lore DROP COLUMN state;
-ALTER TABLE lifelore_cells ADD COLUMN state {blob};
-ALTER TABLE lifelore_contributions ADD COLUMN lore {int};
-CREATE INDEX lifelore_contributions_lore ON lifelore_contributions (lore, stamp)
-"""
-
-_LEASES = """
+    lore {int} NOT NULL, slot {int} NOT NULL, value {int} NOT NULL{whole}, origin {int} NOT NULL, state {blob},
+    PRIMARY KEY (lore, slot)){clustered};
 CREATE TABLE lifelore_leases (
     robot {text} NOT NULL, number {int} NOT NULL, process {text} NOT NULL, holder {text} NOT NULL,
     until {int} NOT NULL, PRIMARY KEY (robot, number))
-"""
-
-_STAMPS = """
-CREATE INDEX lifelore_forgotten_records_stamp ON lifelore_forgotten_records (stamp)
 """
 
 _STUDIES = """
@@ -110,23 +89,12 @@ ALTER TABLE lifelore_contributions DROP COLUMN lore
 """
 
 MIGRATIONS = {
-    1: ("contributions, tombstones and cache", _FIRST),
-    2: ("forgotten records", _SECOND),
-    3: ("states that learners compute from a key's cells", _STATES),
-    4: ("states beside the cells, and the only key of a contribution beside it", _TOGETHER),
-    5: ("leases of tasks", _LEASES),
-    6: ("the last stamp of forgotten records without a look at all of them", _STAMPS),
+    6: ("contributions, tombstones, forgotten records, cache and leases", _LORE),
     7: ("studies: library versions, users, their past, decisions with outcomes", _STUDIES),
     8: ("no states beside the cells, which only users of studies had", _NO_STATES),
     9: ("no key of a contribution beside it, which only users of studies needed", _MENTIONED),
 }
-LATEST = max(MIGRATIONS)
-FORGOTTEN_RECORDS = 2
-"""The first schema that knows forgotten records."""
-BESIDE = range(4, 9)
-"""The schemas with keys beside contributions."""
-READABLE = 1
-"""The oldest schema whose contributions, tombstones and cells are as now: such a source is read as it is."""
+OLDEST, LATEST = min(MIGRATIONS), max(MIGRATIONS)
 
 _HAS_NOTES = {
     True: "SELECT MAX(name) FROM sqlite_master WHERE name = 'lifelore_migrations'",
@@ -156,12 +124,17 @@ def version(conn: Connection) -> int:
     return int(conn.value("SELECT COALESCE(MAX(number), 0) FROM lifelore_migrations"))
 
 
-def refuse_newer(location: str, found: int) -> None:
-    """Raise StoreError if a newer Lifelore made the memory."""
+def refuse_unknown(location: str, found: int) -> None:
+    """Raise StoreError if a newer Lifelore made the memory, or one so old that no migration leads on from it."""
     if found > LATEST:
         raise StoreError(
             f"memory {location} was made by a newer Lifelore (schema {found}, this one knows {LATEST});"
             " nothing was changed: upgrade lifelore, or name another memory"
+        )
+    if 0 < found < OLDEST:
+        raise StoreError(
+            f"memory {location} was made by an early Lifelore (schema {found}, this one reads {OLDEST} and later);"
+            " nothing was changed: name another memory"
         )
 
 

@@ -8,7 +8,7 @@ from typing import Literal
 
 from lifelore.core.errors import StoreError
 from lifelore.memory.refusal import BUSY_SECONDS, one_line_refusals
-from lifelore.memory.schema import APPLICATION_ID, refuse_newer
+from lifelore.memory.schema import APPLICATION_ID, refuse_unknown
 
 _MAGIC = b"SQLite format 3\0"
 _JOURNAL_MAGIC = bytes.fromhex("d9d505f920a163d7")
@@ -89,7 +89,7 @@ def _look(path: Path, *, immutable: bool) -> None:
     with one_line_refusals(str(path)), closing(connect(path, "ro", immutable=immutable)) as conn:
         if conn.execute("SELECT 1 FROM sqlite_master WHERE name = 'lifelore_migrations'").fetchone():
             (found,) = conn.execute("SELECT MAX(number) FROM lifelore_migrations").fetchone()
-            refuse_newer(str(path), found or 0)
+            refuse_unknown(str(path), found or 0)
         programs = "SELECT COUNT(*) FROM sqlite_master WHERE type IN ('view', 'trigger')"
         if conn.execute(programs).fetchone()[0]:
             raise StoreError(f"memory {path} has views or triggers, which no Lifelore makes; nothing was changed")

@@ -25,19 +25,12 @@ _WRITERS_LOCK = schema.APPLICATION_ID
 
 
 class Store:
-    """An open database; `reading` and `writing` give transactions and convert the driver's errors.
-
-    Attributes
-    ----------
-    schema : int
-        The number of its last migration; an older memory that is only read keeps its own.
-    """
+    """An open database; `reading` and `writing` give transactions and convert the driver's errors."""
 
     def __init__(self, pool: Pool, location: str, *, is_sqlite: bool) -> None:
         self._pool: Pool | None = pool
         self.location = location
         self.is_sqlite = is_sqlite
-        self.schema = schema.LATEST
         self._own = threading.local()
 
     @property
@@ -148,27 +141,28 @@ class Store:
         """Run the missing migrations, each in its own transaction."""
         with self.reading() as conn:
             found = schema.version(conn)
-        schema.refuse_newer(self.location, found)
-        for number in range(found + 1, schema.LATEST + 1):
-            with self.writing() as conn:
-                schema.take_step(conn, number)
+        schema.refuse_unknown(self.location, found)
+        for number in schema.MIGRATIONS:
+            if number > found:
+                with self.writing() as conn:
+                    schema.take_step(conn, number)
 
     def require_memory(self) -> int:
         """The number of the memory's last migration; StoreError if the database holds no memory."""
         with self.reading() as conn:
             found = schema.version(conn)
-        schema.refuse_newer(self.location, found)
+        schema.refuse_unknown(self.location, found)
         if found == 0:
             raise StoreError(f"memory {self.location} holds no Lifelore memory; check the name")
-        self.schema = found
         return found
 
     def require_current(self) -> None:
-        """Raise StoreError unless contributions can be read; the source of a merge is never migrated."""
+        """Raise StoreError unless the memory needs no migration: one that is only read is never changed."""
         found = self.require_memory()
-        if found < schema.READABLE:
+        if found < schema.LATEST:
             raise StoreError(
-                f"memory {self.location} is of an older Lifelore (schema {found}); open it once by itself"
+                f"memory {self.location} is of an older Lifelore (schema {found});"
+                " update it by lifelore memory show"
             )
 
 

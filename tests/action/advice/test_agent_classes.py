@@ -4,12 +4,21 @@ import numpy as np
 import pytest
 
 from lifelore.action.advice.advisor import AdviceSettings, Advisor
-from lifelore.action.advice.agent_classes import SURE, classes_with_goals, pooled_classes
+from lifelore.action.advice.agent_classes import SURE, ClassAdvisor, classes_with_goals
 from lifelore.action.advice.goal_model import GoalModel, Trajectory
 from lifelore.core.errors import InputError, NotFoundError
 
 STAFF, VISITOR = 0, 1
 PLAIN = AdviceSettings(kappa=0.0)
+
+
+def pooled_classes(experts, settings, shares=None):
+    """A prior for each class, over all its goals."""
+    weights = None if shares is None else [shares[name] for name in experts]
+    pooled = [GoalModel.pooled(models) for models in experts.values()]
+    return ClassAdvisor(
+        tuple(experts), Advisor(pooled, None, settings, goal_weights=weights), np.arange(len(experts))
+    )
 
 
 def walker(actions, n_states=3):
@@ -116,11 +125,11 @@ def test_who_shows_a_class_is_advised_as_with_its_share(models):
 
 
 def test_classes_without_experts_and_strange_shares_are_refused(models):
-    for make in (pooled_classes, lambda experts, *more: classes_with_goals(experts, np.zeros((3, 2), int), *more)):
-        with pytest.raises(InputError, match=r"a goal model for each class, got none for \['guest'\]"):
-            make(models | {"guest": []})
-        with pytest.raises(InputError, match="got none for any class"):
-            make({})
-        for shares in ({"staff": 1.0}, {"staff": 1.0, "visitor": 0.0}):
-            with pytest.raises(InputError, match="shares must be positive numbers of staff, visitor, got"):
-                make(models, None, shares)
+    moves = np.zeros((3, 2), int)
+    with pytest.raises(InputError, match=r"a goal model for each class, got none for \['guest'\]"):
+        classes_with_goals(models | {"guest": []}, moves)
+    with pytest.raises(InputError, match="got none for any class"):
+        classes_with_goals({}, moves)
+    for shares in ({"staff": 1.0}, {"staff": 1.0, "visitor": 0.0}):
+        with pytest.raises(InputError, match="shares must be positive numbers of staff, visitor, got"):
+            classes_with_goals(models, moves, None, shares)

@@ -1,4 +1,4 @@
-"""The value kept up to date beside an evaluation of every state, after every few steps of learning."""
+"""The value of the known paths beside an evaluation of every state, after every few steps of learning."""
 
 import numpy as np
 import pytest

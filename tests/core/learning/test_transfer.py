@@ -7,14 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from lifelore.core.errors import InputError
-from lifelore.core.learning.transfer import (
-    average_performance,
-    backward_transfer,
-    forgetting,
-    forward_transfer,
-    lifetime_transfer,
-    performance_maintenance,
-)
+from lifelore.core.learning.transfer import lifetime_transfer
 from lifelore.core.metrics import mean_estimate
 
 LIFE = np.array([[1, 2, 4], [8, 4, 2], [6, 8, 4], [7, 4, 8]], float)
@@ -23,11 +16,12 @@ lives = arrays(float, (5, 4), elements=st.integers(1, 40).map(float))
 
 
 def test_differences_by_hand():
-    assert average_performance(LIFE) == pytest.approx(19 / 3)
-    assert forward_transfer(LIFE) == 1.0  # task 1: 4 - 2 before it is learnt; task 2: 4 - 4
-    assert backward_transfer(LIFE) == -2.5  # 7 - 8 and 4 - 8
-    assert forgetting(LIFE) == 2.5  # best after an earlier task: 8 of task 0, 8 of task 1
-    assert performance_maintenance(LIFE) == -2.75  # task 0: mean of -2 and -1; task 1: -4; L2Metrics's too
+    found = lifetime_transfer([LIFE])
+    assert found.average_performance.value == pytest.approx(19 / 3)
+    assert found.forward_transfer.value == 1.0  # task 1: 4 - 2 before it is learnt; task 2: 4 - 4
+    assert found.backward_transfer.value == -2.5  # 7 - 8 and 4 - 8
+    assert found.forgetting.value == 2.5  # best after an earlier task: 8 of task 0, 8 of task 1
+    assert found.performance_maintenance.value == -2.75  # task 0: mean of -2 and -1; task 1: -4; L2Metrics's too
 
 
 def slow(life: np.ndarray) -> dict[str, float]:
@@ -68,10 +62,9 @@ def test_plain_data_has_an_interval_of_each_measure():
 @pytest.mark.parametrize(
     ("call", "words"),
     [
-        (lambda: forward_transfer(np.zeros((3, 3))), r"\(..., n_tasks \+ 1, n_tasks\).*got \(3, 3\)"),
-        (lambda: forward_transfer(np.zeros((2, 1))), "at least two tasks"),
-        (lambda: forward_transfer(np.full((3, 2), np.nan)), "must be finite"),
-        (lambda: lifetime_transfer(LIFE), r"must be \(n_lives, n_tasks \+ 1, n_tasks\), got \(4, 3\)"),
+        (lambda: lifetime_transfer(LIFE), r"must be \(n_lives, n_tasks \+ 1, n_tasks\).*got \(4, 3\)"),
+        (lambda: lifetime_transfer(np.zeros((1, 2, 1))), "at least two tasks"),
+        (lambda: lifetime_transfer(np.full((1, 3, 2), np.nan)), "must be finite"),
         (lambda: lifetime_transfer([LIFE], [LIFE, LIFE]), r"same lives, \(1, 4, 3\), got \(2, 4, 3\)"),
     ],
 )

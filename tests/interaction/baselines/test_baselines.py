@@ -114,7 +114,6 @@ DEVIATIONS = {"prior_means": [0, 0], "prior_deviations": [1, 1]}
         ("bpr-plus", {"n_policies": 3}, "n_policies must be the library's 2, got 3"),
         ("bpr-plus", {"floor": 0.6}, r"floor must lie in \[0, 1/2\], got 0.6"),
         ("bpr-plus", {"threshold": 1.1}, r"threshold in \[0, 1\], got 10 and 1.1"),
-        ("epsilon-greedy-means", {"epsilon": np.nan}, "epsilon must lie in"),
         ("exp3", {}, "give either gamma or horizon"),
         ("exp3", {"gamma": 0.1, "horizon": 5}, "give either gamma or horizon"),
         ("exp3", {"gamma": np.nan}, "must"),

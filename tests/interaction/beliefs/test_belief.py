@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import entropy, log_prior, log_sum, update
+from lifelore.interaction.beliefs.belief import log_prior, update
 
 from ..twins import naive_reuse as naive
 
@@ -42,8 +42,8 @@ def test_many_users_broadcast():
     for i in range(3):
         for j in range(5):
             alone = update(beliefs[i, j], said[j])
-            assert np.array_equal(alone.log_belief, together.log_belief[i, j])
-            assert alone.log_evidence == together.log_evidence[i, j]
+            assert alone.log_belief == pytest.approx(together.log_belief[i, j], rel=1e-13)
+            assert alone.log_evidence == pytest.approx(together.log_evidence[i, j], rel=1e-13)
 
 
 LOGS = st.one_of(st.floats(-800, 300), st.just(-INF))
@@ -62,12 +62,6 @@ def test_agrees_with_the_slow_twin(pairs):
     assert (after.log_belief <= 0).all()
 
 
-@pytest.mark.parametrize("bad", [math.nan, INF])
-def test_likelihoods_that_are_none_are_refused(bad):
-    with pytest.raises(InputError, match="minus infinity is allowed"):
-        update(log_prior([0.5, 0.5]), [0.0, bad])
-
-
 @pytest.mark.parametrize(
     ("prior", "rule"),
     [([0.5, 0.4], "sum to 1, got 0.9"), ([1.5, -0.5], "negative"), ([math.nan, 1.0], "NaN"), ([], "shape")],
@@ -75,9 +69,3 @@ def test_likelihoods_that_are_none_are_refused(bad):
 def test_priors_that_are_none_are_refused(prior, rule):
     with pytest.raises(InputError, match=rule):
         log_prior(prior)
-
-
-def test_entropy_and_log_sum_by_hand():
-    assert entropy([[0.5, 0.5, 0.0], [1.0, 0.0, 0.0]]) == pytest.approx([math.log(2), 0.0])
-    with np.errstate(divide="ignore"):
-        assert log_sum(np.log([[3.0, 0.0], [5.0, 0.0]])) == pytest.approx([math.log(8), -np.inf])

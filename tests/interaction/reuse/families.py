@@ -11,7 +11,6 @@ from math import fsum, inf, log
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.stats import norm
 
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
@@ -22,7 +21,6 @@ from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.joint_signal import JointSignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
-from lifelore.interaction.signals.ordered_normal_signal import OrderedNormalSignal
 from lifelore.interaction.signals.reward_signal import RewardSignal
 from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
 from lifelore.interaction.signals.transition_signal import TransitionSignal
@@ -44,7 +42,6 @@ PROBS = np.array(
 """Of four categories; no type shows the last."""
 EDGES = [-40.0, -8.0, 0.0, 6.0, 15.0, 40.0]
 VALUES = [0.0, 3.0, 10.0, 20.0]
-CUTS = [-5.0, 5.0]
 
 
 class Family(NamedTuple):
@@ -225,13 +222,6 @@ def category_density(type_: int, policy: int, category: int) -> float:
     return log_of(PROBS[type_, policy, category].item())
 
 
-def band_density(type_: int, policy: int, category: int) -> float:
-    """Of the bands of `CUTS`, with a lapse of 0.03."""
-    ends = [-inf, *CUTS, inf]
-    inside = np.diff(norm.cdf(ends, MEAN[type_, policy], 5.0))[category]
-    return log(0.97 * inside + 0.01)
-
-
 def own_density(type_: int, policy: int, word: str) -> float:
     """A caller's function of words: types are told apart by their length."""
     return -inf if word == "never" else -abs(len(word) - type_ - policy)
@@ -311,11 +301,6 @@ FAMILIES = {
         lambda: exact(CategorySignal(PROBS)), one_of(0, 1, 2), fixed(category_density), impossible=3
     ),
     "exact steps": Family(lambda: exact(TransitionSignal(STEP_TABLE)), episode, fixed(plug_in_steps)),
-    "ordered-normal": Family(
-        lambda: exact(OrderedNormalSignal(MEAN, np.full(MEAN.shape, 5.0), CUTS, lapse=0.03)),
-        one_of(0, 1, 2),
-        fixed(band_density),
-    ),
     "reward": Family(
         lambda: exact(RewardSignal(GaussianOutcomes(MEAN, 5.0))),
         lambda random: random.normal(2, 8, int(random.integers(4))).tolist(),

@@ -212,19 +212,19 @@ def test_new_rows_have_the_prior_and_the_others_stay(family):
 
 
 @every_family
-@pytest.mark.parametrize(("of", "into"), [("f8", "f8"), ("f4", "f4"), ("f4", "f8"), ("f8", "f4")])
-def test_a_restored_row_goes_on_as_the_stored_one(family, of, into):
-    stored, restored = taught(family, dtype=of), taught(family, seed=9, dtype=into)
+@pytest.mark.parametrize("dtype", ["f8", "f4"])
+def test_a_restored_row_goes_on_as_the_stored_one(family, dtype):
+    stored, restored = taught(family, dtype=dtype), taught(family, seed=9, dtype=dtype)
     assert bool(stored.state(2)) == family.learns
-    signal, exact = family.draw(np.random.default_rng(6)), of == into == "f8"
+    signal = family.draw(np.random.default_rng(6))
     # In the middle of an episode: the step between two episodes counts once.
     stored.observe(2, 0, signal)
     restored.restore(4, stored.log_belief[2], stored.state(2))
     for _ in range(2):
         stored.update(2, 1, signal)
         restored.update(4, 1, signal)
-    assert_same(states(stored, 2), states(restored, 4), 1e-12 if exact else 1e-3)
-    assert_same([stored.belief(2)], [restored.belief(4)], 1e-12 if exact else 1e-5)
+    assert_same(states(stored, 2), states(restored, 4), 1e-12 if dtype == "f8" else 1e-3)
+    assert_same([stored.belief(2)], [restored.belief(4)], 1e-12 if dtype == "f8" else 1e-5)
 
 
 @learning

@@ -135,7 +135,7 @@ def test_the_evidence_of_an_unknown_type_goes_on_to_the_bit(models, kind):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda h, a: h.update(version=9), "has version 9, this Lifelore reads 3"),
+        (lambda h, a: h.update(version=9), "has version 9, this Lifelore reads 4"),
         (lambda h, a: a.update({"novelty.numbers": np.array([0.1, 0.0])}), "no evidence of an unknown type"),
         (lambda h, a: h.update(format="else"), "another kind of file"),
         (lambda h, a: h.update(rule="best"), "rule must be one of"),

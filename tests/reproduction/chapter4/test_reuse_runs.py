@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.interaction.beliefs.belief import entropy
+from lifelore.core.metrics import entropy
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse

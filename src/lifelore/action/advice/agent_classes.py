@@ -4,8 +4,8 @@
 
 Where a uniform or a name tag shows the class, P(c) says so (`ClassAdvisor.showing`). The thesis names "hospital
 staff vs visitors" and their uniforms, and measures neither way (§3.7). Its own advisor has one prior over all
-goals. `pooled_classes` has one for each class. Advice from a prior over several goals leads to none of them,
-whatever the class; `classes_with_goals` leads to one goal at a time, and the class says which goals are likely.
+goals, and advice from a prior over several goals leads to none of them; `classes_with_goals` leads to one goal at
+a time, and the class says which goals are likely.
 """
 
 from collections.abc import Mapping, Sequence
@@ -80,31 +80,6 @@ class ClassAdvisor:
         return self.advisor.with_goal_weights(goals * (after / before)[self.class_of_goal])
 
 
-def pooled_classes(
-    experts: Experts, settings: AdviceSettings | None = None, shares: Mapping[str, float] | None = None
-) -> ClassAdvisor:
-    """A prior for each class, over all its goals; advice is that of the likeliest class.
-
-    Parameters
-    ----------
-    experts : mapping of str to sequence of GoalModel
-        At least one for each class.
-    settings : AdviceSettings, optional
-        Default `BETTER`. With evidence from advised steps, advice of a wrong class would confirm it.
-    shares : mapping of str to float, optional
-        P(c), positive, in any scale; default equal.
-
-    Raises
-    ------
-    InputError
-        A class has no experts, or `shares` names other classes or is not positive.
-    """
-    weights = _checked(experts, shares)
-    pooled = [GoalModel.pooled(models) for models in experts.values()]
-    advisor = Advisor(pooled, None, settings or BETTER, goal_weights=weights)
-    return ClassAdvisor(tuple(experts), advisor, np.arange(len(experts)))
-
-
 def classes_with_goals(
     experts: Experts,
     moves: ArrayLike,
@@ -116,12 +91,21 @@ def classes_with_goals(
 
     Parameters
     ----------
-    experts, settings, shares
-        As `pooled_classes`; each model has its goals.
+    experts : mapping of str to sequence of GoalModel
+        At least one for each class; each model has its goals.
     moves : (n_states, n_actions) int
         The map, see `extend_goal_models`.
+    settings : AdviceSettings, optional
+        Default `BETTER`. With evidence from advised steps, advice of a wrong class would confirm it.
+    shares : mapping of str to float, optional
+        P(c), positive, in any scale; default equal.
     others : sequence, optional
         As of `Advisor`; a sequence of models has one for each goal, class by class.
+
+    Raises
+    ------
+    InputError
+        A class has no experts, or `shares` names other classes or is not positive.
 
     Notes
     -----

@@ -10,7 +10,7 @@ EPISODE, STEP, STATE, TOTAL = 0, 1, 2, 4
 REWARD_CLASS = 3
 """Place in the cursor of `QLearner` alone: class of the last reward."""
 PLAN_LENGTH, GOALS, NEWS = 3, 5, 6
-"""Places in the cursor of `ModelLearner` alone: actions left in the plan, known goals, new moves."""
+"""Places in the cursor of `ModelLearner` alone: actions left in the plan, known goals, 1 where moves are new."""
 RETURN, DISCOUNT = 0, 1
 """Places in `running` of both learners: return so far, and the discount it has reached."""
 

@@ -1,8 +1,7 @@
-"""Mean value of the best known path to the goal, updated as a model of the world grows.
+"""Mean value of the best known path to the goal, as a model of the world grows.
 
-A learner is evaluated every few steps. Evaluating every state each time costs as much as the world is large.
-Learning only adds moves, and moves only shorten paths, so the distances to the goal are stored and updated where a
-new move shortens them; the mean is then a sum over distances:
+A learner is evaluated every few steps. Where values depend on the distance to the goal alone, one search finds all
+distances, and the mean is a sum over them:
 
     mean over starts of γ^(d - 1) · goal reward, d the start's distance to the goal, 0 where no path is known
 """
@@ -13,15 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.learning.curve import GOALS, NEWS
-from lifelore.core.learning.known_world import (
-    UNKNOWN,
-    WorldModel,
-    add_moves,
-    find_goal_distances,
-    known_policy,
-    no_incoming_moves,
-)
-from lifelore.core.learning.model_learning import ALL_NEW, ModelLearner
+from lifelore.core.learning.known_world import UNKNOWN, WorldModel, goal_distances, known_policy
+from lifelore.core.learning.model_learning import ModelLearner
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning.planning import mean_start_value, policy_values
 
@@ -31,8 +23,8 @@ class KnownValue:
     """Mean value, over a task's starts, of the best path that a model knows.
 
     Between two calls of `update` only `explore` with this learner may change the model. Where values do not depend
-    on distances alone (moves that cost, several goals, a remembered model that differs from this world), every
-    state is evaluated after each change instead.
+    on distances alone (moves that cost, several goals, a remembered model that differs
+    from this world), every state is evaluated instead.
 
     Parameters
     ----------
@@ -54,18 +46,14 @@ class KnownValue:
     def __post_init__(self) -> None:
         reward = _one_goal_reward(self.tables) if _is_true(self.model, self.tables) else None
         self._by_distance = None if reward is None else _values(reward, self.discount, self.tables.n_states)
-        starts = None if reward is None else self.tables.starts
-        self._ways = no_incoming_moves(self.tables.n_states, self.tables.n_actions, starts)
 
     def update(self) -> float:
         """The current value; differs from `exact` by rounding alone, relatively by less than 1e-12."""
-        news = int(self.learner.cursor[NEWS])
         if not self.learner.cursor[GOALS]:
             return 0.0  # no path leads to an unknown goal
-        if news:
-            by_distance = self._by_distance
-            self._value = self.exact() if by_distance is None else self._mended(news, by_distance)
+        if self.learner.cursor[NEWS]:
             self.learner.cursor[NEWS] = 0
+            self._value = self.exact() if self._by_distance is None else self._mean(self._by_distance)
         return self._value
 
     def exact(self) -> float:
@@ -73,21 +61,14 @@ class KnownValue:
         policy = known_policy(self.model, self.learner.place)
         return mean_start_value(self.tables, policy_values(self.tables, policy, self.discount))
 
-    def _mended(self, news: int, by_distance: NDArray[np.float64]) -> float:
-        target, place = self.model.target, self.learner.place
-        if news == ALL_NEW:
-            find_goal_distances(target, place, self._ways)
-        else:
-            add_moves(target, place, self.learner.news[:news], self._ways)
-        near = slice(int(self._ways.farthest[0]) + 1)
-        return float(self._ways.starts_at[near] @ by_distance[near]) / len(self.tables.starts)
+    def _mean(self, by_distance: NDArray[np.float64]) -> float:
+        distance = goal_distances(self.model.target, self.learner.place)
+        return float(by_distance[distance[self.tables.starts]].mean())
 
 
 def _values(goal_reward: float, discount: float, n_states: int) -> NDArray[np.float64]:
-    """(n_states + 1,) value of a state at each distance to the goal; 0 at the goal."""
-    values = np.zeros(n_states + 1)
-    values[1:] = goal_reward * discount ** np.arange(n_states)
-    return values
+    """(n_states + 1,) value of a state at each distance to the goal; 0 at the goal, and at -1: no path."""
+    return np.concatenate([[0.0], goal_reward * discount ** np.arange(n_states - 1), [0.0]])
 
 
 def _is_true(model: WorldModel, tables: Tables) -> bool:

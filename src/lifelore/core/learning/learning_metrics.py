@@ -22,43 +22,6 @@ def jumpstart(returns: ArrayLike, baseline: ArrayLike) -> Estimate:
     return difference_estimate(returns, baseline)
 
 
-def asymptotes(curves: ArrayLike, share: float = LAST_SHARE) -> NDArray[np.float64]:
-    """Mean performance of the last `share`, in (0, 1], of the episodes, at least one, (n_runs,)."""
-    curves = _curves(curves, "curves")
-    if not 0 < share <= 1:
-        raise InputError(f"share must lie in (0, 1], got {share}")
-    return curves[:, -max(1, round(share * curves.shape[1])) :].mean(axis=1)
-
-
-def total_rewards(curves: ArrayLike, floor: float = 0.0) -> NDArray[np.float64]:
-    """Area between each curve and `floor`: performance above it, summed over episodes, (n_runs,)."""
-    return (_curves(curves, "curves") - floor).sum(axis=1)
-
-
-def transfer_ratio(curves: ArrayLike, baseline: ArrayLike, floor: float = 0.0) -> Estimate:
-    """(area with transfer − area without) / area without, of means over runs: 0 no transfer, 1 twice the reward.
-
-    Parameters
-    ----------
-    curves, baseline : (n_runs, n_episodes) float
-    floor : float
-        The performance that counts as 0. The ratio depends on it, and is defined only above it.
-
-    Raises
-    ------
-    InputError
-        A curve of the baseline has no area above the floor.
-    """
-    curves, baseline = _paired(curves, baseline)
-    with_past, without = total_rewards(curves, floor), total_rewards(baseline, floor)
-    if not (without > 0).all():
-        raise InputError(
-            f"floor must lie below the baseline's mean in every run, got {floor} and the mean "
-            f"{baseline.mean(axis=1).min():.6g}; name the performance that counts as 0"
-        )
-    return ratio_estimate(with_past - without, without)
-
-
 def episodes_to_threshold(returns: NDArray[np.float64], threshold: float, window: int = 1) -> int | None:
     """Episodes until the moving mean over `window` first reaches `threshold`; None if it never does.
 
@@ -78,9 +41,10 @@ class LearningGain:
     """A learner compared with its baseline over the same runs; see `learning_gain`.
 
     jumpstart : difference of first performances
-    asymptote : difference of the last ones
+    asymptote : difference of the mean performances of the last episodes
     total_reward : difference of the areas under the curves
-    transfer_ratio : that difference over the baseline's area; None where the baseline has a run without area
+    transfer_ratio : (area with transfer − area without) / area without, of means over runs: 0 no transfer, 1 twice
+        the reward. None where the baseline has a run without area above the floor.
     threshold_ratio : episodes to the threshold over the baseline's; below 1 is faster
     threshold_saved : further episodes to the threshold that the baseline needs
     never, baseline_never : runs that never reached the threshold; they count as all their episodes
@@ -120,8 +84,10 @@ def learning_gain(
         Performance at which a run counts as learnt, such as 0.8 of its optimum.
     window : int
         Episodes of the moving mean that must reach the threshold.
-    share, floor : float
-        See `asymptotes` and `transfer_ratio`.
+    share : float
+        Share of the episodes, the last ones, whose mean stands for the asymptote, in (0, 1]; at least one.
+    floor : float
+        The performance that counts as 0 in the transfer ratio, which depends on it.
 
     Examples
     --------
@@ -133,14 +99,17 @@ def learning_gain(
     thresholds = np.asarray(threshold, float)
     if thresholds.shape not in ((), (len(curves),)):
         raise InputError(f"threshold must be one number or one a run ({len(curves)}), got {thresholds.shape}")
+    if not 0 < share <= 1:
+        raise InputError(f"share must lie in (0, 1], got {share}")
     own, never = _times(curves, thresholds, window)
     other, other_never = _times(baseline, thresholds, window)
-    grounded = (total_rewards(baseline, floor) > 0).all()
+    last = slice(-max(1, round(share * curves.shape[1])), None)
+    area, without = (curves - floor).sum(axis=1), (baseline - floor).sum(axis=1)
     return LearningGain(
         jumpstart=jumpstart(curves[:, 0], baseline[:, 0]),
-        asymptote=difference_estimate(asymptotes(curves, share), asymptotes(baseline, share)),
-        total_reward=difference_estimate(total_rewards(curves), total_rewards(baseline)),
-        transfer_ratio=transfer_ratio(curves, baseline, floor) if grounded else None,
+        asymptote=difference_estimate(curves[:, last].mean(axis=1), baseline[:, last].mean(axis=1)),
+        total_reward=difference_estimate(curves.sum(axis=1), baseline.sum(axis=1)),
+        transfer_ratio=ratio_estimate(area - without, without) if (without > 0).all() else None,
         threshold_ratio=ratio_estimate(own, other),
         threshold_saved=difference_estimate(other, own),
         never=never,
@@ -155,17 +124,13 @@ def _times(curves: NDArray[np.float64], thresholds: NDArray[np.float64], window:
     return [curves.shape[1] if time is None else time for time in times], times.count(None)
 
 
-def _curves(curves: ArrayLike, name: str) -> NDArray[np.float64]:
-    array = np.asarray(curves, np.float64)
-    if array.ndim != 2 or not array.size or not np.isfinite(array).all():
-        raise InputError(
-            f"{name} must be finite and (n_runs, n_episodes), at least one of each, got {array.shape}"
-        )
-    return array
-
-
 def _paired(curves: ArrayLike, baseline: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    own, other = _curves(curves, "curves"), _curves(baseline, "baseline")
+    own, other = np.asarray(curves, np.float64), np.asarray(baseline, np.float64)
+    for name, array in (("curves", own), ("baseline", other)):
+        if array.ndim != 2 or not array.size or not np.isfinite(array).all():
+            raise InputError(
+                f"{name} must be finite and (n_runs, n_episodes), at least one of each, got {array.shape}"
+            )
     if own.shape != other.shape:
         raise InputError(f"curves and baseline must agree run by run, got {own.shape} and {other.shape}")
     return own, other

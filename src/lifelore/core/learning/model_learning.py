@@ -38,9 +38,6 @@ from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 
 MOST_ACTIONS = np.iinfo(np.int8).max
 """Plans are stored as int8."""
-MOST_NEWS = 1024
-"""Largest number of listed new moves; after more of them `KnownValue` reads the whole model."""
-ALL_NEW = -1
 
 
 class ExplorationStrategy(NamedTuple):
@@ -77,11 +74,8 @@ class ModelLearner(NamedTuple):
     plan : (n_states + 1,) int8, remaining actions, the next one last
     queue, parent : (n_states,) int32; parent_action : (n_states,) int8; work space of `plan_search`, where
         `parent` is UNKNOWN between calls
-    news : (MOST_NEWS,) int64, moves learned since the last `KnownValue.update`,
-        state · n_actions + action
     world_random, own_random : (2,) uint64
-    cursor : (7,) int64, see `curve.EPISODE` and the constants beside it; the number of `news` is ALL_NEW where
-        known moves have changed or the list is full
+    cursor : (7,) int64, see `curve.EPISODE` and the constants beside it; `KnownValue` sets news back
     running : (2,) float64, see `curve.RETURN`
     tour : (n_states,) int32, the order in which a tour visits places
     later : (n_states,) bool, whether a place is on the tour
@@ -94,7 +88,6 @@ class ModelLearner(NamedTuple):
     queue: NDArray[np.int32]
     parent: NDArray[np.int32]
     parent_action: NDArray[np.int8]
-    news: NDArray[np.int64]
     world_random: NDArray[np.uint64]
     own_random: NDArray[np.uint64]
     cursor: NDArray[np.int64]
@@ -116,10 +109,9 @@ def new_model_learner(n_states: int, n_actions: int, world, own) -> ModelLearner
         np.zeros(n_states, np.int32),
         np.full(n_states, UNKNOWN, np.int32),
         np.zeros(n_states, np.int8),
-        np.zeros(MOST_NEWS, np.int64),
         random_state(world),
         random_state(own),
-        np.array([0, 0, 0, 0, 0, 0, ALL_NEW]),
+        np.array([0, 0, 0, 0, 0, 0, 1]),
         np.zeros(2),
         np.zeros(n_states, np.int32),
         np.zeros(n_states, np.bool_),
@@ -136,12 +128,12 @@ def explore(tables, model, state_info, strategy, learner, curve, max_steps, disc
     next_state, reward_of, event_of, _, starts = tables
     target, seen = model
     planned, exhaustive, senses = strategy
-    place, tried, plan, _, _, _, news, world, own, cursor, running, tour, later, tour_at = learner
+    place, tried, plan, _, _, _, world, own, cursor, running, tour, later, tour_at = learner
     returns, rewards, steps, collisions, reached = curve
     n_actions = target.shape[1]
     episode, step = cursor[EPISODE], cursor[STEP]
     state, left = cursor[STATE], cursor[PLAN_LENGTH]
-    goals, n_news = cursor[GOALS], cursor[NEWS]
+    goals = cursor[GOALS]
     ret, reach = running[RETURN], running[DISCOUNT]
     done_steps = 0
     while done_steps < budget and episode < returns.size:
@@ -151,11 +143,11 @@ def explore(tables, model, state_info, strategy, learner, curve, max_steps, disc
         if place[state] == NOT_LOOKED:
             place[state] = LOOKED
             if _arrive(state, target, seen, state_info.percept, tried):
-                n_news = ALL_NEW
+                cursor[NEWS] = 1
             if senses:
                 for move in range(n_actions):
                     target[state, move] = next_state[state, move, 0]
-                left, n_news = 0, ALL_NEW
+                left, cursor[NEWS] = 0, 1
         if planned:
             if left == 0:
                 left = OUT_OF_REACH
@@ -178,13 +170,8 @@ def explore(tables, model, state_info, strategy, learner, curve, max_steps, disc
         event = event_of[state, a, 0]
         tried[state, a] += 1
         if target[state, a] != following:
-            if target[state, a] != UNKNOWN or n_news == news.size:
-                n_news = ALL_NEW
-            elif n_news != ALL_NEW:
-                news[n_news] = state * n_actions + a
-                n_news += 1
             target[state, a] = following
-            left = 0
+            left, cursor[NEWS] = 0, 1
         ret += reach * reward
         reach *= discount
         rewards[episode] += reward
@@ -197,7 +184,7 @@ def explore(tables, model, state_info, strategy, learner, curve, max_steps, disc
                     goals += 1
                 elif place[following] == GOAL:
                     goals -= 1
-                place[following], n_news = found, ALL_NEW
+                place[following], cursor[NEWS] = found, 1
         state = following
         step += 1
         done_steps += 1
@@ -211,7 +198,7 @@ def explore(tables, model, state_info, strategy, learner, curve, max_steps, disc
     cursor[EPISODE], cursor[STEP] = episode, step
     cursor[STATE], cursor[PLAN_LENGTH] = state, left
     cursor[TOTAL] += done_steps
-    cursor[GOALS], cursor[NEWS] = goals, n_news
+    cursor[GOALS] = goals
     running[RETURN], running[DISCOUNT] = ret, reach
     return done_steps
 

@@ -27,7 +27,7 @@ def plan_search(start, target, state_info, learner, goal_known, exhaustive, want
     near its start costs the same in a world of any size.
     """
     _, cost_row, try_cost = state_info
-    place, _, plan, queue, parent, parent_action, _, _, random, _, _, _, later, _ = learner
+    place, _, plan, queue, parent, parent_action, _, random, _, _, _, later, _ = learner
     n_actions = target.shape[1]
     crumb = 1.0 / (n_actions + 1)
     if crumb > NO_CRUMBS:

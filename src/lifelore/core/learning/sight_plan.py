@@ -19,7 +19,7 @@ def plan_by_sight(start, model, learner, gain, purpose):
     left. `parent` must be UNKNOWN everywhere, and is so again afterwards.
     """
     target, remembered = model
-    place, _, plan, queue, parent, parent_action, _, _, random, _, _, _, _, _ = learner
+    place, _, plan, queue, parent, parent_action, _, random, _, _, _, _, _ = learner
     best, best_score, ties = -1, 0.0, 0
     nearest, goal = -1, -1
     head, tail, level_end, depth = 0, 1, 1, 1.0

@@ -18,7 +18,7 @@ from lifelore.core.compiled.jit import inlined, kernel
 from lifelore.core.compiled.random_state import uniform_integer
 from lifelore.core.learning.curve import DISCOUNT, EPISODE, GOALS, NEWS, PLAN_LENGTH, RETURN, STATE, STEP, TOTAL
 from lifelore.core.learning.known_world import DEAD_END, GOAL, LOOKED, NOT_LOOKED, UNKNOWN, WorldModel
-from lifelore.core.learning.model_learning import ALL_NEW, least_tried
+from lifelore.core.learning.model_learning import least_tried
 from lifelore.core.learning.sight_plan import DRIVE, SEARCH, SHORTEN, plan_by_sight
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 
@@ -84,12 +84,12 @@ def explore_by_sight(tables, model, state_info, strategy, learner, search, curve
     """
     next_state, reward_of, event_of, _, starts = tables
     planned, exhaustive, _ = strategy
-    place, tried, plan, queue, _, _, _, world, own, cursor, running, _, _, _ = learner
+    place, tried, plan, queue, _, _, world, own, cursor, running, _, _, _ = learner
     returns, rewards, steps, collisions, reached = curve
     stood, found = search.stood, search.found
     episode, step = cursor[EPISODE], cursor[STEP]
     state, left = cursor[STATE], cursor[PLAN_LENGTH]
-    goals, n_news = cursor[GOALS], cursor[NEWS]
+    goals = cursor[GOALS]
     ret, reach = running[RETURN], running[DISCOUNT]
     done_steps = 0
     while done_steps < budget and episode < returns.size:
@@ -100,7 +100,7 @@ def explore_by_sight(tables, model, state_info, strategy, learner, search, curve
             stood[state] = 1
             n_new, new_goals = _look(state, next_state, model, state_info.percept, place, queue, search)
             if n_new > 0:
-                left, n_news = 0, ALL_NEW
+                left, cursor[NEWS] = 0, 1
             if new_goals > 0:
                 goals += new_goals
                 if found[FOUND_STEP] < 0:
@@ -140,7 +140,7 @@ def explore_by_sight(tables, model, state_info, strategy, learner, search, curve
     cursor[EPISODE], cursor[STEP] = episode, step
     cursor[STATE], cursor[PLAN_LENGTH] = state, left
     cursor[TOTAL] += done_steps
-    cursor[GOALS], cursor[NEWS] = goals, n_news
+    cursor[GOALS] = goals
     running[RETURN], running[DISCOUNT] = ret, reach
     return done_steps
 

@@ -1,8 +1,8 @@
 """Measures of transfer and forgetting over a lifetime of tasks.
 
-The input is evaluations, (..., n_tasks + 1, n_tasks): the performance on task j before any learning (row 0) and
-after each task (row i + 1); tasks are learned once each, in the order of the columns. Evaluations teach nothing.
-Leading axes are lives. Larger is better.
+The input is evaluations, (n_lives, n_tasks + 1, n_tasks): the performance on task j before any learning (row 0)
+and after each task (row i + 1); tasks are learned once each, in the order of the columns. Evaluations teach
+nothing. Larger is better.
 
 Transfer as differences is Lopez-Paz & Ranzato's, Gradient Episodic Memory (2017); row 0 is their agent at
 random initialisation. Forgetting is Chaudhry et al.'s, Riemannian Walk (2018). Maintenance is New et al.'s,
@@ -20,48 +20,18 @@ from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate
 Values = NDArray[np.float64]
 
 
-def average_performance(evaluations: ArrayLike) -> Values:
-    """Mean performance on all tasks at the end of the life (ACC), (...)."""
-    return _checked(evaluations)[..., -1, :].mean(axis=-1)
-
-
-def forward_transfer(evaluations: ArrayLike) -> Values:
-    """FWT: what earlier tasks added to a task before it was learnt itself, mean over all but the first, (...)."""
-    values = _checked(evaluations)
-    before = np.diagonal(values[..., :-1, :], axis1=-2, axis2=-1)
-    return (before - values[..., 0, :])[..., 1:].mean(axis=-1)
-
-
-def backward_transfer(evaluations: ArrayLike) -> Values:
-    """BWT: what later tasks added to a task since it was learnt, mean over all but the last, (...).
-
-    Below zero is forgetting.
-    """
-    values = _checked(evaluations)
-    return (values[..., -1, :] - _once_learnt(values))[..., :-1].mean(axis=-1)
-
-
-def forgetting(evaluations: ArrayLike) -> Values:
-    """How far each task ends below its best after any earlier task, mean over all but the last task, (...)."""
-    values = _checked(evaluations)
-    best = values[..., 1:-1, :].max(axis=-2)
-    return (best - values[..., -1, :])[..., :-1].mean(axis=-1)
-
-
-def performance_maintenance(evaluations: ArrayLike) -> Values:
-    """PM: mean change since a task was learnt over all later evaluations, then over tasks, (...).
-
-    The reference is the evaluation right after learning. The last task has no later one and takes no part.
-    """
-    values = _checked(evaluations)
-    change = values[..., 1:, :] - _once_learnt(values)[..., None, :]
-    n_tasks = values.shape[-1]
-    return np.mean([change[..., j + 1 :, j].mean(axis=-1) for j in range(n_tasks - 1)], axis=0)
-
-
 @dataclass(frozen=True)
 class LifetimeTransfer:
-    """Transfer over lifetimes, means over lives; see the functions of the same names."""
+    """Transfer over lifetimes, means over lives.
+
+    average_performance : ACC, mean performance on all tasks at the end of the life
+    forward_transfer : FWT, what earlier tasks added to a task before it was learnt itself; not of the first task
+    backward_transfer : BWT, what later tasks added to a task since it was learnt; not of the last task. Below zero
+        is forgetting.
+    forgetting : how far each task ends below its best after any earlier task; not of the last task
+    performance_maintenance : PM, mean change since a task was learnt over all later evaluations, then over tasks;
+        not of the last task
+    """
 
     average_performance: Estimate
     forward_transfer: Estimate
@@ -91,29 +61,34 @@ def lifetime_transfer(evaluations: ArrayLike, baseline: ArrayLike | None = None)
     (2.5, -1.0, 1.0)
     """
     values = _checked(evaluations)
-    if values.ndim != 3:
-        raise InputError(f"evaluations must be (n_lives, n_tasks + 1, n_tasks), got {values.shape}")
     if baseline is None:
-        return LifetimeTransfer(*(mean_estimate(measure(values)) for measure in _MEASURES))
+        return LifetimeTransfer(*map(mean_estimate, _measures(values)))
     others = _checked(baseline)
     if others.shape != values.shape:
         raise InputError(f"baseline must be of the same lives, {values.shape}, got {others.shape}")
-    return LifetimeTransfer(*(difference_estimate(measure(values), measure(others)) for measure in _MEASURES))
+    return LifetimeTransfer(*map(difference_estimate, _measures(values), _measures(others)))
 
 
-_MEASURES = (average_performance, forward_transfer, backward_transfer, forgetting, performance_maintenance)
-
-
-def _once_learnt(values: Values) -> Values:
-    """Performance on each task right after it was learnt, (..., n_tasks)."""
-    return np.diagonal(values[..., 1:, :], axis1=-2, axis2=-1)
+def _measures(values: Values) -> list[Values]:
+    """The fields of `LifetimeTransfer` of each life, (n_lives,) each."""
+    at_first, at_last, n_tasks = values[:, 0], values[:, -1], values.shape[-1]
+    before, learnt = (np.diagonal(part, axis1=-2, axis2=-1) for part in (values[:, :-1], values[:, 1:]))
+    best, change = values[:, 1:-1].max(axis=1), values[:, 1:] - learnt[:, None]
+    kept = [change[:, task + 1 :, task].mean(axis=1) for task in range(n_tasks - 1)]
+    return [
+        at_last.mean(axis=1),
+        (before - at_first)[:, 1:].mean(axis=1),
+        (at_last - learnt)[:, :-1].mean(axis=1),
+        (best - at_last)[:, :-1].mean(axis=1),
+        np.mean(kept, axis=0),
+    ]
 
 
 def _checked(evaluations: ArrayLike) -> Values:
     values = np.asarray(evaluations, np.float64)
-    if values.ndim < 2 or values.shape[-1] < 2 or values.shape[-2] != values.shape[-1] + 1:
+    if values.ndim != 3 or values.shape[2] < 2 or values.shape[1] != values.shape[2] + 1:
         raise InputError(
-            f"evaluations must be (..., n_tasks + 1, n_tasks) of at least two tasks, got {values.shape}; "
+            f"evaluations must be (n_lives, n_tasks + 1, n_tasks) of at least two tasks, got {values.shape}; "
             "row 0 is the performance before any learning"
         )
     if not values.size or not np.isfinite(values).all():

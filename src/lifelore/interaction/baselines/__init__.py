@@ -8,7 +8,6 @@ reads signals within an episode, so it has the methods of policy reuse and is no
 from lifelore.interaction.baselines.baseline import Baseline
 from lifelore.interaction.baselines.bayes_okr import BayesOKR
 from lifelore.interaction.baselines.bpr_plus import BPRPlus
-from lifelore.interaction.baselines.epsilon_greedy_means import EpsilonGreedyMeans
 from lifelore.interaction.baselines.exp3 import EXP3
 from lifelore.interaction.baselines.gp_ucb import GPUCB
 from lifelore.interaction.baselines.interval_estimation import IntervalEstimation
@@ -21,8 +20,7 @@ from lifelore.interaction.baselines.ucb1 import UCB1
 BASELINES: dict[str, type[Baseline]] = {
     kind.name: kind
     for kind in (
-        TryAll, UCB1, SlidingWindowUCB, IntervalEstimation, EXP3, GPUCB, LinUCB, GaussianThompson,
-        EpsilonGreedyMeans, BPRPlus,
+        TryAll, UCB1, SlidingWindowUCB, IntervalEstimation, EXP3, GPUCB, LinUCB, GaussianThompson, BPRPlus,
     )
 }  # fmt: skip
 """Every baseline by its name."""
@@ -35,7 +33,6 @@ __all__ = [
     "BPRPlus",
     "Baseline",
     "BayesOKR",
-    "EpsilonGreedyMeans",
     "GaussianThompson",
     "IntervalEstimation",
     "LinUCB",

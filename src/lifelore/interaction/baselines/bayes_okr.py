@@ -24,6 +24,7 @@ from lifelore.core.streams import stream
 from lifelore.interaction.baselines.bpr_plus import checked_floor, floored
 from lifelore.interaction.beliefs.belief import log_prior, update
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.law import law_of
 from lifelore.interaction.selection.choice import Available, available_mask, choose, scored
 from lifelore.interaction.selection.greedy import Greedy
 
@@ -81,6 +82,7 @@ class BayesOKR:
         if self.between.shape != (library.n_types,):
             raise InputError(f"prior must be ({library.n_types},), got {self.between.shape}")
         self.generator = stream(seed, "bayes-okr") if isinstance(seed, int | np.integer) else seed
+        self._law = law_of(library.signal, library.n_types, "plug-in")
         self._last: deque[Array] = deque(maxlen=window)
         self._begin()
 
@@ -109,7 +111,7 @@ class BayesOKR:
     def observe(self, policy: int | str, signal: Any) -> None:
         """Learn from a signal of a policy within the episode; errors are the signal model's."""
         index = self.library.index_of_policy(policy)
-        log_likelihood = np.array(self.library.signal.log_likelihood(index, signal), np.float64)
+        log_likelihood = self._law.log_likelihoods(index, self._law.checked(signal))
         last = deque([*self._last, log_likelihood], self._last.maxlen)
         self.within = floored(update(self.within, np.sum(last, axis=0)).log_belief, self.floor)
         self._last, self._policy = last, index

@@ -1,8 +1,7 @@
 """GP-UCB: upper confidence bounds from a Gaussian process over policies (Srinivas et al., 2010).
 
-The process is over finitely many policies, so its posterior is exact linear algebra. With L the Cholesky factor of
-the covariance of all payoffs so far and V = L⁻¹ K(seen, all), the posterior mean is m + Vᵀ z with z = L⁻¹ (y - m)
-and the variance is diag K - Σ V². Each payoff appends a row to L, V and z; this row of L is a column of V.
+The process is over finitely many policies, so that each payoff y of a policy i changes its mean m and covariance K
+exactly: with k = K[i] and s = K[i, i] + noise², m ← m + k (y − m[i]) / s and K ← K − k kᵀ / s.
 """
 
 from typing import Any, ClassVar, Self
@@ -16,8 +15,6 @@ from lifelore.interaction.baselines.policy_kernels import performance_kernel, pr
 from lifelore.interaction.library.policy_library import PolicyLibrary
 
 KERNELS = ("performance", "covariance")
-MOST_ROWS = 4
-"""Largest number of rows of V, in multiples of n_policies; the posterior then becomes the prior and V is empty."""
 
 
 class GPUCB(Baseline):
@@ -72,12 +69,8 @@ class GPUCB(Baseline):
         if not 0 < delta < 1:
             raise InputError(f"delta must lie between 0 and 1, got {delta}")
         self.noise, self.beta, self.delta = float(noise), beta, delta
-        # Of each task from the first fold on, till then shared by all: (1 or rows, n_policies, n_policies).
-        self._covariance = self.kernel[None]
+        self._covariance = np.tile(self.kernel, (self.rows, 1, 1))
         self._mean = np.tile(row_of("prior_means", prior_means, n_policies), (self.rows, 1))
-        self._variance = np.tile(np.diag(self.kernel), (self.rows, 1))
-        self._seen = 0
-        self._rows = np.empty((self.rows, 8, n_policies))
 
     @classmethod
     def from_library(cls, library: PolicyLibrary, *, kernel: Any = "performance", **settings: Any) -> Self:
@@ -92,7 +85,8 @@ class GPUCB(Baseline):
 
     def posterior(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Mean and deviation of each policy's mean payoff, (rows, n_policies) each."""
-        return self._mean.copy(), np.sqrt(np.maximum(self._variance, 0.0))
+        variance = np.diagonal(self._covariance, axis1=1, axis2=2)
+        return self._mean.copy(), np.sqrt(np.maximum(variance, 0.0))
 
     def _beta(self) -> float:
         if self.beta is not None:
@@ -105,34 +99,11 @@ class GPUCB(Baseline):
         return mean + np.sqrt(self._beta()) * deviation
 
     def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
-        """Append a row to V; the mean already contains z."""
         every = np.arange(self.rows)
-        known = self._rows[:, : self._seen]
-        # The new row of L: L⁻¹ K(seen, policy), which is the policy's column of V.
-        column = known[every, :, policies]
-        prior = self._covariance[every if len(self._covariance) > 1 else 0, policies]
-        corner = np.sqrt(self._variance[every, policies].clip(0.0) + self.noise**2)
-        row = (prior - np.einsum("rs,rsp->rp", column, known)) / corner[:, None]
-        # z's new entry is (y - posterior mean) / corner: the payoff's surprise in its own deviations.
-        self._mean += row * ((rewards - self._mean[every, policies]) / corner)[:, None]
-        self._variance -= row**2
-        self._append(row)
-
-    def _append(self, row: NDArray[np.float64]) -> None:
-        if self._seen == self._rows.shape[1]:
-            room = np.empty((self.rows, 2 * self._seen, self.n_policies))
-            room[:, : self._seen] = self._rows
-            self._rows = room
-        self._rows[:, self._seen] = row
-        self._seen += 1
-        if self._seen >= max(MOST_ROWS * self.n_policies, 32):
-            self._fold()
-
-    def _fold(self) -> None:
-        """Make the posterior the prior: exact, and it bounds the time of a step."""
-        known = self._rows[:, : self._seen]
-        self._covariance = self._covariance - np.einsum("rsp,rsq->rpq", known, known, optimize=True)
-        self._rows, self._seen = np.empty((self.rows, 8, self.n_policies)), 0
+        column = self._covariance[every, policies]
+        square = np.maximum(column[every, policies], 0.0) + self.noise**2
+        self._mean += column * ((rewards - self._mean[every, policies]) / square)[:, None]
+        self._covariance -= column[:, :, None] * (column / square[:, None])[:, None, :]
 
 
 def _kernel_of(library: PolicyLibrary, kernel: Any) -> NDArray[np.float64]:

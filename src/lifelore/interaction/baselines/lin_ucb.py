@@ -6,24 +6,25 @@ the payoffs r of the policies played:
 
     A = λ I + Σ x xᵀ,  b = Σ r x,  w = A⁻¹ b,  score = x·w + α √(xᵀ A⁻¹ x)
 
-A user whose means are a mixture of types' means is linear in the library: x are a policy's mean payoffs on each
-type, and w are the shares of the types.
+That is GP-UCB with the covariance X Xᵀ / λ and a constant β = α². A user whose means are a mixture of types' means
+is linear in the library: x are a policy's mean payoffs on each type, and w are the shares of the types.
 """
 
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.baselines.baseline import LEAST, Baseline, library_moments
+from lifelore.interaction.baselines.baseline import LEAST, library_moments
+from lifelore.interaction.baselines.gp_ucb import GPUCB
 from lifelore.interaction.library.policy_library import PolicyLibrary
 
 LEAST_NOISE = 1e-3
 """Least noise as a share of the largest mean payoff: smaller numbers lose the precision of A⁻¹."""
 
 
-class LinUCB(Baseline):
+class LinUCB(GPUCB):
     """Ridge regression of each task's payoffs on the policies' features, and its upper confidence bound.
 
     Parameters
@@ -31,7 +32,7 @@ class LinUCB(Baseline):
     features : (n_policies, n_features) float
         In units of payoffs where weights are shares of types.
     noise : float
-        Deviation > 0 of a payoff: features and payoffs are divided by it, so that units do not matter.
+        Deviation > 0 of a payoff.
     alpha : float
         α ≥ 0; smaller explores less. The paper's 1 + √(ln(2/δ) / 2) is 2 at δ = 0.27.
     ridge : float
@@ -62,18 +63,19 @@ class LinUCB(Baseline):
         ridge: float = 1.0,
         **common: Any,
     ) -> None:
-        super().__init__(n_policies, **common)
         rows = np.array(features, np.float64)
-        if rows.ndim != 2 or len(rows) != n_policies or not rows.size or not np.isfinite(rows).all():
+        if rows.ndim != 2 or len(rows) != max(n_policies, 1) or not rows.size or not np.isfinite(rows).all():
             raise InputError(f"features must be ({n_policies}, n_features), finite, got shape {rows.shape}")
-        for name, value in (("noise", noise), ("ridge", ridge)):
-            if not (value > 0 and np.isfinite(value)):
-                raise InputError(f"{name} must be finite and positive, got {value}")
+        if not (ridge > 0 and np.isfinite(ridge)):
+            raise InputError(f"ridge must be finite and positive, got {ridge}")
         if not (alpha >= 0 and np.isfinite(alpha)):
             raise InputError(f"alpha must be finite and at least 0, got {alpha}")
-        self.features, self.noise, self.alpha = rows / noise, float(noise), float(alpha)
-        self._inverse = np.tile(np.eye(rows.shape[1]) / ridge, (self.rows, 1, 1))
-        self._sums = np.zeros((self.rows, rows.shape[1]))
+        super().__init__(n_policies, kernel=rows @ rows.T / ridge, noise=noise, beta=alpha**2, **common)
+
+    @classmethod
+    def from_library(cls, library: PolicyLibrary, **settings: Any) -> Self:
+        """Features and noise from the library; `settings` override."""
+        return cls(library.n_policies, **(cls.settings_from(library) | settings))
 
     @classmethod
     def settings_from(cls, library: PolicyLibrary) -> dict[str, Any]:
@@ -81,23 +83,3 @@ class LinUCB(Baseline):
         means = np.asarray(library.performance.mean)
         noise = float(np.sqrt((library_moments(library).noise ** 2).mean()))
         return {"features": means.T, "noise": max(noise, LEAST_NOISE * float(np.abs(means).max()), LEAST)}
-
-    @property
-    def weights(self) -> NDArray[np.float64]:
-        """w, the estimated weights of the features, (n_features,) or (n_tasks, n_features)."""
-        found = np.einsum("rij,rj->ri", self._inverse, self._sums)
-        return found[0] if self.n_tasks is None else found
-
-    def _scores(self) -> NDArray[np.float64]:
-        apart = self.features @ self._inverse
-        mean = np.einsum("rpi,ri->rp", apart, self._sums)
-        square = np.einsum("rpi,pi->rp", apart, self.features)
-        return self.noise * (mean + self.alpha * np.sqrt(np.maximum(square, 0.0)))
-
-    def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
-        """Add x xᵀ to A by the formula of Sherman and Morrison."""
-        seen = self.features[policies]
-        column = np.einsum("rij,rj->ri", self._inverse, seen)
-        size = 1 + np.einsum("ri,ri->r", column, seen)
-        self._inverse -= column[:, :, None] * (column / size[:, None])[:, None, :]
-        self._sums += seen * (rewards / self.noise)[:, None]

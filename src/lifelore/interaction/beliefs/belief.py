@@ -1,4 +1,4 @@
-"""Beliefs over types in log space: the prior, Bayes' rule for any number of users, entropy.
+"""Beliefs over types in log space: the prior, and Bayes' rule for any number of users.
 
     β'(τ) = F(σ | τ, π) β(τ) / Σ F(σ | τ', π) β(τ')                                            Eq. 4.1, 4.2
 
@@ -70,12 +70,7 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
     log_belief : (..., n_types) float
         Normalised logs; minus infinity allowed.
     log_likelihood : (..., n_types) float
-        log F(σ | τ, π); minus infinity allowed.
-
-    Raises
-    ------
-    InputError
-        A likelihood is NaN or infinite.
+        log F(σ | τ, π), below infinity; minus infinity allowed. Not checked here.
 
     Examples
     --------
@@ -90,45 +85,33 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
         best = np.where(np.isfinite(best), best, 0.0)
         log_likelihood = (log_likelihood - best).astype(log_belief.dtype)
     joint = log_belief + log_likelihood
-    top = np.maximum.reduce(joint, axis=-1, keepdims=True)
-    largest = abs(top.item()) if top.size == 1 else np.maximum.reduce(np.abs(top), axis=None)
-    if not largest <= FAR:
-        joint, top, more = _relative_to_possible(log_belief, log_likelihood)
-        best = more if best is None else best + more
-    log_evidence = np.log(np.add.reduce(np.exp(joint - top), axis=-1, keepdims=True))
-    log_evidence += top
-    joint -= log_evidence
-    return Updated(joint, (log_evidence if best is None else log_evidence + best)[..., 0])
+    log_evidence = log_sum(joint)
+    if (abs(log_evidence) if joint.ndim == 1 else np.abs(log_evidence).max(initial=0.0)) > FAR:
+        joint, more = _relative_to_possible(log_belief, log_likelihood)
+        log_evidence, best = log_sum(joint), more if best is None else best + more
+    joint -= log_evidence if joint.ndim == 1 else log_evidence[..., None]
+    return Updated(joint, log_evidence if best is None else log_evidence + best[..., 0])
 
 
-def _relative_to_possible(log_belief: Array, log_likelihood: Array) -> tuple[Array, Array, Array]:
-    """Sums of log beliefs and log likelihoods less the largest, that largest sum (0), and what was taken off.
+def _relative_to_possible(log_belief: Array, log_likelihood: Array) -> tuple[Array, Array]:
+    """Sums of log beliefs and log likelihoods less the largest likelihood of a possible type, and that likelihood.
 
-    Beside a large likelihood a belief would be rounded away. What is taken off is minus infinity where no type
-    explains the signal: the belief then stays.
+    Beside a large likelihood a belief would be rounded away. Where no type explains the signal the likelihood is
+    minus infinity, and the belief stays.
     """
-    if not (log_likelihood < np.inf).all():
-        raise InputError(
-            "log_likelihood must be numbers below infinity (minus infinity is allowed), got NaN or infinity"
-        )
     possible = log_belief > -np.inf
     best = np.where(possible, log_likelihood, -np.inf).max(axis=-1, keepdims=True)
     with np.errstate(invalid="ignore", over="ignore"):
         relative = np.where(possible & (best > -np.inf), log_likelihood - best, 0.0)
-    joint = log_belief + relative.astype(log_belief.dtype, copy=False)
-    top = joint.max(axis=-1, keepdims=True)
-    return joint - top, np.zeros_like(top), best + top
-
-
-def entropy(belief: ArrayLike) -> Array:
-    """Entropy in nats of beliefs (..., n_types), (...); 0 log 0 is 0."""
-    belief = np.asarray(belief, np.float64)
-    return -(belief * np.log(np.where(belief > 0, belief, 1.0))).sum(axis=-1)
+    return log_belief + relative.astype(log_belief.dtype, copy=False), best
 
 
 def log_sum(terms: Array) -> Array:
-    """log Σ exp over the last axis but one, (..., k, n_types) to (..., n_types); minus infinity where all are."""
-    top = terms.max(axis=-2, keepdims=True)
+    """log Σ exp over the last axis, (..., n) to (...); minus infinity where all terms are."""
+    if terms.ndim == 1:
+        # A single row in one call of NumPy, which is slow for many rows.
+        return np.logaddexp.reduce(terms)
+    top = np.maximum.reduce(terms, axis=-1, keepdims=True)
     top = np.where(top > -np.inf, top, 0.0)
     with np.errstate(divide="ignore"):
-        return (np.log(np.exp(terms - top).sum(axis=-2, keepdims=True)) + top)[..., 0, :]
+        return np.log(np.add.reduce(np.exp(terms - top), axis=-1)) + top[..., 0]

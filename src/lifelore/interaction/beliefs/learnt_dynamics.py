@@ -154,7 +154,10 @@ class LearntRows:
             weights = np.concatenate([(1 - WEIGHT_OF_TABLES) * weights, of_tables])
         rates = np.concatenate([HAZARDS, np.zeros(len(wanted))])
         stay = np.concatenate([1 - HAZARDS, np.zeros(len(wanted))])
-        self._rates, self._stay = rates.astype(dtype), stay.astype(dtype)[:, None]
+        # A row for each type: products of equal shapes are faster.
+        self._rates, self._stay = rates.astype(dtype), np.repeat(stay[:, None], n_types, axis=1).astype(dtype)
+        self._anew = self._rates[:, None] * self._prior
+        self._ones, self._ways = np.ones(n_types, dtype), np.ones(len(rates), dtype)
         self._categories: dict[Hashable, int] = {None: 0}
         for category in settings.categories:
             self._categories.setdefault(category, len(self._categories))
@@ -175,10 +178,11 @@ class LearntRows:
         outcome : hashable, or for many users a sequence of these, optional
             How the episode ended, such as ``"won"``.
         """
-        joint = self._joint(users, log_belief)
-        weights = np.add.reduce(joint, axis=-1)
+        joint = np.exp(log_belief)[..., None, :] * self.shares[users]
+        # Products with ones: sums over short axes are slow.
+        weights = joint @ self._ones
         after = joint * self._stay
-        after += (weights * self._rates)[..., None] * self._prior
+        after += weights[..., None] * self._anew
         moved: Any = 0.0
         if self.tables:
             category = self._category(outcome)
@@ -186,22 +190,22 @@ class LearntRows:
                 table.learn(users, joint[..., way, :] / np.maximum(weights[..., way, None], LEAST))
                 after[..., way, :], stayed = table.step(users, joint[..., way, :], category)
                 moved = moved + after[..., way, :] - stayed
-        total = np.maximum(np.add.reduce(after, axis=-2), LEAST)
+        total = np.maximum(self._ways @ after, LEAST)
         after /= total[..., None, :]
         self.shares[users] = after
         if self.tables:
             self.moved[users] = moved / total
-        return np.log(total / np.add.reduce(total, axis=-1, keepdims=True))
+        return np.log(total)
 
     def changed_share(self, log_belief: Array, users: Any) -> Array:
         """P(the type was another | it is now this type) after a `step`, (..., n_types)."""
-        joint, rates = self._joint(users, log_belief), self._rates[:, None]
-        weights = joint.sum(axis=-1, keepdims=True)
+        joint = self._joint(users, log_belief)
+        weights = (joint @ self._ones)[..., None]
         # Of the types drawn anew, those that were the same type before have not changed.
-        before = (joint - weights * rates * self._prior) / np.maximum(self._stay, LEAST)
-        others = (rates * (weights - before)).sum(axis=-2) * self._prior
+        before = (joint - weights * self._anew) / np.maximum(self._stay, LEAST)
+        others = self._rates @ (weights - before) * self._prior
         share = others / np.maximum(np.exp(log_belief), LEAST)
-        return np.clip(share + self.moved[users] if self.tables else share, 0.0, 1.0)
+        return np.minimum(np.maximum(share + self.moved[users] if self.tables else share, 0.0), 1.0)
 
     def _joint(self, users: Any, log_belief: Array) -> Array:
         """p(way, type), (..., n_ways, n_types)."""
@@ -210,7 +214,7 @@ class LearntRows:
     def learnt(self, user: int, log_belief: Array) -> LearntDynamics:
         """Settings that start from what a user has shown."""
         learnt = {name: table.counts[user].copy() for name, table in self.tables.items()}
-        weights = self._joint(user, log_belief).sum(axis=-1)
+        weights = self._joint(user, log_belief) @ self._ones
         return LearntDynamics(self.settings.by, {"weights": weights, **learnt}, list(self._categories)[1:])
 
     # ---- rows ----------------------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import SUM_TOLERANCE, log_prior, log_sum
+from lifelore.interaction.beliefs.belief import SUM_TOLERANCE, log_prior
 
 if TYPE_CHECKING:
     from lifelore.interaction.beliefs.learnt_dynamics import By, LearntDynamics
@@ -192,7 +192,10 @@ class TypeDynamics:
         n_types = len(log_law)
         rows = log_belief.reshape(-1, n_types)
         block = max(1, ROWS_AT_ONCE // n_types**2)
-        moved = [log_sum(rows[at : at + block, :, None] + log_law) for at in range(0, len(rows), block)]
+        moved = [
+            np.logaddexp.reduce(rows[at : at + block, :, None] + log_law, axis=-2)
+            for at in range(0, len(rows), block)
+        ]
         return np.concatenate(moved).reshape(log_belief.shape)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.core.metrics import entropy
 
 Array = NDArray[np.float64]
 
@@ -74,7 +75,7 @@ class SignalTable:
     @cached_property
     def conditional_entropy(self) -> Array:
         """H(signal | type, policy) in nats, (n_types, n_policies) or (k, n_types, n_policies); computed once."""
-        return entropy_of_signals(self.probs)
+        return entropy(self.probs)
 
     def part(self, rows: Any, policies: Any) -> "SignalTable":
         """The table of some users and policies.
@@ -106,14 +107,8 @@ class SignalTable:
         table, (rows, policies) = object.__new__(SignalTable), at
         n = shape[0] if shape else 1
         whole = np.repeat(self.probs[None], n, axis=0)
-        entropy = np.repeat(self.conditional_entropy[None], n, axis=0)
-        whole[rows, :, policies], entropy[rows, :, policies] = probs, entropy_of_signals(probs)
+        known = np.repeat(self.conditional_entropy[None], n, axis=0)
+        whole[rows, :, policies], known[rows, :, policies] = probs, entropy(probs)
         table.probs = whole.reshape(*shape, *self.probs.shape)
-        table.conditional_entropy = entropy.reshape(*shape, *self.conditional_entropy.shape)
+        table.conditional_entropy = known.reshape(*shape, *self.conditional_entropy.shape)
         return table
-
-
-def entropy_of_signals(probs: Array) -> Array:
-    """Entropy in nats of distributions (..., n_signals), (...); 0 log 0 is 0."""
-    # With any finite number in place of the logarithm of 0.
-    return 0.0 - np.vecdot(probs, np.log(np.maximum(probs, 1e-300)))

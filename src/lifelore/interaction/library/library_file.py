@@ -18,7 +18,6 @@ from lifelore.core.protocols import SignalModel
 from lifelore.interaction.outcomes.outcome_kinds import STORED as OUTCOMES
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.joint_signal import JointSignal
-from lifelore.interaction.signals.ordered_normal_signal import OrderedNormalSignal
 from lifelore.interaction.signals.return_signal import ReturnSignal
 from lifelore.interaction.signals.reward_signal import RewardSignal
 from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
@@ -33,7 +32,6 @@ SIGNALS: dict[str, Any] = {
     for kind in (
         ReturnSignal,
         CategorySignal,
-        OrderedNormalSignal,
         RewardSignal,
         TransitionSignal,
         StepRewardSignal,
@@ -41,6 +39,8 @@ SIGNALS: dict[str, Any] = {
     )
 }
 """The signal models that a file can hold, by name."""
+EARLIER = {"ordered-normal": CategorySignal}
+"""Signal models of earlier files, and the models that they have become."""
 DEEPEST = 8
 """Largest depth of signals within signals in a file."""
 
@@ -120,7 +120,7 @@ def _unpacked(
         )
     if depth > DEEPEST:
         raise ValueError("signals within signals go too deep")
-    model = OUTCOMES[kind] if kind in OUTCOMES else SIGNALS[kind]
+    model = (OUTCOMES | SIGNALS | EARLIER)[kind]
     if not hasattr(model, "inner"):
         return model.from_arrays(_under(name, arrays))
     parts = [

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from lifelore.interaction.finite_signals.signal_bins import joined, joined_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.cells import Cells
-from lifelore.interaction.outcomes.law import Numbers, PolicyLaw, filled
+from lifelore.interaction.outcomes.law import Law, Numbers, filled
 from lifelore.interaction.outcomes.log_probability import log_of
 from lifelore.interaction.outcomes.prediction import CountedPrediction
 from lifelore.interaction.outcomes.special_functions import gammaln
@@ -24,7 +24,7 @@ from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likelie
 Array = NDArray[Any]
 
 
-class CountedLaw(PolicyLaw):
+class CountedLaw(Law):
     """P(cell | type, policy) given what each user has shown.
 
     Parameters
@@ -55,7 +55,7 @@ class CountedLaw(PolicyLaw):
     ) -> None:
         self.spread, self.dtype, self._place = spread, np.dtype(dtype), place
         self.n_types, self.n_policies, self.n_cells = counts.shape
-        self.shape, self.words = counts.shape[1:], f"{self.n_cells} counts"
+        self.shape = counts.shape[1:]
         totals = counts.sum(axis=2)
         self.probs = counts / totals[:, :, None]
         self._log_sizes = np.zeros(self.n_cells) if log_sizes is None else log_sizes
@@ -88,10 +88,6 @@ class CountedLaw(PolicyLaw):
         """Add cells of distinct users."""
         shown[users, policies, signals] += np.asarray(signals) >= 0
 
-    def tried(self, shown: Array) -> Any:
-        """Whether each row of counts (..., n_cells) has one, (...)."""
-        return shown.any(axis=-1)
-
     # ---- what rules read -----------------------------------------------------------------------------------
 
     def predicted(
@@ -107,7 +103,7 @@ class CountedLaw(PolicyLaw):
         total : (m, n_spreads, n_types) float, signals behind the probabilities
         """
         own = shown[np.atleast_1d(users)]
-        rows, policies = np.nonzero(self.tried(own))
+        rows, policies = np.nonzero(own.any(axis=-1))
         counts, weight = own[rows, policies], self.weight[policies]
         total = weight + counts.sum(axis=-1)[:, None, None]
         prior = weight[..., None] * self._share[policies].transpose(0, 2, 1)[:, None]

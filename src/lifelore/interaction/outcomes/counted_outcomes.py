@@ -131,7 +131,7 @@ class CountedOutcomes(CountedPrediction):
         `state` is what its law gives of them, see `Law.state`.
         """
         check_known("type", type_, self.n_types)
-        self.counts[type_, state["policies"]] += state["shown"]
+        self.counts[type_, state["places"][:, 0]] += state["shown"]
         self._prepare()
 
     def with_type(self, samples: ArrayLike) -> Self:

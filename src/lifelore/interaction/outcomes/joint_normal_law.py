@@ -11,16 +11,17 @@ depends on their number. K has no singular value below 1: Σ may be singular. Th
 process regression over policies (Rasmussen and Williams 2006, §2.2).
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import informative_cuts, normal_probs
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.outcomes.law import Numbers, PolicyLaw
+from lifelore.interaction.outcomes.law import Law, Numbers
 from lifelore.interaction.outcomes.outcome_model import finite_outcomes
 from lifelore.interaction.outcomes.prediction import NormalPrediction
 from lifelore.interaction.outcomes.spread import Spread
@@ -63,7 +64,7 @@ class Tried(NamedTuple):
         return self.inverse @ (self.root[:, :, None] * covariance[self.places[:, :, None], policies[:, None, :]])
 
 
-class JointNormalLaw(PolicyLaw):
+class JointNormalLaw(Law):
     """P(number | type, policy) given what each user has shown.
 
     Parameters
@@ -76,7 +77,7 @@ class JointNormalLaw(PolicyLaw):
         Precision of the statistics and of the likelihoods.
     """
 
-    words, amounts = "(count, mean)", 0
+    amounts = 0
 
     def __init__(self, mean: Array, covariance: Array, deviation: Array, dtype: str = "f8") -> None:
         self.spread, self.dtype = Spread.known(0.0), np.dtype(dtype)
@@ -157,17 +158,11 @@ class JointNormalLaw(PolicyLaw):
         found = JointNormalRows(self, shown, users)
         return SignalTable(normal_probs(found.mean, found.deviation, self._bins[n_bins]))
 
-    # ---- a single user's statistics as small arrays ----------------------------------------------------------
-
-    def in_signal_units(self, policies: Array, rows: Array) -> Array:
-        """Number and mean (m, 2) in units of outcomes."""
-        number, total = rows.T
-        return np.stack([number, self.middle[policies] + self.unit[policies] * total / number], axis=-1)
-
-    def kept(self, policies: Array, rows: Array) -> Array:
-        """Rows in units of signals as the law keeps them."""
-        number, mean = rows.T
-        return np.stack([number, number * (mean - self.middle[policies]) / self.unit[policies]], axis=-1)
+    def restore(self, shown: Array, user: int, state: Mapping[str, Array]) -> None:
+        """Take over a `state`; InputError where it is of another law."""
+        if "policies" in state:
+            raise InputError("this state has means in place of sums, as before version 4; begin a new session")
+        super().restore(shown, user, state)
 
 
 class JointNormalRows(NormalPrediction):

@@ -42,6 +42,8 @@ class Law:
         Whether users' signals change the law.
     single : bool
         Whether a signal is a single number once it is checked, so that there must be one for each user.
+    amounts : index
+        The numbers of a row of statistics that are at least 0.
     """
 
     n_types: int
@@ -49,6 +51,7 @@ class Law:
     shape: tuple[int, ...]
     dtype: Any = np.dtype("f8")
     learns, single = True, True
+    amounts: Any = slice(None)
 
     def checked(self, signals: Any) -> Any:
         """The signals (k,) as the other methods take them; InputError where the law cannot have made one."""
@@ -76,54 +79,22 @@ class Law:
         shown[users] *= np.asarray(keep, self.dtype)[(..., *[None] * len(self.shape))]
 
     def state(self, shown: Array, user: int) -> dict[str, Array]:
-        """What a single user has shown, as small arrays that do not depend on the law's precision."""
-        raise NotImplementedError
+        """What a single user has shown: ``places`` (m, k) of the rows that are not 0; ``shown`` (m, n_numbers)."""
+        places = np.argwhere(shown[user].any(axis=-1))
+        return {"places": places, "shown": shown[user][tuple(places.T)]}
 
     def restore(self, shown: Array, user: int, state: Mapping[str, Array]) -> None:
         """Take over a `state`; InputError where it is of another law."""
-        raise NotImplementedError
-
-
-class PolicyLaw(Law):
-    """Base of laws with a row of numbers for each policy, (n_policies, n_numbers).
-
-    Attributes
-    ----------
-    words : str
-        A row in words.
-    amounts : index
-        The numbers of a row that are at least 0.
-    """
-
-    words: str
-    amounts: Any = slice(None)
-
-    def tried(self, shown: Array) -> Any:
-        """Whether each row (..., n_numbers) has shown something, (...)."""
-        return shown[..., 0] != 0
-
-    def in_signal_units(self, policies: Array, rows: Array) -> Array:
-        """Rows (m, n_numbers) of `policies` in units of signals; `kept` is the way back."""
-        return rows
-
-    def kept(self, policies: Array, rows: Array) -> Array:
-        """Rows in units of signals as the law keeps them."""
-        return rows
-
-    def state(self, shown: Array, user: int) -> dict[str, Array]:
-        """``policies`` (m,) and ``shown`` (m, n_numbers), a row of each."""
-        policies = np.flatnonzero(self.tried(shown[user]))
-        rows = self.in_signal_units(policies, shown[user, policies].astype(np.float64))
-        return {"policies": policies, "shown": rows}
-
-    def restore(self, shown: Array, user: int, state: Mapping[str, Array]) -> None:
-        """Take over a `state`; InputError where it is of another law."""
-        policies, rows = np.asarray(state["policies"], np.int64), np.asarray(state["shown"], np.float64)
-        good = rows.shape == (len(policies), self.shape[1]) and np.isfinite(rows).all()
-        if not good or (rows[:, self.amounts] < 0).any() or not np.isin(policies, range(self.shape[0])).all():
-            raise InputError(f"a user's state must have policies and {self.words} of each")
+        # Sessions before version 4 have numbers of policies.
+        places = np.asarray(state["places"] if "places" in state else np.reshape(state["policies"], (-1, 1)))
+        rows, (*limits, n_numbers) = np.asarray(state["shown"], np.float64), self.shape
+        good = places.shape == (len(rows), len(limits)) and rows.shape[1:] == (n_numbers,)
+        if not (good and np.isfinite(rows).all() and (rows[:, self.amounts] >= 0).all()):
+            raise InputError(f"a user's state must have rows of {n_numbers} numbers, finite, amounts at least 0")
+        if not ((places >= 0) & (places < limits)).all():
+            raise InputError(f"a user's state must have places below {tuple(limits)}")
         shown[user] = 0
-        shown[user, policies] = self.kept(policies, rows)
+        shown[user][tuple(places.T)] = rows
 
 
 def filled(
@@ -166,18 +137,12 @@ class FixedLaw(Law):
         check: Callable[[Any], Any] | None = None,
     ) -> None:
         self.model, self.n_types, self.spread = model, n_types, Spread.known(0.0)
-        self._many, self._check, self.single = log_likelihoods, check, check is not None
+        self.single = check is not None
+        # The model's own functions, so that a signal passes through no others.
+        self.checked: Any = check or super().checked
+        self.log_likelihoods: Callable[..., Array] = log_likelihoods or self._one_by_one
 
-    def checked(self, signals: Any) -> Any:
-        """The signals as the model takes them."""
-        return signals if self._check is None else self._check(signals)
-
-    def log_likelihoods(
-        self, policies: Numbers, signals: Any, shown: Array | None = None, users: Numbers = None
-    ) -> Array:
-        """The model's own log likelihoods, (..., n_types): there are no spreads."""
-        if self._many is not None:
-            return self._many(policies, signals)
+    def _one_by_one(self, policies: Numbers, signals: Any) -> Array:
         if np.ndim(policies) == 0:
             return self._one(policies, signals)
         return np.array([self._one(*pair) for pair in zip(policies.tolist(), signals, strict=True)])
@@ -189,6 +154,11 @@ class FixedLaw(Law):
             raise InputError(
                 f"signal model {type(self.model).__name__} must give ({self.n_types},) log likelihoods, gave "
                 f"{found.shape}"
+            )
+        if not (found < np.inf).all():
+            raise InputError(
+                f"signal model {type(self.model).__name__} gave NaN or infinity as a log likelihood; "
+                "minus infinity is allowed, they are not"
             )
         return found
 

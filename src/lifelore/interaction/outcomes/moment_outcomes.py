@@ -145,7 +145,7 @@ class MomentOutcomes(NormalPrediction):
         `state` is what its law gives of them, see `Law.state`.
         """
         check_known("type", type_, self.n_types)
-        for policy, (count, mean, squares) in zip(state["policies"], state["shown"], strict=True):
+        for (policy,), (count, mean, squares) in zip(state["places"], state["shown"], strict=True):
             if count > 0:
                 self.moments.absorb(type_, policy, count, mean, squares)
         self._prepare()

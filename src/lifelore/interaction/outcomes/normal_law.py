@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.interaction.finite_signals.signal_bins import normal_probs, normal_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.outcomes.law import Numbers, PolicyLaw, filled
+from lifelore.interaction.outcomes.law import Law, Numbers, filled
 from lifelore.interaction.outcomes.outcome_model import finite_outcomes
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
 from lifelore.interaction.outcomes.prediction import NormalPrediction, over_pairs
@@ -57,7 +57,7 @@ class Posterior(NamedTuple):
     freedom: Array
 
 
-class NormalLaw(PolicyLaw):
+class NormalLaw(Law):
     """P(number | type, policy) given what each user has shown, Student's t.
 
     Parameters
@@ -70,7 +70,7 @@ class NormalLaw(PolicyLaw):
         types' means, at most `FARTHEST`.
     """
 
-    words, amounts = "(count, mean, squares)", [0, 2]
+    amounts = slice(None, None, 2)
 
     def __init__(self, moments: OutcomeMoments, spread: Spread, dtype: str = "f8") -> None:
         self.spread, self.dtype = spread, np.dtype(dtype)
@@ -147,8 +147,11 @@ class NormalLaw(PolicyLaw):
         """Add outcomes of distinct users (Welford's update)."""
         n, mean, squares = _parts(shown[users, policies])
         before = self._scaled(policies, signals) - mean
-        after = n + 1, mean + before / (n + 1), squares + before * before * (n / (n + 1))
-        shown[users, policies] = np.stack(after, axis=-1)
+        after = n + 1
+        # The mean and the squares first: of a single user `n` is a view.
+        shown[users, policies, 2] = squares + before * before * (n / after)
+        shown[users, policies, 1] = mean + before / after
+        shown[users, policies, 0] = after
 
     def fade(self, shown: Array, users: Numbers, keep: ArrayLike) -> None:
         """Let what distinct `users` have shown count `keep` (...) of what it did."""
@@ -170,20 +173,6 @@ class NormalLaw(PolicyLaw):
         rows = NormalRows(self, shown, users, log_weights)
         at, mean, deviation = rows.tried_pairs()
         return table.replaced(np.shape(users), at, normal_probs(mean, deviation, cuts[at[1]][:, None]))
-
-    # ---- a single user's statistics as small arrays ----------------------------------------------------------
-
-    def in_signal_units(self, policies: Array, rows: Array) -> Array:
-        """Number, mean and sum of squares (m, 3) in units of outcomes."""
-        n, mean, squares = _parts(rows)
-        unit, middle = self.unit[policies], self.middle[policies]
-        return np.stack([n, middle + unit * mean, unit**2 * squares], axis=-1)
-
-    def kept(self, policies: Array, rows: Array) -> Array:
-        """Rows in units of signals as the law keeps them."""
-        n, mean, squares = _parts(rows)
-        unit, middle = self.unit[policies], self.middle[policies]
-        return np.stack([n, (mean - middle) / unit, squares / unit**2], axis=-1)
 
     def _scaled(self, policies: Numbers, signals: Any) -> Array:
         if self.dtype != np.float32:

@@ -222,9 +222,10 @@ class BayesianPolicyReuse:
         """
         index = self.library.index_of_policy(policy)
         log_likelihood, log_evidence = self.algorithm.observe(0, index, signal, outcome)
-        self._evidence.append(Evidence(index, log_likelihood, float(log_evidence)))
-        self.surprise += self._evidence[-1].surprise
-        self.unexplained += bool(log_evidence == -np.inf)
+        evidence = Evidence(index, log_likelihood, float(log_evidence))
+        self._evidence.append(evidence)
+        self.surprise += evidence.surprise
+        self.unexplained += evidence.log_evidence == -np.inf
         if self.novelty is not None:
             self.novelty.observe(index, signal)
 

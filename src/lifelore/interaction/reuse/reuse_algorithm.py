@@ -117,6 +117,7 @@ class ReuseAlgorithm:
         self._models = {name: UserModel(law, n_users) for name, law in laws.items()}
         self.signals = self._models["signal"]
         self.outcomes = self._models.get("outcomes", self.signals)
+        self._learns = self.signals.law.learns or self.outcomes.law.learns
 
     def new_rows(self, n_users: int = 1) -> Self:
         """Another algorithm with the same laws and dynamics, whose `n_users` users have the prior."""
@@ -150,7 +151,7 @@ class ReuseAlgorithm:
 
     def known(self, users: Numbers) -> Any:
         """The library as rules read it for `users`, given what they have shown."""
-        if not (self.signals.law.learns or self.outcomes.law.learns):
+        if not self._learns:
             return self.library
         return UserLibrary(self.library, self.signals, self.outcomes, users)
 
@@ -219,32 +220,31 @@ class ReuseAlgorithm:
         InputError
             The model cannot have made a signal, or gave NaN or infinity. All stays as it was.
         """
-        before, signals = self.log_belief[users], self.signals.law.checked(signals)
+        law, before = self.signals.law, self.log_belief[users]
+        signals = law.checked(signals)
         outcomes = None if outcomes is None else self.outcomes.law.checked(outcomes)
-        if self.signals.law.single and not isinstance(signals, float) and np.shape(signals) != np.shape(users):
+        if law.single and not isinstance(signals, float) and np.shape(signals) != np.shape(users):
             raise InputError(f"there must be a signal for each user {np.shape(users)}, got {np.shape(signals)}")
-        found = self.signals.evidence(users, policies, signals, before, self._changed(users, before))
-        try:
-            after, log_evidence = update(before, found.log_likelihood)
-        except InputError:
-            raise InputError(
-                f"signal model {type(self.library.signal).__name__} gave NaN or infinity as a log likelihood; "
-                "minus infinity is allowed, they are not"
-            ) from None
-        if self.signals.law.learns:
+        if law.learns:
+            changed = self._changed(users, before)
+            log_likelihood, changed, gain = self.signals.evidence(users, policies, signals, before, changed)
+        else:
+            log_likelihood, changed, gain = law.log_likelihoods(policies, signals), None, None
+        after, log_evidence = update(before, log_likelihood)
+        if law.learns:
             explained = log_evidence > -np.inf
-            if found.changed is not None:
-                changes = np.where(explained, (np.exp(after) * found.changed).sum(axis=-1), 0.0)
+            if changed is not None:
+                changes = np.where(explained, (np.exp(after) * changed).sum(axis=-1), 0.0)
                 for model in self._models.values():
                     model.fade(users, 1 - np.minimum(changes, 1.0))
             if explained.any():
-                self.signals.learn(*_explained(explained, users, policies, signals, found.gain))
+                self.signals.learn(*_explained(explained, users, policies, signals, gain))
         if outcomes is not None and self.outcomes is not self.signals and self.outcomes.law.learns:
             self._learn_outcomes(users, policies, outcomes, before)
         self.log_belief[users] = after
         if self.dynamics.moves:
             self._begun[users] = False
-        return Observed(found.log_likelihood, log_evidence)
+        return Observed(log_likelihood, log_evidence)
 
     def end_episode(self, users: Numbers, outcome: Any = None) -> None:
         """Take the dynamics' step for `users`; dynamics that learn read by `outcome` how the episodes ended."""
@@ -335,9 +335,7 @@ class ReuseAlgorithm:
         return self.log_belief.nbytes + self._begun.nbytes + self.changes.nbytes + statistics
 
     def _changed(self, users: Numbers, log_belief: Array) -> Array | None:
-        """P(the type has just changed to this), (..., n_types); None where it cannot have, or no law learns."""
-        if not self.signals.law.learns:
-            return None
+        """P(the type has just changed to this), (..., n_types); None where it cannot have."""
         begun = self._begun[users]
         share = self.changes.changed_share(log_belief, users) if begun.any() else None
         return None if share is None else share * begun[..., None]

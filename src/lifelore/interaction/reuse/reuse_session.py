@@ -31,7 +31,7 @@ from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.reuse.reuse_algorithm import Dynamics, named_part
 from lifelore.interaction.selection import RULES, restored_rule
 
-FORMAT = PackedFormat("lifelore policy reuse session", 3, "session", "save_session", oldest=1)
+FORMAT = PackedFormat("lifelore policy reuse session", 4, "session", "save_session", oldest=1)
 GENERATORS = ("PCG64", "PCG64DXSM", "Philox", "SFC64", "MT19937")
 """Bit generators of NumPy that a file may name."""
 

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import log_sum
 from lifelore.interaction.outcomes.law import Law, Numbers
 
 Array = NDArray[Any]
@@ -64,7 +63,7 @@ class UserModel:
     def evidence(
         self, users: Numbers, policies: Numbers, signals: Any, log_belief: Array, changed: Array | None
     ) -> Evidence:
-        """The evidence of checked signals (...) of `users` (...), before they are learnt.
+        """The evidence of checked signals (...) of `users` (...) under a law that learns, before they are learnt.
 
         Parameters
         ----------
@@ -74,21 +73,21 @@ class UserModel:
             w, as `TypeDynamics.changed_share` gives it.
         """
         law = self.law
-        if not law.learns:
-            return Evidence(law.log_likelihoods(policies, signals), None, None)
         found = law.log_likelihoods(policies, signals, self.shown, users)
         if found.shape[-2] == 1:
             stayed, gain = found, None
         else:
-            gain = _gain(found, np.exp(log_belief))
+            gain = np.logaddexp.reduce(found + log_belief[..., None, :], axis=-1)
             stayed = found + self.log_weights[users][..., None].astype(found.dtype, copy=False)
+        stayed = _over_spreads(stayed)
         if changed is None:
-            return Evidence(stayed[..., 0, :] if gain is None else log_sum(stayed), None, gain)
-        anew = law.log_likelihoods(policies, signals) + self._log_first[:, None].astype(found.dtype, copy=False)
-        top = np.maximum(stayed.max(axis=-2), np.where(changed > 0, anew.max(axis=-2), -np.inf))
+            return Evidence(stayed, None, gain)
+        first = law.log_likelihoods(policies, signals) + self._log_first[:, None].astype(found.dtype, copy=False)
+        anew = _over_spreads(first)
+        top = np.maximum(stayed, np.where(changed > 0, anew, -np.inf))
         top = np.where(top > -np.inf, top, 0.0)
-        new = changed * np.exp(anew - top[..., None, :]).sum(axis=-2)
-        whole = (1 - changed) * np.exp(stayed - top[..., None, :]).sum(axis=-2) + new
+        new = changed * np.exp(anew - top)
+        whole = (1 - changed) * np.exp(stayed - top) + new
         with np.errstate(divide="ignore"):
             return Evidence(np.log(whole) + top, new / np.maximum(whole, LEAST), gain)
 
@@ -97,6 +96,8 @@ class UserModel:
         if not self.law.learns:
             return
         self.law.fade(self.shown, users, keep)
+        if self._log_first.size == 1:
+            return
         share = np.asarray(keep)[..., None]
         with np.errstate(divide="ignore"):
             weights = share * np.exp(self.log_weights[users]) + (1 - share) * np.exp(self._log_first)
@@ -106,7 +107,7 @@ class UserModel:
         """Take in signals of distinct users; `gain` as in their `Evidence`."""
         if gain is not None:
             found = self.log_weights[users] + gain
-            total = log_sum(found[..., None])
+            total = np.logaddexp.reduce(found, axis=-1, keepdims=True)
             self.log_weights[users] = np.where(total > -np.inf, found - total, self.log_weights[users])
         self.law.learn(self.shown, users, policies, signals)
 
@@ -140,9 +141,6 @@ class UserModel:
         self.log_weights[user] = log_weights
 
 
-def _gain(by_spread: Array, belief: Array) -> Array:
-    """Log likelihoods of the spreads up to a constant, (..., n_spreads), given the belief before the signal."""
-    top = by_spread.max(axis=(-1, -2), keepdims=True)
-    top = np.where(top > -np.inf, top, 0.0)
-    with np.errstate(divide="ignore"):
-        return np.log((np.exp(by_spread - top) * belief[..., None, :]).sum(axis=-1))
+def _over_spreads(terms: Array) -> Array:
+    """log Σ exp over the spreads, (..., n_spreads, n_types) to (..., n_types)."""
+    return terms[..., 0, :] if terms.shape[-2] == 1 else np.logaddexp.reduce(terms, axis=-2)

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import entropy
+from lifelore.core.metrics import entropy
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.prediction import range_of_means
 from lifelore.interaction.selection.information import mutual_information, predicted_signals

@@ -66,7 +66,7 @@ def choose(scores: ArrayLike, generator: np.random.Generator) -> Any:
     best = _best(scores)
     if best.ndim == 1:
         (best,) = best.nonzero()
-        return int(best[0]) if len(best) == 1 else int(best[int(generator.random() * len(best))])
+        return best.item() if best.size == 1 else best[int(generator.random() * best.size)].item()
     chosen = best.argmax(axis=-1)
     if np.count_nonzero(best) > chosen.size:
         number = best.sum(axis=-1)

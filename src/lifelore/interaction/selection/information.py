@@ -7,7 +7,8 @@ thesis (§4.5.2.2) prints another expression; see the errata.
 
 import numpy as np
 
-from lifelore.interaction.finite_signals.signal_table import SignalTable, entropy_of_signals
+from lifelore.core.metrics import entropy
+from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.prediction import weighted
 from lifelore.interaction.selection.rule import Array
 from lifelore.interaction.selection.support import truncated
@@ -26,7 +27,7 @@ def mutual_information(belief: Array, table: SignalTable, mass: float = 1.0) -> 
     belief = truncated(belief, mass)
     noise = weighted(belief, table.conditional_entropy)
     # Only rounding makes the difference negative.
-    return np.maximum(entropy_of_signals(predicted_signals(belief, table)) - noise, 0.0)
+    return np.maximum(entropy(predicted_signals(belief, table)) - noise, 0.0)
 
 
 def predicted_signals(belief: Array, table: SignalTable) -> Array:

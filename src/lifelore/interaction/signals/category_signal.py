@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.finite_signals.signal_bins import joined_table
+from lifelore.interaction.finite_signals.signal_bins import joined_table, normal_probs
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.counted_law import CountedLaw, spread_of_counts
 from lifelore.interaction.outcomes.law import FixedLaw, Models
@@ -24,8 +24,8 @@ from lifelore.interaction.outcomes.spread import Spread
 Array = NDArray[np.float64]
 
 
-class CategoryModel:
-    """Base of `CategorySignal` and `OrderedNormalSignal`: P(category | type, policy).
+class CategorySignal:
+    """P(category | type, policy) from counts, or exact.
 
     Parameters
     ----------
@@ -33,92 +33,6 @@ class CategoryModel:
         Rows over categories sum to 1; zeros are allowed.
     categories : sequence of hashable, optional
         Names of the categories; signals are then names. By default signals are 0 … n_categories - 1.
-
-    Raises
-    ------
-    InputError
-        A row is no distribution, or there are too few names or equal names.
-
-    Examples
-    --------
-    >>> near = CategoryModel([[[0.9, 0.1], [0.2, 0.8]], [[0.5, 0.5], [0.5, 0.5]]], ["near", "far"])
-    >>> np.exp(near.log_likelihood(0, "near")).round(2).tolist()
-    [0.9, 0.5]
-    """
-
-    def __init__(self, probs: ArrayLike, categories: Sequence[Hashable] | None = None) -> None:
-        self.probs: Array = checked_distributions(probs, "probs", ("n_types", "n_policies", "n_categories"))
-        self.n_types, self.n_policies, self.n_categories = self.probs.shape
-        self.categories = None if categories is None else tuple(categories)
-        names = range(self.n_categories) if self.categories is None else self.categories
-        self._place = {name: place for place, name in enumerate(names)}
-        if not len(names) == len(self._place) == self.n_categories:
-            raise InputError(f"categories must be {self.n_categories} distinct names, got {len(names)}")
-        # Policy and category first: an update reads a row.
-        self._log = log_of(np.ascontiguousarray(self.probs.transpose(1, 2, 0)))
-        self._log.flags.writeable = False
-
-    def log_likelihood(self, policy: int, signal: Hashable) -> Array:
-        """Log probability of the category per type, (n_types,); read only.
-
-        Raises
-        ------
-        InputError
-            There is no such category.
-        NotFoundError
-            There is no such policy.
-        """
-        check_known("policy", policy, self.n_policies)
-        return self._log[policy, self._place_of(signal)]
-
-    def log_likelihoods(self, policies: Any, signals: Any) -> Array:
-        """Log probabilities of many category numbers, (...) and (...) to (..., n_types); without checks."""
-        return self._log[policies, signals]
-
-    def places_of(self, signals: Any) -> Any:
-        """The numbers of a category, or of categories (k,); InputError where there is no such category."""
-        if isinstance(signals, np.ndarray) and self.categories is None and signals.dtype.kind in "iu":
-            if signals.size and not 0 <= signals.min() <= signals.max() < self.n_categories:
-                raise InputError(f"signals must be category numbers 0 to {self.n_categories - 1}")
-            return signals.astype(np.int64, copy=False)
-        if isinstance(signals, list) or (isinstance(signals, np.ndarray) and signals.ndim):
-            return np.array([self._place_of(signal) for signal in signals], np.int64)
-        return self._place_of(signals)
-
-    def law(self, models: Models = "uncertain", *, spread: Spread | None = None, dtype: str = "f8") -> Any:
-        """The fixed law of the categories: what users show does not change them."""
-        return FixedLaw(self, self.n_types, self.log_likelihoods, self.places_of)
-
-    def table(self, n_bins: int = 8) -> SignalTable:
-        """All categories where they are at most `n_bins`; otherwise neighbours are joined, as for outcomes."""
-        return joined_table(self.probs, n_bins)[1]
-
-    def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
-        """Random category numbers of a pair."""
-        return generator.choice(self.n_categories, size, p=self.probs[type_, policy])
-
-    def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """As JSON, the names of the categories."""
-        try:
-            names = json.dumps(self.categories)
-        except TypeError:
-            raise InputError("categories must be texts or numbers to be saved") from None
-        return {"categories": np.frombuffer(names.encode(), np.uint8)}
-
-    def _place_of(self, signal: Any) -> int:
-        try:
-            return self._place[signal]
-        except (KeyError, TypeError):
-            raise InputError(f"signal must be one of {list(self._place)[:20]}, got {signal!r}") from None
-
-
-class CategorySignal(CategoryModel):
-    """P(category | type, policy) from counts, or exact.
-
-    Parameters
-    ----------
-    probs, categories
-        As of `CategoryModel`.
     count : float or (n_types, n_policies) float, optional
         Number of signals behind each row, pseudo-counts included; without it rows are exact.
 
@@ -139,9 +53,18 @@ class CategorySignal(CategoryModel):
     def __init__(
         self, probs: ArrayLike, categories: Sequence[Hashable] | None = None, count: ArrayLike | None = None
     ) -> None:
-        super().__init__(probs, categories)
+        self.probs: Array = checked_distributions(probs, "probs", ("n_types", "n_policies", "n_categories"))
+        self.n_types, self.n_policies, self.n_categories = self.probs.shape
+        self.categories = None if categories is None else tuple(categories)
+        names = range(self.n_categories) if self.categories is None else self.categories
+        self._place = {name: place for place, name in enumerate(names)}
+        if not len(names) == len(self._place) == self.n_categories:
+            raise InputError(f"categories must be {self.n_categories} distinct names, got {len(names)}")
         self.totals = None if count is None else checked_counts(count, self.probs.shape[:2])
         self._spread: Spread | None = None
+        # Policy and category first: an update reads a row.
+        self._log = log_of(np.ascontiguousarray(self.probs.transpose(1, 2, 0)))
+        self._log.flags.writeable = False
 
     @classmethod
     def from_samples(
@@ -171,14 +94,49 @@ class CategorySignal(CategoryModel):
         totals = counts.sum(axis=2)
         return cls(counts / totals[:, :, None], categories, totals)
 
+    def log_likelihood(self, policy: int, signal: Hashable) -> Array:
+        """Log probability of the category per type, (n_types,); read only.
+
+        Raises
+        ------
+        InputError
+            There is no such category.
+        NotFoundError
+            There is no such policy.
+        """
+        check_known("policy", policy, self.n_policies)
+        return self._log[policy, self._place_of(signal)]
+
+    def log_likelihoods(self, policies: Any, signals: Any) -> Array:
+        """Log probabilities of many category numbers, (...) and (...) to (..., n_types); without checks."""
+        return self._log[policies, signals]
+
+    def places_of(self, signals: Any) -> Any:
+        """The numbers of a category, or of categories (k,); InputError where there is no such category."""
+        if isinstance(signals, np.ndarray) and self.categories is None and signals.dtype.kind in "iu":
+            if signals.size and not 0 <= signals.min() <= signals.max() < self.n_categories:
+                raise InputError(f"signals must be category numbers 0 to {self.n_categories - 1}")
+            return signals.astype(np.int64, copy=False)
+        if isinstance(signals, list) or (isinstance(signals, np.ndarray) and signals.ndim):
+            return np.array([self._place_of(signal) for signal in signals], np.int64)
+        return self._place_of(signals)
+
     def law(self, models: Models = "uncertain", *, spread: Spread | None = None, dtype: str = "f8") -> Any:
         """The law of categories given what users have shown; fixed where all is exact, or taken for the truth."""
         if models == "plug-in" or self.totals is None:
-            return super().law()
+            return FixedLaw(self, self.n_types, self.log_likelihoods, self.places_of)
         counts = self.probs * self.totals[:, :, None]
         if self._spread is None:
             self._spread = spread_of_counts(counts, 0.0)
         return CountedLaw(counts, spread or self._spread, self.places_of, dtype=dtype)
+
+    def table(self, n_bins: int = 8) -> SignalTable:
+        """All categories where they are at most `n_bins`; otherwise neighbours are joined, as for outcomes."""
+        return joined_table(self.probs, n_bins)[1]
+
+    def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
+        """Random category numbers of a pair."""
+        return generator.choice(self.n_categories, size, p=self.probs[type_, policy])
 
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
         """The model of some types and policies."""
@@ -188,13 +146,29 @@ class CategorySignal(CategoryModel):
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """Probabilities, the names of the categories as JSON, and the counts behind rows."""
+        try:
+            names = json.dumps(self.categories)
+        except TypeError:
+            raise InputError("categories must be texts or numbers to be saved") from None
         totals = {} if self.totals is None else {"totals": self.totals}
-        return {"probs": self.probs, **super().to_arrays(), **totals}
+        return {"probs": self.probs, "categories": np.frombuffer(names.encode(), np.uint8), **totals}
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self:
         """The model of `to_arrays`, bit for bit."""
-        return cls(arrays["probs"], json.loads(arrays["categories"].tobytes()), arrays.get("totals"))
+        names = json.loads(arrays["categories"].tobytes())
+        if "cuts" in arrays:
+            # Earlier files may hold bands of normals between common cuts, of which a share are any category.
+            probs = normal_probs(arrays["mean"], arrays["deviation"], arrays["cuts"])
+            lapse = float(arrays["lapse"])
+            return cls((1 - lapse) * probs + lapse / probs.shape[-1], names)
+        return cls(arrays["probs"], names, arrays.get("totals"))
+
+    def _place_of(self, signal: Any) -> int:
+        try:
+            return self._place[signal]
+        except (KeyError, TypeError):
+            raise InputError(f"signal must be one of {list(self._place)[:20]}, got {signal!r}") from None
 
 
 def category_counts(samples: ArrayLike, n: int | None) -> Array:

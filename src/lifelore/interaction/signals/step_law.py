@@ -5,13 +5,11 @@ of an episode is the product of the predictive probabilities of its steps in ord
 Thesis: §4.4.2.1–2.
 """
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.law import Law, Numbers
 from lifelore.interaction.outcomes.special_functions import gammaln
 from lifelore.interaction.outcomes.spread import Spread
@@ -36,8 +34,7 @@ class StepLaw(Law):
     def __init__(self, signal: "StepModel") -> None:
         assert signal.totals is not None
         self.signal, self.n_types, self.spread = signal, signal.n_types, Spread.known(0.0)
-        self._rows = signal.log_table.shape[:3]
-        self.shape = (*self._rows, signal.shape[2])  # counts of steps
+        self.shape = (*signal.log_table.shape[:3], signal.shape[2])  # counts of steps
 
     def log_likelihoods(
         self, policies: Numbers, signals: Any, shown: Array | None = None, users: Numbers = None
@@ -55,21 +52,6 @@ class StepLaw(Law):
             policies, signals, users = np.array([policies]), [signals], [users]
         for user, policy, signal in zip(users, policies, signals, strict=True):
             np.add.at(shown[user], self.signal.places_of(policy, signal), 1.0)
-
-    def state(self, shown: Array, user: int) -> dict[str, Array]:
-        """``places`` (m, 3): table, state, action; ``shown`` (m, n_outcomes): counts."""
-        places = np.argwhere(shown[user].any(axis=-1))
-        return {"places": places, "shown": shown[user][tuple(places.T)]}
-
-    def restore(self, shown: Array, user: int, state: Mapping[str, Array]) -> None:
-        """Take over a `state`; InputError where it is of another law."""
-        places, counts = np.asarray(state["places"], np.int64), np.asarray(state["shown"], np.float64)
-        if places.shape != (len(counts), 3) or counts.shape != (len(places), self.signal.shape[2]):
-            raise InputError(f"a user's state must have {self.signal.shape[2]} counts of each state and action")
-        if not ((places >= 0) & (places < self._rows)).all() or not (np.isfinite(counts) & (counts >= 0)).all():
-            raise InputError(f"a user's state must be of tables, states and actions below {self._rows}")
-        shown[user] = 0
-        shown[user][tuple(places.T)] = counts
 
     def _of_one(self, policy: int, signal: Any, counts: Array | None) -> Array:
         *places, outcomes = self.signal.places_of(policy, signal)

@@ -3,7 +3,7 @@ import pytest
 from scipy.stats import norm
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import entropy
+from lifelore.core.metrics import entropy
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.novelty.calibration import NoveltyCalibration, check_rate, known_statistic, watch

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import entropy
+from lifelore.core.metrics import entropy
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
@@ -78,10 +78,10 @@ def test_a_restored_state_has_the_same_bits(kind, models):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"policies": np.array([7])}, "must have policies"),
+        ({"places": np.array([[7]])}, "must have places below"),
         ({"log_belief": np.zeros(9)}, "log_belief must be"),
-        ({"shown": np.zeros((1, 2))}, "must have policies"),
-        ({"shown": np.full((1, 3), np.nan)}, "must have policies"),
+        ({"shown": np.zeros((1, 2))}, "must have rows of 3 numbers"),
+        ({"shown": np.full((1, 3), np.nan)}, "must have rows of 3 numbers"),
         ({"numbers": np.array([2.0, 0.0])}, "between 0 and 1"),
         ({"numbers": np.array([0.5])}, "no evidence of an unknown type"),
         ({"numbers": np.array([0.5, np.nan])}, "must be finite"),

@@ -206,7 +206,7 @@ class NoveltyDetector:
     def state(self) -> dict[str, NDArray[Any]]:
         """What the task has shown, as small arrays; policies that were not tried take no room.
 
-        ``numbers`` (mass, log odds), ``log_belief`` and ``task.*`` of the known types, ``policies`` and ``shown``
+        ``numbers`` (mass, log odds), ``log_belief`` and ``task.*`` of the known types, ``places`` and ``shown``
         of the broad type. With a calibration its arrays, ``misfit`` (signals, shortfall, degrees of freedom, and
         the signal of the alarm or -1) and ``misfit_by_type``.
         """
@@ -215,7 +215,7 @@ class NoveltyDetector:
         state = task | {
             "numbers": np.array([self.mass, self.log_odds]),
             "log_belief": types.log_belief[0].copy(),
-            "policies": broad["signal.policies"],
+            "places": broad["signal.places"],
             "shown": broad["signal.shown"],
         }
         if self.calibration is None:
@@ -239,7 +239,7 @@ class NoveltyDetector:
         try:
             mass, log_odds = np.asarray(state["numbers"], np.float64).tolist()
             detector = cls(library, mass, None, dynamics, models, known)
-            shown = {f"signal.{name}": state[name] for name in ("policies", "shown")}
+            shown = {f"signal.{name}": state[name] for name in ("places", "policies", "shown") if name in state}
             detector._evidence.types.restore(0, state["log_belief"], named_part(state, "task."))
             detector._evidence.broad.restore(0, np.zeros(1), shown)
             detector._evidence.log_odds[0] = log_odds
