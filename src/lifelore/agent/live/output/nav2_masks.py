@@ -116,7 +116,8 @@ def on_map(mask: NDArray[np.uint8], floor: Floor, occupancy: OccupancyMap, outsi
 
 def _pixels_of(occupancy: OccupancyMap) -> Floor:
     """A floor without places: the conversion between metres and pixels of a map."""
-    return Floor(occupancy, np.empty(occupancy.state.shape, np.int32), np.empty((0, 0), np.bool_), 0.0, 0)
+    state, moves = np.full(occupancy.state.shape, -1, np.int32), np.empty((0, 4), np.int32)
+    return Floor(occupancy, state, occupancy.state == OCCUPIED, 0.0, moves)
 
 
 def write_masks(
