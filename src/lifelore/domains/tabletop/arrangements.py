@@ -1,25 +1,24 @@
 """Arrangements: what a scene is to show, as a way to place objects and a test that, settled, they show it.
 
 *mixed*: groups side by side; *pair*: two objects in a wanted relation; the others are of the thesis's figures: a
-ball at an L-block (2.1), a ball on a block (2.2), holes (2.6) and their control, stacks (2.7, 2.10), and two
-objects at a given distance; `piles` has those of books, boxes and cartons. In the figures' the label 2 is the
-lowest object, 3 the one on it, and so on.
+ball at an L-block (2.1), a ball on a block (2.2), holes (2.6) and their control, and stacks (2.7, 2.10). `piles`
+has those of books, boxes and cartons. In figures, label 2 is the lowest object, 3 the one on it, and so on.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, NONE, ON
+from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, ON
 from lifelore.domains.tabletop.groups import Template, bridge, heap, lean, nested, single, stacked, step, tower
 from lifelore.domains.tabletop.kits import Kit
 from lifelore.domains.tabletop.layout import Group, put_beside, separation, stand, top
 from lifelore.domains.tabletop.piles import PILES
 from lifelore.domains.tabletop.pose import about
 from lifelore.domains.tabletop.settings import TabletopSettings
-from lifelore.domains.tabletop.shapes import animal, arch, ball, box, cloth, hinged_blocks, l_block
+from lifelore.domains.tabletop.shapes import animal, arch, ball, box, hinged_blocks, l_block
 
 
 @dataclass(frozen=True)
@@ -36,56 +35,34 @@ class Arrangement:
     shuffled: bool = False
 
 
-MIXED: tuple[tuple[Template, float, str], ...] = (
-    (single, 0.34, NONE),
-    (stacked, 0.2, ON),
-    (tower, 0.09, ON),
-    (lean, 0.18, BOTH),
-    (bridge, 0.05, ON),
-    (step, 0.06, BOTH),
-    (nested, 0.03, ON),
-    (heap, 0.05, ON),
-)
-"""Templates of a scene of many objects, how often each is drawn, and the relation it is there for."""
-_USUAL = {ON: 0.2, BOTH: 0.15, NONE: 0.65}
+MIXED: dict[Template, float] = {
+    single: 0.34, stacked: 0.2, tower: 0.09, lean: 0.18, bridge: 0.05, step: 0.06, nested: 0.03, heap: 0.05
+}  # fmt: skip
+"""Templates of a scene of many objects, and how often each is drawn."""
+GAPS = {
+    (0.0005, 0.003): 0.22, (0.003, 0.02): 0.25, (0.02, 0.035): 0.3, (0.035, 0.085): 0.13, (0.085, 0.14): 0.1
+}  # fmt: skip
+"""Metres between neighbours, and how often: touching, near, where *adjacent* ends, further, unlabelled."""
 
 
 def place_mixed(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
     """Groups of objects, each set down beside an earlier one at a drawn gap."""
     n_objects = int(rng.integers(settings.n_objects[0], settings.n_objects[1] + 1))
-    weights = _template_weights(settings.mix)
+    weights = np.array(list(MIXED.values()))
     scene: list[tuple[float, Group]] = []
     count = 0
     while count < n_objects:
-        group = MIXED[int(rng.choice(len(MIXED), p=weights))][0](rng, kit)
+        group = list(MIXED)[int(rng.choice(len(MIXED), p=weights / weights.sum()))](rng, kit)
         if count + len(group) <= n_objects:
-            scene.append(_set_down(rng, scene, group, draw_gap(rng, settings.mix)))
+            scene.append(_set_down(rng, scene, group, _drawn_gap(rng)))
             count += len(group)
     return [item for _, group in scene for item in group]
 
 
-def _template_weights(mix: Mapping[str, float] | None) -> np.ndarray:
-    """Chances of the templates; with a mix, those that lead to what it asks for more often."""
-    weights = np.array([weight for _, weight, _ in MIXED])
-    if mix is not None:
-        whole = sum(mix.values())
-        share = {ON: mix.get(ON, 0), BOTH: mix.get(BOTH, 0), NONE: mix.get(NONE, 0) + mix.get(ADJACENT, 0)}
-        weights = weights * [np.clip(share[leads] / whole / _USUAL[leads], 0.05, 8) for _, _, leads in MIXED]
-    return weights / weights.sum()
-
-
-GAPS = ((0.0005, 0.003), (0.003, 0.02), (0.02, 0.035), (0.035, 0.085), (0.085, 0.14))
-"""Bands of gaps between neighbours, metres: touching, near, where *adjacent* ends, further, unlabelled."""
-
-
-def draw_gap(rng: np.random.Generator, mix: Mapping[str, float] | None = None) -> float:
-    """Metres between neighbours, by band; with a mix, groups stay apart for its *on* and *both*."""
-    chances = np.array([0.22, 0.25, 0.3, 0.13, 0.1])
-    if mix is not None:
-        beside, free = mix.get(ADJACENT, 0.0), mix.get(NONE, 0.0)
-        apart = mix.get(ON, 0.0) + mix.get(BOTH, 0.0)
-        chances = np.array([0.6 * beside, 0.6 * beside, 0.5 * free, 0.1 * free, apart + 0.001])
-    return float(rng.uniform(*GAPS[int(rng.choice(len(GAPS), p=chances / chances.sum()))]))
+def _drawn_gap(rng: np.random.Generator) -> float:
+    """Metres between neighbours."""
+    chances = np.array(list(GAPS.values()))
+    return float(rng.uniform(*list(GAPS)[int(rng.choice(len(GAPS), p=chances / chances.sum()))]))
 
 
 def _set_down(
@@ -120,12 +97,6 @@ def place_pair(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, w
     low, high = (0.0005, edge) if wanted == ADJACENT else (edge, edge + 0.0125 if rng.random() < 0.4 else 0.075)
     first = _set_down(rng, [], single(rng, kit), 0.0)
     return [*first[1], *_set_down(rng, [first], single(rng, kit), float(rng.uniform(low, high)))[1]]
-
-
-def place_apart(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """Two objects whose footprints are `settings.separation` metres apart, side by side in the picture."""
-    first, second = single(rng, kit), single(rng, kit)
-    return [*first, *put_beside(first, second, float(rng.normal(0, 0.15)), max(settings.separation, 0.0005))]
 
 
 # --- the thesis's figures -------------------------------------------------------------------------------------
@@ -233,18 +204,6 @@ def place_ball_at_l_block(rng: np.random.Generator, kit: Kit, settings: Tabletop
     return _facing(rng, [ell, guest.moved(float((back - length) / 2), 0.0)])
 
 
-def place_cloth(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """A cloth laid over a block (Fig. 2.3); takes some ten times as long as a solid scene.
-
-    The foil of §2.4.1 cannot be tested: crumpled it keeps its shape, and the engine's sheets are elastic.
-    """
-    length, width = rng.uniform(0.1, 0.15, 2)
-    below = stand(box(length, width, rng.uniform(0.08, 0.12)), about(2, rng.uniform(0, 6)))
-    sheet = stand(cloth(rng.uniform(0.17, 0.22)), about(2, rng.uniform(0, 6)), top([below]))
-    x, y = rng.uniform(-0.02, 0.02, 2)
-    return _facing(rng, [below, sheet.moved(x, y)])
-
-
 VARIED = {"mixed": 0.55, "pile": 0.18, "ramp": 0.09, "books": 0.07, "cartons": 0.11}
 """How often a scene of `place_varied` is of each arrangement."""
 
@@ -258,14 +217,12 @@ def place_varied(rng: np.random.Generator, kit: Kit, settings: TabletopSettings,
 ARRANGEMENTS: dict[str, Arrangement] = {
     "mixed": Arrangement(place_mixed, shuffled=True),
     "pair": Arrangement(place_pair, shuffled=True),
-    "apart": Arrangement(place_apart),
     "hole": Arrangement(place_hole, ((3, 2),), regions=2),
     "hole-hinged": Arrangement(place_hole_hinged, ((3, 2),), regions=2),
     "hole-other": Arrangement(place_hole_other, ((3, 2),), regions=2),
     "no-hole": Arrangement(place_no_hole, ((3, 2),)),
     "stack": Arrangement(place_stack, ((4, 3), (3, 2))),
     "stack-two-contacts": Arrangement(place_stack_two_contacts, ((4, 3), (3, 2)), regions=2),
-    "cloth": Arrangement(place_cloth, ((3, 2),)),
     "ball-on-block": Arrangement(place_ball_on_block, ((3, 2),)),
     "ball-at-l-block": Arrangement(place_ball_at_l_block, ((3, 2),)),
     "varied": Arrangement(place_varied, shuffled=True),
