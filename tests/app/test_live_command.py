@@ -168,7 +168,7 @@ def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
                   "lore compared with scratch, last third", "wrote out/summary.json"):  # fmt: skip
         assert words in said.out
     written = [Path(line.removeprefix("wrote ")) for line in said.out.splitlines() if line.startswith("wrote ")]
-    assert {path.name for path in written} >= {"summary.json", "life.png", "world.png", "prior.pgm"}
+    assert {path.name for path in written} >= {"summary.json", "life.png", "world.png", "prior.png"}
     assert all(path.stat().st_size > 0 for path in written)
     assert set(json.loads(Path("out/summary.json").read_text())) == DOCUMENT
 

@@ -9,8 +9,7 @@ from numpy.typing import NDArray
 
 from lifelore.agent.live.goals.destinations import Point
 from lifelore.agent.live.life import Life
-from lifelore.agent.live.output.exports import path_points
-from lifelore.agent.live.output.greedy_paths import GreedyPaths
+from lifelore.agent.live.output.greedy_paths import GreedyPaths, path_points
 from lifelore.agent.live.output.known_building import KnownBuilding
 from lifelore.agent.live.output.nav2_masks import NO_OPINION, on_map, place_costs, place_masks
 from lifelore.core.atomic_write import refused_writes

@@ -16,12 +16,10 @@ from lifelore.agent.live.goals.destinations import Point
 from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
 from lifelore.agent.live.lived_tasks import Result
 from lifelore.agent.live.output.drive_figure import drives_figure
-from lifelore.agent.live.output.exports import path_points, write_paths, write_prior_map
 from lifelore.agent.live.output.folder import folder_to_write
-from lifelore.agent.live.output.greedy_paths import GreedyPaths, greedy_paths_of
+from lifelore.agent.live.output.greedy_paths import GreedyPaths, greedy_paths_of, path_points, write_paths
 from lifelore.agent.live.output.known_building import NAV2_FILES, KnownBuilding
 from lifelore.agent.live.output.logged_life import Recorder, goal_points, write_life_log
-from lifelore.agent.live.output.nav2_masks import write_directions
 from lifelore.agent.live.summary import third
 from lifelore.agent.live.task_result import THRESHOLD, TaskResult
 from lifelore.core.errors import InputError
@@ -34,10 +32,9 @@ from lifelore.figures.lives.task_curves import draw_task_curves
 from lifelore.figures.lives.world_map import draw_world_map
 from lifelore.figures.style import save_figure
 
-PRIOR_FILES = ("prior.png", "prior.pgm", "prior.yaml", "directions.csv")
-FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", *PRIOR_FILES, *NAV2_FILES)
-"""Files of the folder; the curves only if goals were searched, the files of the prior only if the agent has a
-prior, those of nav2 only in buildings whose moves the agent has learnt."""
+FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", "prior.png", *NAV2_FILES)
+"""Files of the folder; the curves only if goals were searched, the prior only if the agent has one, the files of
+nav2 only in buildings whose moves the agent has learnt."""
 
 
 def check_folder(path: str) -> None:
@@ -111,7 +108,7 @@ def _write_all(life: Life, folder: Path) -> None:
     save_figure(_world_figure(life, paths, lines), folder / "world.png")
     write_paths(folder / "paths.csv", lines)
     if _has_prior(life):
-        _write_prior(life, folder)
+        save_figure(_prior_figure(life), folder / "prior.png")
     if life.building is not None:
         life.building.write(folder, _goals(life, life.building))
 
@@ -259,23 +256,17 @@ def _percent(share: float) -> str:
     return f"{int(100 * share)} %"
 
 
-# ---- the prior -------------------------------------------------------------------------------------
-
-
 def _has_prior(life: Life) -> bool:
     lore, has_condition = life.lore, life.report["settings"]["prior"] != "none"
     uses = AGENTS[_agents(life)[0]].uses_prior
     return has_condition and uses and not lore.prior.unseen(lore.scope.contexts).all()
 
 
-def _write_prior(life: Life, folder: Path) -> None:
+def _prior_figure(life: Life):
     lore, world = life.lore, life.world
     probs, counted = lore.prior.probs(lore.scope.contexts), ~lore.prior.unseen(lore.scope.contexts)
     given = "the surroundings of a cell" if lore.scope.kind == "observation" else "the cell"
     title = f"{_place(life)}: the action prior given {given}"
-    figure = draw_prior_map(
+    return draw_prior_map(
         world.shape, world.cells, world.neighbour, probs, counted, cell=_metres(life), title=title
     )
-    save_figure(figure, folder / "prior.png")
-    write_prior_map(folder / "prior.yaml", world, probs, counted)
-    write_directions(folder / "directions.csv", world, probs, counted, life.floor)
