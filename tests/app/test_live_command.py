@@ -347,3 +347,10 @@ def test_help_is_one_screen(ask, monkeypatch):
     options = [line.split()[0] for line in lines if line.startswith("  --")]
     assert len(options) == 17
     assert options[-1] == "--help"
+
+
+@pytest.mark.slow
+def test_a_log_that_cannot_be_written_is_named(ask):
+    said = ask("live", "--tasks", 1, "--memory", "life.db", "--log", "none/life.mcap", "--set", "compare=false")
+    assert said.status != 0
+    assert "log cannot be written to none/life.mcap: No such file or directory" in said.err

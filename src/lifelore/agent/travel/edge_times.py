@@ -115,7 +115,7 @@ def hour_of(minute: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def summed(slot: NDArray[np.int64], values: NDArray[np.float64], shape: tuple[int, int]) -> NDArray[np.float64]:
     """The sum of the values of each slot, a table of `shape` in row order; `slot` and `values` (n,)."""
-    return np.bincount(slot, values, minlength=shape[0] * shape[1]).reshape(shape)
+    return np.asarray(np.bincount(slot, values, shape[0] * shape[1]).reshape(shape), np.float64)
 
 
 def smoothed_hours(by_hour: NDArray[np.float64]) -> NDArray[np.float64]:

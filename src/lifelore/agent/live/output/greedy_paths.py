@@ -2,7 +2,7 @@
 
 import csv
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 from scipy.sparse import csgraph
 
+from lifelore.agent.live.driven.drive_job import DrivenJob
 from lifelore.agent.live.driven.route import chain_to
+from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
 from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.grids.grid_world import GridWorld
 
@@ -35,6 +37,26 @@ class GreedyPaths:
     arriving: float
     goal_point: tuple[float, float] | None = None
     name: str | None = None
+
+
+def last_paths(life: Life) -> list[GreedyPaths]:
+    """Paths of the first agent in the last tasks on the present map: driven, or greedy by its policy."""
+    if not life.results:
+        return []
+    world, name = life.world, next(iter(life.results[0]))
+    first = max(life.first_here, len(life.results) - TASKS_WITH_POLICY)
+    last = zip(life.report["tasks"][first:], life.results[first:], strict=True)
+    paths = []
+    for task, result in last:
+        goal = int(world.state_of[tuple(task["goal"])])
+        of, point = result[name], task.get("position")
+        if isinstance(of, DrivenJob):
+            found = GreedyPaths(task["index"], goal, of.paths(), float(of.reached))
+        else:
+            found = greedy_paths_of(world, of.policy, task["index"], goal, life.start)
+        reached = point and found.arriving > 0
+        paths.append(replace(found, goal_point=tuple(point) if reached else None, name=task.get("name")))
+    return paths
 
 
 def greedy_paths_of(

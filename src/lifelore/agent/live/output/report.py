@@ -4,22 +4,20 @@ import json
 import os
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.live.baselines import AGENTS
-from lifelore.agent.live.driven.drive_job import DrivenJob
 from lifelore.agent.live.goals.destinations import Point
-from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
+from lifelore.agent.live.life import Life
 from lifelore.agent.live.lived_tasks import Result
 from lifelore.agent.live.output.drive_figure import drives_figure
 from lifelore.agent.live.output.folder import folder_to_write
-from lifelore.agent.live.output.greedy_paths import GreedyPaths, greedy_paths_of, path_points, write_paths
+from lifelore.agent.live.output.greedy_paths import GreedyPaths, last_paths, path_points, write_paths
 from lifelore.agent.live.output.known_building import NAV2_FILES, KnownBuilding
-from lifelore.agent.live.output.logged_life import Recorder, goal_points, write_life_log
+from lifelore.agent.live.output.logged_life import goal_points
 from lifelore.agent.live.summary import third
 from lifelore.agent.live.task_result import THRESHOLD, TaskResult
 from lifelore.core.errors import InputError
@@ -87,18 +85,12 @@ def write_portfolio(life: Life, out: str) -> list[str]:
     return [str(folder / name) for name in written]
 
 
-def write_log(life: Life, path: str, recorder: Recorder) -> str:
-    """Write the log of a life in a building; returns `path`. Errors as in `write_life_log`."""
-    write_life_log(path, life, _last_paths(life) if life.results else [], recorder)
-    return path
-
-
 def _write_all(life: Life, folder: Path) -> None:
     text = json.dumps(life.report, indent=2, allow_nan=False)
     (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
     if not life.results:
         return
-    paths = _last_paths(life)
+    paths = last_paths(life)
     lines = {task.task: path_points(life.world, task, life.floor) for task in paths}
     if life.driven:
         save_figure(drives_figure(life, _place(life)), folder / "life.png")
@@ -192,24 +184,6 @@ def _traces(life: Life, results: list[dict[str, Result]]) -> dict:
     return {
         name: [found.trace for r in results if isinstance(found := r[name], TaskResult)] for name in _agents(life)
     }
-
-
-def _last_paths(life: Life) -> list[GreedyPaths]:
-    """Paths of the first agent in the last tasks on the present map: driven, or greedy by its policy."""
-    world, name = life.world, _agents(life)[0]
-    first = max(life.first_here, len(life.results) - TASKS_WITH_POLICY)
-    last = zip(life.report["tasks"][first:], life.results[first:], strict=True)
-    paths = []
-    for task, result in last:
-        goal = int(world.state_of[tuple(task["goal"])])
-        of, point = result[name], task.get("position")
-        if isinstance(of, DrivenJob):
-            found = GreedyPaths(task["index"], goal, of.paths(), float(of.reached))
-        else:
-            found = greedy_paths_of(world, of.policy, task["index"], goal, life.start)
-        reached = point and found.arriving > 0
-        paths.append(replace(found, goal_point=tuple(point) if reached else None, name=task.get("name")))
-    return paths
 
 
 def _world_figure(life: Life, last: Sequence[GreedyPaths], lines: Mapping[int, Sequence[NDArray[np.float64]]]):
