@@ -12,7 +12,7 @@ pytestmark = pytest.mark.sim
 
 
 def test_one_json_document(tmp_path, capsys):
-    scenes(1, str(tmp_path / "out"), seed=1, arrangement="ball-on-block", as_json=True)
+    scenes(1, str(tmp_path / "out"), seed=1, mix="on=1", arrangement="pair", as_json=True)
     report = json.loads(capsys.readouterr().out)
     assert report["scenes"] == 1
     assert report["pairs"]["on"] == 1

@@ -23,7 +23,7 @@ def scenes(
     camera: Annotated[str, Option(help="Depth camera: kinect or stereo.")] = "kinect",
     shapes: Annotated[str, Option(help="Shapes: training, held-out (other kinds of shapes) or all.")] = "training",
     arrangement: Annotated[
-        str, Option(help="Arrangement: mixed, varied, pile, ramp, books, cartons, pair, hole, stack, …")
+        str, Option(help="Arrangement: mixed, varied, pile, ramp, books, cartons or pair.")
     ] = "mixed",
     jobs: Annotated[int, Option(help="Processes; the files do not depend on their number.")] = 1,
     as_json: AsJson = False,

@@ -81,9 +81,11 @@ class Tabletop:
     @property
     def poses(self) -> tuple[Pose, ...]:
         """Where the shapes are now."""
-        return tuple(
-            Pose(self._data.xpos[root].copy(), self._data.xmat[root].reshape(3, 3).copy()) for root in self._root
-        )
+        return tuple(self._pose(number) for number in range(len(self._shapes)))
+
+    def _pose(self, number: int) -> Pose:
+        root = self._root[number]
+        return Pose(self._data.xpos[root].copy(), self._data.xmat[root].reshape(3, 3).copy())
 
     @property
     def shapes(self) -> tuple[Shape, ...]:

@@ -258,15 +258,3 @@ def cross(length: float, width: float, height: float) -> Shape:
     """Two bars across one another, flat."""
     arms = [part(BOX, (length / 2, width / 2, height / 2)), part(BOX, (width / 2, length / 2, height / 2))]
     return Shape("cross", tuple(arms))
-
-
-def animal(length: float, width: float, height: float, leg: float) -> Shape:
-    """A toy on four legs, each `leg` thick and half of `height` long."""
-    legs = [
-        part(BOX, (leg / 2, leg / 2, height / 4), (s * (length - leg) / 2, t * (width - leg) / 2, -height / 4))
-        for s in (-1, 1)
-        for t in (-1, 1)
-    ]
-    trunk = part(BOX, (length / 2, width / 2, height / 8), (0, 0, height / 8))
-    head = part(BALL, (0.3 * width,), (length / 2, 0, 0.35 * height))
-    return Shape("animal", (trunk, head, *legs))

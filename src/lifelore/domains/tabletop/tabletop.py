@@ -3,7 +3,7 @@
 Thesis: §2.4.1, whose 128 stereo pictures of pairs are not published; physics settles and labels them here.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -13,20 +13,24 @@ from scipy.spatial import KDTree
 from lifelore.core.errors import InputError
 from lifelore.core.relations import CORE_RELATIONS, PairLabel
 from lifelore.core.streams import stream
-from lifelore.domains.tabletop.arrangements import Arrangement, arrangement_named
+from lifelore.domains.tabletop.arrangements import arrangement_named
 from lifelore.domains.tabletop.depth_camera import CAMERAS
 from lifelore.domains.tabletop.kits import Kit, kit_named
 from lifelore.domains.tabletop.layout import Group
 from lifelore.domains.tabletop.photograph import FIRST_OBJECT, Photograph, choose_view, photograph
 from lifelore.domains.tabletop.physics import Contacts, Tabletop
+from lifelore.domains.tabletop.piles import Place
+from lifelore.domains.tabletop.pose import Pose
 from lifelore.domains.tabletop.settings import TabletopScene, TabletopSettings, wanted_relation
-from lifelore.domains.tabletop.truth import NEAR, Gap, bearing, contact_regions, true_relations
+from lifelore.domains.tabletop.truth import NEAR, Gap, bearing, true_relations
 
 JAMMED = -0.001
 """Metres: surfaces that overlap more were pressed together, not set down."""
 BALANCE = 0.05
 """Part of its weight by which a object's support may be off: more, and it is about to tip."""
 ATTEMPTS = 400
+Shows = Callable[[NDArray[np.float64], Contacts, Sequence[Pose]], bool]
+"""Called with the shares of the objects' weights (see `Bearing`), the contacts and the poses."""
 BLOCK = 4
 """Scenes that one process draws at a time."""
 
@@ -80,24 +84,25 @@ def sample_scene(seed: int, number: int, settings: TabletopSettings | None = Non
 
 
 def _attempt(
-    rng: np.random.Generator, settings: TabletopSettings, arrangement: Arrangement, kit: Kit, wanted: str
+    rng: np.random.Generator, settings: TabletopSettings, place: Place, kit: Kit, wanted: str
 ) -> TabletopScene | None:
     """One draw; None where it does not settle, jams, shows something else, or an object cannot be seen."""
     aim = wanted or CORE_RELATIONS[int(rng.integers(4))]
-    placed = arrangement.place(rng, kit, settings, aim)
-    if arrangement.shuffled:
-        placed = [placed[i] for i in rng.permutation(len(placed))]
-    return settle_scene(placed, rng, settings, arrangement, wanted)
+    placed = place(rng, kit, settings, aim)
+    # Labels are dealt at random, so that their order tells nothing.
+    return settle_scene([placed[i] for i in rng.permutation(len(placed))], rng, settings, wanted=wanted)
 
 
 def settle_scene(
     placed: Group,
     rng: np.random.Generator,
     settings: TabletopSettings,
-    arrangement: Arrangement | None = None,
+    shows: Shows | None = None,
     wanted: str = "",
 ) -> TabletopScene | None:
     """Let objects fall from where they were put, judge and photograph them.
+
+    `shows` says whether what has settled is what the scene is to show.
 
     Returns
     -------
@@ -116,7 +121,7 @@ def settle_scene(
     borne = bearing(contacts, table.weights)
     if (np.abs(borne.lift[:-1].sum(axis=1) - 1) > BALANCE).any():
         return None
-    if arrangement is not None and not _shows(arrangement, borne.share, contacts, poses[0].rotation):
+    if shows is not None and not shows(borne.share, contacts, poses):
         return None
     camera = CAMERAS[settings.camera]
     view = choose_view(outlines, rng, camera)
@@ -135,24 +140,6 @@ def settle_scene(
         if gap.visible <= NEAR or borne.touching[gap.a, gap.b]
     )
     return TabletopScene("", photo.cloud, truth, near, shapes, poses, photo.view, photo.clean)
-
-
-def _shows(
-    arrangement: Arrangement, share: NDArray[np.float64], contacts: Contacts, frame: NDArray[np.float64]
-) -> bool:
-    """Whether the objects that must be carried are, and touch in as many regions as they must."""
-    table = len(share) - 1
-    for a, b in arrangement.on:
-        if share[a - FIRST_OBJECT, b - FIRST_OBJECT] < 0.5 or share[a - FIRST_OBJECT, table] > 0:
-            return False
-    if not arrangement.regions:
-        return True
-    pair = tuple(label - FIRST_OBJECT for label in arrangement.on[0])
-    pressed = (np.linalg.norm(contacts.forces, axis=1) > 0) & (
-        np.minimum(contacts.first, contacts.second) == min(pair)
-    ) & (np.maximum(contacts.first, contacts.second) == max(pair))  # fmt: skip
-    # Looked at along the lowest object's y axis, contacts along an edge across it are one region.
-    return contact_regions(contacts.positions[pressed] @ frame[:, [0, 2]]) == arrangement.regions
 
 
 def _pair_relation(truth: tuple[PairLabel, ...]) -> str:
