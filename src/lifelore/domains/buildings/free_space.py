@@ -90,12 +90,14 @@ _PIECES: WeakKeyDictionary[OccupancyMap, tuple[tuple, Pieces]] = WeakKeyDictiona
 def pieces_of(occupancy: OccupancyMap, cell: float, robot_radius: float) -> Pieces:
     """The pieces of a map for squares of side `cell` and a robot of this radius, both in metres."""
     made_of = cell, robot_radius, hash(occupancy.state.tobytes())
-    if occupancy not in _PIECES or _PIECES[occupancy][0] != made_of:
-        solid = solid_pixels(occupancy)
-        free = free_pixels(occupancy, solid, robot_radius)
-        grid = square_grid(free.shape, occupancy.resolution, cell)
-        _PIECES[occupancy] = made_of, Pieces(solid, free, grid, largest_pieces(free, grid))
-    return _PIECES[occupancy][1]
+    if (last := _PIECES.get(occupancy)) and last[0] == made_of:
+        return last[1]
+    solid = solid_pixels(occupancy)
+    free = free_pixels(occupancy, solid, robot_radius)
+    grid = square_grid(free.shape, occupancy.resolution, cell)
+    pieces = Pieces(solid, free, grid, largest_pieces(free, grid))
+    _PIECES[occupancy] = made_of, pieces
+    return pieces
 
 
 def largest_pieces(free: NDArray[np.bool_], grid: SquareGrid) -> NDArray[np.bool_]:
