@@ -60,7 +60,7 @@ def servers() -> list[str]:
 def test_the_table_names_files_that_are_written():
     rows = re.findall(r"^\| (`.*?`) \|", NAV2.split("## What do the masks")[0], flags=re.M)
     named = {name for row in rows for name in re.findall(r"`([^`]+)`", row)}
-    assert named == {"paths.csv", "directions.csv", *NAV2_FILES}
+    assert named == {"paths.csv", *NAV2_FILES}
     assert named <= set(FILES)
 
 

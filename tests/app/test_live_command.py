@@ -168,7 +168,7 @@ def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
                   "lore compared with scratch, last third", "wrote out/summary.json"):  # fmt: skip
         assert words in said.out
     written = [Path(line.removeprefix("wrote ")) for line in said.out.splitlines() if line.startswith("wrote ")]
-    assert {path.name for path in written} >= {"summary.json", "life.png", "world.png", "prior.pgm"}
+    assert {path.name for path in written} >= {"summary.json", "life.png", "world.png", "prior.png"}
     assert all(path.stat().st_size > 0 for path in written)
     assert set(json.loads(Path("out/summary.json").read_text())) == DOCUMENT
 
@@ -347,3 +347,10 @@ def test_help_is_one_screen(ask, monkeypatch):
     options = [line.split()[0] for line in lines if line.startswith("  --")]
     assert len(options) == 17
     assert options[-1] == "--help"
+
+
+@pytest.mark.slow
+def test_a_log_that_cannot_be_written_is_named(ask):
+    said = ask("live", "--tasks", 1, "--memory", "life.db", "--log", "none/life.mcap", "--set", "compare=false")
+    assert said.status != 0
+    assert "log cannot be written to none/life.mcap: No such file or directory" in said.err

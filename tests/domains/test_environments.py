@@ -9,6 +9,8 @@ from lifelore.core.errors import InputError
 from lifelore.domains import ENVIRONMENTS
 
 EVERY = pytest.mark.parametrize("name", sorted(ENVIRONMENTS))
+DRAWN = sorted(set(ENVIRONMENTS) - {f"lifelore/{name}-v0" for name in ("Golf", "Surveillance", "Telephone")})
+"""Environments that draw pictures."""
 ENDS_EARLIER = {"lifelore/Telephone-v0"}
 """Environments whose episodes end by themselves before the limit, whatever is done."""
 
@@ -19,7 +21,8 @@ def test_every_environment_is_registered():
 
 @EVERY
 def test_gymnasium_finds_nothing_to_say(name):
-    check_env(gymnasium.make(name, render_mode="rgb_array").unwrapped)
+    if name in DRAWN:
+        check_env(gymnasium.make(name, render_mode="rgb_array").unwrapped)
     check_env(gymnasium.make(name).unwrapped, skip_render_check=True)
 
 
@@ -27,7 +30,7 @@ def test_the_interface_of_the_ball_game_is_an_environment_too():
     check_env(gymnasium.make("lifelore/BallGame-v0", role="interface").unwrapped, skip_render_check=True)
 
 
-@EVERY
+@pytest.mark.parametrize("name", DRAWN)
 def test_pictures_follow_what_happens(name):
     env = gymnasium.make(name, render_mode="rgb_array").unwrapped
     env.reset(seed=3)
@@ -52,8 +55,9 @@ def test_steps_out_of_order_or_out_of_range(name):
     for wrong in (env.action_space.n, -1):
         with pytest.raises(InputError, match="action must lie in"):
             env.step(wrong)
-    with pytest.raises(InputError, match="render_mode must be None or one of: rgb_array; got 'human'"):
-        type(env)(render_mode="human")
+    if name in DRAWN:
+        with pytest.raises(InputError, match="render_mode must be None or one of: rgb_array; got 'human'"):
+            type(env)(render_mode="human")
 
 
 @pytest.mark.parametrize("name", sorted(set(ENVIRONMENTS) - ENDS_EARLIER))

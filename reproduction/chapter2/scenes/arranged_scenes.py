@@ -23,6 +23,7 @@ from lifelore.domains.tabletop.tabletop import (
     sample_scene,
     settle_scene,
 )
+from reproduction.chapter2.scenes.figure_scenes import FIGURES, figure_scene
 
 USUAL = TabletopSettings()
 
@@ -36,10 +37,12 @@ class Placement:
 
 
 def arranged(name: str, seed: int, number: int, settings: TabletopSettings = USUAL) -> TabletopScene:
-    """Scene `number` of an arrangement: one of `CONTROLS`, or one that the tabletop knows. Needs MuJoCo."""
+    """Scene `number` of an arrangement: of `CONTROLS`, of `FIGURES`, or of the tabletop. Needs MuJoCo."""
     if name in CONTROLS:
         return settled(CONTROLS[name], name, seed, number, settings)
     own_seed = int(stream(seed, "arranged", name).integers(2**31))
+    if name in FIGURES:
+        return figure_scene(name, own_seed, number, settings)
     return sample_scene(own_seed, number, replace(settings, arrangement=name))
 
 

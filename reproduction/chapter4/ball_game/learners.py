@@ -5,7 +5,6 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.domains.ball_game.simulated_player import Balls
 from lifelore.interaction.adaptation.beat import rule_at
 from lifelore.interaction.baselines.exp3 import EXP3
 from lifelore.interaction.beliefs.belief import log_prior
@@ -13,6 +12,7 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from reproduction.chapter4.ball_game.play import Floats, Ints, Learner, Moves
+from reproduction.chapter4.ball_game.players import Balls
 
 
 class BeatLearner(Learner):

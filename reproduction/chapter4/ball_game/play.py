@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import MAX_STEPS, BallGame, LossScale, draw_sigma
-from lifelore.domains.ball_game.simulated_player import Balls, advance, new_balls, random_states
 from lifelore.interaction.adaptation.move_signal import MoveSignal
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from reproduction.chapter4.ball_game.moves import N_OUTCOMES, N_SIGNALS, read_moves
+from reproduction.chapter4.ball_game.players import Balls, advance, new_balls, random_states
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]

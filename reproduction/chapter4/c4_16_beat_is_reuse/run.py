@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import MAX_STEPS, BallGame, LossScale, draw_sigma
-from lifelore.domains.ball_game.simulated_player import advance, new_balls, random_states
 from lifelore.interaction.adaptation.beat import rule_at
 from lifelore.interaction.adaptation.move_signal import PRIOR_MOVES
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
@@ -24,6 +23,7 @@ from lifelore.interaction.signals.transition_signal import TransitionSignal
 from reproduction.chapter4.ball_game.games import N_TYPES, Game
 from reproduction.chapter4.ball_game.moves import N_CONTEXTS, N_OUTCOMES, read_moves
 from reproduction.chapter4.ball_game.play import Trained, train
+from reproduction.chapter4.ball_game.players import advance, new_balls, random_states
 from reproduction.chapter4.ball_game.trials import EPISODES
 from reproduction.engine.estimates import exact_value
 

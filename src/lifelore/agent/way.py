@@ -189,9 +189,11 @@ def _contradicted(
 
     first, last = cell("from", start), cell("to", goal)
     chain, remembered = moves.chain(first, last), moves.chain(first, last, true_only=False)
+    if chain and len(remembered) == len(chain):
+        return np.empty((0, 2))
     contradicted = moves.contradicted(remembered)
     if chain:
-        return contradicted[: 0 if len(remembered) == len(chain) else None]
+        return contradicted
     reached = np.flatnonzero(np.isfinite(moves.reached(first)[0]))
     so_far = (
         f"from there it knows the way to {len(reached):,} of its {len(moves.cells):,} places, the nearest "

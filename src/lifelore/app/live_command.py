@@ -12,8 +12,8 @@ from lifelore.app.options import AsJson, MapFile, Where
 
 if TYPE_CHECKING:
     from lifelore.agent.live.goals.job_list import Job
+    from lifelore.agent.live.life import Life
     from lifelore.agent.live.life_settings import Place
-    from lifelore.agent.live.output.logged_life import Recorder
     from lifelore.app.setting_keys import SettingKeys
 
 Option = typer.Option
@@ -129,7 +129,7 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json
     from lifelore.agent.live.life_settings import LifeSettings
     from lifelore.agent.live.output.l2_log import LifeLog
     from lifelore.agent.live.output.long_table import LongTable
-    from lifelore.agent.live.output.report import check_folder, write_log, write_portfolio
+    from lifelore.agent.live.output.report import check_folder, write_portfolio
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.life_table import print_life
     from lifelore.app.pages_beside import pages_beside
@@ -145,7 +145,8 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json
     new_folders = _missing_folders(memory, out)
     if out is not None:
         check_folder(out)
-    record_file = _recorder(values)
+    if "log" in values:
+        _check_log(values["log"], domain)
     log = None if l2log is None else LifeLog(l2log, domain)
     with (
         pages_beside(serve, values.get("port"), memory),
@@ -168,8 +169,8 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json
 
         life = live_through(settings, progress=show, stop=stop, watch=record, notify=_notify)
         written = write_portfolio(life, out) if out is not None else []
-        if record_file is not None:
-            written.append(write_log(life, values["log"], record_file))
+        if "log" in values:
+            written.append(_write_log(life, values["log"]))
     if as_json:
         print_json(life.report)
     else:
@@ -177,18 +178,23 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json
     return INTERRUPTED if life.stopped else 0
 
 
-def _recorder(values: dict[str, Any]) -> "Recorder | None":
-    """What writes the log, if the user wants one."""
+def _check_log(path: str, domain: str) -> None:
+    from lifelore.bridges.viewer_log import check_log
     from lifelore.core.errors import InputError
 
-    if "log" not in values:
-        return None
-    if values["domain"] != "building":
-        raise InputError(f"log applies to domain building, got {values['domain']}; leave it out")
-    from lifelore.bridges.viewer_log import check_log, write_life_log
+    if domain != "building":
+        raise InputError(f"log applies to domain building, got {domain}; leave it out")
+    check_log(path)
 
-    check_log(values["log"])
-    return write_life_log
+
+def _write_log(life: "Life", path: str) -> str:
+    from lifelore.agent.live.output.logged_life import logged_life
+    from lifelore.bridges.viewer_log import write_life_log
+    from lifelore.core.atomic_write import refused_writes
+
+    with refused_writes(path, "log"):
+        write_life_log(path, *logged_life(life))
+    return path
 
 
 def _missing_folders(memory: str | None, out: str | None) -> list[Path]:

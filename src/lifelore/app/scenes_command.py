@@ -16,17 +16,15 @@ def scenes(
     mix: Annotated[
         str | None,
         Option(
-            metavar="on=…,adjacent=…,both=…,none=…", help="Shares of the relations among the pairs, in any unit."
+            metavar="on=…,adjacent=…,both=…,none=…",
+            help="Shares of the relations in scenes of arrangement pair, in any unit.",
         ),
     ] = None,
     camera: Annotated[str, Option(help="Depth camera: kinect or stereo.")] = "kinect",
     shapes: Annotated[str, Option(help="Shapes: training, held-out (other kinds of shapes) or all.")] = "training",
     arrangement: Annotated[
-        str, Option(help="Arrangement: mixed, varied, pile, ramp, books, cartons, pair, apart, hole, stack, …")
+        str, Option(help="Arrangement: mixed, varied, pile, ramp, books, cartons or pair.")
     ] = "mixed",
-    mesh: Annotated[
-        list[str] | None, Option(metavar="FILE", help="Your own mesh in metres; may be repeated.")
-    ] = None,
     jobs: Annotated[int, Option(help="Processes; the files do not depend on their number.")] = 1,
     as_json: AsJson = False,
 ) -> None:
@@ -37,17 +35,14 @@ def scenes(
     all scenes as relations.csv, planes.csv and gaps.csv.
     """
     from lifelore.agent.perceive.scenes import make_scenes
-    from lifelore.app.console import print_json, progress_bar, to_stderr
+    from lifelore.app.console import print_json, progress_bar
 
     shares = _mix(mix)
     with progress_bar("drawing") as progress:
         report = make_scenes(
-            n, out, seed, mix=shares, camera=camera, shapes=shapes, arrangement=arrangement,
-            meshes=mesh or (), jobs=jobs, progress=progress,
+            n, out, seed, mix=shares, camera=camera, shapes=shapes, arrangement=arrangement, jobs=jobs,
+            progress=progress,
         )  # fmt: skip
-    if report["mix_missed"]:
-        measured = ", ".join(f"{relation}={share:.2f}" for relation, share in report["mix"].items())
-        to_stderr(f"the mix was not reached: the pairs have {measured}; draw more scenes, or change --mix")
     if as_json:
         print_json(report)
         return

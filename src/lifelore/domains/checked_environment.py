@@ -12,12 +12,12 @@ from lifelore.core.errors import InputError
 class CheckedEnvironment(gymnasium.Env):
     """An environment with numbered actions.
 
-    Subclasses set `action_space` and `observation_space`, and write `_begin`, `_advance` and `_picture`;
-    randomness is `np_random`'s, drawn by the world's own sampling, so that a rollout equals that sampling bit for
-    bit.
+    Subclasses set `action_space` and `observation_space`, and write `_begin` and `_advance`, and `_picture` where
+    their `metadata` names a render mode. Randomness is `np_random`'s, drawn by the world's own sampling, so that a
+    rollout equals that sampling bit for bit.
     """
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 2}  # noqa: RUF012
+    metadata = {"render_modes": []}  # noqa: RUF012
 
     def __init__(self, render_mode: str | None = None) -> None:
         if render_mode is not None and render_mode not in self.metadata["render_modes"]:

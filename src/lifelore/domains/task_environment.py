@@ -45,8 +45,6 @@ class TaskEnvironment(CheckedEnvironment):
     Discrete(4)
     """
 
-    metadata = {"render_modes": []}  # noqa: RUF012
-
     def __init__(self, task: Task, render_mode: str | None = None) -> None:
         super().__init__(render_mode)
         self.task = task

@@ -6,11 +6,64 @@ task can be drawn without those before it.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
+
+
+class CountedTask:
+    """A task in progress whose state is a number, and which is cut after ``longest`` actions.
+
+    Subclasses set both class attributes, and write ``_act`` and ``_observed``.
+
+    Parameters
+    ----------
+    start : int
+        State at the start of an episode.
+    """
+
+    n_actions: int
+    longest: int
+
+    def __init__(self, start: int) -> None:
+        self.start = start
+        self._now = (start, 0, False)
+
+    @property
+    def ended(self) -> bool:
+        """Whether the episode has ended by itself, or was cut."""
+        return self._now[2]
+
+    def reset(self) -> Any:
+        """Back to the start; the first observation."""
+        self._now = (self.start, 0, False)
+        return self._observed(self.start, False)
+
+    def step(self, action: int) -> tuple[Any, float, bool]:
+        """Take an action: observation, reward, and whether the episode ended.
+
+        Raises
+        ------
+        InputError
+            There is no such action, or the episode has ended.
+        """
+        state, taken, ended = self._now
+        if ended or not 0 <= action < self.n_actions:
+            raise InputError(f"action must lie in [0, {self.n_actions}) before the end, got {action}")
+        state, reward, over, refused = self._act(state, int(action))
+        self._now = (state, taken + 1, over or taken + 1 >= self.longest)
+        return self._observed(state, refused), reward, self.ended
+
+    def _act(self, state: int, action: int) -> tuple[int, float, bool, bool]:
+        """The next state, the reward, whether the episode is over, and whether the action was refused."""
+        raise NotImplementedError
+
+    def _observed(self, state: int, refused: bool) -> Any:
+        """What the agent observes in a state."""
+        raise NotImplementedError
 
 
 @dataclass(frozen=True)

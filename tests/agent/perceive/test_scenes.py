@@ -28,16 +28,6 @@ def test_the_report_counts_what_is_in_the_files(tmp_path):
     assert [done for done, _, _ in seen] == [1, 2, 3, 4]
 
 
-@pytest.mark.slow
-def test_a_mix_that_scenes_do_not_come_in_is_told(tmp_path):
-    """Of a stack of three, two pairs are *on*, and none is *both*."""
-    met = make_scenes(3, tmp_path / "met", 1, mix={"on": 2, "none": 1}, arrangement="stack")
-    missed = make_scenes(3, tmp_path / "missed", 1, mix={"both": 1}, arrangement="stack")
-    assert (met["mix_missed"], missed["mix_missed"]) == (False, True)
-    assert missed["pairs"]["on"] == 6
-    assert make_scenes(1, tmp_path / "any", 1, arrangement="stack")["mix_missed"] is False
-
-
 def test_a_mistake_leaves_no_folder(tmp_path):
     for mistake in ({"arrangement": "ring"}, {"camera": "eye"}, {"jobs": 0}, {"mix": {"under": 1}}):
         with pytest.raises(InputError):

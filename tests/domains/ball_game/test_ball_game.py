@@ -1,8 +1,5 @@
 """The ball game by hand, against naive twins, and its simulated player."""
 
-import os
-import subprocess
-import sys
 from functools import cache
 
 import networkx as nx
@@ -15,7 +12,7 @@ from lifelore.core.errors import InputError
 from lifelore.domains.ball_game.ball_game import MOVES, SIDE, LossScale, ball_game, check_place, slide, step
 from lifelore.domains.ball_game.layouts import Layout, layout_names, s_maze
 from lifelore.domains.ball_game.paths import CELL, MARGIN, cost_to_go
-from lifelore.domains.ball_game.simulated_player import advance, choose_heading, new_balls, random_states
+from lifelore.domains.ball_game.simulated_player import choose_heading
 
 GAME = ball_game()
 FIELD = GAME.field
@@ -186,34 +183,6 @@ def test_she_goes_along_the_corridor_and_never_aims_through_a_wall():
     assert choose_heading(field, 0, 800, 480, 70) == EAST
 
 
-def test_many_players_move_as_one_would():
-    generator = np.random.default_rng(3)
-    kinds = np.array([0, 3, 5, 2])
-    random = random_states(generator, 4)
-    together = new_balls(GAME, kinds, [0.3, 2.0, 5.0, 8.0], random)
-    speed = np.array([0, 2, 4, 1])
-    heading, before = np.empty(4, np.int64), np.empty((4, 2), np.int64)
-    for _ in range(30):
-        advance(FIELD, together, speed, 0, 400, heading, before)
-    for i in range(4):
-        alone = new_balls(GAME, kinds[i : i + 1], together.sigma[i], random[i : i + 1])
-        for _ in range(30):
-            advance(FIELD, alone, speed[i : i + 1], 0, 400, heading, before)
-        assert (alone.x[0], alone.y[0]) == (together.x[i], together.y[i])
-        assert alone.hits[0] == together.hits[i]
-
-
-def test_she_adapts_to_a_new_speed_after_the_lag():
-    balls = new_balls(GAME, [0], 0.3, random_states(np.random.default_rng(0), 1))
-    heading, before = np.empty(1, np.int64), np.empty((1, 2), np.int64)
-    adapted = []
-    for speed in (2, 2, 4, 4, 4, 1, 4):
-        advance(FIELD, balls, np.array([speed]), 2, 400, heading, before)
-        adapted.append(int(balls.adapted[0]))
-    # The first speed is known at once; 4 is reckoned with from its third step; 1 comes and goes unnoticed.
-    assert adapted == [2, 2, 2, 2, 4, 4, 4]
-
-
 def test_loss_by_hand():
     assert LossScale().loss([100, 400], [5, 20]).tolist() == [0.5, 2.0]
     scale = LossScale.from_episodes([[50, 80]], [[2, 4]])
@@ -221,36 +190,3 @@ def test_loss_by_hand():
     assert LossScale.from_episodes([50], [0]).hits == 1
     with pytest.raises(InputError, match="time and hits must be positive"):
         LossScale(0.0, 1.0)
-
-
-PLAIN = """
-import numpy as np
-from lifelore.domains.ball_game.ball_game import ball_game
-from reproduction.chapter4.ball_game.moves import read_moves
-from lifelore.domains.ball_game.simulated_player import advance, new_balls, random_states
-for blocked in ("slides", "stays"):
-    field = ball_game(blocked=blocked).field
-    random = random_states(np.random.default_rng(1), 6)
-    balls = new_balls(ball_game(blocked=blocked), range(6), 6.0, random)
-    heading, before, signal = np.empty(6, np.int64), np.empty((6, 2), np.int64), np.empty(6, np.int64)
-    for _ in range(60):
-        speed = np.array([0, 1, 2, 3, 4, 4])
-        advance(field, balls, speed, 2, 400, heading, before)
-        read_moves(field, before, heading, speed, balls.x, balls.y, signal)
-        print(heading.tolist(), balls.x.tolist(), balls.y.tolist(), balls.hits.tolist(), signal.tolist())
-"""
-
-
-@pytest.mark.slow
-def test_compiled_and_plain_python_agree():
-    def said(disabled):
-        command = [sys.executable, "-W", "error", "-c", PLAIN]
-        environment = os.environ | {"NUMBA_DISABLE_JIT": disabled}
-        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
-        return done.stdout.splitlines()
-
-    compiled = said("0")
-    assert len(compiled) == 120
-    assert compiled[:60] != compiled[60:]
-    assert compiled == said("1")

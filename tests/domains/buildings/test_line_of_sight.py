@@ -15,7 +15,8 @@ SAMPLES = 20_001
 
 def ground(solid: np.ndarray, state: np.ndarray, price: np.ndarray, radius: float = 2.0) -> Ground:
     """Pixels of 0.1 m; `radius` and `price` in pixels."""
-    floor = Floor(OccupancyMap(solid.astype(np.uint8) * OCCUPIED, 0.1), state, solid, 0.1 * radius, len(price))
+    occupancy = OccupancyMap(solid.astype(np.uint8) * OCCUPIED, 0.1)
+    floor = Floor(occupancy, state, solid, 0.1 * radius, np.full((len(price), 4), -1, np.int32))
     return ground_of(floor, 0.1 * price)
 
 

@@ -6,8 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy import ndimage
 
-from lifelore.core.errors import InputError
-from lifelore.domains.factory.modified_factory import INNER_WALLS, SIDE, modified_factory
+from lifelore.domains.factory.modified_factory import SIDE, modified_factory
 
 ROWS, COLUMNS = np.indices((SIDE, SIDE))
 BETWEEN = ((ROWS % 7 == 0) | (COLUMNS % 7 == 0)) & (ROWS % 21 > 0) & (COLUMNS % 21 > 0)
@@ -15,24 +14,6 @@ BETWEEN = ((ROWS % 7 == 0) | (COLUMNS % 7 == 0)) & (ROWS % 21 > 0) & (COLUMNS % 
 
 def zones_of(cells) -> list[tuple[int, int]]:
     return [(int(row) // 7, int(column) // 7) for row, column in cells]
-
-
-@pytest.mark.parametrize("inner_walls", [(-1, 2), (3, 2)])
-def test_numbers_of_inner_walls_out_of_order(inner_walls):
-    with pytest.raises(InputError, match="inner_walls must be the least and the most"):
-        modified_factory(np.random.default_rng(0), inner_walls=inner_walls)
-
-
-def test_more_inner_walls_leave_less_free_and_the_default_is_two_to_four():
-    def free(inner_walls):
-        layouts = [modified_factory(np.random.default_rng(seed), inner_walls=inner_walls) for seed in range(5)]
-        return [world.n_cells for world in layouts]
-
-    none, few, usual, many = (free(n_walls) for n_walls in ((0, 0), (1, 2), INNER_WALLS, (4, 6)))
-    # Nine zones of 36 cells and a gap in 8 to 11 walls between them.
-    assert all(9 * 36 + 8 <= n <= 9 * 36 + 11 for n in none)
-    assert sum(none) > sum(few) > sum(usual) > sum(many)
-    assert usual == [modified_factory(np.random.default_rng(seed)).n_cells for seed in range(5)]
 
 
 @pytest.mark.slow

@@ -155,4 +155,4 @@ def test_unknown_types_and_trays_of_a_mix_are_refused():
     with pytest.raises(NotFoundError, match="type must be one of"):
         job_type_named("kind/firm")
     with pytest.raises(InputError, match="mix must be None"):
-        sample_tray(1, 0, TabletopSettings(mix={"on": 1.0}))
+        sample_tray(1, 0, TabletopSettings(arrangement="pair", mix={"on": 1.0}))

@@ -48,6 +48,10 @@ def agent_kind(name: str, settings: LifeSettings) -> AgentKind:
     )
 
 
+BIG = 100_000
+"""Number of places above which an agent lives alone unless the settings ask for the comparison."""
+
+
 def agents_for(agent: str, learner: str, compare: bool = True) -> list[str]:
     """Names of all agents that live when `agent` is asked for; memory stores the first one's knowledge.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from threading import Event
 
 from lifelore.agent.life.loop import LivedTask, run_life
+from lifelore.agent.live import baselines
 from lifelore.agent.live.baselines import agent_kind, agents_for
 from lifelore.agent.live.buildings.map_watch import MapWatch
 from lifelore.agent.live.buildings.recognition import Place, own_place, recognised_place
@@ -15,7 +16,6 @@ from lifelore.agent.live.goals.destinations import NamedPlaces
 from lifelore.agent.live.goals.job_progress import JobProgress
 from lifelore.agent.live.goals.own_places import own_places
 from lifelore.agent.live.life_settings import LifeSettings
-from lifelore.agent.live.life_size import size_of_life
 from lifelore.agent.live.lived_tasks import DRIVEN, Result, TasksOfLife
 from lifelore.agent.live.lore import Lore
 from lifelore.agent.live.output.known_building import KnownBuilding
@@ -101,8 +101,8 @@ def live(
     watch : callable, optional
         Called as ``watch(task, results)`` after memory has stored a task; see `Watcher`.
     notify : callable, optional
-        Called with a line of text: before the first task if the world is big, and when a watched map was replaced
-        or cannot be used.
+        Called with a line of text: before the first task if `scratch` is left out of a big world, and when a
+        watched map was replaced or cannot be used.
 
     Raises
     ------
@@ -119,11 +119,8 @@ def live(
     world = world_from_settings(settings.world, occupancy)
     with open_memory(settings.memory.location) as memory, ThreadPoolExecutor(settings.jobs) as pool:
         place = _place(settings, world, occupancy, memory, first)
-        names, notice = size_of_life(settings, place.world.n_states)
-        if settings.driven:
-            notice = _KNOWN_GOALS if settings.destinations else None
-        if notice:
-            notify(notice)
+        if settings.driven and settings.destinations:
+            notify(_KNOWN_GOALS)
         jobs = None
         if settings.goals:
             key, again = NamedPlaces.of(place).key, settings.again
@@ -131,9 +128,11 @@ def live(
         if jobs and jobs.finished:
             settings = replace(settings, goals=jobs.unfinished(settings.goals))
             notify(jobs.notice())
-        tasks: TasksOfLife = SearchedTasks(settings, names, memory, pool)
+        tasks: TasksOfLife
         if settings.driven:
             tasks = DrivenTasks(settings, memory, jobs)
+        else:
+            tasks = SearchedTasks(settings, _names(settings, place.world.n_states, notify), memory, pool)
         life = _GridLife(settings, tasks, memory, map_watch, jobs, watch, notify)
         life.settle(place, occupancy, 0)
         run_life(
@@ -160,6 +159,18 @@ def live(
         first_here=life.first_here,
         building=building,
     )
+
+
+def _names(settings: LifeSettings, places: int, notify: Callable[[str], None]) -> list[str]:
+    """Names of the agents that live; in a big world, `scratch` lives beside the others only if it is asked for."""
+    small = places <= baselines.BIG
+    names = agents_for(settings.agent, settings.learner, small if settings.compare is None else settings.compare)
+    if settings.compare is None and names != agents_for(settings.agent, settings.learner):
+        notify(
+            f"{places:,} places: above {baselines.BIG:,} places scratch lives beside {settings.agent} only with "
+            "--set compare=true; a larger cell (--set cell=METRES) takes less time"
+        )
+    return names
 
 
 def _place(

@@ -2,7 +2,7 @@
 
 import time
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +10,6 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.protocols import Progress
 from lifelore.core.relations import CORE_RELATIONS
-from lifelore.domains.tabletop.quota import is_missed
 from lifelore.domains.tabletop.scene_folder import SceneFolder
 from lifelore.domains.tabletop.settings import TabletopSettings
 from lifelore.domains.tabletop.tabletop import tabletop_scenes
@@ -25,7 +24,6 @@ def make_scenes(
     camera: str = "kinect",
     shapes: str = "training",
     arrangement: str = "mixed",
-    meshes: Sequence[str] = (),
     jobs: int = 1,
     progress: Progress | None = None,
 ) -> dict[str, Any]:
@@ -39,7 +37,7 @@ def make_scenes(
         A folder without scenes.
     seed : int
         The same seed gives the same files, for any number of jobs.
-    mix, camera, shapes, arrangement, meshes
+    mix, camera, shapes, arrangement
         As in `TabletopSettings`.
     jobs : int
         Processes.
@@ -49,10 +47,8 @@ def make_scenes(
     Returns
     -------
     dict
-        ``scenes``, ``out``, ``seconds``, ``attempts`` (number of draws, with scenes rejected for the mix),
-        ``pairs`` (number of pairs of objects, by relation), ``mix`` (their shares), ``mix_missed`` (whether the
-        shares differ from `mix` by more than `lifelore.domains.tabletop.quota` allows) and ``with_table`` (number
-        of pairs with the table, by relation).
+        ``scenes``, ``out``, ``seconds``, ``attempts`` (number of draws), ``pairs`` (number of pairs of objects, by
+        relation), ``mix`` (their shares) and ``with_table`` (number of pairs with the table, by relation).
 
     Raises
     ------
@@ -61,9 +57,7 @@ def make_scenes(
     """
     if n < 1 or jobs < 1:
         raise InputError(f"n and jobs must be at least 1, got {n} and {jobs}")
-    settings = TabletopSettings(
-        arrangement=arrangement, mix=mix, camera=camera, shapes=shapes, meshes=tuple(meshes)
-    )
+    settings = TabletopSettings(arrangement=arrangement, mix=mix, camera=camera, shapes=shapes)
     start, folder = time.perf_counter(), SceneFolder(out)
     pairs: Counter[str] = Counter()
     with_table: Counter[str] = Counter()
@@ -82,6 +76,5 @@ def make_scenes(
         "attempts": attempts,
         "pairs": {relation: pairs[relation] for relation in CORE_RELATIONS},
         "mix": {relation: round(pairs[relation] / max(pairs.total(), 1), 4) for relation in CORE_RELATIONS},
-        "mix_missed": mix is not None and is_missed([pairs[relation] for relation in CORE_RELATIONS], mix),
         "with_table": {relation: with_table[relation] for relation in CORE_RELATIONS},
     }

@@ -30,6 +30,8 @@ PERIOD, N_PERIODS = 3, 16
 """Days of a period, counted back from the clock, and number of periods; older passes belong to the last one."""
 WIDTHS = {"always": 1, "hour": N_HOURS, "period": N_PERIODS}
 """Number of groups that a cell has, by axis of a level."""
+HALF_LIFE = 60.0
+"""Days after which a pass has half its weight; twice or half as many change little."""
 NEAR = 3
 """Moves from a cell to the farthest cell of its neighbourhood; each move away has half the weight."""
 LARGEST = 0.7
@@ -43,25 +45,23 @@ class Level(NamedTuple):
 
     near : whether passes of the neighbourhood count, or those of the cell alone
     axis : "always", "hour" or "period": whether each hour, or each period of days, is a group of its own
-    half_life : days, above 0, after which a pass has half its weight
     strength : number of passes without effect that each group has before any pass
     """
 
     near: bool
     axis: str
-    half_life: float
     strength: float
 
 
 LEVELS = (
-    Level(True, "always", 60.0, 1.0),
-    Level(False, "always", 60.0, 2.0),
-    Level(True, "period", 60.0, 6.0),
-    Level(False, "period", 60.0, 4.0),
-    Level(True, "hour", 60.0, 6.0),
-    Level(False, "hour", 60.0, 6.0),
+    Level(True, "always", 1.0),
+    Level(False, "always", 2.0),
+    Level(True, "period", 6.0),
+    Level(False, "period", 4.0),
+    Level(True, "hour", 6.0),
+    Level(False, "hour", 6.0),
 )
-"""Chosen on seven simulated lives; twice or half a strength or half-life changes little."""
+"""Chosen on seven simulated lives; twice or half a strength changes little."""
 
 
 def typical_seconds(world: GridWorld, passes: Passes, clock: float) -> NDArray[np.float64]:
@@ -77,26 +77,31 @@ def typical_seconds(world: GridWorld, passes: Passes, clock: float) -> NDArray[n
     alone = sparse.csr_matrix(
         (np.ones(len(entered)), (entered, np.arange(len(entered)))), (world.n_states, len(entered))
     )
-    spread = {False: alone, True: _neighbourhoods(world, alone)}
+    near = _neighbourhoods(world, alone)
+    around = {False: (alone, alone[entered]), True: (near, near[entered])}
     age = np.maximum(minute - rows.minute, 0) / DAY
+    weight = rows.passes * 0.5 ** (age / HALF_LIFE)
     period = np.minimum(age / PERIOD, N_PERIODS - 1).astype(np.int64)
     axes = {"always": np.zeros_like(period), "hour": hour_of(rows.minute), "period": period}
     now = {"always": 0, "hour": int(hour_of(np.array(minute))), "period": 0}
+
+    def by_group(axis: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        slot, shape = cell * WIDTHS[axis] + axes[axis], (len(entered), WIDTHS[axis])
+        table = summed(slot, values, shape)
+        return smoothed_hours(table) if axis == "hour" else _smoothed(np.pad(table, ((0, 0), (1, 1))))
+
+    counts = {axis: by_group(axis, weight) for axis in WIDTHS}
     left = rows.log_seconds / rows.passes - np.log(nominal)
     pace = (rows.passes @ left) / (rows.passes.sum() + 1)
     left -= pace
     explained, log = np.zeros((len(LEVELS), len(left))), np.zeros((len(LEVELS), world.n_states))
     for _ in range(SWEEPS):
-        for place, level in enumerate(LEVELS):
+        for place, (is_near, axis, strength) in enumerate(LEVELS):
             left += explained[place]
-            weight = rows.passes * 0.5 ** (age / level.half_life)
-            axis, at, shape = axes[level.axis], now[level.axis], (len(entered), WIDTHS[level.axis])
-            slot = cell * shape[1] + axis
-            residual = summed(slot, weight * np.clip(left, -LARGEST, LARGEST), shape)
-            sums, counts = (_smoothed(table, level.axis) for table in (residual, summed(slot, weight, shape)))
-            around = spread[level.near]
-            explained[place] = _shrunk(around[entered], sums, counts, level.strength)[cell, axis]
-            log[place] = _shrunk(around, sums[:, at], counts[:, at], level.strength)
+            sums, n, at = by_group(axis, weight * np.clip(left, -LARGEST, LARGEST)), counts[axis], now[axis]
+            everywhere, where_entered = around[is_near]
+            explained[place] = _shrunk(where_entered, sums, n, strength)[cell, axes[axis]]
+            log[place] = _shrunk(everywhere, sums[:, at], n[:, at], strength)
             left -= explained[place]
     by_cell = nominal * np.exp(pace + log.sum(axis=0))
     return np.where(world.neighbour >= 0, by_cell[world.neighbour], nominal)
@@ -110,21 +115,18 @@ def hour_of(minute: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def summed(slot: NDArray[np.int64], values: NDArray[np.float64], shape: tuple[int, int]) -> NDArray[np.float64]:
     """The sum of the values of each slot, a table of `shape` in row order; `slot` and `values` (n,)."""
-    return np.bincount(slot, values, minlength=shape[0] * shape[1]).reshape(shape).astype(np.float64)
+    return np.asarray(np.bincount(slot, values, shape[0] * shape[1]).reshape(shape), np.float64)
 
 
 def smoothed_hours(by_hour: NDArray[np.float64]) -> NDArray[np.float64]:
     """Each hour with half of the hour before it and half of the next, around the clock; `by_hour` (n, 48)."""
     days = by_hour.reshape(-1, 2, 24)
-    return (days + 0.5 * (np.roll(days, 1, axis=2) + np.roll(days, -1, axis=2))).reshape(by_hour.shape)
+    return _smoothed(np.concatenate([days[..., -1:], days, days[..., :1]], axis=2)).reshape(by_hour.shape)
 
 
-def _smoothed(table: NDArray[np.float64], axis: str) -> NDArray[np.float64]:
-    """Each hour or period with half of the one before it and half of the next; `table` (n, groups)."""
-    if axis == "hour":
-        return smoothed_hours(table)
-    padded = np.pad(table, ((0, 0), (1, 1)))
-    return table + 0.5 * (padded[:, :-2] + padded[:, 2:])
+def _smoothed(padded: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Each group but the first and the last, with half of the one before it and half of the next."""
+    return padded[..., 1:-1] + 0.5 * (padded[..., :-2] + padded[..., 2:])
 
 
 def _neighbourhoods(world: GridWorld, alone: sparse.csr_matrix) -> sparse.csr_matrix:

@@ -79,8 +79,9 @@ def building_from_map(
             f"map: no free cell is left for robot_radius {robot_radius} m at {occupancy.resolution} m a pixel "
             "(unknown pixels are not free); use a smaller robot_radius or check the map's thresholds"
         )
-    cells, neighbour = _largest_region(*_touching(largest, grid))
-    share = _pixels_in(largest, grid)[tuple(cells.T)] / (cell / occupancy.resolution) ** 2
+    pixels = grid.counts(largest)
+    cells, neighbour = _largest_region(pixels > 0, *_touching(largest, grid))
+    share = pixels[tuple(cells.T)] / (cell / occupancy.resolution) ** 2
     cells, neighbour = _only(without_slivers(neighbour, share, min_free), cells, neighbour)
     if len(cells) < 2:
         raise InputError(
@@ -114,18 +115,12 @@ def _check(occupancy: OccupancyMap, cell: float, robot_radius: float, min_free: 
 
 
 def _touching(largest: NDArray[np.bool_], grid: SquareGrid):
-    """Which cells have a piece, and between which of them (south, east) the pieces touch; bool grids."""
-    first_row = np.unique(grid.row_of, return_index=True)[1]
-    first_column = np.unique(grid.column_of, return_index=True)[1]
-
-    def any_in_cells(pixels, axis, first):
-        return np.logical_or.reduceat(pixels, first, axis=axis)
-
-    exists = any_in_cells(any_in_cells(largest, 0, first_row), 1, first_column)
+    """Between which cells (south, east) the pieces touch; bool grids."""
+    first_row, first_column = grid.first
     below, right = first_row[1:], first_column[1:]
-    south = any_in_cells(largest[below - 1] & largest[below], 1, first_column)
-    east = any_in_cells(largest[:, right - 1] & largest[:, right], 0, first_row)
-    return exists, south, east
+    south = np.logical_or.reduceat(largest[below - 1] & largest[below], first_column, axis=1)
+    east = np.logical_or.reduceat(largest[:, right - 1] & largest[:, right], first_row, axis=0)
+    return south, east
 
 
 def _largest_region(exists: NDArray[np.bool_], south: NDArray[np.bool_], east: NDArray[np.bool_]):
@@ -146,13 +141,6 @@ def _largest_region(exists: NDArray[np.bool_], south: NDArray[np.bool_], east: N
         neighbour[near, there] = state[far]
         neighbour[far, back] = state[near]
     return np.argwhere(exists)[kept].astype(np.int32), np.ascontiguousarray(neighbour[kept])
-
-
-def _pixels_in(largest: NDArray[np.bool_], grid: SquareGrid) -> NDArray[np.int64]:
-    """Pixels of each cell's piece, (rows, columns) of cells."""
-    row, column = np.nonzero(largest)
-    cell = grid.row_of[row] * grid.shape[1] + grid.column_of[column]
-    return np.bincount(cell, minlength=grid.shape[0] * grid.shape[1]).reshape(grid.shape)
 
 
 def _only(kept: NDArray[np.bool_], cells: NDArray, neighbour: NDArray):

@@ -16,7 +16,7 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.domains.buildings.busy_places import around, blocked_passages, move_graph, on_shortest_ways, without
 from lifelore.domains.grids.grid_world import GridWorld
-from lifelore.domains.task_stream import DrawnTask, TaskStream
+from lifelore.domains.task_stream import CountedTask, DrawnTask, TaskStream
 
 MOVE, CROWD, REFUSED = -1.0, -6.0, -2.0
 """Points of a move, of a move into a crowd, and of a move that is refused."""
@@ -78,8 +78,8 @@ class WayObservation:
     refused: bool = False
 
 
-class BuildingWay:
-    """One way on a day of a hidden type.
+class BuildingWay(CountedTask):
+    """One way on a day of a hidden type; the actions are moves north, south, east and west.
 
     Parameters
     ----------
@@ -90,18 +90,13 @@ class BuildingWay:
         Different open cells.
     """
 
-    n_actions = 4
+    n_actions, longest = 4, LONGEST
 
     def __init__(self, world: GridWorld, day: Day, start: int, destination: int) -> None:
         if start == destination or not day.open[[start, destination]].all():
             raise InputError(f"start and destination must be different open cells, got {start} and {destination}")
-        self.world, self._day, self.start, self.destination = world, day, start, destination
-        self._now = (start, 0, False)
-
-    @property
-    def ended(self) -> bool:
-        """Whether the destination was reached, or the way was cut."""
-        return self._now[2]
+        super().__init__(start)
+        self.world, self._day, self.destination = world, day, destination
 
     @cached_property
     def best_return(self) -> float:
@@ -110,28 +105,14 @@ class BuildingWay:
         graph = move_graph(self._day.neighbour, cost)
         return -float(csgraph.dijkstra(graph, indices=self.start)[self.destination])
 
-    def reset(self) -> WayObservation:
-        """Back to the start."""
-        self._now = (self.start, 0, False)
-        return WayObservation(self.start, self.destination)
+    def _act(self, state: int, action: int) -> tuple[int, float, bool, bool]:
+        target = int(self._day.neighbour[state, action])
+        if target < 0:
+            return state, REFUSED, False, True
+        return target, CROWD if self._day.crowded[target] else MOVE, target == self.destination, False
 
-    def step(self, action: int) -> tuple[WayObservation, float, bool]:
-        """Move north, south, east or west: observation, points, and whether the way ended.
-
-        Raises
-        ------
-        InputError
-            There is no such move, or the way has ended.
-        """
-        cell, taken, ended = self._now
-        if ended or not 0 <= action < 4:
-            raise InputError(f"action must lie in [0, 4) before the end, got {action}")
-        target = int(self._day.neighbour[cell, action])
-        refused = target < 0
-        cell = cell if refused else target
-        reward = REFUSED if refused else CROWD if self._day.crowded[cell] else MOVE
-        self._now = (cell, taken + 1, cell == self.destination or taken + 1 >= LONGEST)
-        return WayObservation(cell, self.destination, refused), reward, self.ended
+    def _observed(self, state: int, refused: bool) -> WayObservation:
+        return WayObservation(state, self.destination, refused)
 
 
 @dataclass(frozen=True, eq=False)

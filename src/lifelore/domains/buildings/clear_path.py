@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from lifelore.core.compiled.jit import kernel
 from lifelore.domains.buildings.cost_ahead import cost_ahead, cost_ahead_of
 from lifelore.domains.buildings.floor import Floor
-from lifelore.domains.buildings.line_of_sight import TIGHT, ground_of, line_cost
+from lifelore.domains.buildings.line_of_sight import TIGHT, ground_of, line_cost, near_solid
 
 _STRIDE, _STRIDES_PER_CELL = 4, 3
 """Most pixels between two nodes on open floor, and least number of such steps through a cell: a path may be known
@@ -62,7 +62,10 @@ def clear_path(
     ground = ground_of(floor, np.zeros((floor.n_states, 4)) if price is None else price, clearance)
     cell = math.sqrt(np.count_nonzero(floor.state >= 0) / floor.n_states)
     stride = min(max(int(cell / _STRIDES_PER_CELL), 1), _STRIDE)
-    corners = _search(ground, ends, cost_ahead_of(floor, ground.price, ends[1]), stride)
+    nodes = near_solid(floor, ground.wanted + stride + 2).copy()
+    nodes[::stride, ::stride] = True
+    nodes &= floor.state >= 0
+    corners = _search(ground, ends, cost_ahead_of(floor, ground.price, ends[1]), nodes, stride)
     if not len(corners):
         return None
     path = floor.metres(_pulled(ground, corners, _SHIFTS))
@@ -91,21 +94,14 @@ def _line(ground, ends, a, b):
 
 
 @kernel
-def _is_node(ground, row, column, stride):
-    """Whether a path may turn at a pixel: one near an obstacle, or one of the lattice."""
-    if ground.state[row, column] < 0:
-        return False
-    return row % stride == column % stride == 0 or ground.distance[row, column] <= ground.wanted + stride + 2
-
-
-@kernel
-def _around(ground, ends, node, stride, found):
+def _around(nodes, ends, node, stride, found):
     """Write the nodes next to a node to `found`; their number.
 
-    They are the pixels around it, the corners of its square of the lattice, and ends that lie near. A pixel of the
-    lattice has all nodes in its four squares, and so has an end.
+    `nodes` (rows, columns) are the pixels at which a path may turn: those near an obstacle, and those of the
+    lattice. Next to a node lie those around it, the corners of its square of the lattice, and ends that lie near.
+    A pixel of the lattice has all nodes in its four squares, and so has an end.
     """
-    rows, columns = ground.state.shape
+    rows, columns = nodes.shape
     row, column = _point(ends, columns, node)
     at_row, at_column = math.floor(row + 0.5), math.floor(column + 0.5)
     in_lattice = at_row % stride == at_column % stride == 0
@@ -113,13 +109,13 @@ def _around(ground, ends, node, stride, found):
     n = 0
     for i in range(max(at_row - reach, 0), min(at_row + reach + 1, rows)):
         for j in range(max(at_column - reach, 0), min(at_column + reach + 1, columns)):
-            if i * columns + j != node and _is_node(ground, i, j, stride):
+            if nodes[i, j] and i * columns + j != node:
                 found[n] = i * columns + j
                 n += 1
     if reach < stride:
         for i in (at_row - at_row % stride, at_row - at_row % stride + stride):
             for j in (at_column - at_column % stride, at_column - at_column % stride + stride):
-                if i < rows and j < columns and ground.state[i, j] >= 0:
+                if i < rows and j < columns and nodes[i, j]:
                     found[n] = i * columns + j
                     n += 1
     for end in range(-2, 0):
@@ -138,7 +134,7 @@ def _ahead(ground, ends, node, ahead):
 
 
 @kernel
-def _search(ground, ends, costs_ahead, stride):
+def _search(ground, ends, costs_ahead, nodes, stride):
     """Lazy Theta*: points (n, 2) of the cheapest path, none if there is none."""
     columns = ground.state.shape[1]
     n_nodes = ground.state.size + 2  # the two ends are the last, by their negative numbers
@@ -154,7 +150,7 @@ def _search(ground, ends, costs_ahead, stride):
         ahead = _ahead(ground, ends, node, costs_ahead)
         if closed[node] or bound > cost[node] + ahead + 1e-9:
             continue
-        n = _around(ground, ends, node, stride, beside)
+        n = _around(nodes, ends, node, stride, beside)
         if not measured[node]:
             lower = cost[node]
             _measure(ground, ends, node, beside[:n], cost, before, closed)

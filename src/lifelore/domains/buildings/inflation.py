@@ -45,10 +45,11 @@ def inflate(occupied: NDArray[np.bool_], radius: float) -> NDArray[np.bool_]:
 
 def _rows_to_obstacle(occupied: NDArray[np.bool_], reach: int) -> NDArray:
     """Rows from each pixel to the nearest occupied one of its column; reach + 1 where none is that near."""
-    dtype = np.uint8 if reach < 254 else np.uint32
+    dtype = np.uint8 if reach < 127 else np.uint32
     away = np.where(occupied, 0, reach + 1).astype(dtype)
-    for row in range(1, len(away)):
-        np.minimum(away[row], away[row - 1] + dtype(1), out=away[row])
-    for row in range(len(away) - 2, -1, -1):
-        np.minimum(away[row], away[row + 1] + dtype(1), out=away[row])
+    step = 1  # Sums of its values, 1, 2, 4 …, are all distances up to `reach`.
+    while step <= min(reach, len(away) - 1):
+        np.minimum(away[step:], away[:-step] + dtype(step), out=away[step:])
+        np.minimum(away[:-step], away[step:] + dtype(step), out=away[:-step])
+        step *= 2
     return away

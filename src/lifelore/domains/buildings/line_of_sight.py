@@ -4,6 +4,7 @@ All lengths are in pixels, points are (row, column) with whole numbers at pixel 
 """
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.compiled.jit import kernel
 from lifelore.domains.buildings.floor import Floor
+from lifelore.domains.buildings.inflation import inflate
 
 TIGHT = 20.0
 """Extra cost of a line that is not as clear as wanted, as a multiple of its length: a larger value makes longer
@@ -24,7 +26,7 @@ class Ground(NamedTuple):
 
     state : (rows, columns) int32, state of each pixel, -1 where the robot's centre cannot be
     solid : (rows, columns) bool
-    distance : (rows, columns) float64, to the nearest solid pixel centre
+    narrow : (rows, columns) bool, pixels in which a line may be too near to a solid one
     price : (n_states, 4) float64, pixels that a move costs in addition to its length; inf where there is no move
     radius : every point of a line is farther from all solid pixel centres
     wanted : clearance below which a line is tight
@@ -32,7 +34,7 @@ class Ground(NamedTuple):
 
     state: NDArray[np.int32]
     solid: NDArray[np.bool_]
-    distance: NDArray[np.float64]
+    narrow: NDArray[np.bool_]
     price: NDArray[np.float64]
     radius: float
     wanted: float
@@ -46,7 +48,14 @@ def ground_of(floor: Floor, price: NDArray[np.floating], clearance: float | None
     resolution = floor.occupancy.resolution
     wanted = floor.radius + 0.5 if clearance is None else max(clearance / resolution, floor.radius)
     pixels = np.asarray(price, np.float64) / resolution
-    return Ground(floor.state, floor.solid, floor.distance, pixels, floor.radius, float(wanted))
+    narrow = near_solid(floor, wanted + HALF_DIAGONAL)
+    return Ground(floor.state, floor.solid, narrow, pixels, floor.radius, float(wanted))
+
+
+@lru_cache(maxsize=4)
+def near_solid(floor: Floor, reach: float) -> NDArray[np.bool_]:
+    """Pixels (rows, columns) whose centre lies within `reach` pixels of a solid one; kept for the next path."""
+    return inflate(floor.solid, reach)
 
 
 @kernel
@@ -67,7 +76,7 @@ def line_cost(ground, row, column, last_row, last_column):
     next_column = (at_column + 0.5 * one_right - column) / right if columns_left else np.inf
     price, clearance = 0.0, ground.wanted
     while True:
-        if ground.distance[at_row, at_column] < ground.wanted + HALF_DIAGONAL:
+        if ground.narrow[at_row, at_column]:
             clearance = min(clearance, _clearance(ground, at_row, at_column, row, column, down, right))
             if clearance <= ground.radius * (1 + 1e-9):
                 return np.inf

@@ -9,12 +9,12 @@ from types import MappingProxyType
 
 import numpy as np
 
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import NotFoundError
 from lifelore.core.mdp import COLLISION, TERMINAL
 from lifelore.core.streams import stream
 from lifelore.domains.factory.factory import ACTION_NAMES, ASSEMBLED, RAW, Factory
 from lifelore.domains.factory.modified_factory import modified_factory
-from lifelore.domains.task_stream import DrawnTask, TaskStream
+from lifelore.domains.task_stream import CountedTask, DrawnTask, TaskStream
 
 CUSTOMERS = MappingProxyType(
     {
@@ -41,7 +41,7 @@ class OrderObservation:
     collision: bool = False
 
 
-class CustomerOrder:
+class CustomerOrder(CountedTask):
     """One order: a factory and a hidden list of components.
 
     Parameters
@@ -56,7 +56,7 @@ class CustomerOrder:
         No customer has this name.
     """
 
-    n_actions = len(ACTION_NAMES)
+    n_actions, longest = len(ACTION_NAMES), LONGEST
 
     def __init__(self, factory: Factory, customer: str) -> None:
         if customer not in CUSTOMERS:
@@ -64,47 +64,26 @@ class CustomerOrder:
         self.factory, self.customer = factory, customer
         self._task = factory.task(CUSTOMERS[customer])
         self._step = getattr(self._task.domain.step, "py_func", self._task.domain.step)
-        self._now = (factory.start, 0, False)
-
-    @property
-    def ended(self) -> bool:
-        """Whether everything is assembled, or the order was cut."""
-        return self._now[2]
+        super().__init__(factory.start)
 
     @property
     def best_return(self) -> float:
         """Largest discounted return (the factory's discount) that an agent which knows the list can have."""
         return float(self._task.optimal_q()[self.factory.start].max())
 
-    def reset(self) -> OrderObservation:
-        """Back to the start with nothing procured."""
-        self._now = (self.factory.start, 0, False)
-        return self._observation(False)
+    def _act(self, state: int, action: int) -> tuple[int, float, bool, bool]:
+        following, reward, event = self._step(self._task.params, state, action, 0.5)
+        return int(following), float(reward), bool(event & TERMINAL), bool(event & COLLISION)
 
-    def step(self, action: int) -> tuple[OrderObservation, float, bool]:
-        """Take an action: observation, reward, and whether the order ended.
-
-        Raises
-        ------
-        InputError
-            There is no such action, or the order has ended.
-        """
-        state, taken, ended = self._now
-        if ended or not 0 <= action < self.n_actions:
-            raise InputError(f"action must lie in [0, {self.n_actions}) before the end, got {action}")
-        state, reward, event = self._step(self._task.params, state, int(action), 0.5)
-        self._now = (int(state), taken + 1, bool(event & TERMINAL) or taken + 1 >= LONGEST)
-        return self._observation(bool(event & COLLISION)), float(reward), self.ended
-
-    def _observation(self, collision: bool) -> OrderObservation:
-        configuration, cell = divmod(self._now[0], self.factory.n_cells)
+    def _observed(self, state: int, refused: bool) -> OrderObservation:
+        configuration, cell = divmod(state, self.factory.n_cells)
         stages = self._task.stages[configuration]
         items = np.array(self._task.components)
         return OrderObservation(
             cell,
             frozenset(items[stages > RAW].tolist()),
             frozenset(items[stages == ASSEMBLED].tolist()),
-            collision,
+            refused,
         )
 
 

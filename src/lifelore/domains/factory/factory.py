@@ -112,7 +112,6 @@ class Factory:
         The cell in which episodes start (the thesis is silent but for "the start location").
     procure_area, assemble_area : (n_cells,) bool
         The regions of the points; what the expert of Fig. 3.7 steers for.
-    rewards : FactoryRewards
 
     Points may be driven over. Components are numbered from 0, where the thesis counts from 1.
     """
@@ -124,7 +123,8 @@ class Factory:
     start: int
     procure_area: NDArray[np.bool_]
     assemble_area: NDArray[np.bool_]
-    rewards: FactoryRewards = field(default_factory=FactoryRewards)
+
+    rewards = FactoryRewards()
 
     def __post_init__(self) -> None:
         for name in ("procure_at", "assemble_at"):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.domains.factory.factory import Factory, FactoryRewards
+from lifelore.domains.factory.factory import Factory
 from lifelore.domains.grids.grid_world import GridWorld
 
 DISCOUNT = 0.99
@@ -41,9 +41,7 @@ PLAN = """
 """Signs: # wall, + express route, S start (on a route), 1-9 procurement, a-i assembly of the same component."""
 
 
-def factory(
-    plan: str = PLAN, discount: float = DISCOUNT, rewards: FactoryRewards | None = None, name: str = "factory"
-) -> Factory:
+def factory(plan: str = PLAN, discount: float = DISCOUNT, name: str = "factory") -> Factory:
     """The thesis's factory, or another from a drawing in the signs of `PLAN`.
 
     Raises
@@ -71,7 +69,6 @@ def factory(
         int(start[0]),
         _rectangle_around(floor.cells, procure_at),
         _rectangle_around(floor.cells, assemble_at),
-        rewards or FactoryRewards(),
     )
 
 

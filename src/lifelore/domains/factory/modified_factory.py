@@ -17,8 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from lifelore.core.errors import InputError
-from lifelore.domains.factory.factory import N_COMPONENTS, Factory, FactoryRewards
+from lifelore.domains.factory.factory import N_COMPONENTS, Factory
 from lifelore.domains.factory.layout import DISCOUNT
 from lifelore.domains.grids.grid_world import GridWorld
 
@@ -30,12 +29,7 @@ INNER_WALLS, INNER_LENGTH = (2, 4), (2, 4)
 _TRIALS = 50
 
 
-def modified_factory(
-    generator: np.random.Generator,
-    discount: float = DISCOUNT,
-    rewards: FactoryRewards | None = None,
-    inner_walls: tuple[int, int] = INNER_WALLS,
-) -> Factory:
+def modified_factory(generator: np.random.Generator, discount: float = DISCOUNT) -> Factory:
     """A random layout.
 
     Parameters
@@ -43,15 +37,6 @@ def modified_factory(
     generator : numpy.random.Generator
     discount : float
         γ in [0, 1).
-    rewards : FactoryRewards, optional
-        Default: the thesis's.
-    inner_walls : (int, int)
-        Least and most walls inside a zone; fewer where no more have room.
-
-    Raises
-    ------
-    InputError
-        The least number of inner walls is negative or above the most.
 
     Examples
     --------
@@ -59,12 +44,10 @@ def modified_factory(
     >>> one.floor.shape, one.n_components
     ((22, 22), 9)
     """
-    if not 0 <= inner_walls[0] <= inner_walls[1]:
-        raise InputError(f"inner_walls must be the least and the most, 0 <= least <= most, got {inner_walls}")
     free = _walled_zones()
     _open_gaps(free, generator)
     for zone in np.ndindex(ZONES, ZONES):
-        _put_inner_walls(free, zone, inner_walls, generator)
+        _put_inner_walls(free, zone, generator)
     floor = GridWorld.from_free("modified factory", free, discount=discount)
     chosen = generator.permutation(ZONES * ZONES)[:4]
     zone_of = _zone_of(floor.cells)
@@ -78,7 +61,6 @@ def modified_factory(
         int(generator.choice(others)),
         np.isin(zone_of, chosen[:2]),
         np.isin(zone_of, chosen[2:]),
-        rewards or FactoryRewards(),
     )
 
 
@@ -107,11 +89,9 @@ def _open_gaps(free: NDArray[np.bool_], generator: np.random.Generator) -> None:
         free[tuple(at)] = True
 
 
-def _put_inner_walls(
-    free: NDArray[np.bool_], zone: tuple[int, ...], n_walls: tuple[int, int], generator: np.random.Generator
-) -> None:
-    """Short straight walls that part nothing from the rest; in place."""
-    wanted = int(generator.integers(n_walls[0], n_walls[1] + 1))
+def _put_inner_walls(free: NDArray[np.bool_], zone: tuple[int, ...], generator: np.random.Generator) -> None:
+    """Short straight walls that part nothing from the rest; fewer where no more have room; in place."""
+    wanted = int(generator.integers(INNER_WALLS[0], INNER_WALLS[1] + 1))
     for _ in range(_TRIALS):
         if not wanted:
             return

@@ -4,12 +4,10 @@ from typing import Any
 
 import numpy as np
 from gymnasium import spaces
-from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.domains.checked_environment import CheckedEnvironment
 from lifelore.domains.golf.golf import CATEGORIES, Golf, category_of
-from lifelore.domains.golf.picture import draw_hole
 
 LONGEST = 1000.0
 """Longest hole that may be asked for, yards."""
@@ -35,23 +33,19 @@ class GolfEnvironment(CheckedEnvironment):
     Never; truncated after 3 shots.
 
     ## Arguments
-    `distance`: of every hole in yards, None draws it anew at each reset. `render_mode`: None or ``"rgb_array"``.
+    `distance`: of every hole in yards, None draws it anew at each reset.
 
     ``info`` has ``"distance"``, and after a shot ``"error"``, yards beyond the hole: the golfer knows neither.
     """
 
-    def __init__(self, distance: float | None = None, render_mode: str | None = None) -> None:
-        super().__init__(render_mode)
+    def __init__(self, distance: float | None = None) -> None:
+        super().__init__()
         self.world = Golf()
         self._fixed = None if distance is None else _checked(distance)
         self.action_space = spaces.Discrete(self.world.n_clubs)
         self.observation_space = spaces.Discrete(len(CATEGORIES) + 1)
         self.distance = 0.0
         self.landed: list[float] = []
-
-    def _picture(self) -> NDArray[np.uint8]:
-        """The course, (200, 720, 3) uint8."""
-        return draw_hole(self.distance, self.landed)
 
     def _begin(self, options: dict[str, Any]) -> tuple[int, dict[str, Any]]:
         drawn = float(self.world.draw_holes(self.np_random, 1)[0])

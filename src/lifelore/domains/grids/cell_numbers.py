@@ -35,10 +35,9 @@ def cells_of(world: GridWorld) -> NDArray[np.int64]:
 
 def states_in(world: GridWorld, cells: NDArray[np.int64]) -> NDArray[np.int64]:
     """The state in each of `cells`, -1 where this world has none."""
-    own = cells_of(world)
-    order = np.argsort(own)
-    place = np.minimum(np.searchsorted(own[order], cells), len(own) - 1)
-    return np.where(own[order][place] == cells, order[place], -1)
+    row, column = world.shape[0] - 1 - (cells >> COLUMN_BITS), cells & (2**COLUMN_BITS - 1)
+    inside = (row >= 0) & (row < world.shape[0]) & (column < world.shape[1])
+    return np.where(inside, world.state_of[np.where(inside, row, 0), np.where(inside, column, 0)], -1)
 
 
 def shifted(cells: NDArray[np.int64], shift: tuple[int, int]) -> NDArray[np.int64]:

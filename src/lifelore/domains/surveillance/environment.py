@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.domains.checked_environment import CheckedEnvironment
-from lifelore.domains.surveillance.picture import draw_reserve
 from lifelore.domains.surveillance.surveillance import SIDE, Surveillance
 
 LARGEST = 10_000.0
@@ -37,30 +36,21 @@ class SurveillanceEnvironment(CheckedEnvironment):
 
     ## Arguments
     `layout`: ``"X"``, ``"diamond"``, ``"ring"`` or ``"checkerboard"``. `metric`: ``"chebyshev"`` or
-    ``"euclidean"``. `deviation`: of the noise, 20. `unseen`: False. `render_mode`: None or ``"rgb_array"``.
+    ``"euclidean"``. `deviation`: of the noise, 20. `unseen`: False.
 
     ``info["poachers"]`` is where they are, which the base station does not know.
     """
 
     def __init__(
-        self,
-        layout: str = "X",
-        metric: str = "chebyshev",
-        deviation: float = 20.0,
-        unseen: bool = False,
-        render_mode: str | None = None,
+        self, layout: str = "X", metric: str = "chebyshev", deviation: float = 20.0, unseen: bool = False
     ) -> None:
-        super().__init__(render_mode)
+        super().__init__()
         self.world = Surveillance(layout, metric, deviation)
         self.unseen = unseen
         self.action_space = spaces.Discrete(self.world.n_targets)
         self.observation_space = spaces.Box(-LARGEST, LARGEST, (1,), np.float64)
         self.poachers = (0, 0)
         self._drone: int | None = None
-
-    def _picture(self) -> NDArray[np.uint8]:
-        """The reserve, (624, 624, 3) uint8."""
-        return draw_reserve(self.world, self._drone, self.poachers)
 
     def _begin(self, options: dict[str, Any]) -> tuple[NDArray[np.float64], dict[str, Any]]:
         row, column = self.world.draw_cells(self.np_random, 1, seen=not self.unseen)[0].tolist()

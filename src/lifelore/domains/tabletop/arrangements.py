@@ -1,91 +1,47 @@
-"""Arrangements: what a scene is to show, as a way to place objects and a test that, settled, they show it.
+"""Arrangements: ways to place the objects of a scene.
 
-*mixed*: groups side by side; *pair*: two objects in a wanted relation; the others are of the thesis's figures: a
-ball at an L-block (2.1), a ball on a block (2.2), holes (2.6) and their control, stacks (2.7, 2.10), and two
-objects at a given distance; `piles` has those of books, boxes and cartons. In the figures' the label 2 is the
-lowest object, 3 the one on it, and so on.
+*mixed*: groups side by side; *pair*: two objects in a wanted relation; *varied*: any arrangement but *pair*. The
+module `piles` has those of books, boxes and cartons.
 """
-
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, NONE, ON
+from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, ON
 from lifelore.domains.tabletop.groups import Template, bridge, heap, lean, nested, single, stacked, step, tower
 from lifelore.domains.tabletop.kits import Kit
-from lifelore.domains.tabletop.layout import Group, put_beside, separation, stand, top
-from lifelore.domains.tabletop.piles import PILES
-from lifelore.domains.tabletop.pose import about
+from lifelore.domains.tabletop.layout import Group, put_beside, separation
+from lifelore.domains.tabletop.piles import PILES, Place
 from lifelore.domains.tabletop.settings import TabletopSettings
-from lifelore.domains.tabletop.shapes import animal, arch, ball, box, cloth, hinged_blocks, l_block
 
-
-@dataclass(frozen=True)
-class Arrangement:
-    """How objects are placed, and the pairs (a, b) of labels that must settle so that a is carried by b.
-
-    `regions` is how many separate regions the first such pair must touch in; `shuffled` whether the labels are
-    dealt at random, so that their order tells nothing.
-    """
-
-    place: Callable[[np.random.Generator, Kit, TabletopSettings, str], Group]
-    on: tuple[tuple[int, int], ...] = ()
-    regions: int = 0
-    shuffled: bool = False
-
-
-MIXED: tuple[tuple[Template, float, str], ...] = (
-    (single, 0.34, NONE),
-    (stacked, 0.2, ON),
-    (tower, 0.09, ON),
-    (lean, 0.18, BOTH),
-    (bridge, 0.05, ON),
-    (step, 0.06, BOTH),
-    (nested, 0.03, ON),
-    (heap, 0.05, ON),
-)
-"""Templates of a scene of many objects, how often each is drawn, and the relation it is there for."""
-_USUAL = {ON: 0.2, BOTH: 0.15, NONE: 0.65}
+MIXED: dict[Template, float] = {
+    single: 0.34, stacked: 0.2, tower: 0.09, lean: 0.18, bridge: 0.05, step: 0.06, nested: 0.03, heap: 0.05
+}  # fmt: skip
+"""Templates of a scene of many objects, and how often each is drawn."""
+GAPS = {
+    (0.0005, 0.003): 0.22, (0.003, 0.02): 0.25, (0.02, 0.035): 0.3, (0.035, 0.085): 0.13, (0.085, 0.14): 0.1
+}  # fmt: skip
+"""Metres between neighbours, and how often: touching, near, where *adjacent* ends, further, unlabelled."""
 
 
 def place_mixed(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
     """Groups of objects, each set down beside an earlier one at a drawn gap."""
     n_objects = int(rng.integers(settings.n_objects[0], settings.n_objects[1] + 1))
-    weights = _template_weights(settings.mix)
+    weights = np.array(list(MIXED.values()))
     scene: list[tuple[float, Group]] = []
     count = 0
     while count < n_objects:
-        group = MIXED[int(rng.choice(len(MIXED), p=weights))][0](rng, kit)
+        group = list(MIXED)[int(rng.choice(len(MIXED), p=weights / weights.sum()))](rng, kit)
         if count + len(group) <= n_objects:
-            scene.append(_set_down(rng, scene, group, draw_gap(rng, settings.mix)))
+            scene.append(_set_down(rng, scene, group, _drawn_gap(rng)))
             count += len(group)
     return [item for _, group in scene for item in group]
 
 
-def _template_weights(mix: Mapping[str, float] | None) -> np.ndarray:
-    """Chances of the templates; with a mix, those that lead to what it asks for more often."""
-    weights = np.array([weight for _, weight, _ in MIXED])
-    if mix is not None:
-        whole = sum(mix.values())
-        share = {ON: mix.get(ON, 0), BOTH: mix.get(BOTH, 0), NONE: mix.get(NONE, 0) + mix.get(ADJACENT, 0)}
-        weights = weights * [np.clip(share[leads] / whole / _USUAL[leads], 0.05, 8) for _, _, leads in MIXED]
-    return weights / weights.sum()
-
-
-GAPS = ((0.0005, 0.003), (0.003, 0.02), (0.02, 0.035), (0.035, 0.085), (0.085, 0.14))
-"""Bands of gaps between neighbours, metres: touching, near, where *adjacent* ends, further, unlabelled."""
-
-
-def draw_gap(rng: np.random.Generator, mix: Mapping[str, float] | None = None) -> float:
-    """Metres between neighbours, by band; with a mix, groups stay apart for its *on* and *both*."""
-    chances = np.array([0.22, 0.25, 0.3, 0.13, 0.1])
-    if mix is not None:
-        beside, free = mix.get(ADJACENT, 0.0), mix.get(NONE, 0.0)
-        apart = mix.get(ON, 0.0) + mix.get(BOTH, 0.0)
-        chances = np.array([0.6 * beside, 0.6 * beside, 0.5 * free, 0.1 * free, apart + 0.001])
-    return float(rng.uniform(*GAPS[int(rng.choice(len(GAPS), p=chances / chances.sum()))]))
+def _drawn_gap(rng: np.random.Generator) -> float:
+    """Metres between neighbours."""
+    chances = np.array(list(GAPS.values()))
+    return float(rng.uniform(*list(GAPS)[int(rng.choice(len(GAPS), p=chances / chances.sum()))]))
 
 
 def _set_down(
@@ -122,129 +78,6 @@ def place_pair(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, w
     return [*first[1], *_set_down(rng, [first], single(rng, kit), float(rng.uniform(low, high)))[1]]
 
 
-def place_apart(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """Two objects whose footprints are `settings.separation` metres apart, side by side in the picture."""
-    first, second = single(rng, kit), single(rng, kit)
-    return [*first, *put_beside(first, second, float(rng.normal(0, 0.15)), max(settings.separation, 0.0005))]
-
-
-# --- the thesis's figures -------------------------------------------------------------------------------------
-
-
-def _facing(rng: np.random.Generator, group: Group) -> Group:
-    """Turned so that what is open along y can be looked into."""
-    yaw = float(rng.normal(0, 0.3) + np.pi * rng.integers(2))
-    return [item.turned(yaw) for item in group]
-
-
-def place_hole_hinged(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """Two hinged blocks as a tent on the foot of an L-block, or bent from the top of its upright to its foot."""
-    block, width, thick = rng.uniform(0.09, 0.12), rng.uniform(0.03, 0.05), rng.uniform(0.018, 0.026)
-    foot, back = rng.uniform(0.025, 0.04, 2)
-    if rng.random() < 0.5:
-        slope = rng.uniform(0.8, 1.05)
-        length = back + 2 * block * np.cos(slope) + rng.uniform(0.03, 0.05)
-        ell = l_block(length, width * 1.5, rng.uniform(0.08, 0.14), foot, back)
-        tent = hinged_blocks(block, width, thick, 2 * slope, about(1, -slope))
-        return _facing(rng, [stand(ell), stand(tent, height=foot).moved(float(back / 2), 0.0)])
-    slope = rng.uniform(0.6, 1.0)
-    height = foot + block * np.sin(slope) - thick / 2
-    length = back / 2 + block * (0.5 + np.cos(slope)) + rng.uniform(0.03, 0.05)
-    ell, bent = l_block(length, width * 1.5, height, foot, back), hinged_blocks(block, width, thick, slope)
-    low = bent.outline()[:, 0].min()
-    placed = stand(bent)
-    shift = -length / 2 + back / 2 - block / 2 - (low + placed.pose.position[0])
-    rise = foot + 0.003 - placed.outline()[:, 2].min()
-    return _facing(rng, [stand(ell), placed.moved(float(shift), 0.0, float(rise))])
-
-
-def place_hole_other(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """A toy on legs or an arch on the foot of an L-block, or a plank from the top of its upright to its foot."""
-    length, width, height = rng.uniform((0.18, 0.07, 0.1), (0.24, 0.11, 0.16))
-    foot, back = rng.uniform(0.025, 0.04, 2)
-    ell, run = l_block(length, width, height, foot, back), length - back
-    kind = int(rng.integers(3))
-    if kind < 2:
-        long, broad, high = rng.uniform(0.65, 0.9) * run, rng.uniform(0.6, 0.9) * width, rng.uniform(0.08, 0.12)
-        leg = rng.uniform(0.014, 0.02)
-        guest = animal(long, broad, high, leg) if kind else arch(long, broad, high, 1.3 * leg, 0.3 * high)
-        # The toy's head may look out over the foot's end, never into the upright.
-        return _facing(rng, [stand(ell), stand(guest, height=foot).moved(float(back / 2 + 0.01), 0.0)])
-    rise, reach = height - foot, rng.uniform(0.5, 0.85) * run
-    slope = np.arctan2(rise, reach)
-    plank = stand(box(np.hypot(rise, reach) * 1.15, 0.7 * width, rng.uniform(0.012, 0.02)), about(1, slope), foot)
-    points = plank.outline()
-    shift = back - length / 2 + reach + 0.003 - points[points[:, 2].argmin(), 0]
-    return _facing(rng, [stand(ell), plank.moved(float(shift), 0.0)])
-
-
-def place_hole(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """Either kind of hole."""
-    place = place_hole_hinged if rng.random() < 0.5 else place_hole_other
-    return place(rng, kit, settings, wanted)
-
-
-def place_no_hole(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """A block whose whole face lies on a slab."""
-    length, width = rng.uniform((0.16, 0.09), (0.26, 0.15))
-    slab, block = (
-        box(length, width, rng.uniform(0.02, 0.05)),
-        box(0.75 * length, 0.75 * width, rng.uniform(0.04, 0.12)),
-    )
-    below = stand(slab)
-    return _facing(rng, [below, stand(block, height=top([below]))])
-
-
-def _stack(rng: np.random.Generator, middle_height: float) -> Group:
-    """Two boxes, the upper a little smaller."""
-    length, width = rng.uniform((0.15, 0.1), (0.24, 0.16))
-    group = [stand(box(length, width, rng.uniform(0.04, 0.1)))]
-    upper = box(0.85 * length, 0.85 * width, middle_height)
-    return [*group, stand(upper, about(2, rng.normal(0, 0.15)), top(group))]
-
-
-def place_stack(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """Three boxes on one another (Fig. 2.7)."""
-    group = _stack(rng, rng.uniform(0.04, 0.1))
-    size = rng.uniform((0.07, 0.05, 0.04), (0.12, 0.09, 0.1))
-    return _facing(rng, [*group, stand(box(*size), about(2, rng.uniform(0, 6)), top(group))])
-
-
-def place_stack_two_contacts(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """Two boxes and an arch, which touches the upper at both its feet (Fig. 2.10)."""
-    group = _stack(rng, rng.uniform(0.04, 0.08))
-    length, width, height = rng.uniform((0.11, 0.05, 0.06), (0.125, 0.08, 0.1))
-    guest = arch(length, width, height, rng.uniform(0.014, 0.022), 0.35 * height)
-    return _facing(rng, [*group, stand(guest, about(2, rng.normal(0, 0.1)), top(group))])
-
-
-def place_ball_on_block(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """A ball on a block (Fig. 2.2)."""
-    block = stand(box(*rng.uniform((0.1, 0.08, 0.05), (0.2, 0.15, 0.15))))
-    return _facing(rng, [block, stand(ball(rng.uniform(0.02, 0.05)), height=top([block]))])
-
-
-def place_ball_at_l_block(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """A ball on top of an L-block's upright, far from the block's middle (Fig. 2.1)."""
-    length, width, height = rng.uniform((0.12, 0.05, 0.12), (0.2, 0.09, 0.2))
-    back = rng.uniform(0.03, 0.05)
-    ell = stand(l_block(length, width, height, rng.uniform(0.025, 0.05), back))
-    guest = stand(ball(rng.uniform(0.02, 0.035)), height=height)
-    return _facing(rng, [ell, guest.moved(float((back - length) / 2), 0.0)])
-
-
-def place_cloth(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """A cloth laid over a block (Fig. 2.3); takes some ten times as long as a solid scene.
-
-    The foil of §2.4.1 cannot be tested: crumpled it keeps its shape, and the engine's sheets are elastic.
-    """
-    length, width = rng.uniform(0.1, 0.15, 2)
-    below = stand(box(length, width, rng.uniform(0.08, 0.12)), about(2, rng.uniform(0, 6)))
-    sheet = stand(cloth(rng.uniform(0.17, 0.22)), about(2, rng.uniform(0, 6)), top([below]))
-    x, y = rng.uniform(-0.02, 0.02, 2)
-    return _facing(rng, [below, sheet.moved(x, y)])
-
-
 VARIED = {"mixed": 0.55, "pile": 0.18, "ramp": 0.09, "books": 0.07, "cartons": 0.11}
 """How often a scene of `place_varied` is of each arrangement."""
 
@@ -255,25 +88,11 @@ def place_varied(rng: np.random.Generator, kit: Kit, settings: TabletopSettings,
     return PILES.get(name, place_mixed)(rng, kit, settings, wanted)
 
 
-ARRANGEMENTS: dict[str, Arrangement] = {
-    "mixed": Arrangement(place_mixed, shuffled=True),
-    "pair": Arrangement(place_pair, shuffled=True),
-    "apart": Arrangement(place_apart),
-    "hole": Arrangement(place_hole, ((3, 2),), regions=2),
-    "hole-hinged": Arrangement(place_hole_hinged, ((3, 2),), regions=2),
-    "hole-other": Arrangement(place_hole_other, ((3, 2),), regions=2),
-    "no-hole": Arrangement(place_no_hole, ((3, 2),)),
-    "stack": Arrangement(place_stack, ((4, 3), (3, 2))),
-    "stack-two-contacts": Arrangement(place_stack_two_contacts, ((4, 3), (3, 2)), regions=2),
-    "cloth": Arrangement(place_cloth, ((3, 2),)),
-    "ball-on-block": Arrangement(place_ball_on_block, ((3, 2),)),
-    "ball-at-l-block": Arrangement(place_ball_at_l_block, ((3, 2),)),
-    "varied": Arrangement(place_varied, shuffled=True),
-    **{name: Arrangement(place, shuffled=True) for name, place in PILES.items()},
-}
+ARRANGEMENTS: dict[str, Place] = {"mixed": place_mixed, "pair": place_pair, "varied": place_varied, **PILES}
+"""How objects are placed, by the arrangement's name."""
 
 
-def arrangement_named(name: str) -> Arrangement:
+def arrangement_named(name: str) -> Place:
     """The arrangement of a name.
 
     Raises

@@ -182,8 +182,8 @@ ALL = replace(TRAINING, kinds={**TRAINING.kinds, **HELD_OUT.kinds})
 KITS = {"training": TRAINING, "held-out": HELD_OUT, "all": ALL}
 
 
-def kit_named(name: str, own: tuple[Shape, ...] = ()) -> Kit:
-    """The kit of a name; `own` shapes, where given, take half of its draws.
+def kit_named(name: str) -> Kit:
+    """The kit of a name.
 
     Raises
     ------
@@ -192,9 +192,4 @@ def kit_named(name: str, own: tuple[Shape, ...] = ()) -> Kit:
     """
     if name not in KITS:
         raise InputError(f"shapes must be one of {', '.join(KITS)}, got '{name}'")
-    kit = KITS[name]
-    if not own:
-        return kit
-    share = sum(weight for _, weight in kit.kinds.values()) / len(own)
-    added = {f"mesh {k}": (lambda rng, shape=shape: shape, share) for k, shape in enumerate(own)}
-    return replace(kit, kinds={**kit.kinds, **added})
+    return KITS[name]

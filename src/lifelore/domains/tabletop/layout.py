@@ -70,7 +70,7 @@ def _upright(rng: np.random.Generator, shape: Shape) -> NDArray[np.float64]:
         return np.eye(3) if chance < 0.7 else about(0, quarter)
     if shape.kind in ("bowl", "mug", "arch"):
         return np.eye(3) if chance < 0.85 else about(0, np.pi)
-    if shape.kind in ("stone", "ellipsoid", "mesh"):
+    if shape.kind in ("stone", "ellipsoid"):
         return random_rotation(rng) if chance < 0.5 else np.eye(3)
     return np.eye(3)
 

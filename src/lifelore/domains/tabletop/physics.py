@@ -14,23 +14,17 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import MissingExtraError
 from lifelore.domains.tabletop.pose import Pose
-from lifelore.domains.tabletop.shapes import Shape, ShapePart, Weave, draped
+from lifelore.domains.tabletop.shapes import Shape, ShapePart
 
 NEAR = 0.004
 """Metres within which surfaces count as touching."""
 _TYPES = {"box": "box", "cylinder": "cylinder", "ball": "sphere", "ellipsoid": "ellipsoid", "capsule": "capsule"}
 _CHUNK = 25
-_CLOTH_STILL = 5.0
-"""A cloth's knots may tremble so many times faster than a solid object may move."""
 _RAYS_GROUPS = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
 
-_SOLID = (
+_OPTIONS = (
     '<option timestep="0.002" cone="elliptic" impratio="5"/>'
     f'<default><geom condim="6" friction="0.7 0.003 0.001" margin="0" gap="{NEAR}" solref="0.01 1"/></default>'
-)
-_SOFT = (
-    '<option timestep="0.002" integrator="implicitfast" solver="CG"/><size memory="64M"/>'
-    f'<default><geom condim="3" friction="0.7" margin="0" gap="{NEAR}" solref="0.01 1"/></default>'
 )
 
 
@@ -72,49 +66,33 @@ class Tabletop:
         self._shapes = tuple(shapes)
         self._model: Any = self._mujoco.MjModel.from_xml_string(_scene_xml(shapes, poses, tools))
         self._data: Any = self._mujoco.MjData(self._model)
-        self._cloths = [number for number, shape in enumerate(self._shapes) if shape.weave is not None]
-        solid = [number for number, shape in enumerate(self._shapes) if shape.weave is None]
-        self._root = {number: self._model.body(f"thing{number}").id for number in solid}
+        self._root = [self._model.body(f"thing{number}").id for number in range(len(self._shapes))]
         # The table is geom 0 on the world body; every other geom belongs to the shape whose free body carries it.
         shape_of_root = np.full(self._model.nbody, -1)
-        shape_of_root[list(self._root.values())] = list(self._root)
+        shape_of_root[self._root] = range(len(self._root))
         self._shape_of_geom = shape_of_root[self._model.body_rootid[self._model.geom_bodyid]]
         self._mujoco.mj_forward(self._model, self._data)
 
     @property
     def weights(self) -> NDArray[np.float64]:
         """Newtons, one a shape."""
-        masses = [
-            shape.weave.mass if shape.weave is not None else self._model.body_subtreemass[self._root[number]]
-            for number, shape in enumerate(self._shapes)
-        ]
-        return np.array(masses) * 9.81
+        return self._model.body_subtreemass[self._root] * 9.81
 
     @property
     def poses(self) -> tuple[Pose, ...]:
-        """Where the shapes are now; a cloth is where its knots are, in the world's frame."""
+        """Where the shapes are now."""
         return tuple(self._pose(number) for number in range(len(self._shapes)))
 
     def _pose(self, number: int) -> Pose:
-        if number not in self._root:
-            return Pose(np.zeros(3), np.eye(3))
         root = self._root[number]
         return Pose(self._data.xpos[root].copy(), self._data.xmat[root].reshape(3, 3).copy())
 
     @property
     def shapes(self) -> tuple[Shape, ...]:
-        """The shapes as they are now: a hinge may have moved, a cloth drapes."""
+        """The shapes as they are now: a hinge may have moved."""
         return tuple(self._bent(number, shape) for number, shape in enumerate(self._shapes))
 
-    def rigid(self) -> "Tabletop":
-        """The same scene with cloths turned to stone, for rays and distances, which see no soft objects."""
-        return Tabletop([replace(s, weave=None) for s in self.shapes], self.poses) if self._cloths else self
-
     def _bent(self, number: int, shape: Shape) -> Shape:
-        if shape.weave is not None:
-            flex = self._cloths.index(number)
-            start, knots = self._model.flex_vertadr[flex], self._model.flex_vertnum[flex]
-            return draped(shape.weave, self._data.flexvert_xpos[start : start + knots].copy())
         if shape.hinge is None:
             return shape
         data, k, root = self._data, shape.hinge.first_part, self._root[number]
@@ -145,8 +123,6 @@ class Tabletop:
         for joint, address in zip(self._model.jnt_type, self._model.jnt_dofadr, strict=True):
             if joint == self._mujoco.mjtJoint.mjJNT_FREE:
                 limits[address : address + 3] = still
-            elif joint == self._mujoco.mjtJoint.mjJNT_SLIDE:
-                limits[address] = _CLOTH_STILL * still
         return limits
 
     def contacts(self) -> Contacts:
@@ -158,9 +134,7 @@ class Tabletop:
         for i in range(n):
             self._mujoco.mj_contactForce(self._model, self._data, i, wrench)
             forces[i] = wrench[:3] @ frames[i]
-        geoms = np.array(contact.geom).reshape(n, 2)
-        cloths, soft = np.array([*self._cloths, -1]), np.array(contact.flex).reshape(n, 2)
-        bodies = np.where(geoms >= 0, self._shape_of_geom[geoms], cloths[soft])
+        bodies = self._shape_of_geom[np.array(contact.geom).reshape(n, 2)]
         apart = bodies[:, 0] != bodies[:, 1]
         return Contacts(
             bodies[apart, 0],
@@ -215,9 +189,6 @@ def _mujoco() -> ModuleType:
 def _scene_xml(shapes: Sequence[Shape], poses: Sequence[Pose], tools: str) -> str:
     meshes, bodies = [], []
     for number, (shape, pose) in enumerate(zip(shapes, poses, strict=True)):
-        if shape.weave is not None:
-            bodies.append(_cloth_xml(shape.weave, pose, number))
-            continue
         geoms = []
         for index, part in enumerate(shape.parts):
             name = f"m{number}_{index}"
@@ -225,21 +196,10 @@ def _scene_xml(shapes: Sequence[Shape], poses: Sequence[Pose], tools: str) -> st
                 meshes.append(f'<mesh name="{name}" vertex="{_numbers(part.vertices)}"/>')
             geoms.append(_geom_xml(part, name, shape.density))
         bodies.append(_body_xml(shape, pose, geoms, number))
-    soft = any(shape.weave is not None for shape in shapes)
     return (
-        f'<mujoco><compiler angle="radian" balanceinertia="true"/>{_SOFT if soft else _SOLID}'
+        f'<mujoco><compiler angle="radian" balanceinertia="true"/>{_OPTIONS}'
         f"<asset>{''.join(meshes)}</asset><worldbody>"
         f'<geom type="plane" size="0 0 1" group="1"/>{"".join(bodies)}</worldbody>{tools}</mujoco>'
-    )
-
-
-def _cloth_xml(weave: Weave, pose: Pose, number: int) -> str:
-    return (
-        f'<flexcomp name="cloth{number}" type="grid" dim="2" count="{weave.knots} {weave.knots} 1" '
-        f'spacing="{weave.spacing:.9g} {weave.spacing:.9g} 0.02" mass="{weave.mass:.9g}" '
-        f'radius="{weave.thickness / 2:.9g}" {_frame(pose.position, pose.rotation)}>'
-        '<edge equality="true" damping="0.05"/>'
-        '<contact condim="3" friction="0.7" selfcollide="none" solref="0.01 1"/></flexcomp>'
     )
 
 

@@ -104,7 +104,10 @@ def place_cartons(rng: Generator, kit: Kit, settings: TabletopSettings, wanted: 
     return _turned(rng, [*ground, *upper])
 
 
-PILES: dict[str, Callable[[Generator, Kit, TabletopSettings, str], Group]] = {
+Place = Callable[[Generator, Kit, TabletopSettings, str], Group]
+"""Places objects by a kit, the settings and the wanted relation."""
+
+PILES: dict[str, Place] = {
     "pile": place_pile,
     "ramp": place_ramp,
     "books": place_books,

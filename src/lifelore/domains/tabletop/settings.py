@@ -24,17 +24,14 @@ class TabletopSettings:
     n_objects : (int, int)
         Fewest and most objects of a scene, at least 1; a named arrangement has its own number.
     arrangement : str
-        A key of `tabletop_arrangements.ARRANGEMENTS`.
+        A key of `arrangements.ARRANGEMENTS`.
     mix : mapping of str to float, optional
-        Wanted shares of *on*, *adjacent*, *both* and *none* among pairs of objects, by truth; any positive scale.
+        Wanted shares of *on*, *adjacent*, *both* and *none* among the scenes of the arrangement ``"pair"``, by
+        truth; any positive scale.
     camera : str
         ``"kinect"`` or ``"stereo"``.
     shapes : str
         ``"training"``, ``"held-out"`` (no kind in common) or ``"all"``.
-    meshes : sequence of str
-        Files of the user's own shapes, metres.
-    separation : float
-        Metres between the two objects of arrangement ``"apart"``, 0 to 1.
 
     Raises
     ------
@@ -47,8 +44,6 @@ class TabletopSettings:
     mix: Mapping[str, float] | None = None
     camera: str = "kinect"
     shapes: str = "training"
-    meshes: tuple[str, ...] = ()
-    separation: float = 0.1
 
     def __post_init__(self) -> None:
         low, high = self.n_objects
@@ -56,9 +51,9 @@ class TabletopSettings:
             raise InputError(f"n_objects must be fewest and most, 1 to 20, got {low} and {high}")
         if self.camera not in CAMERAS:
             raise InputError(f"camera must be one of {', '.join(CAMERAS)}, got '{self.camera}'")
-        if not 0 <= self.separation <= 1:
-            raise InputError(f"separation must be 0 to 1 m, got {self.separation}")
         if self.mix is not None:
+            if self.arrangement != "pair":
+                raise InputError(f"mix applies to arrangement pair, got '{self.arrangement}'; leave it out")
             _check_mix(self.mix)
 
 
@@ -70,6 +65,23 @@ def _check_mix(mix: Mapping[str, float]) -> None:
             raise InputError(f"shares of mix must be finite and not negative, got {label}={share}")
     if not sum(mix.values()) > 0:
         raise InputError("mix must ask for at least one relation: give one a share above 0")
+
+
+def wanted_relation(number: int, mix: Mapping[str, float]) -> str:
+    """The relation of pair `number` such that the first n pairs are as near to the mix as whole numbers allow.
+
+    Examples
+    --------
+    >>> [wanted_relation(i, {"on": 2, "adjacent": 1}) for i in range(6)]
+    ['on', 'adjacent', 'on', 'on', 'adjacent', 'on']
+    """
+    shares = np.array([float(mix.get(relation, 0.0)) for relation in CORE_RELATIONS])
+    shares = shares / shares.sum()
+    counts, chosen = np.zeros(len(shares)), 0
+    for n in range(number + 1):
+        chosen = int(np.argmax(shares * (n + 1) - counts))
+        counts[chosen] += 1
+    return CORE_RELATIONS[chosen]
 
 
 @dataclass(frozen=True, eq=False)

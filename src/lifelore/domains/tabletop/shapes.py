@@ -63,28 +63,14 @@ class Hinge:
     limits: tuple[float, float]
 
 
-@dataclass(frozen=True)
-class Weave:
-    """A square sheet of `knots` × `knots` points, `spacing` apart, `thickness` thick (metres), of `mass` kg."""
-
-    knots: int
-    spacing: float
-    thickness: float
-    mass: float
-
-
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """One object: a kind for humans, its parts, its density in kg/m³ and perhaps a hinge within.
-
-    With a `weave` it is a cloth: its parts are the triangles of the sheet, made thick, as they lie at the moment.
-    """
+    """One object: a kind for humans, its parts, its density in kg/m³ and perhaps a hinge within."""
 
     kind: str
     parts: tuple[ShapePart, ...]
     density: float = 400.0
     hinge: Hinge | None = None
-    weave: Weave | None = None
 
     def outline(self) -> NDArray[np.float64]:
         """Points ``(m, 3)`` that span the shape in its own frame."""
@@ -272,38 +258,3 @@ def cross(length: float, width: float, height: float) -> Shape:
     """Two bars across one another, flat."""
     arms = [part(BOX, (length / 2, width / 2, height / 2)), part(BOX, (width / 2, length / 2, height / 2))]
     return Shape("cross", tuple(arms))
-
-
-def animal(length: float, width: float, height: float, leg: float) -> Shape:
-    """A toy on four legs, each `leg` thick and half of `height` long."""
-    legs = [
-        part(BOX, (leg / 2, leg / 2, height / 4), (s * (length - leg) / 2, t * (width - leg) / 2, -height / 4))
-        for s in (-1, 1)
-        for t in (-1, 1)
-    ]
-    trunk = part(BOX, (length / 2, width / 2, height / 8), (0, 0, height / 8))
-    head = part(BALL, (0.3 * width,), (length / 2, 0, 0.35 * height))
-    return Shape("animal", (trunk, head, *legs))
-
-
-def cloth(side: float, knots: int = 11, thickness: float = 0.006, mass_per_area: float = 0.8) -> Shape:
-    """A square sheet, flat in x-y; `mass_per_area` in kg/m² (terry towelling is 0.5)."""
-    weave = Weave(knots, side / (knots - 1), thickness, mass_per_area * side**2)
-    line = np.linspace(-side / 2, side / 2, knots)
-    x, y = np.meshgrid(line, line, indexing="ij")
-    return draped(weave, np.stack([x.ravel(), y.ravel(), np.zeros(x.size)], axis=1).astype(float))
-
-
-def draped(weave: Weave, points: NDArray[np.float64]) -> Shape:
-    """The sheet with its knots at `points` ``(knots², 3)``, the second index running fastest."""
-    n, half = weave.knots, weave.thickness / 2
-    parts = []
-    for i in range(n - 1):
-        for j in range(n - 1):
-            k = i * n + j
-            for triangle in ((k, k + 1, k + n), (k + 1, k + n + 1, k + n)):
-                corners = points[list(triangle)]
-                normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
-                normal *= half / np.linalg.norm(normal)
-                parts.append(hull(np.concatenate([corners - normal, corners + normal])))
-    return Shape("cloth", tuple(parts), weave=weave)

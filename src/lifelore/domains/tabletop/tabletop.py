@@ -3,9 +3,8 @@
 Thesis: §2.4.1, whose 128 stereo pictures of pairs are not published; physics settles and labels them here.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from itertools import count, islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,22 +13,24 @@ from scipy.spatial import KDTree
 from lifelore.core.errors import InputError
 from lifelore.core.relations import CORE_RELATIONS, PairLabel
 from lifelore.core.streams import stream
-from lifelore.domains.tabletop.arrangements import Arrangement, arrangement_named
+from lifelore.domains.tabletop.arrangements import arrangement_named
 from lifelore.domains.tabletop.depth_camera import CAMERAS
 from lifelore.domains.tabletop.kits import Kit, kit_named
 from lifelore.domains.tabletop.layout import Group
-from lifelore.domains.tabletop.meshes import shape_from_mesh
 from lifelore.domains.tabletop.photograph import FIRST_OBJECT, Photograph, choose_view, photograph
 from lifelore.domains.tabletop.physics import Contacts, Tabletop
-from lifelore.domains.tabletop.quota import to_mix, wanted_relation
-from lifelore.domains.tabletop.settings import TabletopScene, TabletopSettings
-from lifelore.domains.tabletop.truth import NEAR, Gap, bearing, contact_regions, true_relations
+from lifelore.domains.tabletop.piles import Place
+from lifelore.domains.tabletop.pose import Pose
+from lifelore.domains.tabletop.settings import TabletopScene, TabletopSettings, wanted_relation
+from lifelore.domains.tabletop.truth import NEAR, Gap, bearing, true_relations
 
 JAMMED = -0.001
 """Metres: surfaces that overlap more were pressed together, not set down."""
 BALANCE = 0.05
 """Part of its weight by which a object's support may be off: more, and it is about to tip."""
 ATTEMPTS = 400
+Shows = Callable[[NDArray[np.float64], Contacts, Sequence[Pose]], bool]
+"""Called with the shares of the objects' weights (see `Bearing`), the contacts and the poses."""
 BLOCK = 4
 """Scenes that one process draws at a time."""
 
@@ -39,32 +40,18 @@ __all__ = ["TabletopScene", "TabletopSettings", "sample_scene", "settle_scene", 
 def tabletop_scenes(
     n: int, seed: int = 0, settings: TabletopSettings | None = None, jobs: int = 1
 ) -> Iterator[TabletopScene]:
-    """`n` scenes in order, the same bit for bit for any number of `jobs` (processes).
-
-    With a mix, scenes of many objects are those of a longer row that lead to it (`tabletop_quota.to_mix`); pairs
-    are drawn to it one by one.
-    """
+    """`n` scenes in order, the same bit for bit for any number of `jobs` (processes)."""
     settings = settings or TabletopSettings()
-    if settings.mix is None or settings.arrangement == "pair":
-        yield from _row(seed, settings, jobs, n)
-        return
-    chosen = islice(to_mix(_row(seed, settings, jobs), settings.mix), n)
-    for number, scene in enumerate(chosen):
-        yield replace(scene, name=_name(number))
-
-
-def _row(seed: int, settings: TabletopSettings, jobs: int, n: int | None = None) -> Iterator[TabletopScene]:
-    """Scenes 0, 1, …, without end where `n` is None."""
     if jobs == 1:
-        for number in range(n) if n is not None else count():
+        for number in range(n):
             yield sample_scene(seed, number, settings)
         return
     from joblib import Parallel, delayed
 
     with Parallel(n_jobs=jobs) as parallel:
         at_once = 2 * BLOCK * jobs
-        for start in range(0, n, at_once) if n is not None else count(0, at_once):
-            stop = start + at_once if n is None else min(start + at_once, n)
+        for start in range(0, n, at_once):
+            stop = min(start + at_once, n)
             blocks = [range(k, min(k + BLOCK, stop)) for k in range(start, stop, BLOCK)]
             for block in parallel(delayed(_draw_block)(seed, numbers, settings) for numbers in blocks):
                 yield from block or ()
@@ -86,40 +73,36 @@ def sample_scene(seed: int, number: int, settings: TabletopSettings | None = Non
     """
     settings = settings or TabletopSettings()
     arrangement = arrangement_named(settings.arrangement)
-    kit = kit_named(settings.shapes, tuple(shape_from_mesh(file) for file in settings.meshes))
-    paired = settings.arrangement == "pair" and settings.mix is not None
-    wanted = wanted_relation(number, settings.mix) if paired and settings.mix else ""
+    kit = kit_named(settings.shapes)
+    wanted = wanted_relation(number, settings.mix) if settings.mix else ""
     for attempt in range(ATTEMPTS):
         rng = stream(seed, "tabletop", settings.arrangement, number, attempt)
         found = _attempt(rng, settings, arrangement, kit, wanted)
         if found is not None:
-            return replace(found, name=_name(number), attempts=attempt + 1)
+            return replace(found, name=f"sim{number:05d}", attempts=attempt + 1)
     raise InputError(f"nothing fits {settings} in {ATTEMPTS} draws: change n_objects, mix or arrangement")
 
 
-def _name(number: int) -> str:
-    return f"sim{number:05d}"
-
-
 def _attempt(
-    rng: np.random.Generator, settings: TabletopSettings, arrangement: Arrangement, kit: Kit, wanted: str
+    rng: np.random.Generator, settings: TabletopSettings, place: Place, kit: Kit, wanted: str
 ) -> TabletopScene | None:
     """One draw; None where it does not settle, jams, shows something else, or an object cannot be seen."""
     aim = wanted or CORE_RELATIONS[int(rng.integers(4))]
-    placed = arrangement.place(rng, kit, settings, aim)
-    if arrangement.shuffled:
-        placed = [placed[i] for i in rng.permutation(len(placed))]
-    return settle_scene(placed, rng, settings, arrangement, wanted)
+    placed = place(rng, kit, settings, aim)
+    # Labels are dealt at random, so that their order tells nothing.
+    return settle_scene([placed[i] for i in rng.permutation(len(placed))], rng, settings, wanted=wanted)
 
 
 def settle_scene(
     placed: Group,
     rng: np.random.Generator,
     settings: TabletopSettings,
-    arrangement: Arrangement | None = None,
+    shows: Shows | None = None,
     wanted: str = "",
 ) -> TabletopScene | None:
     """Let objects fall from where they were put, judge and photograph them.
+
+    `shows` says whether what has settled is what the scene is to show.
 
     Returns
     -------
@@ -138,16 +121,14 @@ def settle_scene(
     borne = bearing(contacts, table.weights)
     if (np.abs(borne.lift[:-1].sum(axis=1) - 1) > BALANCE).any():
         return None
-    if arrangement is not None and not _shows(arrangement, borne.share, contacts, poses[0].rotation):
+    if shows is not None and not shows(borne.share, contacts, poses):
         return None
     camera = CAMERAS[settings.camera]
     view = choose_view(outlines, rng, camera)
-    solid = table.rigid()
-    photo = photograph(solid, outlines, view, camera, rng) if view is not None else None
+    photo = photograph(table, outlines, view, camera, rng) if view is not None else None
     if photo is None:
         return None
-    farthest = 5.0 if settings.arrangement == "apart" else NEAR
-    gaps = _gaps(solid, photo, farthest)
+    gaps = _gaps(table, photo)
     labels = range(FIRST_OBJECT, FIRST_OBJECT + len(placed))
     heights = np.array([(outline[:, 2].min(), outline[:, 2].max()) for outline in outlines])
     truth = true_relations(borne, gaps, heights, labels)
@@ -156,27 +137,9 @@ def settle_scene(
     near = tuple(
         replace(gap, a=gap.a + FIRST_OBJECT, b=gap.b + FIRST_OBJECT)
         for gap in gaps.values()
-        if gap.visible <= farthest or borne.touching[gap.a, gap.b]
+        if gap.visible <= NEAR or borne.touching[gap.a, gap.b]
     )
     return TabletopScene("", photo.cloud, truth, near, shapes, poses, photo.view, photo.clean)
-
-
-def _shows(
-    arrangement: Arrangement, share: NDArray[np.float64], contacts: Contacts, frame: NDArray[np.float64]
-) -> bool:
-    """Whether the objects that must be carried are, and touch in as many regions as they must."""
-    table = len(share) - 1
-    for a, b in arrangement.on:
-        if share[a - FIRST_OBJECT, b - FIRST_OBJECT] < 0.5 or share[a - FIRST_OBJECT, table] > 0:
-            return False
-    if not arrangement.regions:
-        return True
-    pair = tuple(label - FIRST_OBJECT for label in arrangement.on[0])
-    pressed = (np.linalg.norm(contacts.forces, axis=1) > 0) & (
-        np.minimum(contacts.first, contacts.second) == min(pair)
-    ) & (np.maximum(contacts.first, contacts.second) == max(pair))  # fmt: skip
-    # Looked at along the lowest object's y axis, contacts along an edge across it are one region.
-    return contact_regions(contacts.positions[pressed] @ frame[:, [0, 2]]) == arrangement.regions
 
 
 def _pair_relation(truth: tuple[PairLabel, ...]) -> str:
@@ -184,16 +147,16 @@ def _pair_relation(truth: tuple[PairLabel, ...]) -> str:
     return next((label.relation for label in truth if label.b >= FIRST_OBJECT), "")
 
 
-def _gaps(table: Tabletop, photo: Photograph, farthest: float) -> dict[tuple[int, int], Gap]:
-    """Visible and true distances of all pairs that are nearer than `farthest`."""
+def _gaps(table: Tabletop, photo: Photograph) -> dict[tuple[int, int], Gap]:
+    """Visible and true distances of all pairs that are nearer than `NEAR`."""
     labels = photo.cloud.labels
     seen = [photo.clean[labels == label] for label in range(FIRST_OBJECT, FIRST_OBJECT + len(table.weights))]
     trees: dict[int, KDTree] = {}
     gaps = {}
     for i in range(len(seen)):
         for j in range(i + 1, len(seen)):
-            true, way = table.distance(i, j, farthest)
-            if true >= farthest:
+            true, way = table.distance(i, j, NEAR)
+            if true >= NEAR:
                 continue
             few, many = sorted((i, j), key=lambda k: len(seen[k]))
             if many not in trees:

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse.csgraph import connected_components
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, NONE, ON, PairLabel
@@ -86,14 +85,6 @@ def _sums(
     a: NDArray[np.int64], b: NDArray[np.int64], values: NDArray[np.float64], size: int
 ) -> NDArray[np.float64]:
     return np.bincount(a * size + b, values, size * size).astype(float).reshape(size, size)
-
-
-def contact_regions(places: NDArray[np.float64]) -> int:
-    """How many regions contacts at `places` ``(k, d)`` form: those closer than 25 mm belong together."""
-    if not len(places):
-        return 0
-    close = np.linalg.norm(places[:, None] - places[None], axis=2) < 0.025
-    return int(connected_components(close, directed=False)[0])
 
 
 def true_relations(

@@ -33,7 +33,7 @@ def views_around(
     list of Photograph
         One for each turn, in the table's frame; an object may be hidden in some of them.
     """
-    table = Tabletop(scene.shapes, scene.poses).rigid()
+    table = Tabletop(scene.shapes, scene.poses)
     outlines = [pose.apply(shape.outline()) for shape, pose in zip(scene.shapes, scene.poses, strict=True)]
     points = np.concatenate(outlines)
     middle = (points.min(axis=0) + points.max(axis=0)) / 2

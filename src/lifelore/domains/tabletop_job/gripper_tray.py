@@ -58,7 +58,7 @@ class GripperTray(Tabletop):
     Parameters
     ----------
     shapes : sequence of Shape
-        Solid shapes; no cloths.
+        The objects.
     poses : sequence of Pose
     gripper : Gripper
 
@@ -79,7 +79,7 @@ class GripperTray(Tabletop):
         self.gripper = gripper
         self.grip: Grip | None = None
         self.gone: frozenset[int] = frozenset()
-        self._roots = np.array([self._root[k] for k in range(len(self._shapes))])
+        self._roots = np.array(self._root)
         self._masses = self.weights / _GRAVITY
         self._limits = self._speed_limits(0.004)
         self._shape_of_dof = np.array([self._owner(body) for body in model.dof_bodyid])

@@ -4,10 +4,8 @@ from typing import Any
 
 import numpy as np
 from gymnasium import spaces
-from numpy.typing import NDArray
 
 from lifelore.domains.checked_environment import CheckedEnvironment, chosen_number
-from lifelore.domains.telephone.picture import draw_call
 from lifelore.domains.telephone.telephone import OPEN, START, STATES, Telephone, reward
 
 
@@ -31,30 +29,21 @@ class TelephoneEnvironment(CheckedEnvironment):
 
     ## Arguments
     `n_models`: 10. `eta`: 0.3. `reading`: ``"A"`` or ``"B"``, see `domains.telephone`. `caller`: who always calls,
-    a preferred model; None draws one at each reset. `render_mode`: None or ``"rgb_array"``.
+    a preferred model; None draws one at each reset.
 
     ``info["caller"]`` is the caller's preference, which the service does not know.
     """
 
     def __init__(
-        self,
-        n_models: int = 10,
-        eta: float = 0.3,
-        reading: str = "A",
-        caller: int | None = None,
-        render_mode: str | None = None,
+        self, n_models: int = 10, eta: float = 0.3, reading: str = "A", caller: int | None = None
     ) -> None:
-        super().__init__(render_mode)
+        super().__init__()
         self.world = Telephone(n_models, eta, reading)
         self.action_space = spaces.Discrete(n_models)
         self.observation_space = spaces.Discrete(len(STATES))
         self._fixed = None if caller is None else chosen_number(caller, n_models, "caller")
         self.caller = 0
         self._state = START
-
-    def _picture(self) -> NDArray[np.uint8]:
-        """The states of the call, (320, 610, 3) uint8."""
-        return draw_call(self._state)
 
     def _begin(self, options: dict[str, Any]) -> tuple[int, dict[str, Any]]:
         self._state = START

@@ -12,7 +12,7 @@ from lifelore.agent.live.buildings.building_memory import forget_building
 from lifelore.agent.live.goals.destinations import Destination, NamedPlaces, destination_from_text
 from lifelore.agent.live.goals.job_list import Job
 from lifelore.agent.live.life import Life, live
-from lifelore.agent.live.output.report import FILES, PRIOR_FILES, write_portfolio
+from lifelore.agent.live.output.report import FILES, write_portfolio
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Record
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
@@ -79,7 +79,7 @@ def test_a_job_list_is_lived_in_order_and_its_names_are_known_later(room):
 def test_the_folder_of_a_building_has_clear_paths_to_the_point_and_masks(room, tmp_path):
     life = life_in(room, goals=jobs(Destination(LAB, "lab"), Destination(DOCK)))
     written = write_portfolio(life, str(tmp_path / "out"))
-    of_searches = {"learning_curves.png", *PRIOR_FILES}
+    of_searches = {"learning_curves.png", "prior.png"}
     assert [Path(path).name for path in written] == [name for name in FILES if name not in of_searches]
     with (tmp_path / "out" / "paths.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))

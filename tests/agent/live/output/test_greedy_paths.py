@@ -1,12 +1,14 @@
 """Paths of policies small enough to follow by hand, and beside a walk step by step."""
 
+import math
+
 import numpy as np
 import pytest
 
-from lifelore.agent.live.output.greedy_paths import greedy_paths_of
+from lifelore.agent.live.output.greedy_paths import GreedyPaths, greedy_paths_of, path_points, write_paths
 from lifelore.core.planning.planning import greedy_policy, optimal_q
 from lifelore.domains import make_world
-from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.domains.grids.grid_world import Frame, GridWorld
 
 NORTH, SOUTH, EAST, WEST = range(4)
 CORRIDOR = GridWorld.from_free("corridor", np.ones((1, 4), bool))
@@ -58,3 +60,15 @@ def test_ways_where_few_or_none_arrive():
     assert ([path.tolist() for path in some.paths], some.arriving) == ([[2, 3]], pytest.approx(1 / 3))
     none = greedy_paths_of(CORRIDOR, [-1] * 4, 0, 3)
     assert (none.paths, none.arriving) == ([], 0.0)
+
+
+def test_paths_are_written_in_metres_of_a_turned_map(tmp_path):
+    """Cells of half a metre, the map turned a quarter to the left about (10, 20)."""
+    turned = GridWorld.from_free("corridor", np.ones((1, 4), bool), frame=Frame(0.5, (10.0, 20.0, math.pi / 2)))
+    write_paths(tmp_path / "paths.csv", {6: path_points(turned, GreedyPaths(6, 3, [np.array([1, 2, 3])], 1.0))})
+    assert (tmp_path / "paths.csv").read_text(encoding="utf-8").splitlines() == [
+        "task,path,step,x,y",
+        "6,0,0,9.7500,20.7500",
+        "6,0,1,9.7500,21.2500",
+        "6,0,2,9.7500,21.7500",
+    ]

@@ -6,8 +6,7 @@ import pytest
 from lifelore.agent.live.life import live
 from lifelore.agent.live.output.logged_life import logged_life
 from lifelore.agent.live.output.nav2_masks import NO_OPINION
-from lifelore.agent.live.output.report import write_log
-from lifelore.core.errors import InputError, StoreError
+from lifelore.core.errors import InputError
 
 from ..flat_settings import flat_settings
 
@@ -20,16 +19,9 @@ def life(tmp_path_factory):
     return live(flat_settings(domain="building", tasks=2, agent="lore", jobs=1, memory=memory))
 
 
-def logged(life):
-    fields = []
-    assert write_log(life, "name", lambda path, *found: fields.extend([path, *found])) == "name"
-    return fields
-
-
 @pytest.mark.slow
 def test_it_has_the_map_costs_ways_and_goals(life):
-    path, occupancy, costs, ways, events = logged(life)
-    assert path == "name"
+    occupancy, costs, ways, events = logged_life(life)
     assert occupancy is life.building.given
     assert costs.shape == occupancy.state.shape
     assert set(np.unique(costs)) == {0, NO_OPINION}
@@ -47,26 +39,16 @@ def test_with_a_clock_it_has_the_refusals_since_then(life):
     for task, minute in zip(life.report["tasks"], ("00", "03"), strict=True):
         task["clock"] = f"2024-01-01T10:{minute}:00"
         task["agents"]["lore"]["seconds"] = 30.0
-    found = logged_life(life, life.building, [])
+    found = logged_life(life)
     assert [(name, seconds) for name, seconds, _ in found.events] == [
         ("reached goal 0", 1_704_103_230.0),
         ("reached goal 1", 1_704_103_410.0),
         ("refused east", 1_704_103_380.0),
     ]
     assert life.world.states_at([found.events[-1][2]]) == [state]
-    assert not found.ways
 
 
 def test_a_life_without_a_building_has_no_log(tmp_path):
     lattice = live(flat_settings(domain="lattice", tasks=1, agent="lore", jobs=1, memory=str(tmp_path / "m.db")))
     with pytest.raises(InputError, match="log needs a life in a building, got domain lattice"):
-        write_log(lattice, "a.mcap", print)
-
-
-@pytest.mark.slow
-def test_a_file_that_cannot_be_written_is_named(life):
-    def full(path, *fields):
-        raise OSError(28, "No space left on device")
-
-    with pytest.raises(StoreError, match=r"log cannot be written to a\.mcap: No space left"):
-        write_log(life, "a.mcap", full)
+        logged_life(lattice)

@@ -1,6 +1,5 @@
 """Masks worked by hand, on the grid of the user's own map, and read back as nav2 reads them."""
 
-import csv
 import math
 
 import numpy as np
@@ -18,21 +17,15 @@ from lifelore.agent.live.output.nav2_masks import (
     place_costs,
     place_masks,
     place_speeds,
-    write_directions,
     write_masks,
 )
 from lifelore.agent.travel.move_costs import DETOUR, MoveCosts
 from lifelore.domains.buildings.building import building_from_map
 from lifelore.domains.buildings.floor import Floor, floor_of
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap, read_occupancy_map
-from lifelore.domains.grids.grid_world import Frame, GridWorld
+from lifelore.domains.grids.grid_world import GridWorld
 
 NORTH, SOUTH, EAST, WEST = range(4)
-
-
-@pytest.fixture
-def corridor() -> GridWorld:
-    return GridWorld.from_free("corridor", np.ones((1, 4), bool), frame=Frame(0.5, (10.0, 20.0, math.pi / 2)))
 
 
 def costs_of(
@@ -194,16 +187,3 @@ def test_equal_obstacles_cost_alike(tmp_path):
     costs = np.frombuffer((tmp_path / "costs.pgm").read_bytes()[-state.size :], np.uint8).reshape(state.shape)
     assert set(np.unique(costs)) == {0, NO_OPINION}
     assert len({costs[row - 3 : row + 4, column - 3 : column + 4].tobytes() for row, column in legs}) == 1
-
-
-def test_directions_turn_with_the_map(corridor, tmp_path):
-    probs = np.array([[0.1, 0.2, 0.3, 0.4]] * 4)
-    write_directions(tmp_path / "d.csv", corridor, probs, np.array([False, True, False, False]), None)
-    with (tmp_path / "d.csv").open(newline="", encoding="utf-8") as file:
-        rows = [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
-    # The map is turned a quarter to the left: its north points to -x, its east to +y.
-    assert [(row["dx"], row["dy"], row["probability"]) for row in rows] == [
-        (-1, 0, 0.1), (1, 0, 0.2), (0, 1, 0.3), (0, -1, 0.4)
-    ]  # fmt: skip
-    assert {(row["x"], row["y"]) for row in rows} == {(9.75, 20.75)}
-    assert "-0.0000" not in (tmp_path / "d.csv").read_text()

@@ -11,9 +11,8 @@ import pytest
 from lifelore.agent.live.baselines import AGENTS
 from lifelore.agent.live.life import Life, live
 from lifelore.agent.live.output.known_building import NAV2_FILES
-from lifelore.agent.live.output.report import FILES, PRIOR_FILES, check_folder, write_portfolio
+from lifelore.agent.live.output.report import FILES, check_folder, write_portfolio
 from lifelore.core.errors import InputError, StoreError
-from lifelore.domains.buildings.occupancy_map import read_occupancy_map
 from lifelore.figures.style import colour_of
 
 from ..flat_settings import flat_settings
@@ -55,7 +54,6 @@ def test_everything_is_written_and_nothing_else_is_left(life, folder):
             assert 5_000 < len(content) <= 300_000
     text = (folder / "summary.json").read_text(encoding="utf-8")
     assert json.loads(text, parse_constant=_no_constant) == json.loads(json.dumps(life.report))
-    assert read_occupancy_map(folder / "prior.yaml").state.shape == life.world.shape
 
 
 @pytest.mark.slow
@@ -103,14 +101,13 @@ def test_every_agent_has_its_colour():
     ],
     ids=["one capped task from one start", "no prior", "q and noise by state"],
 )
-def test_other_lives_have_a_prior_or_no_file_of_one(tmp_path, settings, has_prior):
+def test_other_lives_have_a_prior_or_no_picture_of_one(tmp_path, settings, has_prior):
     out = tmp_path / "out"
     out.mkdir()
-    for name in PRIOR_FILES:
-        (out / name).write_text("of an earlier life")
+    (out / "prior.png").write_text("of an earlier life")
     written = write_portfolio(_life(tmp_path, **settings), str(out))
-    assert written == [str(out / name) for name in GRID_FILES if has_prior or name not in PRIOR_FILES]
-    assert all((out / name).exists() == has_prior for name in PRIOR_FILES)
+    assert written == [str(out / name) for name in GRID_FILES if has_prior or name != "prior.png"]
+    assert (out / "prior.png").exists() == has_prior
 
 
 def test_a_folder_is_made_and_left_empty(tmp_path):

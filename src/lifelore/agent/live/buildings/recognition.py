@@ -13,7 +13,7 @@ from lifelore.agent.live.buildings.building_record import (
     remembered_buildings,
     remembered_map,
 )
-from lifelore.agent.live.lore import same_place
+from lifelore.agent.live.lore import EarlierVersion, same_place
 from lifelore.agent.live.transitions import BuildingGrid, frame_key
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
@@ -44,6 +44,7 @@ class Place:
         walls that match, pose: [dx, dy, dyaw] from the map's frame to the building's, reason for a new building)
     news : records of the building that memory is to store with the first task
     occupancy : the map from which `world` was made, laid on the building's grid; None without a map
+    earlier : what memory holds of the moves of this building, or of an earlier version of it
     """
 
     world: GridWorld
@@ -51,6 +52,7 @@ class Place:
     report: dict | None = None
     news: list[Record] = field(default_factory=list)
     occupancy: OccupancyMap | None = None
+    earlier: EarlierVersion | None = None
 
 
 @dataclass(frozen=True)
@@ -121,7 +123,7 @@ def recognised_place(
             building.record(occupancy, found.pose, memory.recall(KIND, building.key, VERSION)),
             map_record(occupancy, building, found.pose, found.walls),
         ]
-    return Place(world, grid, report, [record for record in news if len(record.slots)], laid)
+    return Place(world, grid, report, [record for record in news if len(record.slots)], laid, earlier)
 
 
 def _free_name(settings: WorldSettings, occupancy: OccupancyMap, buildings: list[Building]) -> str:

@@ -17,7 +17,6 @@ from scipy.sparse import csgraph
 from lifelore.agent.live import transitions
 from lifelore.agent.live.buildings.recognition import Place
 from lifelore.agent.live.driven.route import chain_to
-from lifelore.agent.live.lore import same_place
 from lifelore.core.errors import NotFoundError
 from lifelore.domains.grids.cell_numbers import COLUMN_BITS
 from lifelore.domains.grids.grid_world import GridWorld
@@ -53,9 +52,9 @@ class RememberedMoves:
             Memory holds no transitions of this building.
         """
         world, corner = place.world, place.grid.corner
-        record = memory.recall(transitions.KIND, world.fingerprint, transitions.VERSION)
-        if record is None and (earlier := same_place(world, memory, place.grid)):
-            record = earlier.record
+        record = place.earlier.record if place.earlier else None
+        if record is None or record.key != world.fingerprint:
+            record = memory.recall(transitions.KIND, world.fingerprint, transitions.VERSION) or record
         if record is None:
             settings = ", ".join(f"{name} {value:g}" for name, value in sorted(world.about.items()))
             raise NotFoundError(

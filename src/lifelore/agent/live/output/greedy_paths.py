@@ -1,13 +1,19 @@
-"""Computes the paths that a learnt policy takes through a grid world."""
+"""Computes the paths that a learnt policy takes through a grid world, and writes them in metres."""
 
-from dataclasses import dataclass
+import csv
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import sparse
 from scipy.sparse import csgraph
 
+from lifelore.agent.live.driven.drive_job import DrivenJob
 from lifelore.agent.live.driven.route import chain_to
+from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
+from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.grids.grid_world import GridWorld
 
 N_PATHS = 3
@@ -31,6 +37,26 @@ class GreedyPaths:
     arriving: float
     goal_point: tuple[float, float] | None = None
     name: str | None = None
+
+
+def last_paths(life: Life) -> list[GreedyPaths]:
+    """Paths of the first agent in the last tasks on the present map: driven, or greedy by its policy."""
+    if not life.results:
+        return []
+    world, name = life.world, next(iter(life.results[0]))
+    first = max(life.first_here, len(life.results) - TASKS_WITH_POLICY)
+    last = zip(life.report["tasks"][first:], life.results[first:], strict=True)
+    paths = []
+    for task, result in last:
+        goal = int(world.state_of[tuple(task["goal"])])
+        of, point = result[name], task.get("position")
+        if isinstance(of, DrivenJob):
+            found = GreedyPaths(task["index"], goal, of.paths(), float(of.reached))
+        else:
+            found = greedy_paths_of(world, of.policy, task["index"], goal, life.start)
+        reached = point and found.arriving > 0
+        paths.append(replace(found, goal_point=tuple(point) if reached else None, name=task.get("name")))
+    return paths
 
 
 def greedy_paths_of(
@@ -66,3 +92,42 @@ def _far_apart(world: GridWorld, states: NDArray, length: NDArray, goal: int) ->
             break
         state = int(states[nearest.argmax()])
     return chosen
+
+
+def path_points(world: GridWorld, task: GreedyPaths, floor: Floor | None = None) -> list[NDArray[np.float64]]:
+    """The paths of a task as lines, each (n, 2) x and y in metres of the map's frame.
+
+    With the `floor` of a building, a line has the ends of a greedy path and is the shortest between them that is
+    clear of obstacles by the robot's radius. Without a floor, it goes from the centre of each cell to the next.
+    """
+    if floor is None:
+        return [world.positions(states) for states in task.paths]
+    return [_clear(floor, states, task.goal_point) for states in task.paths]
+
+
+def write_paths(path: Path, lines: Mapping[int, Sequence[NDArray[np.float64]]]) -> None:
+    """Write paths as CSV: task, path (from 0 in each task), step (a point of the line), x and y.
+
+    Parameters
+    ----------
+    path : Path
+    lines : mapping of int to sequence of (n, 2) float64
+        By number of the task, as `path_points` makes them.
+    """
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["task", "path", "step", "x", "y"])
+        for task, paths in lines.items():
+            for number, points in enumerate(paths):
+                for step, (x, y) in enumerate(points):
+                    writer.writerow([task, number, step, f"{x:.4f}", f"{y:.4f}"])
+
+
+def _clear(floor: Floor, states: NDArray[np.int32], goal: tuple[float, float] | None) -> NDArray[np.float64]:
+    """The shortest clear path between the ends of a greedy path, or to the goal's point if the user gave one."""
+    from lifelore.domains.buildings.clear_path import clear_path
+
+    start, end = floor.metres(floor.anchors[states[[0, -1]]])
+    path = clear_path(floor, start, end if goal is None else goal)
+    assert path is not None, "the places of a floor are joined"
+    return path

@@ -1,6 +1,5 @@
 """A life in a building as data for a log: its map, costs, ways and events, with their times."""
 
-from collections.abc import Callable
 from datetime import UTC, datetime
 from typing import Any, NamedTuple
 
@@ -9,11 +8,9 @@ from numpy.typing import NDArray
 
 from lifelore.agent.live.goals.destinations import Point
 from lifelore.agent.live.life import Life
-from lifelore.agent.live.output.exports import path_points
-from lifelore.agent.live.output.greedy_paths import GreedyPaths
+from lifelore.agent.live.output.greedy_paths import GreedyPaths, last_paths, path_points
 from lifelore.agent.live.output.known_building import KnownBuilding
 from lifelore.agent.live.output.nav2_masks import NO_OPINION, on_map, place_costs, place_masks
-from lifelore.core.atomic_write import refused_writes
 from lifelore.core.errors import InputError
 from lifelore.domains.buildings.occupancy_map import OccupancyMap
 from lifelore.domains.grids.grid_world import MOVE_NAMES
@@ -36,32 +33,21 @@ class LoggedLife(NamedTuple):
     events: list[tuple[str, float, Point]]
 
 
-Recorder = Callable[[str, OccupancyMap, NDArray[np.uint8], list, list], None]
-"""Writes the fields of a `LoggedLife` to a file."""
-
-
-def write_life_log(path: str, life: Life, last: list[GreedyPaths], recorder: Recorder) -> None:
-    """Write the log of a life in a building whose last paths are `last`.
+def logged_life(life: Life) -> LoggedLife:
+    """The data of a life.
 
     Raises
     ------
     InputError
         The life has no building.
-    StoreError
-        The file cannot be written.
     """
-    if life.building is None:
+    building = life.building
+    if building is None:
         raise InputError(f"log needs a life in a building, got domain {life.report['domain']}; leave it out")
-    with refused_writes(path, "log"):
-        recorder(path, *logged_life(life, life.building, last))
-
-
-def logged_life(life: Life, building: KnownBuilding, last: list[GreedyPaths]) -> LoggedLife:
-    """The data of a life; `last` are the paths of its last tasks."""
     tasks = {task["index"]: task for task in life.report["tasks"][life.first_here :]}
     ways = [
         (_named(tasks[paths.task]), _seconds(tasks[paths.task]), points)
-        for paths in last
+        for paths in last_paths(life)
         for points in _corners(life, building, paths)
     ]
     begin = min((_seconds(task) for task in tasks.values() if "clock" in task), default=np.inf)

@@ -1,11 +1,10 @@
-"""Exports experience for nav2: masks for its costmap filters, and the prior as vectors.
+"""Exports experience for nav2: masks for its costmap filters.
 
 The masks have the mode ``raw``: a pixel's value is the occupancy that nav2 reads, 0 to 100, and 255 is unknown,
 which its filters skip. They have the pixels of the user's map, or of its axis-aligned copy if the map is turned
 (`axis_aligned`). The meaning of the values is described in docs/nav2.md.
 """
 
-import csv
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +16,6 @@ from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.buildings.inflation import inflate
 from lifelore.domains.buildings.map_alignment import axis_aligned
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap, write_occupancy_map
-from lifelore.domains.grids.grid_world import GridWorld
 
 NO_OPINION, KEEP_OUT = 255, 100
 """Values of a mask: skipped by nav2's filters, and never entered."""
@@ -116,7 +114,8 @@ def on_map(mask: NDArray[np.uint8], floor: Floor, occupancy: OccupancyMap, outsi
 
 def _pixels_of(occupancy: OccupancyMap) -> Floor:
     """A floor without places: the conversion between metres and pixels of a map."""
-    return Floor(occupancy, np.empty(occupancy.state.shape, np.int32), np.empty((0, 0), np.bool_), 0.0, 0)
+    state, moves = np.full(occupancy.state.shape, -1, np.int32), np.empty((0, 4), np.int32)
+    return Floor(occupancy, state, occupancy.state == OCCUPIED, 0.0, moves)
 
 
 def write_masks(
@@ -150,23 +149,3 @@ def write_masks(
         write_occupancy_map(path, grey, target.resolution, target.origin, mode="raw")
         text = f"# {_MEANINGS[name]}, see docs/nav2.md.\n"
         path.write_text(text + path.read_text(encoding="utf-8"), encoding="utf-8")
-
-
-def write_directions(
-    path: Path, world: GridWorld, probs: NDArray[np.float64], counted: NDArray[np.bool_], floor: Floor | None
-) -> None:
-    """Write the prior as CSV: x, y (metres), dx, dy (unit vector of a move), probability; four lines a place.
-
-    Places without counts are left out. With a floor, x and y are the point of the place farthest from obstacles,
-    otherwise the centre of the cell.
-    """
-    states = np.flatnonzero(counted).astype(np.int32)
-    points = world.positions(states) if floor is None else floor.metres(floor.anchors[states])
-    with path.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.writer(file)
-        writer.writerow(["x", "y", "dx", "dy", "probability"])
-        for state, (x, y) in zip(states, points, strict=True):
-            for (dx, dy), probability in zip(world.move_vectors, probs[state], strict=True):
-                # Adding 0 turns -0.0 into 0.0.
-                row = (x, y, dx, dy, probability)
-                writer.writerow([f"{round(float(value), 4) + 0:.4f}" for value in row])

@@ -4,24 +4,20 @@ import json
 import os
 import tempfile
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.live.baselines import AGENTS
-from lifelore.agent.live.driven.drive_job import DrivenJob
 from lifelore.agent.live.goals.destinations import Point
-from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
+from lifelore.agent.live.life import Life
 from lifelore.agent.live.lived_tasks import Result
 from lifelore.agent.live.output.drive_figure import drives_figure
-from lifelore.agent.live.output.exports import path_points, write_paths, write_prior_map
 from lifelore.agent.live.output.folder import folder_to_write
-from lifelore.agent.live.output.greedy_paths import GreedyPaths, greedy_paths_of
+from lifelore.agent.live.output.greedy_paths import GreedyPaths, last_paths, path_points, write_paths
 from lifelore.agent.live.output.known_building import NAV2_FILES, KnownBuilding
-from lifelore.agent.live.output.logged_life import Recorder, goal_points, write_life_log
-from lifelore.agent.live.output.nav2_masks import write_directions
+from lifelore.agent.live.output.logged_life import goal_points
 from lifelore.agent.live.summary import third
 from lifelore.agent.live.task_result import THRESHOLD, TaskResult
 from lifelore.core.errors import InputError
@@ -34,10 +30,9 @@ from lifelore.figures.lives.task_curves import draw_task_curves
 from lifelore.figures.lives.world_map import draw_world_map
 from lifelore.figures.style import save_figure
 
-PRIOR_FILES = ("prior.png", "prior.pgm", "prior.yaml", "directions.csv")
-FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", *PRIOR_FILES, *NAV2_FILES)
-"""Files of the folder; the curves only if goals were searched, the files of the prior only if the agent has a
-prior, those of nav2 only in buildings whose moves the agent has learnt."""
+FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", "prior.png", *NAV2_FILES)
+"""Files of the folder; the curves only if goals were searched, the prior only if the agent has one, the files of
+nav2 only in buildings whose moves the agent has learnt."""
 
 
 def check_folder(path: str) -> None:
@@ -90,18 +85,12 @@ def write_portfolio(life: Life, out: str) -> list[str]:
     return [str(folder / name) for name in written]
 
 
-def write_log(life: Life, path: str, recorder: Recorder) -> str:
-    """Write the log of a life in a building; returns `path`. Errors as in `write_life_log`."""
-    write_life_log(path, life, _last_paths(life) if life.results else [], recorder)
-    return path
-
-
 def _write_all(life: Life, folder: Path) -> None:
     text = json.dumps(life.report, indent=2, allow_nan=False)
     (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
     if not life.results:
         return
-    paths = _last_paths(life)
+    paths = last_paths(life)
     lines = {task.task: path_points(life.world, task, life.floor) for task in paths}
     if life.driven:
         save_figure(drives_figure(life, _place(life)), folder / "life.png")
@@ -111,7 +100,7 @@ def _write_all(life: Life, folder: Path) -> None:
     save_figure(_world_figure(life, paths, lines), folder / "world.png")
     write_paths(folder / "paths.csv", lines)
     if _has_prior(life):
-        _write_prior(life, folder)
+        save_figure(_prior_figure(life), folder / "prior.png")
     if life.building is not None:
         life.building.write(folder, _goals(life, life.building))
 
@@ -197,24 +186,6 @@ def _traces(life: Life, results: list[dict[str, Result]]) -> dict:
     }
 
 
-def _last_paths(life: Life) -> list[GreedyPaths]:
-    """Paths of the first agent in the last tasks on the present map: driven, or greedy by its policy."""
-    world, name = life.world, _agents(life)[0]
-    first = max(life.first_here, len(life.results) - TASKS_WITH_POLICY)
-    last = zip(life.report["tasks"][first:], life.results[first:], strict=True)
-    paths = []
-    for task, result in last:
-        goal = int(world.state_of[tuple(task["goal"])])
-        of, point = result[name], task.get("position")
-        if isinstance(of, DrivenJob):
-            found = GreedyPaths(task["index"], goal, of.paths(), float(of.reached))
-        else:
-            found = greedy_paths_of(world, of.policy, task["index"], goal, life.start)
-        reached = point and found.arriving > 0
-        paths.append(replace(found, goal_point=tuple(point) if reached else None, name=task.get("name")))
-    return paths
-
-
 def _world_figure(life: Life, last: Sequence[GreedyPaths], lines: Mapping[int, Sequence[NDArray[np.float64]]]):
     """The ways of the last tasks, over the building's map or, in other worlds, over the cells."""
     world = life.world
@@ -259,23 +230,17 @@ def _percent(share: float) -> str:
     return f"{int(100 * share)} %"
 
 
-# ---- the prior -------------------------------------------------------------------------------------
-
-
 def _has_prior(life: Life) -> bool:
     lore, has_condition = life.lore, life.report["settings"]["prior"] != "none"
     uses = AGENTS[_agents(life)[0]].uses_prior
     return has_condition and uses and not lore.prior.unseen(lore.scope.contexts).all()
 
 
-def _write_prior(life: Life, folder: Path) -> None:
+def _prior_figure(life: Life):
     lore, world = life.lore, life.world
     probs, counted = lore.prior.probs(lore.scope.contexts), ~lore.prior.unseen(lore.scope.contexts)
     given = "the surroundings of a cell" if lore.scope.kind == "observation" else "the cell"
     title = f"{_place(life)}: the action prior given {given}"
-    figure = draw_prior_map(
+    return draw_prior_map(
         world.shape, world.cells, world.neighbour, probs, counted, cell=_metres(life), title=title
     )
-    save_figure(figure, folder / "prior.png")
-    write_prior_map(folder / "prior.yaml", world, probs, counted)
-    write_directions(folder / "directions.csv", world, probs, counted, life.floor)

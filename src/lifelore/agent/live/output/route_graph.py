@@ -187,7 +187,7 @@ class _Graph:
         seen = floor.occupancy.state[part]
         x, y = floor.metres((top + len(seen) - 0.5, left - 0.5))[0].tolist()
         occupancy = OccupancyMap(seen, floor.occupancy.resolution, (x, y, floor.occupancy.origin[2]))
-        return Floor(occupancy, floor.state[part], floor.solid[part], floor.robot_radius, floor.n_states)
+        return Floor(occupancy, floor.state[part], floor.solid[part], floor.robot_radius, floor.neighbour)
 
     @cached_property
     def _closed(self) -> NDArray[np.bool_]:
