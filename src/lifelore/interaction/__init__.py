@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from lifelore.interaction.outcomes.joint_normal_fit import joint_normal_fit as joint_normal_fit
     from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes as JointNormalOutcomes
     from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse as BayesianPolicyReuse
-    from lifelore.interaction.reuse.novelty.broad_library import with_unknown_type as with_unknown_type
     from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector as NoveltyDetector
     from lifelore.interaction.reuse.regret import library_regret as library_regret
     from lifelore.interaction.reuse.reuse_session import load_session as load_session
@@ -106,7 +105,6 @@ _HOME = {
     "library_regret": ".reuse.regret",
     "load_session": ".reuse.reuse_session",
     "save_session": ".reuse.reuse_session",
-    "with_unknown_type": ".reuse.novelty.broad_library",
 }
 
 __all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]

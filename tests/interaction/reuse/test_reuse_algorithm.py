@@ -237,7 +237,9 @@ def test_states_of_another_library_are_refused_and_change_nothing(family):
         (made.log_belief[0], state | {"signal.log_weights": np.zeros(7)}),
     ]
     for name in state:
-        if name != "signal.log_weights":
+        if name == "unknown.log_odds":
+            wrong.append((made.log_belief[0], state | {name: np.array(np.nan)}))
+        elif not name.endswith("log_weights"):
             wrong.append((made.log_belief[0], {key: value for key, value in state.items() if key != name}))
             wrong.append((made.log_belief[0], state | {name: np.full_like(state[name], 99)[..., :1]}))
             wrong.append((made.log_belief[0], state | {name: -1 - state[name]}))

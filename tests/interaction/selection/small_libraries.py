@@ -11,7 +11,7 @@ from lifelore.interaction.finite_signals.signal_table import SignalTable
 class NormalOutcomes:
     """Normal outcomes (T, P), or of users (k, T, P), whose means are taken as exact."""
 
-    mean_variance, n_shown = None, 0.0
+    mean_variance = None
 
     def __init__(self, mean, deviation):
         self.mean = np.array(mean, float)

@@ -129,7 +129,6 @@ class CountedRows(CountedPrediction):
 
     def __init__(self, law: CountedLaw, cells: Cells, shown: Array, users: Numbers, log_weights: Array) -> None:
         self.cells, self._law, self._shape = cells, law, np.shape(users)
-        self.n_shown = shown[users].sum(axis=(-2, -1))
         self._spread_weights = np.exp(log_weights).reshape(-1, len(law.spread.values))
         self._at, weights, self._by_spread, self._total = law.predicted(shown, users, log_weights)
         self._tried = weights[:, :, None]

@@ -170,7 +170,7 @@ class JointNormalRows(NormalPrediction):
 
     def __init__(self, law: JointNormalLaw, shown: Array, users: Numbers) -> None:
         self._law, self._shown, self._shape = law, shown, np.shape(users)
-        self._users, self.n_shown = np.atleast_1d(users), shown[users, :, 0].sum(axis=-1)
+        self._users = np.atleast_1d(users)
 
     @cached_property
     def mean(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]

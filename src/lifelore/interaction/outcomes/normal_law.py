@@ -194,7 +194,6 @@ class NormalRows(NormalPrediction):
         self._law, self._shown, self._shape = law, shown, np.shape(users)
         self._users = np.atleast_1d(users)
         self._weights = np.exp(log_weights).astype(law.dtype).reshape(len(self._users), -1)
-        self.n_shown = shown[users, :, 0].sum(axis=-1)
 
     @property
     def n_types(self) -> int:

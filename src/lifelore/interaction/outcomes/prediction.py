@@ -25,14 +25,11 @@ class Prediction:
     mean, deviation : (..., n_types, n_policies) float
     mean_variance : (..., n_types, n_policies) float or None
         Variance of the mean outcome: what is not known about it. None where means are taken as exact.
-    n_shown : (...) float
-        Number of outcomes that each user has shown; those before the type changed count less.
     """
 
     mean: Array
     deviation: Array
     mean_variance: Array | None = None
-    n_shown: Any = 0.0
 
     @property
     def n_types(self) -> int:

@@ -25,10 +25,11 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Models, Numbers, law_of
 from lifelore.interaction.outcomes.spread import Spread
+from lifelore.interaction.reuse.unknown_users import UnknownUsers, unknown_law
 from lifelore.interaction.reuse.user_library import UserLibrary
 from lifelore.interaction.reuse.user_model import UserModel
 from lifelore.interaction.selection import SelectionRule
-from lifelore.interaction.selection.choice import Mask, choose, propensities, scored
+from lifelore.interaction.selection.choice import Mask, choose, propensities, scored, tied_shares
 from lifelore.interaction.signals.return_signal import ReturnSignal
 
 Array = NDArray[Any]
@@ -68,6 +69,9 @@ class ReuseAlgorithm:
         Of the users of a type; by default as the library's runs leave it.
     dtype : {"f8", "f4"}
         Precision of the rows. float32 is faster and needs half the memory.
+    unknown_users : bool
+        Whether users whom no known type fits are looked for, where pays are the signals and their models are
+        uncertain, see `unknown_users`; costs memory for three numbers a policy.
 
     Attributes
     ----------
@@ -90,6 +94,7 @@ class ReuseAlgorithm:
         models: Models = "uncertain",
         spread: Spread | None = None,
         dtype: Precision = "f8",
+        unknown_users: bool = True,
     ) -> None:
         if models not in ("uncertain", "plug-in"):
             raise InputError(f"models must be 'uncertain' or 'plug-in', got {models!r}")
@@ -106,6 +111,8 @@ class ReuseAlgorithm:
         laws = {"signal": law_of(library.signal, library.n_types, models, **settings)}
         if not (isinstance(library.signal, ReturnSignal) and library.signal.outcomes is library.performance):
             laws["outcomes"] = law_of(library.performance, library.n_types, models, **settings)
+        if unknown_users and (unknown := unknown_law(library, laws["signal"])) is not None:
+            laws["unknown"] = unknown
         self._begin(n_users, laws)
 
     def _begin(self, n_users: int, laws: Mapping[str, Any]) -> None:
@@ -114,7 +121,10 @@ class ReuseAlgorithm:
         # Whether an episode has begun since the last signal: only then may the type have changed.
         self._begun = np.ones(n_users, bool)
         self.changes = self.dynamics.rows(n_users, self.library.prior, self._dtype)
-        self._models = {name: UserModel(law, n_users) for name, law in laws.items()}
+        self._models = {
+            name: (UnknownUsers if name == "unknown" else UserModel)(law, n_users) for name, law in laws.items()
+        }
+        self.unknown: Any = self._models.get("unknown")
         self.signals = self._models["signal"]
         self.outcomes = self._models.get("outcomes", self.signals)
         self._learns = self.signals.law.learns or self.outcomes.law.learns
@@ -185,11 +195,18 @@ class ReuseAlgorithm:
         available: Mask | None = None,
         episodes_left: float | None = None,
     ) -> Array:
-        """The rule's scores for `users` (...), (..., n_policies); arguments as for `select`."""
-        return scored(
+        """The rule's scores for `users` (...), (..., n_policies); arguments as for `select`.
+
+        Those of users whom no type fits are `UnknownUsers.bounds`, where the rule tries policies on them.
+        """
+        scores = scored(
             rule, self.known(users), self.belief(users), available,
             episodes_left=episodes_left, generator=generator,
         )  # fmt: skip
+        likely, bounds = self._of_unknown(users, rule, available)
+        if bounds is not None:
+            scores[likely] = bounds
+        return scores
 
     def propensities(
         self,
@@ -201,7 +218,11 @@ class ReuseAlgorithm:
         """Probability that `select` takes each policy for `users` (...), (..., n_policies); rows sum to 1."""
         belief = self.belief(users).astype(np.float64, copy=False)
         belief = belief / belief.sum(axis=-1, keepdims=True)
-        return propensities(rule, self.known(users), belief, available, episodes_left=episodes_left)
+        shares = propensities(rule, self.known(users), belief, available, episodes_left=episodes_left)
+        likely, bounds = self._of_unknown(users, rule, available)
+        if bounds is not None:
+            shares[likely] = tied_shares(bounds)
+        return shares
 
     # ---- likelihood, belief, dynamics --------------------------------------------------------------------
 
@@ -239,6 +260,8 @@ class ReuseAlgorithm:
                     model.fade(users, 1 - np.minimum(changes, 1.0))
             if explained.any():
                 self.signals.learn(*_explained(explained, users, policies, signals, gain))
+                if self.unknown is not None:
+                    self.unknown.weigh(*_explained(explained, users, policies, signals, log_evidence))
         if outcomes is not None and self.outcomes is not self.signals and self.outcomes.law.learns:
             self._learn_outcomes(users, policies, outcomes, before)
         self.log_belief[users] = after
@@ -288,9 +311,16 @@ class ReuseAlgorithm:
         row = np.asarray(log_belief)
         if row.shape != (self.library.n_types,) or not abs(np.exp(row.astype(np.float64)).sum() - 1) < 1e-5:
             raise InputError(f"log_belief must be the logs of a belief over {self.library.n_types} types")
-        for name, model in self._models.items():
-            model.restore(user, named_part(state, f"{name}."))
-        self.changes.restore(user, named_part(state, "changes."))
+        arrays = [array for model in self._models.values() for array in model.arrays()]
+        before = [array[user].copy() for array in arrays]
+        try:
+            for name, model in self._models.items():
+                model.restore(user, named_part(state, f"{name}."))
+            self.changes.restore(user, named_part(state, "changes."))
+        except InputError:
+            for array, old in zip(arrays, before, strict=True):
+                array[user] = old
+            raise
         self.log_belief[user], self._begun[user] = row, bool(state.get("begun", True))
 
     def packed(self, users: Numbers) -> Array:
@@ -323,15 +353,13 @@ class ReuseAlgorithm:
 
     def _user_arrays(self) -> list[Array]:
         """Every array with a row for each user, but for whether an episode has begun."""
-        learning = [model for model in self._models.values() if model.law.learns]
-        shown = [model.shown for model in learning]
-        weights = [model.log_weights for model in learning]
-        return [array for array in (self.log_belief, *shown, *weights, *self.changes.arrays()) if array[0].size]
+        of_models = [array for model in self._models.values() if model.law.learns for array in model.arrays()]
+        return [array for array in (self.log_belief, *of_models, *self.changes.arrays()) if array[0].size]
 
     @property
     def nbytes(self) -> int:
         """Memory of all rows in bytes."""
-        statistics = sum(model.shown.nbytes + model.log_weights.nbytes for model in self._models.values())
+        statistics = sum(array.nbytes for model in self._models.values() for array in model.arrays())
         return self.log_belief.nbytes + self._begun.nbytes + self.changes.nbytes + statistics
 
     def _changed(self, users: Numbers, log_belief: Array) -> Array | None:
@@ -339,6 +367,18 @@ class ReuseAlgorithm:
         begun = self._begun[users]
         share = self.changes.changed_share(log_belief, users) if begun.any() else None
         return None if share is None else share * begun[..., None]
+
+    def _of_unknown(self, users: Numbers, rule: SelectionRule, available: Mask | None) -> tuple[Any, Array | None]:
+        """Which `users` (...) no type is likely to fit, and the scores of policies on these; None: no user."""
+        if self.unknown is None or not getattr(rule, "tries_unknown", False):
+            return False, None
+        likely = np.asarray(self.unknown.log_odds[users] > 0)
+        if not likely.any():
+            return likely, None
+        bounds = self.unknown.bounds(users[likely] if likely.ndim else users)
+        if available is not None:
+            bounds = np.where(available[likely] if available.ndim > 1 else available, bounds, -np.inf)
+        return likely, bounds
 
     def _learn_outcomes(self, users: Numbers, policies: Numbers, outcomes: Any, log_belief: Array) -> None:
         found = self.outcomes.evidence(users, policies, outcomes, log_belief, None)

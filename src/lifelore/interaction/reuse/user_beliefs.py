@@ -107,6 +107,7 @@ class UserBeliefs:
             models=models,
             spread=Spread.known(known),
             dtype=dtype,
+            unknown_users=False,
         )
         self.generator = stream(seed, "user beliefs") if isinstance(seed, int | np.integer) else seed
         self.n_users = n_users

@@ -122,6 +122,10 @@ class UserModel:
         self.shown = np.concatenate([self.shown, self.law.shown(more)])
         self.log_weights = np.concatenate([self.log_weights, np.tile(self._log_first, (more, 1))])
 
+    def arrays(self) -> list[Array]:
+        """Every array with a row for each user."""
+        return [self.shown, self.log_weights]
+
     def state(self, user: int) -> dict[str, Array]:
         """What a single user has shown, as small arrays; empty where nothing is learnt."""
         if not self.law.learns:

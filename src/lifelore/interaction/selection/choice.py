@@ -267,7 +267,7 @@ class PartOfOutcomes:
     """The outcomes of some policies: the moments, and the methods of `Prediction`."""
 
     def __init__(self, outcomes: "Prediction", policies: Mask) -> None:
-        self._outcomes, self._policies, self.n_shown = outcomes, policies, outcomes.n_shown
+        self._outcomes, self._policies = outcomes, policies
 
     @property
     def mean(self) -> Array:

@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 from scipy.stats import t
 
-from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
@@ -12,7 +11,6 @@ from lifelore.interaction.reuse.novelty.broad_library import (
     WEIGHTS,
     broad_counts,
     broad_library,
-    with_unknown_type,
 )
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.signals.category_signal import CategorySignal
@@ -51,21 +49,3 @@ def test_every_kind_of_outcome_has_a_broad_library():
     broad = broad_library(library)
     assert broad.n_types == 1
     assert broad.performance.mean[0, 0] == pytest.approx((1 - UNIFORM) * 0.05 + UNIFORM / 2)
-
-
-def test_a_library_with_an_unknown_type_predicts_by_known_types_and_the_broad_type():
-    random = np.random.default_rng(0)
-    library = PolicyLibrary.from_samples(random.normal(MEAN[..., None], 2.0, (2, 2, 10)), model="student-t")
-    wider = with_unknown_type(library, 0.1)
-    assert wider.types == (*library.types, "unknown")
-    assert wider.prior.tolist() == pytest.approx([0.45, 0.45, 0.1])
-    first = [ReuseAlgorithm(one).observe(0, 1, 9.0).log_likelihood for one in (wider, library)]
-    assert first[0][:2] == pytest.approx(first[1])
-
-
-def test_an_unknown_type_is_refused_where_it_has_no_moments():
-    library = PolicyLibrary(CategoricalOutcomes([0.0, 1.0], [[[1.0, 0.0]], [[0.9, 0.1]]]))
-    with pytest.raises(InputError, match="means and variances, got CategoricalOutcomes"):
-        with_unknown_type(library)
-    with pytest.raises(InputError, match=r"mass must lie in \(0, 1\), got 1"):
-        with_unknown_type(PolicyLibrary.from_means(MEAN, DEVIATION), 1)

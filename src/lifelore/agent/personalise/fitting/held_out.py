@@ -87,7 +87,8 @@ class HeldOut:
         """
         numbers = {policy: number for number, policy in enumerate(library.policies)}
         place = np.array([numbers.get(policy, -1) for policy in self.log.policy.names] + [-1])
-        algorithm = ReuseAlgorithm(library, len(self.policies), dynamics=TypeDynamics.static())
+        static = TypeDynamics.static()
+        algorithm = ReuseAlgorithm(library, len(self.policies), dynamics=static, unknown_users=False)
         priors = [(contexts or {}).get(name, library.prior) for name in (*self.log.context.names, "")]
         # Without a context the place is -1, the last row.
         algorithm.log_belief[:] = np.stack([algorithm.start(prior) for prior in priors])[self.log.context_of_user]

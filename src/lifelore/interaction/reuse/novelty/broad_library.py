@@ -7,7 +7,6 @@ least as broad as all policies are on average. What a task shows teaches the law
 types.
 """
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,7 @@ from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcom
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
-from lifelore.interaction.outcomes.outcome_moments import OF_PAIRS, OutcomeMoments
+from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.return_signal import ReturnSignal
 
@@ -59,52 +58,6 @@ def broad_library(library: PolicyLibrary) -> PolicyLibrary:
         f"novelty is computed from outcomes or categories, got {type(signal).__name__}; build a second library "
         "whose signals are outcomes, and let a detector observe those"
     )
-
-
-def with_unknown_type(library: PolicyLibrary, mass: float = 0.2) -> PolicyLibrary:
-    """A library with an additional type "unknown" that is as broad as all types together.
-
-    An agent then learns the pays of a user whom no type fits, policy by policy; its belief in the last type is the
-    probability that no known type fits. Choose by ``InformationDirected(trials=True)``, so that policies are tried
-    on such users. Models must be uncertain, as they are by default.
-
-    Parameters
-    ----------
-    mass : float
-        Prior probability of the additional type, in (0, 1).
-
-    Raises
-    ------
-    InputError
-        `mass` lies outside its range, or signals are not outcomes with means and variances.
-
-    Examples
-    --------
-    >>> from lifelore import BayesianPolicyReuse
-    >>> from lifelore.interaction import InformationDirected
-    >>> random = np.random.default_rng(0)
-    >>> library = PolicyLibrary.from_samples(random.normal([[[9.0], [5.0]], [[4.0], [8.0]]], 1.0, (2, 2, 10)))
-    >>> agent = BayesianPolicyReuse(with_unknown_type(library), InformationDirected(trials=True))
-    >>> for _ in range(5):  # no known type is bad with both
-    ...     agent.update(0, 4.0)
-    ...     agent.update(1, 4.0)
-    >>> agent.belief.round(2).tolist()
-    [0.05, 0.14, 0.82]
-    """
-    if not 0 < mass < 1:
-        raise InputError(f"mass must lie in (0, 1), got {mass}")
-    model = library.performance
-    if not (isinstance(model, MomentOutcomes) and isinstance(library.signal, ReturnSignal)):
-        raise InputError(
-            f"an unknown type needs outcomes as signals, with means and variances, got {type(model).__name__} and "
-            f"{type(library.signal).__name__}; use a NoveltyDetector"
-        )
-    known, broad = model.moments, broad_moments(model.mean, model.deviation, library.prior)
-    pairs = {name: np.concatenate([getattr(known, name), getattr(broad, name)]) for name in OF_PAIRS}
-    joined = type(model).of(replace(known, spread=model.spread, **pairs))
-    prior = np.append((1 - mass) * library.prior, mass)
-    types = (*library.types, "unknown")
-    return PolicyLibrary(joined, types=types, policies=library.policies, prior=prior)
 
 
 def broad_moments(mean: Array, deviation: Array, prior: Array) -> OutcomeMoments:

@@ -57,7 +57,9 @@ class UnknownEvidence:
     ) -> None:
         self.broad = ReuseAlgorithm(broad_library(library), n_tasks, dynamics=TypeDynamics.static())
         least = law_of(library.signal, library.n_types, models).spread.least
-        self.types = ReuseAlgorithm(library, n_tasks, prior=prior, dynamics=dynamics, models=models, spread=least)
+        self.types = ReuseAlgorithm(
+            library, n_tasks, prior=prior, dynamics=dynamics, models=models, spread=least, unknown_users=False
+        )
         self.log_odds = np.zeros(n_tasks)
 
     def observe(self, tasks: Numbers, policies: Numbers, signals: Any) -> None:

@@ -1,0 +1,112 @@
+"""Users whom no known type fits: what they have shown of an unknown type, the odds of it, and what to try on them.
+
+    log odds ← log odds + log q(σ) − log m(σ)
+
+q is a type as broad as all types of the library together (`broad_moments`), m the mixture of the known types, each
+given the user's earlier signals. The unknown type never changes, so what a user has shown of it never fades: only
+evidence leads to it or away from it. Known types may change (`beliefs`), and what was shown of them then fades.
+
+Where the odds exceed 1, each policy scores the mean pay that it may well have on this user, m + 2 s, with mean m
+and deviation s of the policy's mean pay in the unknown type. So a policy is tried until it is probably worse.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.law import Law, Numbers
+from lifelore.interaction.outcomes.normal_law import NormalLaw
+from lifelore.interaction.outcomes.spread import Spread
+from lifelore.interaction.reuse.novelty.broad_library import broad_moments
+from lifelore.interaction.reuse.user_model import UserModel
+from lifelore.interaction.signals.return_signal import ReturnSignal
+
+Array = NDArray[Any]
+
+MASS = 0.2
+"""Prior probability of the unknown type; more finds such users sooner, and takes more known users for such."""
+DEVIATIONS = 2.0
+"""Deviations of a mean pay that count in favour of a policy; more tries policies longer."""
+
+
+class UnknownUsers(UserModel):
+    """What users have shown of the unknown type, and the odds that they are of it.
+
+    Parameters
+    ----------
+    law : NormalLaw
+        Of the unknown type, see `unknown_law`.
+    n_users : int
+
+    Attributes
+    ----------
+    log_odds : (n_users,) float64
+        Log of P(unknown type) / P(any known type), given what the user has shown.
+    """
+
+    def __init__(self, law: Law, n_users: int) -> None:
+        super().__init__(law, n_users)
+        self.log_odds: Array = np.full(n_users, _FIRST)
+
+    def weigh(self, users: Numbers, policies: Numbers, signals: Any, log_evidence: Array) -> None:
+        """Take in checked signals of distinct users; `log_evidence` (...) is log m(σ)."""
+        broad = self.law.log_likelihoods(policies, signals, self.shown, users)[..., 0, 0]
+        self.log_odds[users] += broad - log_evidence
+        self.law.learn(self.shown, users, policies, signals)
+
+    def bounds(self, users: Numbers) -> Array:
+        """m + 2 s of each policy's mean pay on `users` (...), (..., n_policies)."""
+        law: Any = self.law
+        pay = law.prediction(self.shown, users, self.log_weights[users])
+        return (pay.mean + DEVIATIONS * np.sqrt(pay.mean_variance))[..., 0, :]
+
+    def fade(self, users: Numbers, keep: Array) -> None:
+        """Nothing: the unknown type does not change."""
+
+    def reset(self, users: Numbers) -> None:
+        """Forget what `users` have shown."""
+        super().reset(users)
+        self.log_odds[users] = _FIRST
+
+    def grow(self, n_users: int) -> None:
+        """Make room for `n_users` users; new users have shown nothing."""
+        super().grow(n_users)
+        self.log_odds = np.append(self.log_odds, np.full(n_users - len(self.log_odds), _FIRST))
+
+    def arrays(self) -> list[Array]:
+        """Every array with a row for each user."""
+        return [*super().arrays(), self.log_odds]
+
+    def state(self, user: int) -> dict[str, Array]:
+        """What a single user has shown, as small arrays."""
+        return super().state(user) | {"log_odds": self.log_odds[user].copy()}
+
+    def restore(self, user: int, state: Mapping[str, ArrayLike]) -> None:
+        """Take over a `state`; InputError where it is of another library."""
+        super().restore(user, state)
+        log_odds = np.asarray(state.get("log_odds"), np.float64)
+        if log_odds.shape != () or not np.isfinite(log_odds):
+            raise InputError("a user's state must have the log odds of the unknown type, a finite number")
+        self.log_odds[user] = log_odds
+
+
+_FIRST = float(np.log(MASS / (1 - MASS)))
+
+
+def unknown_law(library: PolicyLibrary, signals: Law) -> NormalLaw | None:
+    """The law of the unknown type; None where signals are no pays with means in doubt, or there is a single type.
+
+    Parameters
+    ----------
+    signals : Law
+        Of the library's signals.
+    """
+    if not isinstance(signals, NormalLaw) or not isinstance(library.signal, ReturnSignal) or library.n_types < 2:
+        return None
+    model = library.signal.outcomes
+    moments = broad_moments(model.mean, model.deviation, library.prior)
+    return NormalLaw(moments, Spread.known(0.0), signals.dtype.name)

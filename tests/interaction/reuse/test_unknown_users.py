@@ -1,0 +1,151 @@
+"""Users whom no type fits: the odds of the unknown type, and the policies that are tried on them."""
+
+import numpy as np
+import pytest
+from scipy.stats import t
+
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.reuse.novelty.broad_library import FREEDOM
+from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
+from lifelore.interaction.reuse.unknown_users import DEVIATIONS, MASS
+from lifelore.interaction.selection import InformationDirected
+
+MEANS = np.array([[1.0, 0.0, 0.7], [0.0, 1.0, 0.7]])
+STRANGER = [0.5, 0.5, 2.0]
+RULE = InformationDirected()
+
+
+@pytest.fixture
+def library():
+    """Two types from ten runs a pair; both like the third policy somewhat less than the best."""
+    random = np.random.default_rng(0)
+    return PolicyLibrary.from_samples(random.normal(MEANS[..., None], 0.5, (2, 3, 10)))
+
+
+def lived(agent, means, episodes=60):
+    """The policies of a user with these mean pays."""
+    random, chosen = np.random.default_rng(1), []
+    for _ in range(episodes):
+        chosen.append(agent.select())
+        agent.update(chosen[-1], random.normal(means[chosen[-1]], 0.5))
+    return chosen
+
+
+def stranger(library):
+    """An agent that has found a user whom no type fits."""
+    agent = BayesianPolicyReuse(library)
+    for policy in (0, 1, 2) * 4:
+        agent.update(policy, STRANGER[policy])
+    assert agent.algorithm.unknown.log_odds[0] > 0
+    return agent
+
+
+class Twin:
+    """The unknown type from the list of outcomes of each policy, anew at each question."""
+
+    def __init__(self, library):
+        moments = library.performance.moments
+        self.centre, self.variance = moments.mean.mean(axis=0), (library.performance.deviation**2).mean(axis=0)
+        spread = ((moments.mean - self.centre) ** 2).mean(axis=0)
+        self.weight = self.variance / np.maximum(spread, spread.mean())
+        self.seen = [[] for _ in self.centre]
+
+    def law(self, policy):
+        """Location, weight, variance and freedom of the normal-inverse-χ² law of a policy's pays."""
+        seen, weight, centre = self.seen[policy], self.weight[policy], self.centre[policy]
+        total, freedom = weight + len(seen), FREEDOM + len(seen)
+        location = (weight * centre + sum(seen)) / total
+        # Every outcome, and the prior's weight at its centre, around the location.
+        squares = sum((x - location) ** 2 for x in seen) + weight * (centre - location) ** 2
+        return location, total, (FREEDOM * self.variance[policy] + squares) / freedom, freedom
+
+    def log_density(self, policy, value):
+        location, weight, variance, freedom = self.law(policy)
+        return t.logpdf(value, freedom, location, np.sqrt(variance * (1 + 1 / weight)))
+
+    def bound(self, policy):
+        location, weight, variance, freedom = self.law(policy)
+        return location + DEVIATIONS * np.sqrt(variance * freedom / (freedom - 2) / weight)
+
+
+@pytest.mark.parametrize("dtype", ["f8", "f4"])
+def test_odds_and_bounds_are_those_of_the_twin(library, dtype):
+    random, twin = np.random.default_rng(3), Twin(library)
+    rows, odds = ReuseAlgorithm(library, dtype=dtype), np.log(MASS / (1 - MASS))
+    digits = 1e-9 if dtype == "f8" else 1e-4
+    for _ in range(30):  # types may change between episodes; what was shown of the unknown type stays
+        policy, value = int(random.integers(3)), float(random.normal(1, 2))
+        odds += twin.log_density(policy, value) - float(rows.update(0, policy, value).log_evidence)
+        twin.seen[policy].append(value)
+        assert rows.unknown.log_odds[0] == pytest.approx(odds, abs=digits * 30)
+        bounds = [twin.bound(each) for each in range(3)]
+        assert rows.unknown.bounds(0) == pytest.approx(bounds, abs=digits)
+
+
+def test_a_user_whom_no_type_fits_is_found_out(library):
+    assert 2 not in lived(BayesianPolicyReuse(library, models="plug-in"), STRANGER)
+    assert lived(BayesianPolicyReuse(library), STRANGER)[-20:] == [2] * 20
+
+
+def test_a_known_user_is_served_as_by_the_known_types_alone(library):
+    agent = BayesianPolicyReuse(library)
+    alone = BayesianPolicyReuse(library)
+    alone.algorithm = ReuseAlgorithm(library, unknown_users=False)
+    assert lived(agent, MEANS[0]) == lived(alone, MEANS[0])
+    assert agent.algorithm.unknown.log_odds[0] < -3
+
+
+def test_policies_are_tried_by_their_bounds_among_those_available(library):
+    agent = stranger(library)
+    bounds = agent.algorithm.unknown.bounds(0)
+    assert [one.score for one in agent.select_top(3)] == pytest.approx(np.sort(bounds)[::-1])
+    assert (agent.select(), agent.probabilities().tolist()) == (2, [0, 0, 1])
+    best = int(bounds[:2].argmax())
+    assert agent.select([0, 1]) == best == agent.probabilities([0, 1]).argmax()
+    # Rules that do not try policies choose by the known types.
+    assert BayesianPolicyReuse(library, "greedy").rule.name == "greedy"
+    greedy = ReuseAlgorithm(library)
+    greedy.restore(0, agent.log_belief, agent.algorithm.state(0))
+    scores = greedy.scores(0, BayesianPolicyReuse(library, "greedy").rule)
+    assert scores == pytest.approx(agent.expected_utility())
+
+
+def test_a_stranger_teaches_the_library_nothing(library):
+    before = library.performance.mean.copy()
+    agent = stranger(library)
+    assert agent.teach(least=float(agent.belief.max()) - 1e-9) is None
+    assert (library.performance.mean == before).all()
+
+
+def test_strangers_among_known_users_are_served_as_they_would_be_alone(library):
+    strange, known, rows = stranger(library), BayesianPolicyReuse(library), ReuseAlgorithm(library, 3)
+    every, generator = np.arange(3), np.random.default_rng(0)
+    for policy in (0, 1, 2) * 4:
+        known.update(policy, MEANS[1, policy])
+        pays = [MEANS[1, policy], STRANGER[policy], MEANS[1, policy]]
+        rows.update(every, np.full(3, policy), np.array(pays))
+    for available in (None, [True, True, False], [[True, False, True], [True, True, False], [True] * 3]):
+        mask = np.array(np.broadcast_to(True if available is None else available, (3, 3)))
+        found, (chosen, _) = rows.propensities(every, RULE, mask), rows.select(every, RULE, generator, mask)
+        for row, agent in enumerate((known, strange, known)):
+            assert found[row] == pytest.approx(agent.probabilities(mask[row]))
+            assert found[row, chosen[row]] > 0
+    assert (rows.select(every, RULE, generator)[0] == [1, 2, 1]).all()
+
+
+def test_a_stored_state_goes_on_and_a_reset_user_is_new(library):
+    agent = stranger(library)
+    state = agent.algorithm.state(0)
+    other = ReuseAlgorithm(library, 2)
+    other.restore(1, agent.log_belief, state)
+    assert other.unknown.log_odds[1] == agent.algorithm.unknown.log_odds[0]
+    assert other.unknown.bounds(np.array([1]))[0] == pytest.approx(agent.algorithm.unknown.bounds(0))
+    other.reset(1)
+    assert other.unknown.log_odds[1] == other.unknown.log_odds[0] == pytest.approx(np.log(MASS / (1 - MASS)))
+
+
+def test_none_is_looked_for_where_models_are_exact_or_a_type_is_alone(library):
+    assert ReuseAlgorithm(library, models="plug-in").unknown is None
+    assert ReuseAlgorithm(PolicyLibrary.from_means(MEANS, 1.0)).unknown is None
+    assert ReuseAlgorithm(PolicyLibrary.from_samples(np.random.default_rng(0).random((1, 2, 9)))).unknown is None
