@@ -131,19 +131,20 @@ def _both_ways(
     middles = np.array([(dipole.first + dipole.second) / 2 for dipole in dipoles])
     displacements = np.array([dipole.first - dipole.second for dipole in dipoles])
     normals = np.array([dipole.normal for dipole in dipoles])
+    way, gap_first, gap_second = objects_between.between(one.a, one.b, middles[0])
     return np.array(
         [
             np.concatenate(
                 [
                     _scale_columns(sign * displacements, sign * normals, middles, a, b).ravel(),
                     _geometry_columns(a, b, one.gap, middles[0, 2]),
-                    objects_between.between(label_a, label_b, middles[0]),
+                    between,
                     _view_columns(a, b, sign * displacements[0], middles[0], camera),
                 ]
             )
-            for sign, a, b, label_a, label_b in (
-                (1.0, first, second, one.a, one.b),
-                (-1.0, second, first, one.b, one.a),
+            for sign, a, b, between in (
+                (1.0, first, second, (way, gap_first, gap_second)),
+                (-1.0, second, first, (way, gap_second, gap_first)),
             )
         ]
     )

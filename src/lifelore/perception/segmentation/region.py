@@ -7,8 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.clouds.point_cloud import PointCloud
+from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.segmentation.surface_patches import Patch
 from lifelore.perception.segmentation.table_evidence import FRINGE, REACH
 from lifelore.perception.segmentation.table_search import Table
@@ -152,8 +154,6 @@ def _linked(points: NDArray[np.float64]) -> NDArray[np.int64]:
 
     if len(points) == 0:
         return np.empty(0, np.int64)
-    cells = np.floor((points - points.min(axis=0)) / _LINK).astype(np.int64)
-    key, cell = np.unique(np.ravel_multi_index(tuple(cells.T), tuple(cells.max(axis=0) + 1)), return_inverse=True)
-    places = np.stack(np.unravel_index(key, tuple(cells.max(axis=0) + 1)), axis=1)
-    touching = KDTree(places).query_pairs(1.8, output_type="ndarray")
-    return connected_parts(touching, len(key))[cell.reshape(-1)]
+    thin = voxelised(LabelledCloud(points - points.min(axis=0), np.zeros(len(points), np.int64)), _LINK)
+    cells = np.floor(thin.cloud.points / _LINK)
+    return connected_parts(KDTree(cells).query_pairs(1.8, output_type="ndarray"), len(cells))[thin.inverse]
