@@ -116,7 +116,7 @@ def scene_plan(
         return ScenePlan(reason=str(error))  # out of time or memory
     if found is None:
         return ScenePlan(reason=_unreachable(state))
-    numbers = {name: number for number, name in pddl_names(scene.objects, words=scene.words).items()}
+    numbers = {name: number for number, name in pddl_names(scene.objects).items()}
     actions = [(step.action, tuple(numbers[name] for name in step.arguments)) for step in found]
     return _judged(actions, state, cut_confidence or {})
 
@@ -129,7 +129,7 @@ def no_plan_reason(scene: Scene, state: PlanningState, goal: Sequence[Statement]
     InputError
         The goal names a predicate or an object that does not exist.
     """
-    called = pddl_names(scene.objects, words=scene.words)
+    called = pddl_names(scene.objects)
     pddl_goal(goal, called, predicates(scene.words))
     return "; ".join(goal_obstacles(state, goal, called)) or None
 
