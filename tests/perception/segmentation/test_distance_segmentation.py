@@ -73,9 +73,7 @@ def test_colour_needs_colours():
         segmented(TABLE, None, SegmentationSettings(method="colour"))
 
 
-@pytest.mark.parametrize(
-    "bad", [{"method": "magic"}, {"tolerance": 0.0}, {"reach": np.nan}, {"min_area": -1.0}, {"colours": 1}]
-)
+@pytest.mark.parametrize("bad", [{"method": "magic"}, {"colours": 1}])
 def test_settings_that_cannot_be_are_refused(bad):
     with pytest.raises(InputError, match=next(iter(bad))):
         SegmentationSettings(**bad)

@@ -8,7 +8,7 @@ vertical.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,16 +33,6 @@ GEOMETRY_COLUMNS = (
     "points_above_b", "points_above_a", "points_below_b",
 )  # fmt: skip
 VIEW_COLUMNS = ("behind", "right", "contact_behind", "contact_right")
-
-
-class HasInterfaces(Protocol):
-    """A scene: a cloud and its interfaces."""
-
-    @property
-    def cloud(self) -> LabelledCloud: ...
-
-    @property
-    def interfaces(self) -> Sequence[Interface]: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,18 +70,16 @@ class PairFeatures:
         return self.matrix[:, [self.names.index(name) for name in names]]
 
 
-def pair_features(scene: LabelledCloud | HasInterfaces, found: Sequence[Interface] | None = None) -> PairFeatures:
+def pair_features(cloud: LabelledCloud, found: Sequence[Interface] | None = None) -> PairFeatures:
     """Features of all near pairs of a scene.
 
     Parameters
     ----------
-    scene : LabelledCloud or Scene
+    cloud : LabelledCloud
     found : sequence of Interface, optional
         The scene's interfaces, if already computed.
     """
-    cloud = scene if isinstance(scene, LabelledCloud) else scene.cloud
-    if found is None:
-        found = interfaces(scene) if isinstance(scene, LabelledCloud) else scene.interfaces
+    found = interfaces(cloud) if found is None else found
     names = COLUMNS
     pairs = np.array([[one.a, one.b, one.b, one.a] for one in found], np.int64).reshape(-1, 2)
     gaps = np.repeat([one.gap for one in found], 2).astype(float)

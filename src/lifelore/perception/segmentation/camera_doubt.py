@@ -40,10 +40,10 @@ def share_behind(rays: NDArray[np.float32], ranges: NDArray[np.float32]) -> floa
     chosen = np.flatnonzero(column & (_ONE_IN - 1) == 0)
     if not len(chosen):
         return 0.0
-    ranges = ranges[chosen].astype(np.float64)
+    depths = ranges[chosen].astype(np.float64)
     cells = np.floor(rays[chosen] / size[chosen, None]).astype(np.int64) + 256
     _, cell = np.unique((cells[:, 0] << 20) + (cells[:, 1] << 10) + cells[:, 2], return_inverse=True)
     nearest = np.full(int(cell.max()) + 1, np.inf)
-    np.minimum.at(nearest, cell, ranges)
+    np.minimum.at(nearest, cell, depths)
     nearest = nearest[cell]
-    return float(np.mean(ranges > nearest + BEHIND * np.maximum(nearest, 1.0) ** 2))
+    return float(np.mean(depths > nearest + BEHIND * np.maximum(nearest, 1.0) ** 2))

@@ -16,8 +16,6 @@ from lifelore.perception.segmentation.table_evidence import FRINGE, REACH
 from lifelore.perception.segmentation.table_search import Table
 
 AXES = ("XMIN", "XMAX", "YMIN", "YMAX", "ZMIN", "ZMAX")
-MAX_OBJECTS = 60
-"""Most objects of a cloud without labels; more come from a region that is too large."""
 OVERHANG = 0.30
 """Metres that an object on the table may reach beyond the table's visible outline."""
 _INSIDE_SHARE = 0.5
@@ -35,8 +33,6 @@ class Region:
         XMIN, XMAX, YMIN, YMAX, ZMIN, ZMAX in metres, in the frame of the cloud; points outside are dropped.
     max_range : float, optional
         Metres from the camera, or from the origin where the camera is unknown; points beyond are dropped.
-    max_objects : int
-        Largest number of objects cut from a cloud without labels.
 
     Raises
     ------
@@ -46,15 +42,12 @@ class Region:
 
     roi: Sequence[float] | None = None
     max_range: float | None = None
-    max_objects: int = MAX_OBJECTS
 
     def __post_init__(self) -> None:
         if self.roi is not None:
             _check_roi(self.roi)
         if self.max_range is not None and not (np.isfinite(self.max_range) and self.max_range > 0):
             raise InputError(f"max_range must be a positive number of metres, got {self.max_range}")
-        if self.max_objects < 1:
-            raise InputError(f"max_objects must be at least 1, got {self.max_objects}")
 
 
 def _check_roi(roi: Sequence[float]) -> None:
