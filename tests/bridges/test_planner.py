@@ -13,7 +13,7 @@ from lifelore.core.errors import InputError, MissingExtraError
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.reasoning.planning_domain import DOMAIN, planning_domain
 from lifelore.perception.reasoning.planning_goal import read_goal
-from lifelore.perception.reasoning.planning_problem import pddl_names, problem_text, scene_problem
+from lifelore.perception.reasoning.planning_problem import problem_text, scene_problem
 from lifelore.perception.reasoning.planning_state import planning_state
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.relations.words import Words
@@ -29,7 +29,7 @@ PILE = [Relation(a, b, "on", 1.0, 0.0) for a, b in ((2, 1), (3, 2), (4, 3), (5, 
 def pile_problem(goal="(and )"):
     """The problem of `PILE`."""
     state = planning_state(PILE)
-    return problem_text(state, pddl_names(state.objects), goal)
+    return problem_text(state, goal)
 
 
 def replay(plan, relations, things):
@@ -114,10 +114,10 @@ def test_words_of_a_user_are_planned_with():
     """A word ends when its object is taken away, and no action makes one hold."""
     words = Words(("left of", "near"), frozenset({"near"}))
     rows = [*PILE, Relation(4, 5, "near", 1.0, 0.0), Relation(2, 5, "left of", 1.0, 0.0)]
-    state, called = planning_state(rows), {thing: f"o{thing}" for thing in range(2, 6)}
+    state = planning_state(rows)
 
     def plan(goal):
-        return solve(planning_domain(words), problem_text(state, called, goal, words))
+        return solve(planning_domain(words), problem_text(state, goal, words))
 
     steps = plan("(and (on-table o4) (not (near o5 o4)) (left_of o2 o5))")
     assert steps is not None
@@ -129,18 +129,17 @@ def test_words_of_a_user_are_planned_with():
 def test_what_may_cover_an_object_is_taken_away_first():
     """2 carries 3, and 5 may rest on 2 or hides its top: 2 is fetched after both, and 3 alone."""
     state = replace(planning_state([*PILE[:2], PILE[3]]), may_cover={(5, 2): "hidden"})
-    called = {2: "o2", 3: "o3", 5: "o5"}
-    steps = solve(DOMAIN, problem_text(state, called, "(holding o2)")) or ()
+    steps = solve(DOMAIN, problem_text(state, "(holding o2)")) or ()
     assert {str(step) for step in steps if step.action == "pick-up"} == {f"(pick-up o{n})" for n in (2, 3, 5)}
     assert str(steps[-1]) == "(pick-up o2)"
-    assert len(solve(DOMAIN, problem_text(state, called, "(holding o3)")) or ()) == 1
+    assert len(solve(DOMAIN, problem_text(state, "(holding o3)")) or ()) == 1
 
 
 @pytest.mark.slow
 def test_objects_that_may_cover_each_other_are_not_planned_with():
     state = replace(planning_state([PILE[0], PILE[3]]), may_cover={(2, 5): "doubtful", (5, 2): "doubtful"})
     unclear = replace(state, stated=tuple(fact for fact in state.stated if fact.name != "clear"))
-    assert solve(DOMAIN, problem_text(unclear, {2: "o2", 5: "o5"}, "(holding o2)")) is None
+    assert solve(DOMAIN, problem_text(unclear, "(holding o2)")) is None
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ take away before an object counts as clear.
 Thesis: §2.2 and §2.5: the relations are the language of planning problems.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
@@ -18,7 +18,7 @@ from lifelore.perception.reasoning.planning_domain import (
     predicate_names,
     predicates,
 )
-from lifelore.perception.reasoning.planning_goal import Statement, pddl_goal
+from lifelore.perception.reasoning.planning_goal import Statement, pddl_goal, pddl_name
 from lifelore.perception.reasoning.planning_state import PlanningState, scene_state
 from lifelore.perception.relations.words import NO_WORDS, Words
 from lifelore.perception.scene import Scene
@@ -52,21 +52,20 @@ def state_problem(scene: Scene, state: PlanningState, goal: Sequence[Statement] 
             "relations of a planning problem must say on what every object rests, by on or both; of"
             f" {', '.join(map(str, hanging))} nothing says so; `scene_logic.most_likely_scene` completes them"
         )
-    called = pddl_names(scene.objects)
-    wanted = pddl_goal(goal, called, predicates(scene.words)) if goal else NOTHING
-    return problem_text(state, called, wanted, scene.words)
+    wanted = pddl_goal(goal, scene.objects, predicates(scene.words)) if goal else NOTHING
+    return problem_text(state, wanted, scene.words)
 
 
-def problem_text(state: PlanningState, called: Mapping[int, str], goal: str, words: Words = NO_WORDS) -> str:
-    """The problem of a state; `called` names the objects, `goal` is PDDL."""
+def problem_text(state: PlanningState, goal: str, words: Words = NO_WORDS) -> str:
+    """The problem of a state; `goal` is PDDL."""
     of_word = predicate_names(words)
     unknown = [
-        f";   {_atoms(one.fact, called, of_word, words)[0]} {one.reason}, probability {one.probability:.2f}"
+        f";   {_atoms(one.fact, of_word, words)[0]} {one.reason}, probability {one.probability:.2f}"
         for one in state.unknown
     ]
-    declared = f" {' '.join(called[thing] for thing in state.objects)} - thing" if state.objects else ""
-    atoms = {atom for fact in state.stated for atom in _atoms(fact, called, of_word, words)}
-    atoms |= {f"(may-cover {called[a]} {called[b]})" for a, b in state.may_cover}
+    declared = f" {' '.join(map(pddl_name, state.objects))} - thing" if state.objects else ""
+    atoms = {atom for fact in state.stated for atom in _atoms(fact, of_word, words)}
+    atoms |= {f"(may-cover {pddl_name(a)} {pddl_name(b)})" for a, b in state.may_cover}
     initial = [f"    {atom}" for atom in ("(hand-empty)", *sorted(atoms))]
     return "\n".join(
         [
@@ -83,18 +82,13 @@ def problem_text(state: PlanningState, called: Mapping[int, str], goal: str, wor
     )
 
 
-def pddl_names(things: Iterable[int]) -> dict[int, str]:
-    """The PDDL name of each object: ``o2``, ``o3``, …."""
-    return {thing: f"o{thing}" for thing in things}
-
-
-def _atoms(fact: Fact, called: Mapping[int, str], of_word: Mapping[str, str], words: Words) -> list[str]:
+def _atoms(fact: Fact, of_word: Mapping[str, str], words: Words) -> list[str]:
     """The atoms of a fact; symmetric relations in both directions."""
     name = of_word.get(fact.name, fact.name)
     if len(fact.arguments) == 1:
-        return [f"({name} {called[fact.arguments[0]]})"]
+        return [f"({name} {pddl_name(fact.arguments[0])})"]
     a, b = fact.arguments
     if TABLE in (a, b):
-        return [f"({name}-table {called[a]})" if b == TABLE else f"(table-{name} {called[b]})"]
+        return [f"({name}-table {pddl_name(a)})" if b == TABLE else f"(table-{name} {pddl_name(b)})"]
     both_ways = fact.name == ADJACENT or fact.name in words.symmetric
-    return [f"({name} {called[x]} {called[y]})" for x, y in ((a, b), (b, a))[: 1 + both_ways]]
+    return [f"({name} {pddl_name(x)} {pddl_name(y)})" for x, y in ((a, b), (b, a))[: 1 + both_ways]]

@@ -57,19 +57,6 @@ class SegmentationSettings:
             raise InputError(f"colours must be at least 2, got {self.colours}")
 
 
-def segmented(
-    points: NDArray[np.float64],
-    colours: NDArray[np.uint8] | None,
-    settings: SegmentationSettings,
-    camera: NDArray[np.float64] | None = None,
-) -> NDArray[np.int64]:
-    """(n,) int64 labels of a scene in its own frame: 1 the table, 2 … objects by size, 0 the rest.
-
-    As `cut_cloud`, without confidences.
-    """
-    return cut_cloud(points, colours, settings, camera).labels
-
-
 def cut_cloud(
     points: NDArray[np.float64],
     colours: NDArray[np.uint8] | None,
