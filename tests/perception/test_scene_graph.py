@@ -1,4 +1,4 @@
-"""Graphs: fields, order, and DOT that a reader of DOT takes."""
+"""Graphs: order, and DOT that a reader of DOT takes."""
 
 import re
 import shutil
@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lifelore.perception.scene_graph import quoted, relation_graph, to_dot
+from lifelore.perception.scene_graph import quoted, to_dot
 
 POINT = np.zeros((1, 3))
 
@@ -18,14 +18,6 @@ POINT = np.zeros((1, 3))
 def scene(make_scene):
     rows = [(4, 3, "adjacent", 0.3), (3, 2, "on", 0.9), (2, 1, "on", 0.8), (2, 4, "none")]
     return make_scene({2: POINT, 3: POINT, 4: POINT}, relations=rows)
-
-
-def test_the_graph_has_objects_and_relations(scene):
-    graph = relation_graph(scene)
-    assert list(graph) == [1, 2, 3, 4]
-    assert list(graph.edges(data="relation")) == [(2, 1, "on"), (3, 2, "on"), (4, 3, "adjacent")]
-    assert graph.nodes[1]["name"] == "table"
-    assert graph.nodes[3] == {"name": "3", "n_points": 1, "centroid": (0.0, 0.0, 0.0)}
 
 
 def test_dot_by_hand(scene):

@@ -22,7 +22,6 @@ from lifelore.perception.contacts.interface import (
     DEFAULT_CONTACT_SETTINGS,
     Interface,
     interfaces,
-    interfaces_by_settings,
 )
 from lifelore.perception.scene import Scene
 from reproduction.chapter2.scenes.arranged_scenes import arranged
@@ -116,7 +115,7 @@ def pair_rows(name: str, cloud: LabelledCloud, truth: Sequence[PairLabel]) -> li
         dropped; empty where the pair is not near.
     """
     bare = without_table(cloud)
-    found = interfaces_by_settings(bare, [loose_settings(*kernel) for kernel in KERNELS])
+    found = [interfaces(bare, loose_settings(*kernel)) for kernel in KERNELS]
     thin = voxelised(bare, DEFAULT_CONTACT_SETTINGS.voxel).cloud
     rows = []
     for label in truth:

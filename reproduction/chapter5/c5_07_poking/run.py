@@ -20,7 +20,7 @@ from lifelore.domains.tabletop.layout import Group, Placed, put_beside, stand, t
 from lifelore.domains.tabletop.pose import about
 from lifelore.domains.tabletop.settings import TabletopScene, TabletopSettings
 from lifelore.domains.tabletop.shapes import box
-from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, segmented
+from lifelore.perception.segmentation.object_segmentation import TABLE_BAND, SegmentationSettings, cut_cloud
 from reproduction.chapter2.scenes.arranged_scenes import Placement, arranged, settled, turned
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scoring.segmentation_scoring import FOUND, overlaps
@@ -106,7 +106,7 @@ def drawn_scene(kind: str, seed: int, number: int) -> TabletopScene:
 def first_view(scene: TabletopScene) -> LabelledCloud:
     """The first cloud as local convexity cuts it; true labels are not read."""
     cloud = scene.cloud
-    labels = segmented(cloud.points, None, SETTINGS, cloud.camera)
+    labels = cut_cloud(cloud.points, None, SETTINGS, cloud.camera).labels
     return LabelledCloud(cloud.points, labels, None, cloud.camera)
 
 
@@ -131,7 +131,7 @@ def poke_scene(
 def seen(table: PokedTabletop, scene: TabletopScene, rng: np.random.Generator) -> LabelledCloud:
     """A picture in which only the table has a label, by height."""
     picture = table.picture(scene.view, CAMERA, rng)
-    on_table = np.abs(picture.points[:, 2]) <= SETTINGS.table_band
+    on_table = np.abs(picture.points[:, 2]) <= TABLE_BAND
     return LabelledCloud(picture.points, np.where(on_table, TABLE, 0), None, picture.camera)
 
 

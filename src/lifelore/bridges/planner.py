@@ -40,8 +40,8 @@ def solve(domain: str, problem: str, *, timeout: float = 60.0) -> tuple[Step, ..
     Parameters
     ----------
     domain, problem : str
-        PDDL texts, such as `lifelore.perception.reasoning.planning_problem.DOMAIN` and the result of
-        `planning_problem`.
+        PDDL texts, such as the results of `lifelore.perception.reasoning.planning_domain.planning_domain` and
+        `planning_problem.scene_problem`.
     timeout : float
         Seconds, > 0.
 

@@ -14,8 +14,7 @@ from lifelore.bridges.planner import Step
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import open_memory
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.relations.relation_classifier import shipped_model
-from lifelore.perception.relations.relation_model_file import SHIPPED
+from lifelore.perception.relations.relation_classifier import SHIPPED, shipped_model
 from lifelore.perception.segmentation.object_segmentation import SegmentationSettings
 
 CAMERA = np.array([0.3, -0.9, 0.7])

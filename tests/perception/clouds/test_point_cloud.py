@@ -14,7 +14,7 @@ def test_a_point_is_measured_when_all_three_coordinates_are_finite() -> None:
     assert PointCloud(POINTS).measured.tolist() == [True, False, False, True]
 
 
-def test_only_keeps_what_belongs_together_and_the_pixels() -> None:
+def test_only_keeps_what_belongs_together_and_the_rows() -> None:
     cloud = PointCloud(
         POINTS, np.array([0, 1, 2, 3]), np.arange(12, dtype=np.uint8).reshape(4, 3), (2, 2), np.ones(3)
     )
@@ -24,19 +24,13 @@ def test_only_keeps_what_belongs_together_and_the_pixels() -> None:
     assert part.labels.tolist() == [3, 0]
     assert part.colours.tolist() == [[9, 10, 11], [0, 1, 2]]
     assert part.grid == (2, 2)
-    assert part.pixels.tolist() == [[1, 1], [0, 0]]
-    assert part.only(np.array([False, True])).pixels.tolist() == [[0, 0]]
+    assert part.source_rows is not None
+    assert part.source_rows.tolist() == [3, 0]
     assert part.camera is cloud.camera
     loose = PointCloud(POINTS).only(np.array([True, False, True, True])).only(np.array([2, 0]))
     assert loose.source_rows is not None
     assert loose.source_rows.tolist() == [3, 0]
     assert PointCloud(POINTS, from_parts=True).only(np.array([0])).from_parts
-
-
-def test_pixels_are_rows_and_columns_of_an_organised_cloud() -> None:
-    assert PointCloud(POINTS, grid=(2, 2)).pixels.tolist() == [[0, 0], [0, 1], [1, 0], [1, 1]]
-    with pytest.raises(InputError, match="organised"):
-        PointCloud(POINTS).pixels  # noqa: B018
 
 
 def test_labels_of_nothing_but_zero_are_no_labels() -> None:

@@ -7,7 +7,6 @@ from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.perception.clouds import voxel
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.clouds.voxel import thinned, voxelised
 
@@ -69,9 +68,7 @@ def test_a_cloud_that_is_small_enough_is_left_alone():
     assert thinned(cloud, at_most=5) is cloud
 
 
-@pytest.mark.parametrize("chunk", [7, 100, 1000])
-def test_a_large_cloud_is_thinned_alike_in_chunks_of_any_size(monkeypatch, chunk):
-    monkeypatch.setattr(voxel, "_CHUNK", chunk)
+def test_a_large_cloud_is_thinned():
     rng = np.random.default_rng(2)
     points, labels = rng.uniform(0, 0.02, (300, 3)), rng.integers(0, 3, 300)
     points[5] = np.nan

@@ -9,8 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.distance import pdist, squareform
 
-from lifelore.core.errors import InputError
-from lifelore.perception.contacts.contact_network import ContactPointNetwork, spanning_edges
+from lifelore.perception.contacts.contact_network import spanning_edges
 from lifelore.perception.contacts.contact_points import ContactPoint
 
 
@@ -78,23 +77,3 @@ def test_edges_in_a_lattice_are_those_of_networkx(shape):
 def test_no_node_and_one_node_have_no_edges():
     assert spanning_edges(np.empty((0, 3))).shape == (0, 2)
     assert spanning_edges(np.zeros((1, 3))).shape == (0, 2)
-
-
-def test_merging_collects_the_points_and_builds_the_tree_anew():
-    above = ContactPointNetwork.from_contacts(2, [contact([0, 0, 1])])
-    below = ContactPointNetwork.from_contacts(2, [contact([0, 0, 0], other=1), contact([3, 0, 0], other=1)])
-    merged = above.merged(below)
-    assert len(merged.nodes) == 3
-    assert merged.edges.tolist() == [[0, 1], [1, 2]]
-    with pytest.raises(InputError, match="object 2"):
-        above.merged(ContactPointNetwork.from_contacts(4, [contact([0, 0, 0])]))
-
-
-def test_a_networkx_graph_has_everything():
-    network = ContactPointNetwork.from_contacts(5, [contact([0, 0, 0]), contact([0, 2, 0]), contact([0, 1, 0])])
-    graph = network.to_networkx()
-    assert graph.edges[0, 2]["length"] == 1.0
-    assert graph.graph["object_id"] == 5
-    assert sorted(map(sorted, graph.edges)) == network.edges.tolist()
-    assert [graph.nodes[n]["position"].tolist() for n in range(3)] == network.positions.tolist()
-    assert graph.nodes[1]["n_support"] == 7

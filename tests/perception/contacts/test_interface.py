@@ -7,8 +7,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.perception.contacts import interface as module
 from lifelore.perception.contacts.contact_settings import ContactSettings
-from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, interfaces, interfaces_by_settings
-from lifelore.perception.separation.separator import separate
+from lifelore.perception.contacts.interface import interfaces
 
 
 def shell(low, high, step=0.004) -> np.ndarray:
@@ -83,33 +82,6 @@ def test_the_same_points_give_the_same_bits_and_most_may_go():
     np.testing.assert_allclose(fewer.contacts_b[0].position, first[0].contacts_b[0].position, atol=0.005)
 
 
-def test_several_settings_give_the_bits_of_each_and_no_separator_twice(monkeypatch):
-    def plain(found):
-        return [
-            (one.a, one.b, one.gap, [[*p.position, *p.normal, p.strength, p.n_support] for p in one.contacts_a],
-             [[*d.first, *d.second, *d.normal] for d in one.dipoles], one.max_violation)
-            for one in found
-        ]  # fmt: skip
-
-    cloud = scene(*STACK)
-    asked = [
-        DEFAULT_CONTACT_SETTINGS,
-        ContactSettings(length=0.03, cost=1.0),
-        ContactSettings(length=0.12, cost=1.0),
-    ]
-    each = [interfaces(cloud, settings) for settings in asked]
-    computed = []
-    monkeypatch.setattr(
-        module, "separate", lambda *clouds, **how: computed.append(how["length"]) or separate(*clouds, **how)
-    )
-    together = interfaces_by_settings(cloud, asked)
-    assert [plain(found) for found in together] == [plain(found) for found in each]
-    # Between objects 60, 120 and 30 mm; with the table, which has no wide separator, the same three.
-    assert sorted(computed) == [0.03] * 3 + [0.06] * 3 + [0.12] * 3
-    with pytest.raises(InputError, match="must agree in voxel, near and table_margin, got 2 different"):
-        interfaces_by_settings(cloud, [ContactSettings(), ContactSettings(near=0.1)])
-
-
 def test_nothing_to_find_is_found_without_complaint():
     assert interfaces(LabelledCloud(np.empty((0, 3)), np.empty(0, np.int64))) == ()
     assert interfaces(scene(STACK[0], table=False)) == ()
@@ -129,7 +101,6 @@ def test_settings_out_of_range_are_named(wrong):
 
 
 def test_mixed_up_labels_are_reported_and_blocks_side_by_side_are_not(monkeypatch):
-    from lifelore.perception.contacts import interface as module
 
     assert all(one.max_violation <= 1e-3 for one in interfaces(scene(*STACK)))
     rng = np.random.default_rng(0)
@@ -145,7 +116,6 @@ def test_mixed_up_labels_are_reported_and_blocks_side_by_side_are_not(monkeypatc
 
 @pytest.mark.parametrize(("voxel", "factor"), [(0.003, 1.0), (0.006, 4.0), (0.0015, 0.25), (0.0, 1.0)])
 def test_costs_are_stated_at_three_millimetres(monkeypatch, voxel, factor):
-    from lifelore.perception.contacts import interface as module
 
     costs, plain = [], module.separate
 

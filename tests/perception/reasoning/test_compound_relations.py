@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.core.errors import InputError
 from lifelore.core.relations import CORE_RELATIONS
 from lifelore.perception.reasoning.compound_relations import compound_relations
 from lifelore.perception.reasoning.fact import Fact
@@ -45,27 +44,6 @@ def test_in_as_the_thesis_proposes_holds_of_a_leaning_plank_and_not_of_a_ball_in
     assert "in(3, 2)" in facts([(3, 2, "both"), (3, 1, "on")])
     assert "in(3, 2)" in facts([(3, 2, "on"), (2, 3, "adjacent")])
     assert not any(fact.startswith("in(") for fact in facts([(3, 2, "on")]))
-
-
-def test_rules_of_ones_own_are_added():
-    rule = 'fact("wall", (A, B)) :- relation("left_of", A, B), on(A, 1), on(B, 1).'
-    rows = [(2, 3, "left_of"), (2, 1, "on"), (3, 1, "on")]
-    assert "wall(2, 3)" in facts(rows, more_rules=rule)
-    assert "wall(2, 3)" not in facts(rows)
-
-
-@pytest.mark.parametrize(
-    "rule", ["no rule", 'fact("odd", 3).', "fact(2, (3, 4)).", 'fact("odd", (a, 3)).', ":- object(_)."]
-)
-def test_rules_that_are_none_are_refused(rule):
-    with pytest.raises(InputError):
-        facts([(2, 1, "on")], more_rules=rule)
-
-
-def test_names_are_quoted():
-    rule = 'fact("related", (A, B)) :- relation(_, A, B).'
-    rows = [(2, 1, 'o"n\\'), (2, 3, "a\nb")]
-    assert facts(rows, more_rules=rule) == {"related(2, table)", "related(2, 3)"}
 
 
 def test_nothing_is_clear_by_words_of_ones_own():

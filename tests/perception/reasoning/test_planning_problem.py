@@ -8,9 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE
 from lifelore.perception.reasoning.planning_domain import DOMAIN, RESERVED, planning_domain, predicate_names
 from lifelore.perception.reasoning.planning_goal import read_goal
-from lifelore.perception.reasoning.planning_problem import pddl_names, planning_problem, scene_problem
+from lifelore.perception.reasoning.planning_problem import scene_problem
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.relations.words import Words
 
@@ -19,7 +20,7 @@ def atoms(text):
     return re.findall(r"\(([a-z_-]+(?: [a-z0-9_-]+)*)\)", text.split(":init")[1].split("(:goal")[0])
 
 
-def test_the_initial_state_by_hand():
+def test_the_initial_state_by_hand(make_scene):
     rows = [
         (2, 1, "on"),
         (3, 2, "both"),
@@ -29,7 +30,8 @@ def test_the_initial_state_by_hand():
         (3, 4, "none"),
         (5, 1, "on"),
     ]
-    text = planning_problem([Relation(a, b, name, 1.0, 0.0) for a, b, name in rows], [5])
+    points = {label: np.zeros((1, 3)) for label in (2, 3, 4, 5)}
+    text = scene_problem(make_scene(points, relations=[(*row, 1.0) for row in rows]), 0.0)
     assert "(:objects o2 o3 o4 o5 - thing)" in text
     assert atoms(text) == [
         "hand-empty",
@@ -48,13 +50,12 @@ def test_the_initial_state_by_hand():
     ]
 
 
-def test_what_cannot_be_planned_with_is_named():
-    own = [Relation(3, 7, "rests_on", 1.0, 0.0), Relation(7, 1, "rests_on", 1.0, 0.0)]
-    with pytest.raises(InputError, match="of 3, 7 nothing says so"):
-        planning_problem(own)
+def test_what_cannot_be_planned_with_is_named(make_scene):
+    points = {label: np.zeros((1, 3)) for label in (TABLE, 2, 3, 5)}
+    scene = make_scene(points, relations=[(2, 1, "on", 1.0), (3, 2, "rests_on", 1.0)])
     with pytest.raises(InputError, match="of 3, 5 nothing says so"):
-        planning_problem([Relation(2, 1, "on", 1.0, 0.0), Relation(2, 3, "adjacent", 1.0, 0.0)], [5])
-    assert "(:init\n    (hand-empty))" in planning_problem([])
+        scene_problem(scene, 0.0)
+    assert "(:init\n    (hand-empty))" in scene_problem(make_scene({}), 0.0)
 
 
 WORDS = Words(("left of", "near", "ON"), frozenset({"near"}))
@@ -136,19 +137,23 @@ def test_a_goal_that_is_none_is_refused(make_scene, goal, said):
         scene_problem(worded_scene(make_scene), 0.0, read_goal(goal))
 
 
-def test_names_given_are_made_valid_and_kept_apart():
-    names = {2: "Mug (blue)", 3: "mug [blue]", 4: "7up", 5: "on", 6: "é"}
-    called = pddl_names([2, 3, 4, 5, 6, 7], names)
-    assert list(called.values()) == ["mug__blue_", "mug__blue__3", "o7up", "on_5", "o_", "o7"]
-    with pytest.raises(InputError, match="names"):
-        pddl_names([2], {3: "cup"})
+def test_words_are_made_valid_and_kept_apart():
+    words = ("Left (of)", "left [of]", "7up", "on", "é", "o2")
+    assert list(predicate_names(Words(words)).values()) == [
+        "left__of_",
+        "left__of__1",
+        "w7up",
+        "on_3",
+        "w_",
+        "wo2",
+    ]
 
 
 @pytest.mark.slow
 @settings(deadline=None)
-@given(st.dictionaries(st.integers(2, 20), st.text(max_size=12)))
-def test_every_name_is_one_of_pddl_and_no_two_are_alike(names):
-    called = pddl_names(sorted({*names, 21}), names)
-    assert all(re.fullmatch(r"[a-z][a-z0-9_-]*", name) for name in called.values())
-    assert len(set(called.values())) == len(called)
-    assert not RESERVED & set(called.values())
+@given(st.sets(st.text(min_size=1, max_size=12)))
+def test_every_name_is_one_of_pddl_and_no_two_are_alike(words):
+    names = predicate_names(Words(tuple(sorted(words)))).values()
+    assert all(re.fullmatch(r"[a-z][a-z0-9_-]*", name) for name in names)
+    assert len(set(names)) == len(names) == len(words)
+    assert not RESERVED & set(names)

@@ -8,7 +8,6 @@ import pytest
 from lifelore.core.errors import InputError, LifeloreError, MissingExtraError
 from lifelore.perception.reasoning.goal_obstacles import goal_obstacles
 from lifelore.perception.reasoning.planning_goal import read_goal
-from lifelore.perception.reasoning.planning_problem import pddl_names
 from lifelore.perception.reasoning.planning_state import NO_HIDDEN, planning_state
 from lifelore.perception.reasoning.scene_plan import _judged, scene_plan
 from lifelore.perception.relations.relation import Relation
@@ -125,15 +124,15 @@ def stack_state(hidden=NO_HIDDEN, least=0.0):
 )
 def test_an_object_that_hides_what_rests_on_it_stands_in_the_way(goal, in_the_way):
     """A tall part of 2 hides the top of 4."""
-    found = goal_obstacles(stack_state(hidden={4: (2,)}), read_goal(goal), pddl_names((2, 3, 4, 5)))
+    found = goal_obstacles(stack_state(hidden={4: (2,)}), read_goal(goal))
     assert [reason.split(" of ")[2].split(",")[0] for reason in found] == in_the_way
     # 5 hides it as well: it can be taken away first, and is no obstacle.
-    assert goal_obstacles(stack_state(hidden={4: (5,)}), read_goal(goal), pddl_names((2, 3, 4, 5))) == ()
+    assert goal_obstacles(stack_state(hidden={4: (5,)}), read_goal(goal)) == ()
 
 
 def test_objects_that_may_rest_on_each_other_are_obstacles():
     beside = [Relation(2, 1, "on", 1.0, 0.0), Relation(3, 1, "on", 1.0, 0.0), Relation(3, 2, "adjacent", 0.4, 0.0)]
-    found = goal_obstacles(planning_state(beside, (), 0.9), read_goal("holding(o2)"), {2: "o2", 3: "o3"})
+    found = goal_obstacles(planning_state(beside, (), 0.9), read_goal("holding(o2)"))
     assert found == (
         "o2 may rest on o3, and o2 cannot be taken away before o3",
         "o3 may rest on o2, and o3 cannot be taken away before o2",

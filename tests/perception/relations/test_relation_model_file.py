@@ -11,9 +11,8 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, NONE, ON, PairLabel
 from lifelore.perception.pairs.scene_pairs import scene_pairs
-from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
+from lifelore.perception.relations.relation_classifier import SHIPPED, RelationClassifier, shipped_model
 from lifelore.perception.relations.relation_model_file import (
-    SHIPPED,
     model_about,
     model_bytes,
     model_from_bytes,
@@ -21,14 +20,6 @@ from lifelore.perception.relations.relation_model_file import (
 from lifelore.perception.trees.tree_training import TreeSettings
 
 from ..conftest import box_surface
-
-
-def file_bytes(classifier: RelationClassifier, about=None) -> bytes:
-    return model_bytes(classifier.to_model(), about)
-
-
-def classifier_from(content: bytes, where: str = "the model") -> RelationClassifier:
-    return RelationClassifier.from_model(model_from_bytes(content, where))
 
 
 def two_blocks(box, kind: str) -> LabelledCloud:
@@ -57,13 +48,13 @@ def test_a_model_comes_back_bit_for_bit(clouds, tmp_path, options):
     again = RelationClassifier.load(tmp_path / "model.npz")
     assert again.beliefs(clouds[0]) == model.beliefs(clouds[0])
     assert (again.names_, again.symmetric_, again.settings) == (model.names_, model.symmetric_, model.settings)
-    assert file_bytes(again, {"from": "blocks"}) == (tmp_path / "model.npz").read_bytes()
+    assert model_bytes(again, {"from": "blocks"}) == (tmp_path / "model.npz").read_bytes()
     assert model_about(tmp_path / "model.npz")["about"] == {"from": "blocks"}
 
 
 def test_the_settings_of_the_votes_come_back_too(clouds):
     model = RelationClassifier("displacement", k=3, omega=0.05, weights="distance").fit(clouds, TRUTHS)
-    again = classifier_from(file_bytes(model))
+    again = model_from_bytes(model_bytes(model))
     assert again.neighbours == model.neighbours
     assert again.fit(clouds[:2], TRUTHS[:2]).beliefs(clouds[2]) == model.fit(clouds[:2], TRUTHS[:2]).beliefs(
         clouds[2]
@@ -72,23 +63,23 @@ def test_the_settings_of_the_votes_come_back_too(clouds):
 
 def test_a_file_that_does_not_tell_the_settings_of_the_votes_is_read(clouds):
     model = RelationClassifier("displacement", k=3, weights="distance").fit(clouds, TRUTHS)
-    arrays, header = taken_apart(file_bytes(model))
+    arrays, header = taken_apart(model_bytes(model))
     older = packed_again(arrays, {**header, "neighbours": None})
-    assert classifier_from(older).neighbours == model.neighbours
-    assert classifier_from(older).beliefs(clouds[0]) == model.beliefs(clouds[0])
+    assert model_from_bytes(older).neighbours == model.neighbours
+    assert model_from_bytes(older).beliefs(clouds[0]) == model.beliefs(clouds[0])
 
 
 def test_what_is_no_model_is_one_line(learnt, tmp_path):
-    content = file_bytes(learnt["trees"])
+    content = model_bytes(learnt["trees"])
     stream = io.BytesIO()
     np.savez(stream, points=np.zeros((4, 3)))
     for wrong in (b"", b"junk", content[:-40], content[:300], stream.getvalue()):
         with pytest.raises(InputError, match="no relation model that can be read"):
-            classifier_from(wrong)
+            model_from_bytes(wrong)
     with pytest.raises(InputError, match="cannot be read"):
         RelationClassifier.load(tmp_path / "none.npz")
     with pytest.raises(InputError, match="fitted"):
-        file_bytes(RelationClassifier())
+        model_bytes(RelationClassifier())
 
 
 def packed_again(arrays: dict, header) -> bytes:
@@ -163,12 +154,12 @@ ONES = [
 @pytest.mark.slow
 @pytest.mark.parametrize(("kind", "name", "change", "said"), ONES)
 def test_numbers_that_are_none_are_refused_with_the_name_of_the_file(learnt, kind, name, change, said):
-    arrays, header = taken_apart(file_bytes(learnt[kind]))
+    arrays, header = taken_apart(model_bytes(learnt[kind]))
     array = arrays.pop(name)
     if change is not None:
         arrays[name] = change(array)
     with pytest.raises(InputError, match=said) as caught:
-        classifier_from(packed_again(arrays, header), "spoilt.npz")
+        model_from_bytes(packed_again(arrays, header), "spoilt.npz")
     assert str(caught.value).startswith("spoilt.npz is no relation model")
 
 
@@ -214,17 +205,17 @@ HEADERS = [
 
 @pytest.mark.parametrize(("kind", "path", "value", "said"), HEADERS)
 def test_what_is_told_wrong_is_refused_with_the_name_of_the_file(learnt, kind, path, value, said):
-    arrays, header = taken_apart(file_bytes(learnt[kind]))
+    arrays, header = taken_apart(model_bytes(learnt[kind]))
     put(header, path, value)
     with pytest.raises(InputError, match=said) as caught:
-        classifier_from(packed_again(arrays, header), "spoilt.npz")
+        model_from_bytes(packed_again(arrays, header), "spoilt.npz")
     assert str(caught.value).startswith("spoilt.npz ")
 
 
 def test_settings_told_as_whole_numbers_are_lengths_all_the_same(learnt, clouds):
-    arrays, header = taken_apart(file_bytes(learnt["trees"]))
+    arrays, header = taken_apart(model_bytes(learnt["trees"]))
     header["settings"]["cost"] = 10
-    assert classifier_from(packed_again(arrays, header)).beliefs(clouds[0]) == learnt["trees"].beliefs(clouds[0])
+    assert model_from_bytes(packed_again(arrays, header)).beliefs(clouds[0]) == learnt["trees"].beliefs(clouds[0])
 
 
 def put(tree, path, value):
@@ -276,12 +267,12 @@ def spoilt(arrays: dict, header: dict, rng: np.random.Generator) -> bytes:
 def test_spoilt_files_are_refused_or_answer(learnt, clouds, kind):
     """Forty of each kind: an InputError that names the file, or shares that are numbers; nothing else."""
     rng = np.random.default_rng(7)
-    arrays, header = taken_apart(file_bytes(learnt[kind]))
+    arrays, header = taken_apart(model_bytes(learnt[kind]))
     scene = scene_pairs(clouds[0])
     refused = 0
     for _ in range(40):
         try:
-            model = classifier_from(spoilt(arrays, header, rng), "spoilt.npz")
+            model = model_from_bytes(spoilt(arrays, header, rng), "spoilt.npz")
         except InputError as error:
             assert str(error).startswith("spoilt.npz ")  # noqa: PT017
             refused += 1
@@ -295,7 +286,7 @@ def test_spoilt_files_are_refused_or_answer(learnt, clouds, kind):
 @pytest.mark.parametrize("method", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
 def test_damaged_archives_of_every_kind_are_one_line(learnt, method):
     """Bytes changed all over: also such as announce more than there is, or another way of packing."""
-    arrays, header = taken_apart(file_bytes(learnt["displacement"]))
+    arrays, header = taken_apart(model_bytes(learnt["displacement"]))
     stream, rng = io.BytesIO(), np.random.default_rng(0)
     with (
         zipfile.ZipFile(io.BytesIO(packed_again(arrays, header))) as plain,
@@ -304,19 +295,19 @@ def test_damaged_archives_of_every_kind_are_one_line(learnt, method):
         for entry in plain.namelist():
             new.writestr(entry, plain.read(entry))
     content = stream.getvalue()
-    assert classifier_from(content).names_
+    assert model_from_bytes(content).names_
     for _ in range(40):
         hurt = bytearray(content)
         for at in rng.integers(0, len(hurt), 4):
             hurt[at] = rng.integers(256)
         try:
-            classifier_from(bytes(hurt), "spoilt.npz")
+            model_from_bytes(bytes(hurt), "spoilt.npz")
         except InputError as error:
             assert str(error).startswith("spoilt.npz ")  # noqa: PT017
 
 
 def test_an_array_that_announces_more_than_memory_is_refused(learnt):
-    arrays, header = taken_apart(file_bytes(learnt["displacement"]))
+    arrays, header = taken_apart(model_bytes(learnt["displacement"]))
     content = packed_again(arrays, header)
     stream = io.BytesIO()
     huge = b"\x93NUMPY\x01\x00" + (118).to_bytes(2, "little")
@@ -325,4 +316,4 @@ def test_an_array_that_announces_more_than_memory_is_refused(learnt):
         for entry in plain.namelist():
             new.writestr(entry, huge if entry == "0.displacements.npy" else plain.read(entry))
     with pytest.raises(InputError, match="no relation model that can be read"):
-        classifier_from(stream.getvalue())
+        model_from_bytes(stream.getvalue())

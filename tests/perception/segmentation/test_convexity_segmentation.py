@@ -10,7 +10,7 @@ from lifelore.core.labelled_cloud import TABLE
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.segmentation.convexity_segmentation import convex_objects
-from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, segmented
+from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, cut_cloud
 from lifelore.perception.segmentation.surface_voxels import surface_voxels
 from lifelore.perception.segmentation.table_frame import to_scene
 from reproduction.chapter2.scoring.segmentation_scoring import FOUND, overlaps
@@ -149,7 +149,7 @@ def test_a_large_box_alone_is_surer_than_a_small_box_on_another():
 
 def test_an_empty_table_has_no_objects():
     table = face((-0.4, -0.4, 0), (0.8, 0, 0), (0, 0.8, 0)).reshape(-1, 3)
-    labels = segmented(table, None, SegmentationSettings(), CAMERA)
+    labels = cut_cloud(table, None, SegmentationSettings(), CAMERA).labels
     assert set(labels) == {TABLE}
 
 
@@ -160,7 +160,7 @@ def test_a_thin_sheet_over_a_far_table_is_its_noise(height, objects):
     points = np.concatenate([table, sheet])
     far = 1.3 * CAMERA / np.linalg.norm(CAMERA)
     for camera, found in ((far, objects), (0.7 * far, 1), (None, 1)):
-        labels = segmented(points, None, SegmentationSettings(), camera)
+        labels = cut_cloud(points, None, SegmentationSettings(), camera).labels
         assert set(labels) - {0, TABLE} == set(range(2, 2 + found))
 
 

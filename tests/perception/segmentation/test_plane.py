@@ -20,25 +20,16 @@ def test_a_table_among_clutter(normal):
     rng = np.random.default_rng(4)
     table, normal = slab(rng, normal, 0.6, 3000, 0.002)
     clutter = rng.uniform(-0.5, 0.5, (2000, 3)) - 0.6 * normal
-    plane, share = dominant_plane(np.concatenate([table, clutter]), np.random.default_rng(0))
+    plane = dominant_plane(np.concatenate([table, clutter]), np.random.default_rng(0))
     # 3000 points of 2 mm noise fix the height to 2 mm / √3000 and the tilt to that over 0.29 m: 0.04 mm, 0.007°.
     # The clutter inside the band is even about the plane and widens that a little; ten times both is allowed.
     assert abs(plane.normal @ normal) > np.cos(np.radians(0.07))
     assert abs(plane.offset) == pytest.approx(0.6, abs=0.0004)
-    assert 0.6 < share < 0.65
-
-
-def test_only_planes_that_face_up_count():
-    rng = np.random.default_rng(5)
-    wall, _ = slab(rng, (1, 0, 0), 0.4, 3000, 0.001)
-    floor, _ = slab(rng, (0, 0, 1), 0.7, 500, 0.001)
-    plane, _ = dominant_plane(np.concatenate([wall, floor]), rng, up=np.array([0.0, 0, 1]))
-    assert abs(plane.normal[2]) > 0.9999
 
 
 def test_the_same_stream_finds_the_same_plane():
     points = np.random.default_rng(6).normal(size=(9000, 3)) * [1, 1, 0.01]
-    first, second = (dominant_plane(points, np.random.default_rng(1))[0] for _ in range(2))
+    first, second = (dominant_plane(points, np.random.default_rng(1)) for _ in range(2))
     assert first.normal.tolist() == second.normal.tolist()
     assert first.offset == second.offset
 

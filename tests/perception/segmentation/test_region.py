@@ -50,7 +50,6 @@ def test_an_empty_region_says_where_the_cloud_is():
         {"roi": (0, 1, 0, np.nan, 0, 1)},
         {"max_range": 0.0},
         {"max_range": np.nan},
-        {"max_objects": 0},
     ],
 )
 def test_a_region_that_cannot_be_is_refused(bad):
@@ -58,7 +57,7 @@ def test_a_region_that_cannot_be_is_refused(bad):
         Region(**bad)
 
 
-def test_too_many_objects_stop_with_one_line():
+def test_too_many_objects_stop_with_one_line(monkeypatch):
     rng = np.random.default_rng(1)
     table = rng.uniform([0, 0, 0], [1, 1, 0], (20_000, 3))
     block = rng.uniform([0, 0, 0], [0.04, 0.04, 0.06], (500, 3))
@@ -66,8 +65,9 @@ def test_too_many_objects_stop_with_one_line():
     cloud = PointCloud(np.concatenate([table, *blocks]))
     clusters = SegmentationSettings(method="clusters")
     assert len(segmented_scene(cloud, "z", clusters).cloud.objects) == 12
+    monkeypatch.setattr("lifelore.perception.segmentation.table_frame.MAX_OBJECTS", 11)
     with pytest.raises(InputError, match=r"cut into 12 objects, but at most 11 .*--roi, --max-range"):
-        segmented_scene(cloud, "z", clusters, Region(max_objects=11))
+        segmented_scene(cloud, "z", clusters)
 
 
 CAMERA = np.array([0.5, -0.8, 0.9])

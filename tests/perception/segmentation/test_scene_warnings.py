@@ -151,7 +151,6 @@ def test_an_object_of_few_points_is_named():
 def test_points_above_the_table_that_became_no_object():
     scene = segmented_scene(seen(WHOLE))
     is_second = scene.cloud.labels == 3
-    # The second box stands on the right of the table's middle as the camera sees it.
     labels = np.where(is_second, 0, scene.cloud.labels)
     left = replace(scene, cloud=replace(scene.cloud, labels=labels))
     (warning,) = [one for one in scene_warnings(left) if one.code == "points_dropped"]
@@ -160,7 +159,8 @@ def test_points_above_the_table_that_became_no_object():
     assert warning.message.startswith(
         f"{n:,} of {n_above:,} points above the table's plane ({100 * n / n_above:.0f} %)"
     )
-    assert " on the right of the table, x " in warning.message
+    low, high = np.percentile(scene.cloud.points[is_second & above], (5, 95), axis=0)
+    assert f"belong to no object: x {low[0]:.2f} to {high[0]:.2f}, y" in warning.message
 
 
 def test_a_table_that_faces_the_camera_may_be_a_wall():

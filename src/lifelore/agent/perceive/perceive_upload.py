@@ -7,9 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 from lifelore.agent.perceive.perceive import PerceiveSettings, scene_and_document
 from lifelore.agent.perceive.scene_bytes import scene_bytes
-from lifelore.agent.perceive.scene_files import SceneFiles, domain_path, write_scene_files
 from lifelore.agent.perceive.source_files import SourceFiles
 from lifelore.core.errors import NotFoundError
+from lifelore.perception.reasoning.planning_domain import planning_domain
+from lifelore.perception.reasoning.planning_problem import scene_problem
+from lifelore.perception.reasoning.planning_state import PLAN_CONFIDENCE
+from lifelore.perception.scene_graph import to_dot
 
 if TYPE_CHECKING:
     from lifelore.perception.scene import Scene
@@ -77,12 +80,8 @@ def _perceived(
         settings = PerceiveSettings(beside=beside, **options)
         source = paths["cloud" if kind != "depth" else "depth"]
         _, scene, document = scene_and_document(source, settings=settings)
-        files = SceneFiles(pddl=f"{folder}/problem.pddl", dot=f"{folder}/graph.dot")
-        write_scene_files(files, scene, document, settings.min_confidence, settings.statements)
-        document["pddl"] = {"domain": _text(domain_path(f"{files.pddl}")), "problem": _text(f"{files.pddl}")}
-        document["dot"] = _text(f"{files.dot}")
+    least = PLAN_CONFIDENCE if settings.min_confidence is None else settings.min_confidence
+    problem = scene_problem(scene, least, settings.statements)
+    document["pddl"] = {"domain": planning_domain(scene.words), "problem": problem}
+    document["dot"] = to_dot(scene, settings.min_confidence or 0.0)
     return scene, document
-
-
-def _text(path: str) -> str:
-    return Path(path).read_text(encoding="utf-8")

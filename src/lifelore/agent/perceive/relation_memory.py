@@ -62,7 +62,7 @@ def store_model(
 
     Scenes that memory has with the same labels are not stored again.
     """
-    words = as_words(model_bytes(model.to_model(), about))
+    words = as_words(model_bytes(model, about))
     key = model_key(name)
     records = [Record(KIND, key, VERSION, "newest", np.arange(len(words)), words, {**about, "name": name})]
     for record in {record.key: record for record in (scene_record(name, scene) for scene in scenes)}.values():
@@ -91,8 +91,7 @@ def recall_model(memory: Memory, name: str = DEFAULT_NAME) -> RelationClassifier
         known = sorted(str(about.get("name")) for _, _, about in memory.keys(KIND))
         hint = f"it has {', '.join(known)}" if known else "it has none; `lifelore learn-relations` trains one"
         raise NotFoundError(f"memory has no relation model '{name}': {hint}")
-    stored = model_from_bytes(as_bytes(record.values), f"the relation model '{name}' in memory")
-    return RelationClassifier.from_model(stored)
+    return model_from_bytes(as_bytes(record.values), f"the relation model '{name}' in memory")
 
 
 def recall_scenes(memory: Memory, name: str) -> list[LabelledScene]:

@@ -76,18 +76,12 @@ def _matrices(path: Path) -> NDArray[np.float64]:
 
 
 def _from_quaternion(row: NDArray[np.float64]) -> NDArray[np.float64]:
-    x, y, z, w = row[4:]
-    length = float(np.sqrt(x * x + y * y + z * z + w * w))
-    if not abs(length - 1) <= 0.01:
+    from scipy.spatial.transform import Rotation
+
+    if not abs(np.linalg.norm(row[4:]) - 1) <= 0.01:
         raise InputError(f"a quaternion qx qy qz qw must have length 1, got {row[4:].tolist()}")
-    x, y, z, w = x / length, y / length, z / length, w / length
     pose = np.eye(4)
-    pose[:3, 3] = row[1:4]
-    pose[:3, :3] = [
-        [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-        [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-        [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-    ]
+    pose[:3, 3], pose[:3, :3] = row[1:4], Rotation.from_quat(row[4:]).as_matrix()
     return pose
 
 

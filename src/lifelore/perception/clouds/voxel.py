@@ -17,7 +17,6 @@ VOXEL = 0.003
 """Metres; about the spacing of a depth camera at one to two metres."""
 _KEY_LIMIT = 2**61
 _LOW = 2**31 - 1
-_CHUNK = 1_000_000
 MAX_SCENE_POINTS = 2_000_000
 """Largest number of points of a scene; larger clouds are thinned first. More cost time and memory."""
 
@@ -76,74 +75,27 @@ def voxelised(cloud: LabelledCloud, size: float = VOXEL) -> VoxelCloud:
 
 
 def thinned(cloud: PointCloud, size: float = VOXEL, at_most: int = MAX_SCENE_POINTS) -> PointCloud:
-    """The cloud itself while it has at most `at_most` measured points; else its voxels, in bounded memory.
+    """The cloud itself while it has at most `at_most` measured points; else its voxels.
 
-    Voxels are means of points, so that they have no pixels (`grid` is None) and no rows in the source. The
-    cloud is voxelised by chunks of 10⁶ points. Where the voxels are more than `at_most`, their size doubles
-    until they are not.
+    Voxels are means of points, so that they have no pixels (`grid` is None) and no rows in the source. Where the
+    voxels are more than `at_most`, their size doubles until they are not.
     """
     measured = cloud.measured
     if np.count_nonzero(measured) <= at_most:
         return cloud
-    lowest = np.min(cloud.points, axis=0, where=measured[:, None], initial=np.inf).astype(np.float64)
-    origin = np.floor(lowest / size) * size
-    voxels = _Voxels.of(cloud, np.empty(0, np.int64))
-    for start in range(0, len(measured), _CHUNK):
-        places = start + np.flatnonzero(measured[start : start + _CHUNK])
-        voxels = voxels.joined(_Voxels.of(cloud, places).merged(origin, size)).merged(origin, size)
-        while len(voxels.points) > at_most:
-            size *= 2
-            voxels = voxels.merged(origin, size)
-    points = voxels.points.astype(cloud.points.dtype)
-    unknown = np.full(len(points), -1)
-    return replace(
-        cloud, points=points, labels=voxels.labels, colours=voxels.colours, grid=None, source_rows=unknown
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class _Voxels:
-    """Voxels found so far: mean points, weights (points behind each), labels and colours."""
-
-    points: NDArray[np.float64]
-    weights: NDArray[np.float64]
-    labels: NDArray[np.int64] | None
-    colours: NDArray[np.uint8] | None
-
-    @classmethod
-    def of(cls, cloud: PointCloud, places: NDArray[np.int64]) -> "_Voxels":
-        return cls(
-            cloud.points[places].astype(np.float64),
-            np.ones(len(places)),
-            None if cloud.labels is None else cloud.labels[places],
-            None if cloud.colours is None else cloud.colours[places],
-        )
-
-    def joined(self, other: "_Voxels") -> "_Voxels":
-        def both(a: NDArray | None, b: NDArray | None) -> NDArray | None:
-            return None if a is None or b is None else np.concatenate([a, b])
-
-        points, weights = (
-            np.concatenate([self.points, other.points]),
-            np.concatenate([self.weights, other.weights]),
-        )
-        return _Voxels(points, weights, both(self.labels, other.labels), both(self.colours, other.colours))
-
-    def merged(self, origin: NDArray[np.float64], size: float) -> "_Voxels":
-        labels = np.zeros(len(self.points), np.int64) if self.labels is None else self.labels
-        inverse, first, _, _ = _voxels(self.points, labels, size, origin)
-        weights = np.bincount(inverse, self.weights).astype(np.float64)
-        means = np.stack([np.bincount(inverse, self.weights * axis) for axis in self.points.T], axis=1)
-        return _Voxels(
-            means / weights[:, None],
-            weights,
-            None if self.labels is None else self.labels[first],
-            None if self.colours is None else self.colours[first],
-        )
+    cloud = cloud.only(measured)
+    every = cloud.points.astype(np.float64)
+    labels = np.zeros(len(every), np.int64) if cloud.labels is None else cloud.labels
+    _, first, _, means = _voxels(every, labels, size)
+    while len(means) > at_most:
+        size *= 2
+        _, first, _, means = _voxels(every, labels, size)
+    points = means.astype(cloud.points.dtype)
+    return replace(cloud.only(first), points=points, grid=None, source_rows=np.full(len(points), -1))
 
 
 def _voxels(
-    points: NDArray[np.float64], labels: NDArray[np.int64], size: float, origin: NDArray[np.float64] | None = None
+    points: NDArray[np.float64], labels: NDArray[np.int64], size: float
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
     """Voxel of each point, first point, count and mean of each voxel."""
     if not (np.isfinite(size) and size > 0):
@@ -155,7 +107,7 @@ def _voxels(
     lowest, highest = points[0].astype(np.float64), points[0].astype(np.float64)
     top_label = _widen(points, labels, lowest, highest)
     # Multiples of the size in the frame, so that the cube of a point does not depend on the other points.
-    low = np.floor(lowest / size) * size if origin is None else origin
+    low = np.floor(lowest / size) * size
     sides = np.floor((highest - low) / size) + 1.0
     if np.prod(sides) * (top_label + 1) > _KEY_LIMIT:
         labels = np.unique(labels, return_inverse=True)[1].reshape(-1)

@@ -8,16 +8,11 @@ The edges are those of the minimum weighted spanning tree over the contact point
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
 from lifelore.perception.contacts.contact_points import ContactPoint
-
-if TYPE_CHECKING:
-    import networkx as nx
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,36 +46,10 @@ class ContactPointNetwork:
         nodes = tuple(contacts)
         return cls(object_id, nodes, spanning_edges(np.array([n.position for n in nodes]).reshape(-1, 3)))
 
-    def merged(self, *others: "ContactPointNetwork") -> "ContactPointNetwork":
-        """This network and `others` of the same object as one (thesis §2.3.6).
-
-        Raises
-        ------
-        InputError
-            A network of another object is among them.
-        """
-        if any(other.object_id != self.object_id for other in others):
-            raise InputError(
-                f"networks to merge must belong to object {self.object_id}, got {[n.object_id for n in others]}"
-            )
-        return self.from_contacts(self.object_id, [n for net in (self, *others) for n in net.nodes])
-
     @property
     def positions(self) -> NDArray[np.float64]:
         """Positions of the nodes, shape ``(k, 3)``, metres."""
         return np.array([node.position for node in self.nodes]).reshape(-1, 3)
-
-    def to_networkx(self) -> "nx.Graph":
-        """A graph with nodes 0 … k-1, each with the fields of its `ContactPoint`, and edges with ``length``."""
-        import networkx as nx
-
-        graph = nx.Graph(object_id=self.object_id)
-        for number, node in enumerate(self.nodes):
-            graph.add_node(number, **vars(node))
-        at = self.positions
-        for i, j in self.edges.tolist():
-            graph.add_edge(i, j, length=float(np.linalg.norm(at[i] - at[j])))
-        return graph
 
 
 def spanning_edges(positions: NDArray[np.float64]) -> NDArray[np.int64]:

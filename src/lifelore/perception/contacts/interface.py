@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.contacts.contact_points import (
@@ -100,33 +99,11 @@ def interfaces(
     Deterministic: the same points give the same bits. The separators of a scene together may cost as much work as
     `separator.MOST_WORK`, divided by their numbers of points, with at least `LEAST_SHARE` per point.
     """
-    return interfaces_by_settings(cloud, [settings])[0]
-
-
-def interfaces_by_settings(
-    cloud: LabelledCloud, several: Sequence[ContactSettings]
-) -> list[tuple[Interface, ...]]:
-    """`interfaces` under several settings, the same bits; a separator that several settings need is computed once.
-
-    Raises `InputError` where they differ in ``voxel``, ``near`` or ``table_margin``: pairs would differ.
-    """
-    of_pairs = {(settings.voxel, settings.near, settings.table_margin) for settings in several}
-    if len(of_pairs) != 1:
-        raise InputError(
-            f"several must agree in voxel, near and table_margin, got {len(of_pairs)} different; "
-            "call interfaces for each"
-        )
-    ((voxel, near, table_margin),) = of_pairs
-    if voxel and len(cloud.points):
-        cloud = voxelised(cloud, voxel).cloud
-    pairs = near_pairs(split_objects(cloud), near, table_margin)
-    found: list[list[Interface]] = [[] for _ in several]
-    shares = [_share(pairs, settings) for settings in several]
-    for pair in pairs:
-        known: dict[tuple[float, float, float], Separator] = {}
-        for own, settings, share in zip(found, several, shares, strict=True):
-            own.append(interface(pair, settings, share, known))
-    return [tuple(own) for own in found]
+    if settings.voxel and len(cloud.points):
+        cloud = voxelised(cloud, settings.voxel).cloud
+    pairs = near_pairs(split_objects(cloud), settings.near, settings.table_margin)
+    share = _share(pairs, settings)
+    return tuple(interface(pair, settings, share) for pair in pairs)
 
 
 def _share(pairs: Sequence[NearPair], settings: ContactSettings) -> float:
@@ -136,10 +113,7 @@ def _share(pairs: Sequence[NearPair], settings: ContactSettings) -> float:
 
 
 def interface(
-    pair: NearPair,
-    settings: ContactSettings = DEFAULT_CONTACT_SETTINGS,
-    share: float = np.inf,
-    known: dict[tuple[float, float, float], Separator] | None = None,
+    pair: NearPair, settings: ContactSettings = DEFAULT_CONTACT_SETTINGS, share: float = np.inf
 ) -> Interface:
     """One near pair's contacts and dipoles.
 
@@ -149,16 +123,13 @@ def interface(
     settings : ContactSettings
     share : float
         Kernel evaluations per point of a separator, > 0, at most `separator.MOST_WORK` in all.
-    known : dict, optional
-        The pair's separators so far by (length, cost, largest work); those missing are added.
     """
     scales = _scales(pair, settings)
     max_work = min(share * _n_points(pair), MOST_WORK)
-    known = {} if known is None else known
-    for length, cost in scales:
-        if (length, cost, max_work) not in known:
-            known[length, cost, max_work] = _separator(pair, length, cost, max_work)
-    found = [known[length, cost, max_work] for length, cost in scales]
+    found = [
+        separate(pair.first.points, pair.second.points, length=length, cost=cost, max_work=max_work)
+        for length, cost in scales
+    ]
     sides = list(_contacts(pair, found[0], settings))
     points_a, points_b = ([cluster for cluster, _ in side] for side in sides)
     return Interface(
@@ -184,10 +155,6 @@ def _scales(pair: NearPair, settings: ContactSettings) -> list[tuple[float, floa
 
 def _n_points(pair: NearPair) -> int:
     return len(pair.first.points) + len(pair.second.points)
-
-
-def _separator(pair: NearPair, length: float, cost: float, max_work: float) -> Separator:
-    return separate(pair.first.points, pair.second.points, length=length, cost=cost, max_work=max_work)
 
 
 def _contacts(pair: NearPair, found: Separator, settings: ContactSettings):

@@ -61,7 +61,8 @@ class ObjectShape:
 def shape_of(points: NDArray[np.float64]) -> ObjectShape:
     """The shape of ``(n, 3)`` points, n ≥ 1."""
     sample = points[:: -(-len(points) // SAMPLE)]
-    low, high = _quantiles(points, STRAY), _quantiles(points, 1 - STRAY)
+    rows = [round(share * (len(points) - 1)) for share in (STRAY, 1 - STRAY)]
+    low, high = np.partition(points, rows, axis=0)[rows]
     reach = np.sort(points[:: -(-len(points) // (4 * SAMPLE)), :2] @ DIRECTIONS, axis=0)
     outline = reach[-1 - int(STRAY * len(reach))]
     half = N_DIRECTIONS // 2
@@ -73,8 +74,3 @@ def shape_of(points: NDArray[np.float64]) -> ObjectShape:
         outline=outline,
         sample=sample,
     )
-
-
-def _quantiles(points: NDArray[np.float64], share: float) -> NDArray[np.float64]:
-    row = round(share * (len(points) - 1))
-    return np.partition(points, row, axis=0)[row]

@@ -8,7 +8,7 @@ vertical.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,16 +33,6 @@ GEOMETRY_COLUMNS = (
     "points_above_b", "points_above_a", "points_below_b",
 )  # fmt: skip
 VIEW_COLUMNS = ("behind", "right", "contact_behind", "contact_right")
-
-
-class HasInterfaces(Protocol):
-    """A scene: a cloud and its interfaces."""
-
-    @property
-    def cloud(self) -> LabelledCloud: ...
-
-    @property
-    def interfaces(self) -> Sequence[Interface]: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,18 +70,16 @@ class PairFeatures:
         return self.matrix[:, [self.names.index(name) for name in names]]
 
 
-def pair_features(scene: LabelledCloud | HasInterfaces, found: Sequence[Interface] | None = None) -> PairFeatures:
+def pair_features(cloud: LabelledCloud, found: Sequence[Interface] | None = None) -> PairFeatures:
     """Features of all near pairs of a scene.
 
     Parameters
     ----------
-    scene : LabelledCloud or Scene
+    cloud : LabelledCloud
     found : sequence of Interface, optional
         The scene's interfaces, if already computed.
     """
-    cloud = scene if isinstance(scene, LabelledCloud) else scene.cloud
-    if found is None:
-        found = interfaces(scene) if isinstance(scene, LabelledCloud) else scene.interfaces
+    found = interfaces(cloud) if found is None else found
     names = COLUMNS
     pairs = np.array([[one.a, one.b, one.b, one.a] for one in found], np.int64).reshape(-1, 2)
     gaps = np.repeat([one.gap for one in found], 2).astype(float)
@@ -131,19 +119,20 @@ def _both_ways(
     middles = np.array([(dipole.first + dipole.second) / 2 for dipole in dipoles])
     displacements = np.array([dipole.first - dipole.second for dipole in dipoles])
     normals = np.array([dipole.normal for dipole in dipoles])
+    way, gap_first, gap_second = objects_between.between(one.a, one.b, middles[0])
     return np.array(
         [
             np.concatenate(
                 [
                     _scale_columns(sign * displacements, sign * normals, middles, a, b).ravel(),
                     _geometry_columns(a, b, one.gap, middles[0, 2]),
-                    objects_between.between(label_a, label_b, middles[0]),
+                    between,
                     _view_columns(a, b, sign * displacements[0], middles[0], camera),
                 ]
             )
-            for sign, a, b, label_a, label_b in (
-                (1.0, first, second, one.a, one.b),
-                (-1.0, second, first, one.b, one.a),
+            for sign, a, b, between in (
+                (1.0, first, second, (way, gap_first, gap_second)),
+                (-1.0, second, first, (way, gap_second, gap_first)),
             )
         ]
     )

@@ -1,16 +1,16 @@
 """Why no plan can reach a goal: objects that it moves or covers, and that cannot become clear."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, ON
 from lifelore.perception.reasoning.fact import Fact
-from lifelore.perception.reasoning.planning_goal import TABLE_WORD, Statement
+from lifelore.perception.reasoning.planning_goal import TABLE_WORD, Statement, names_of, pddl_name
 from lifelore.perception.reasoning.planning_state import CLEAR, HIDDEN, PlanningState
 from lifelore.perception.reasoning.scene_logic import reached_from
 
 
-def goal_obstacles(state: PlanningState, goal: Iterable[Statement], called: Mapping[int, str]) -> tuple[str, ...]:
+def goal_obstacles(state: PlanningState, goal: Iterable[Statement]) -> tuple[str, ...]:
     """One reason for each pair of objects in the way; empty where the state alone does not forbid a plan.
 
     An object must become clear to be taken, or to carry another one. So all that rests on it or may cover it goes
@@ -22,10 +22,8 @@ def goal_obstacles(state: PlanningState, goal: Iterable[Statement], called: Mapp
     state : PlanningState
     goal : iterable of Statement
         Over objects of the state.
-    called : mapping of int to str
-        What each object is called in the goal and in the reasons.
     """
-    numbers = {TABLE_WORD: TABLE} | {name: n for n, text in called.items() for name in (text, str(n))}
+    numbers = names_of(state.objects) | {TABLE_WORD: TABLE}
     first = _to_take_first(state)
     circles = [(a, b) for a, b in state.may_cover if b in reached_from(a, first)]
     found: dict[tuple[int, int], str] = {}
@@ -37,7 +35,7 @@ def goal_obstacles(state: PlanningState, goal: Iterable[Statement], called: Mapp
             needed = ends.union(*(reached_from(end, first) for end in ends))
             ways.append([pair for pair in circles if pair[1] in needed])
         if ways and all(ways):
-            found |= {(a, b): _reason(a, b, state, called) for way in ways for a, b in way}
+            found |= {(a, b): _reason(a, b, state) for way in ways for a, b in way}
     return tuple(found[pair] for pair in sorted(found))
 
 
@@ -65,8 +63,8 @@ def _to_take_first(state: PlanningState) -> dict[int, set[int]]:
     return first
 
 
-def _reason(a: int, b: int, state: PlanningState, called: Mapping[int, str]) -> str:
-    upper, lower = called[a], called[b]
+def _reason(a: int, b: int, state: PlanningState) -> str:
+    upper, lower = pddl_name(a), pddl_name(b)
     doubt = f"{upper} may rest on {lower}"
     if state.may_cover[a, b] == HIDDEN:
         doubt = f"{upper} hides a part of the top of {lower}, so something may rest on it unseen"

@@ -12,12 +12,9 @@ Thesis: §2.2 and §2.5: the relations are the language of planning problems.
 """
 
 import re
-from collections.abc import Iterable, Mapping
-from typing import TypeVar
 
 from lifelore.perception.relations.words import NO_WORDS, Words
 
-Key = TypeVar("Key", int, str)
 DOMAIN_NAME = "tabletop"
 
 DOMAIN = """(define (domain tabletop)
@@ -92,8 +89,18 @@ def planning_domain(words: Words = NO_WORDS) -> str:
 
 
 def predicate_names(words: Words) -> dict[str, str]:
-    """A valid PDDL name for each word, by word, no two alike and none of `RESERVED`."""
-    return unique_names({word: (word, str(number)) for number, word in enumerate(words.names)}, RESERVED, "w")
+    """A valid PDDL name for each word, by word, no two alike, none of `RESERVED` and none of an object (``o2``).
+
+    Letters, digits, ``-`` and ``_`` stay, others become ``_``; a name must begin with a letter.
+    """
+    found: dict[str, str] = {}
+    for number, word in enumerate(words.names):
+        name = re.sub(r"[^a-z0-9_-]", "_", word.lower())
+        name = name if name[:1].isalpha() and not re.fullmatch(r"o\d+", name) else f"w{name}"
+        while name in RESERVED or name in found.values():
+            name = f"{name}_{number}"
+        found[word] = name
+    return found
 
 
 def predicates(words: Words = NO_WORDS) -> dict[str, int]:
@@ -101,23 +108,3 @@ def predicates(words: Words = NO_WORDS) -> dict[str, int]:
     own = predicate_names(words).values()
     core = {"on": 2, "adjacent": 2, "on-table": 1, "clear": 1, "holding": 1, "hand-empty": 0}
     return core | {key: n for name in own for key, n in ((name, 2), (f"{name}-table", 1), (f"table-{name}", 1))}
-
-
-def unique_names(
-    wanted: Mapping[Key, tuple[str, str]], reserved: Iterable[str], first_letter: str
-) -> dict[Key, str]:
-    """A valid PDDL name for each key, no two alike whatever the case and none of `reserved`.
-
-    Letters, digits, ``-`` and ``_`` stay, others become ``_``. A name must begin with a letter, so `first_letter`
-    is put before any other character. `wanted` maps a key to its name and to the ending that makes it unique.
-    """
-    taken = set(reserved)
-    found = {}
-    for key, (text, ending) in wanted.items():
-        name = re.sub(r"[^a-z0-9_-]", "_", text.lower())
-        name = name if name[:1].isalpha() else f"{first_letter}{name}"
-        while name in taken:
-            name = f"{name}_{ending}"
-        taken.add(name)
-        found[key] = name
-    return found

@@ -4,7 +4,7 @@ A goal is one statement or several joined by ``and``; ``not`` before a statement
 """
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 
 from lifelore.core.errors import InputError
@@ -53,14 +53,24 @@ def read_goal(text: str) -> tuple[Statement, ...]:
         at += joint.end()
 
 
-def pddl_goal(statements: Collection[Statement], names: Mapping[int, str], predicates: Mapping[str, int]) -> str:
+def pddl_name(thing: int) -> str:
+    """What an object is called in goals and in PDDL: ``o2``."""
+    return f"o{thing}"
+
+
+def names_of(things: Iterable[int]) -> dict[str, int]:
+    """The object of each name in a goal: ``o2`` or ``2``."""
+    return {name: thing for thing in things for name in (pddl_name(thing), str(thing))}
+
+
+def pddl_goal(statements: Collection[Statement], things: Iterable[int], predicates: Mapping[str, int]) -> str:
     """The goal in PDDL.
 
     Parameters
     ----------
     statements : collection of Statement
-    names : mapping from int to str
-        What each object is called; its number stands for it too.
+    things : iterable of int
+        The objects of the scene.
     predicates : mapping from str to int
         How many objects each predicate takes.
 
@@ -69,7 +79,7 @@ def pddl_goal(statements: Collection[Statement], names: Mapping[int, str], predi
     InputError
         A predicate or an object is unknown, or a predicate has the wrong number of objects.
     """
-    known = {**{str(number): name for number, name in names.items()}, **{name: name for name in names.values()}}
+    known = {name: pddl_name(thing) for name, thing in names_of(things).items()}
     atoms = [_atom(statement, known, predicates) for statement in statements]
     return atoms[0] if len(atoms) == 1 else f"(and {' '.join(atoms)})"
 

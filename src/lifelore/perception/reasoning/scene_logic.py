@@ -26,7 +26,6 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import CORE_RELATIONS, ON
 from lifelore.perception.reasoning.label_distribution import (
-    Label,
     LabelDistribution,
     carries,
     label_distributions,
@@ -63,20 +62,11 @@ class ConsistentScene:
     ----------
     relations : tuple of Relation
         One a pair, pairs ascending, then those with the table; confidence is the label's probability.
-    overruled : tuple of Relation
-        What perception held likeliest where another label replaced it.
-    contradictions : tuple of str
-        What was wrong with perception's likeliest labels, in words; empty when they were consistent.
-    loss : float
-        Nats of log-likelihood given up for consistency and second supports, ≥ 0.
     optimal : bool
         Whether it is proven that no consistent scene is likelier; False when the solver's bound ran out.
     """
 
     relations: tuple[Relation, ...]
-    overruled: tuple[Relation, ...]
-    contradictions: tuple[str, ...]
-    loss: float
     optimal: bool
 
 
@@ -122,18 +112,12 @@ def most_likely_scene(
     best = [belief.likeliest for belief in beliefs]
     judged = _judged(beliefs)
     labels = [b.labels[k] for b, k in zip(beliefs, best, strict=True)]
-    wrong, rests = _contradictions(labels, judged), supports(labels)
+    rests = supports(labels)
     lone = any(leans(label, beside, judged) and is_lone(label, rests) for label in labels)
-    picked, optimal = _solve(beliefs, beside, most_conflicts) if wrong or lone else (best, True)
-    changed = [(b, was, now) for b, was, now in zip(beliefs, best, picked, strict=True) if was != now]
+    unsettled = lone or not _is_consistent(rests, judged)
+    picked, optimal = _solve(beliefs, beside, most_conflicts) if unsettled else (best, True)
     decided = [belief.relation(k) for belief, k in zip(beliefs, picked, strict=True)]
-    return ConsistentScene(
-        (*decided, *_on_the_table(decided, beliefs, things), *_others(candidates)),
-        tuple(belief.relation(was) for belief, was, _ in changed),
-        wrong,
-        sum(belief.cost(now) - belief.cost(was) for belief, was, now in changed),
-        optimal,
-    )
+    return ConsistentScene((*decided, *_on_the_table(decided, beliefs, things), *_others(candidates)), optimal)
 
 
 def alternatives(beliefs: Iterable[PairBelief]) -> tuple[Relation, ...]:
@@ -141,42 +125,10 @@ def alternatives(beliefs: Iterable[PairBelief]) -> tuple[Relation, ...]:
     return tuple(belief.relation(name) for belief in beliefs for name in belief.shares)
 
 
-def contradictions(relations: Iterable[Relation], objects: Iterable[int] = ()) -> tuple[str, ...]:
-    """What breaks the rules, in words; empty for a consistent scene.
-
-    Parameters
-    ----------
-    relations : iterable of Relation
-        Those outside the core vocabulary are passed over.
-    objects : iterable of int
-        Objects that must rest on something, beside those the relations name.
-    """
-    labels = [relation_label(r) for r in relations if r.relation in CORE_RELATIONS]
-    things = {*objects, *(end for label in labels for end in label[1:])} - {TABLE}
-    said: dict[frozenset[int], set[Label]] = {}
-    for label in labels:
-        said.setdefault(frozenset(label[1:]), set()).add(label)
-    twice = sorted(sorted(pair) for pair, stated in said.items() if len(stated) > 1)
-    return (*(f"{a} and {b} have more than one relation" for a, b in twice), *_contradictions(labels, things))
-
-
-def _contradictions(labels: Iterable[Label], must_rest: Iterable[int]) -> tuple[str, ...]:
-    rests = supports(list(labels))
-    hanging = sorted(thing for thing in must_rest if thing not in rests)
-    return (
-        *(["something carries the table"] if TABLE in rests else []),
-        *(f"{', '.join(map(str, circle))} rest on one another in a circle" for circle in _circles(rests)),
-        *(f"{thing} rests on nothing" for thing in hanging),
-    )
-
-
-def _circles(rests: Mapping[int, Iterable[int]]) -> list[tuple[int, ...]]:
-    """Largest sets of two or more objects that each rest on all others of the set, directly or not; sorted."""
-    below = {thing: reached_from(thing, rests) for thing in rests}
-    circles = {
-        tuple(sorted(y for y in under if x in below.get(y, ()))) for x, under in below.items() if x in under
-    }
-    return sorted(circle for circle in circles if len(circle) > 1)
+def _is_consistent(rests: Mapping[int, Iterable[int]], must_rest: Iterable[int]) -> bool:
+    """Whether all of `must_rest` rest on something, and nothing rests on itself, directly or through others."""
+    hanging = any(thing not in rests for thing in must_rest)
+    return not hanging and not any(thing in reached_from(thing, rests) for thing in rests)
 
 
 def reached_from(thing: int, links: Mapping[int, Iterable[int]]) -> set[int]:

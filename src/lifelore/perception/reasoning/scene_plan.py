@@ -11,8 +11,8 @@ from lifelore.core.relations import ON
 from lifelore.perception.reasoning.fact import Fact, objects_without_support
 from lifelore.perception.reasoning.goal_obstacles import goal_obstacles
 from lifelore.perception.reasoning.planning_domain import planning_domain, predicates
-from lifelore.perception.reasoning.planning_goal import Statement, pddl_goal
-from lifelore.perception.reasoning.planning_problem import pddl_names, state_problem
+from lifelore.perception.reasoning.planning_goal import Statement, names_of, pddl_goal
+from lifelore.perception.reasoning.planning_problem import state_problem
 from lifelore.perception.reasoning.planning_state import CLEAR, HIDDEN, PLAN_CONFIDENCE, PlanningState, scene_state
 from lifelore.perception.scene import Scene, object_name
 
@@ -116,7 +116,7 @@ def scene_plan(
         return ScenePlan(reason=str(error))  # out of time or memory
     if found is None:
         return ScenePlan(reason=_unreachable(state))
-    numbers = {name: number for number, name in pddl_names(scene.objects, words=scene.words).items()}
+    numbers = names_of(scene.objects)
     actions = [(step.action, tuple(numbers[name] for name in step.arguments)) for step in found]
     return _judged(actions, state, cut_confidence or {})
 
@@ -129,9 +129,8 @@ def no_plan_reason(scene: Scene, state: PlanningState, goal: Sequence[Statement]
     InputError
         The goal names a predicate or an object that does not exist.
     """
-    called = pddl_names(scene.objects, words=scene.words)
-    pddl_goal(goal, called, predicates(scene.words))
-    return "; ".join(goal_obstacles(state, goal, called)) or None
+    pddl_goal(goal, scene.objects, predicates(scene.words))
+    return "; ".join(goal_obstacles(state, goal)) or None
 
 
 def _unreachable(state: PlanningState) -> str:

@@ -7,7 +7,7 @@ scene.
 
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import asdict
+from copy import copy
 from functools import cache
 from pathlib import Path
 from typing import Any, Self
@@ -18,6 +18,7 @@ from lifelore.core.protocols import Progress
 from lifelore.core.relations import ADJACENT_GAP, NONE, SYMMETRIC, PairLabel
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, Interface
+from lifelore.perception.pairs import gap_rule
 from lifelore.perception.pairs.directed_label import LEAST_CONFIDENCE as LEAST_CONFIDENCE
 from lifelore.perception.pairs.directed_label import REVERSED, as_directed, pair_class
 from lifelore.perception.pairs.pair_features import TURNING_COLUMNS, VIEW_COLUMNS
@@ -26,20 +27,16 @@ from lifelore.perception.relations.displacement_relations import NeighbourSettin
 from lifelore.perception.relations.estimator import Estimator
 from lifelore.perception.relations.label_relations import fit_labels, label_shares, stated_names
 from lifelore.perception.relations.relation import PairBelief, Relation
-from lifelore.perception.relations.relation_model import (
-    OBJECTS,
-    WITH_TABLE,
-    RelationModel,
-    check_options,
-    learned_vocabulary,
-)
-from lifelore.perception.relations.relation_model_file import SHIPPED, read_model, write_model
 from lifelore.perception.relations.symmetric_names import check_directions, symmetric_names
 from lifelore.perception.relations.words import Words
 from lifelore.perception.trees.tree_relations import Vocabulary, tree_shares
 from lifelore.perception.trees.tree_training import TreeSettings, fit_trees
 
 DEFAULT_TREES = TreeSettings()
+METHODS = ("trees", "displacement")
+OBJECTS, WITH_TABLE = "objects", "table"
+"""Names of the two parts of a model with one class a pair: pairs of objects, and pairs with the table."""
+SHIPPED = Path(__file__).parent / "models" / "tabletop.npz"
 
 
 class RelationClassifier(Estimator):
@@ -123,7 +120,13 @@ class RelationClassifier(Estimator):
         self.learnt_from_: dict[str, int] = {}
 
     def _check_settings(self) -> None:
-        check_options(self.method, self.adjacent_gap, self.multi_label)
+        if self.method not in METHODS:
+            raise InputError(f"method must be one of {', '.join(METHODS)}, got {self.method!r}")
+        if self.multi_label and self.method != "trees":
+            raise InputError("multi_label needs method 'trees', got 'displacement'; drop one of the two")
+        gap = self.adjacent_gap
+        if gap is not None and not 0 < gap < 1:
+            raise InputError(f"adjacent_gap must be metres in (0, 1), got {gap!r}; 0.0225 is 22.5 mm")
         _ = self.neighbours
 
     @property
@@ -214,7 +217,9 @@ class RelationClassifier(Estimator):
     @property
     def vocabulary(self) -> Vocabulary:
         """The learned names, which are symmetric, and the limit of *adjacent* where it applies."""
-        return learned_vocabulary(self.method, self.adjacent_gap, self.multi_label, self.names_, self.symmetric_)
+        one_class = self.method == "trees" and not self.multi_label
+        applies = one_class and gap_rule.applies(self.names_, self.adjacent_gap)
+        return Vocabulary(self.names_, self.symmetric_, self.adjacent_gap if applies else None)
 
     @property
     def words(self) -> Words:
@@ -297,42 +302,6 @@ class RelationClassifier(Estimator):
             ]
         return tree_shares(self.models_.get(OBJECTS), self.models_.get(WITH_TABLE), scene, self.vocabulary)
 
-    def to_model(self) -> RelationModel:
-        """Everything learned, as plain data.
-
-        Raises
-        ------
-        InputError
-            The classifier is not fitted.
-        """
-        if not self.models_:
-            raise InputError("a classifier must be fitted before it is saved; call fit first")
-        return RelationModel(
-            self.method,
-            self.adjacent_gap,
-            self.multi_label,
-            self.settings,
-            self.neighbours,
-            self.names_,
-            self.symmetric_,
-            self.models_,
-        )
-
-    @classmethod
-    def from_model(cls, model: RelationModel) -> Self:
-        """The fitted classifier that `to_model` described; another `fit` uses the same options."""
-        classifier = cls(
-            model.method,
-            adjacent_gap=model.adjacent_gap,
-            multi_label=model.multi_label,
-            symmetric=model.symmetric,
-            settings=model.settings,
-            **asdict(model.neighbours),
-        )
-        classifier.names_, classifier.symmetric_ = model.names, model.symmetric
-        classifier.models_ = dict(model.models)
-        return classifier
-
     def save(self, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
         """Write the fitted classifier to an npz file; `about` holds notes for people, as JSON values.
 
@@ -343,10 +312,12 @@ class RelationClassifier(Estimator):
         StoreError
             The disk refuses.
         """
-        write_model(self.to_model(), path, about)
+        from lifelore.perception.relations.relation_model_file import write_model
+
+        write_model(self, path, about)
 
     @classmethod
-    def load(cls, path: str | Path) -> Self:
+    def load(cls, path: str | Path) -> "RelationClassifier":
         """Read the classifier that `save` wrote.
 
         Raises
@@ -354,14 +325,16 @@ class RelationClassifier(Estimator):
         InputError
             The file is missing, damaged, newer, or no relation model.
         """
-        return cls.from_model(read_model(path))
+        from lifelore.perception.relations.relation_model_file import read_model
+
+        return read_model(path)
 
 
 def shipped_model() -> RelationClassifier:
     """The classifier that comes with the package, trained on simulated tabletop scenes alone."""
-    return RelationClassifier.from_model(_shipped())
+    return copy(_shipped())
 
 
 @cache
-def _shipped() -> RelationModel:
-    return read_model(SHIPPED)
+def _shipped() -> RelationClassifier:
+    return RelationClassifier.load(SHIPPED)

@@ -16,7 +16,7 @@ from lifelore.perception.pairs import gap_rule
 from lifelore.perception.pairs.directed_label import REVERSED, mirrored
 from lifelore.perception.pairs.pair_features import COLUMNS
 from lifelore.perception.relations.label_relations import NO, ON_TABLE, YES
-from lifelore.perception.relations.relation_model import OBJECTS, WITH_TABLE
+from lifelore.perception.relations.relation_classifier import OBJECTS, WITH_TABLE
 from lifelore.perception.trees.tree_relations import CARRIED, Vocabulary, carried_columns, inner_symmetric
 
 LEAST_LENGTH, LARGEST_LENGTH, LARGEST_NUMBER = 1e-4, 100.0, 1e6

@@ -4,7 +4,7 @@ Equal models give equal bytes.
 """
 
 from collections.abc import Mapping
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.packed_arrays import PackedFormat
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.relations.displacement_relations import DisplacementRelations, NeighbourSettings
-from lifelore.perception.relations.relation_model import RelationModel
+from lifelore.perception.relations.relation_classifier import RelationClassifier
 from lifelore.perception.relations.relation_model_check import (
     check_classes,
     check_displacements,
@@ -30,10 +30,9 @@ FORMAT = PackedFormat(
 )
 SUFFIX = ".npz"
 """End of the name of every relation model file."""
-SHIPPED = Path(__file__).parent / "models" / "tabletop.npz"
 
 
-def write_model(model: RelationModel, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
+def write_model(model: RelationClassifier, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
     """Write a model; `about` holds notes for people, such as how it was trained, as JSON values.
 
     Raises
@@ -54,7 +53,7 @@ def check_model_path(path: str | Path) -> None:
         raise InputError(f"out must be a file to write the model to; {path} {reason}")
 
 
-def read_model(path: str | Path) -> RelationModel:
+def read_model(path: str | Path) -> RelationClassifier:
     """The model that `write_model` wrote.
 
     Raises
@@ -77,14 +76,22 @@ def _content(path: str | Path) -> bytes:
         raise InputError(f"the relation model {path} cannot be read: {error.strerror}") from None
 
 
-def model_bytes(model: RelationModel, about: Mapping[str, Any] | None = None) -> bytes:
-    """The model as the bytes of an npz file."""
+def model_bytes(model: RelationClassifier, about: Mapping[str, Any] | None = None) -> bytes:
+    """The model as the bytes of an npz file.
+
+    Raises
+    ------
+    InputError
+        The classifier is not fitted, or a value of it cannot be read back.
+    """
+    if not model.models_:
+        raise InputError("a classifier must be fitted before it is saved; call fit first")
     header: dict[str, Any] = {
         "method": model.method,
         "adjacent_gap": model.adjacent_gap,
         "multi_label": model.multi_label,
-        "names": list(model.names),
-        "symmetric": sorted(model.symmetric),
+        "names": list(model.names_),
+        "symmetric": sorted(model.symmetric_),
         "settings": asdict(model.settings),
         "about": dict(about or {}),
         "models": {},
@@ -96,9 +103,9 @@ def model_bytes(model: RelationModel, about: Mapping[str, Any] | None = None) ->
             "omega": None if omega is None else float(omega),
             "weights": model.neighbours.weights,
         }
-    check_header({**header, "models": {kind: {} for kind in model.models}})
+    check_header({**header, "models": {kind: {} for kind in model.models_}})
     arrays: dict[str, NDArray[Any]] = {}
-    for number, (kind, part) in enumerate(model.models.items()):
+    for number, (kind, part) in enumerate(model.models_.items()):
         fields, columns = _fields(part)
         header["models"][kind] = {"at": number, **fields}
         arrays.update({f"{number}.{name}": column for name, column in columns.items()})
@@ -114,27 +121,26 @@ def _fields(part: TreeRelations | DisplacementRelations) -> tuple[dict[str, Any]
     return fields, {"displacements": part.displacements, "codes": part.codes}
 
 
-def model_from_bytes(content: bytes, where: str = "the model") -> RelationModel:
+def model_from_bytes(content: bytes, where: str = "the model") -> RelationClassifier:
     """The model of `model_bytes`; errors name `where`."""
     header, arrays = FORMAT.unpack(content, where)
     try:
         check_header(header)
-        model = RelationModel(
+        model = RelationClassifier(
             header["method"],
-            header["adjacent_gap"],
-            header["multi_label"],
-            _contact_settings(header["settings"]),
-            _neighbours(header),
-            tuple(header["names"]),
-            frozenset(header["symmetric"]),
-            {},
+            adjacent_gap=header["adjacent_gap"],
+            multi_label=header["multi_label"],
+            symmetric=frozenset(header["symmetric"]),
+            settings=_contact_settings(header["settings"]),
+            **_neighbours(header),
         )
-        models = {kind: _part(model, kind, fields, arrays) for kind, fields in header["models"].items()}
+        model.names_, model.symmetric_ = tuple(header["names"]), frozenset(header["symmetric"])
+        model.models_ = {kind: _part(model, kind, fields, arrays) for kind, fields in header["models"].items()}
     except KeyError as error:
         raise FORMAT.damaged(where, ValueError(f"{error} is missing")) from None
     except (TypeError, ValueError, AttributeError, OverflowError) as error:
         raise FORMAT.damaged(where, error) from None
-    return replace(model, models=models)
+    return model
 
 
 def _contact_settings(settings: Mapping[str, Any]) -> ContactSettings:
@@ -143,18 +149,18 @@ def _contact_settings(settings: Mapping[str, Any]) -> ContactSettings:
     return ContactSettings(**{**settings, **numbers})
 
 
-def _neighbours(header: Mapping[str, Any]) -> NeighbourSettings:
+def _neighbours(header: Mapping[str, Any]) -> Mapping[str, Any]:
     """Settings of the nearest neighbours; files of the first models have `k` and `weights` in each part, no ω."""
     if header["method"] != "displacement":
-        return NeighbourSettings()
+        return {}
     fields = header.get("neighbours")
     if fields is None:
         fields = {name: next(iter(header["models"].values()))[name] for name in ("k", "weights")}
-    return NeighbourSettings(**fields)
+    return fields
 
 
 def _part(
-    model: RelationModel, kind: str, fields: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
+    model: RelationClassifier, kind: str, fields: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
 ) -> TreeRelations | DisplacementRelations:
     """One part of a model from its header fields and its arrays, checked."""
     prefix = f"{fields['at']}."

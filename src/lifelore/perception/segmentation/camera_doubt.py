@@ -24,7 +24,7 @@ _ONE_IN = 8
 def camera_doubt(points: NDArray[np.float64], camera: NDArray[np.float64]) -> str | None:
     """Why the points (n, 3) cannot have been seen from `camera` (3,), both in metres; None without a doubt."""
     rays = (points - camera).astype(np.float32)
-    ranges = np.sqrt(np.einsum("ij,ij->i", rays, rays))
+    ranges = np.sqrt(np.square(rays) @ np.ones(3, np.float32))
     near = float(np.mean(ranges < NEAREST))
     # A scene that is near as a whole may be in other units.
     if _MOST_NEAR < near < 0.5:
@@ -40,10 +40,10 @@ def share_behind(rays: NDArray[np.float32], ranges: NDArray[np.float32]) -> floa
     chosen = np.flatnonzero(column & (_ONE_IN - 1) == 0)
     if not len(chosen):
         return 0.0
-    ranges = ranges[chosen]
+    depths = ranges[chosen].astype(np.float64)
     cells = np.floor(rays[chosen] / size[chosen, None]).astype(np.int64) + 256
     _, cell = np.unique((cells[:, 0] << 20) + (cells[:, 1] << 10) + cells[:, 2], return_inverse=True)
     nearest = np.full(int(cell.max()) + 1, np.inf)
-    np.minimum.at(nearest, cell, ranges)
+    np.minimum.at(nearest, cell, depths)
     nearest = nearest[cell]
-    return float(np.mean(ranges > nearest + BEHIND * np.maximum(nearest, 1.0) ** 2))
+    return float(np.mean(depths > nearest + BEHIND * np.maximum(nearest, 1.0) ** 2))

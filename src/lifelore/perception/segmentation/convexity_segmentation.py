@@ -8,9 +8,8 @@ border.
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.labelled_cloud import UNLABELLED
 from lifelore.perception.clouds.connected_parts import connected_parts
-from lifelore.perception.segmentation.cut_confidence import CutCloud, cut_confidence
+from lifelore.perception.segmentation.cut_confidence import CutCloud, cut_confidence, labels_by_size
 from lifelore.perception.segmentation.hollow_objects import hollow_pairs
 from lifelore.perception.segmentation.parted_objects import parted_pairs
 from lifelore.perception.segmentation.patch_convexity import beyond_bend, evidence, signed_angles
@@ -81,13 +80,9 @@ def convex_objects(
         patches.borders,
         lambda own: _below(LEAST_SURE, cut_confidence(patches, odds, own)),
     )
-    voxels = _voxels(patches, regions)
-    order = np.argsort(-voxels, kind="stable")
-    kept = order[voxels[order] * surface.size**2 >= min_area]
-    label = np.full(len(voxels), UNLABELLED, np.int64)
-    label[kept] = np.arange(2, 2 + len(kept))
+    label = labels_by_size(_voxels(patches, regions) * surface.size**2, min_area)
     sure = cut_confidence(patches, odds, regions)
-    confidence = {int(label[region]): float(sure[region]) for region in kept}
+    confidence = {int(label[region]): float(sure[region]) for region in np.argsort(label) if label[region]}
     return CutCloud(label[regions][patches.of_voxel][surface.inverse], confidence, n_cut)
 
 

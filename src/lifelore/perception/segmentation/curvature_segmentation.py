@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import UNLABELLED
 from lifelore.perception.clouds.connected_parts import connected_parts
+from lifelore.perception.segmentation.cut_confidence import labels_by_size
 from lifelore.perception.segmentation.surface_voxels import SurfaceVoxels, surface_voxels
 
 VOXEL = 0.005
@@ -41,11 +42,7 @@ def smooth_surfaces(
     m = len(surface.points)
     smooth = curvature(surface) < SHARP
     region = connected_parts(surface.pairs[smooth[surface.pairs].all(axis=1)], m)
-    sizes = np.bincount(region[smooth], minlength=m)
-    order = np.argsort(-sizes, kind="stable")
-    kept = order[sizes[order] * surface.size**2 >= min_area]
-    label = np.full(m, UNLABELLED, np.int64)
-    label[kept] = np.arange(2, 2 + len(kept))
+    label = labels_by_size(np.bincount(region[smooth], minlength=m) * surface.size**2, min_area)
     labels = np.where(smooth, label[region], UNLABELLED)
     rest, known = np.flatnonzero(labels == UNLABELLED), np.flatnonzero(labels != UNLABELLED)
     if len(rest) and len(known):

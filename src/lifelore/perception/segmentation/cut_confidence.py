@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.labelled_cloud import UNLABELLED
 from lifelore.perception.segmentation.supervoxels import Supervoxels
 
 _BASE, _OF_BORDER, _OF_CREASES, _OF_SIZE = -20.0, -0.75, -1.7, 3.15
@@ -37,6 +38,15 @@ class CutCloud:
     labels: NDArray[np.int64]
     confidence: Mapping[int, float] = field(default_factory=dict)
     n_cut: int = 0
+
+
+def labels_by_size(sizes: NDArray[np.floating], least: float) -> NDArray[np.int64]:
+    """(r,) label of each region: 2 the largest, 3 the next, …; 0 of those below `least`."""
+    order = np.argsort(-sizes, kind="stable")
+    kept = order[sizes[order] >= least]
+    label = np.full(len(sizes), UNLABELLED, np.int64)
+    label[kept] = np.arange(2, 2 + len(kept))
+    return label
 
 
 def cut_confidence(

@@ -6,9 +6,10 @@ Two objects that touch are one cluster; the thesis (§2.5) argues that later ste
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.labelled_cloud import UNLABELLED, LabelledCloud
+from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.segmentation.cut_confidence import labels_by_size
 
 _MAX_VOXELS = 200_000
 
@@ -29,9 +30,5 @@ def euclidean_clusters(points: NDArray[np.float64], tolerance: float, min_area: 
         thin = voxelised(LabelledCloud(points, np.zeros(len(points), np.int64)), tolerance / 2)
     pairs = KDTree(thin.cloud.points).query_pairs(tolerance, output_type="ndarray")
     component = connected_parts(pairs, len(thin.counts))
-    sizes = np.bincount(component)
-    order = np.argsort(-sizes, kind="stable")
-    label = np.full(len(sizes), UNLABELLED, np.int64)
-    kept = order[sizes[order] * (tolerance / 2) ** 2 >= min_area]
-    label[kept] = np.arange(2, 2 + len(kept))
+    label = labels_by_size(np.bincount(component) * (tolerance / 2) ** 2, min_area)
     return label[component][thin.inverse]

@@ -1,7 +1,6 @@
 """Points over a table, or beside it, that became no object: how many, and where."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED
 from lifelore.perception.segmentation.outline import over_outline
@@ -35,19 +34,8 @@ def dropped_points(scene: SegmentedScene) -> str | None:
         return None
     low, high = np.percentile(dropped, (5, 95), axis=0)
     place = ", ".join(f"{axis} {a:.2f} to {b:.2f}" for axis, a, b in zip("xyz", low, high, strict=True))
-    side = "" if camera is None else f"{_side(dropped.mean(axis=0), known.mean(axis=0), camera)} of the table, "
     return (
         f"{len(dropped):,} of {n_above:,} points above the table's plane ({100 * len(dropped) / n_above:.0f} %)"
-        f" belong to no object: {side}{place} m in the scene's frame; if objects stand there, pass --up X,Y,Z or"
+        f" belong to no object: {place} m in the scene's frame; if objects stand there, pass --up X,Y,Z or"
         " crop the cloud (--roi)"
     )
-
-
-def _side(place: NDArray[np.float64], middle: NDArray[np.float64], camera: NDArray[np.float64]) -> str:
-    """Where a place (3,) lies from the `middle` (2,) of the table, as the camera sees it."""
-    forward = (middle - camera[:2]) / max(float(np.linalg.norm(middle - camera[:2])), 1e-9)
-    offset = place[:2] - middle
-    away, right = float(offset @ forward), float(offset @ [forward[1], -forward[0]])
-    if abs(away) > abs(right):
-        return "at the back" if away > 0 else "at the front"
-    return "on the right" if right > 0 else "on the left"

@@ -16,8 +16,15 @@ from lifelore.core.labelled_cloud import TABLE, UNLABELLED
 from lifelore.perception.segmentation.cut_confidence import CutCloud
 from lifelore.perception.segmentation.outline import over_outline
 from lifelore.perception.segmentation.range_noise import noise
+from lifelore.perception.segmentation.table_evidence import REACH
 
 METHODS = ("convexity", "clusters", "curvature", "colour")
+TABLE_BAND = 0.010
+"""Metres; points no higher than this above the table, and no deeper below it, are the table."""
+TOLERANCE = 0.012
+"""Metres; points nearer than this are one object under ``"clusters"``."""
+MIN_AREA = 6e-4
+"""Square metres of surface below which a cluster or region is noise."""
 STANDING = 0.25
 """Least share of an object's points over the visible table. Of one at its far end, only the front is over it."""
 RISE = 1.5
@@ -36,46 +43,18 @@ class SegmentationSettings:
     method : {"convexity", "clusters", "curvature", "colour"}
         Surfaces that meet in creases are cut apart; Euclidean clusters; surfaces are cut at every sharp bend; or
         the thesis's colour histogram (§2.3.3).
-    table_band : float
-        Metres; points no higher than this above the table, and no deeper below it, are the table.
-    reach : float
-        Height of the scene above the table, metres.
-    tolerance : float
-        Metres; points nearer than this are one object under ``"clusters"``.
-    min_area : float
-        Square metres of surface below which a cluster or region is noise.
     colours : int
         Clusters of colour under ``"colour"``; the smallest is the background.
     """
 
     method: Literal["convexity", "clusters", "curvature", "colour"] = "convexity"
-    table_band: float = 0.010
-    reach: float = 0.60
-    tolerance: float = 0.012
-    min_area: float = 6e-4
     colours: int = 3
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
             raise InputError(f"method must be one of {', '.join(METHODS)}, got {self.method!r}")
-        for name in ("table_band", "reach", "tolerance", "min_area"):
-            if not (np.isfinite(getattr(self, name)) and getattr(self, name) > 0):
-                raise InputError(f"{name} must be a positive number, got {getattr(self, name)}")
         if self.colours < 2:
             raise InputError(f"colours must be at least 2, got {self.colours}")
-
-
-def segmented(
-    points: NDArray[np.float64],
-    colours: NDArray[np.uint8] | None,
-    settings: SegmentationSettings,
-    camera: NDArray[np.float64] | None = None,
-) -> NDArray[np.int64]:
-    """(n,) int64 labels of a scene in its own frame: 1 the table, 2 … objects by size, 0 the rest.
-
-    As `cut_cloud`, without confidences.
-    """
-    return cut_cloud(points, colours, settings, camera).labels
 
 
 def cut_cloud(
@@ -95,8 +74,8 @@ def cut_cloud(
         The colour method is asked for without colours.
     """
     labels = np.zeros(len(points), np.int64)
-    labels[np.abs(points[:, 2]) <= settings.table_band] = TABLE
-    above = np.flatnonzero((points[:, 2] > settings.table_band) & (points[:, 2] <= settings.reach))
+    labels[np.abs(points[:, 2]) <= TABLE_BAND] = TABLE
+    above = np.flatnonzero((points[:, 2] > TABLE_BAND) & (points[:, 2] <= REACH))
     standing = points.take(above, axis=0)
     cut = _objects(standing, None if colours is None else colours[above], settings, camera, points)
     table = np.flatnonzero(labels == TABLE)
@@ -126,14 +105,14 @@ def _objects(
     if settings.method == "clusters":
         from lifelore.perception.segmentation.distance_segmentation import euclidean_clusters
 
-        return CutCloud(euclidean_clusters(points, settings.tolerance, settings.min_area))
+        return CutCloud(euclidean_clusters(points, TOLERANCE, MIN_AREA))
     if settings.method == "curvature":
         from lifelore.perception.segmentation.curvature_segmentation import smooth_surfaces
 
-        return CutCloud(smooth_surfaces(points, camera, settings.min_area))
+        return CutCloud(smooth_surfaces(points, camera, MIN_AREA))
     from lifelore.perception.segmentation.convexity_segmentation import convex_objects
 
-    return convex_objects(points, camera, settings.min_area, seen)
+    return convex_objects(points, camera, MIN_AREA, seen)
 
 
 def _standing(cut: CutCloud, labels: NDArray[np.int64], shares: Iterable[NDArray[np.bool_]]) -> CutCloud:

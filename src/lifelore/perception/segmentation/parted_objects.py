@@ -55,13 +55,16 @@ def parted_pairs(
     first, second = _coplanar(patches, regions, sizes >= least)
     if len(first) == 0:
         return
-    image = ViewImage(seen[:: max(1, len(seen) // _SEEN)] - camera, _PIXEL)
-    farthest = np.full(len(image.nearest), -np.inf)
-    np.maximum.at(farthest, image.at, image.depths)
     steps = _STEPS[:, None, None]
     lines = ((1 - steps) * patches.middles[first] + steps * patches.middles[second] - camera).reshape(-1, 3)
-    at, known = image.pixels_of(lines)
     depths = lengths(lines)
+    beside = _beside(seen[:: max(1, len(seen) // _SEEN)] - camera, lines / depths[:, None])
+    if len(beside) == 0:
+        return
+    image = ViewImage(beside, _PIXEL)
+    farthest = np.full(len(image.nearest), -np.inf)
+    np.maximum.at(farthest, image.at, image.depths)
+    at, known = image.pixels_of(lines)
     hidden, free = (
         (known & seen_there).reshape(len(_STEPS), -1).mean(axis=0)
         for seen_there in (image.nearest[at] < depths - _BEFORE, farthest[at] > depths + _BEFORE)
@@ -75,6 +78,12 @@ def parted_pairs(
         shares = [patches.counts[members[regions[members] == end]].sum() / sizes[end] for end in (a, b)]
         if min(shares) >= _CONTINUES:
             yield a, b
+
+
+def _beside(rays: NDArray[np.float64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(m, 3): those of rays (n, 3) in a cone around unit vectors (k, 3); no other ray is in a pixel of theirs."""
+    middle = directions.mean(axis=0)
+    return rays[rays @ middle >= ((directions @ middle).min() - 2 * _PIXEL) * lengths(rays)]
 
 
 def _coplanar(

@@ -26,10 +26,10 @@ def merged(
     beside: list[dict[int, tuple[float, float]]] = [{} for _ in range(n)]
     for (a, b), border, odds in zip(pairs.tolist(), borders.tolist(), evidence.tolist(), strict=True):
         beside[a][b] = beside[b][a] = (float(border), border * odds)
-    queue = [_entry(a, b, link) for a in range(n) for b, link in beside[a].items() if a < b]
+    queue = [_entry(a, b, link) for a in range(n) for b, link in beside[a].items() if a < b and link[1] > 0]
     heapq.heapify(queue)
     owner = np.arange(n)
-    while queue and queue[0][0] < 0:
+    while queue:
         entry = heapq.heappop(queue)
         a, b = entry[1:3]
         if b not in beside[a] or _entry(a, b, beside[a][b]) != entry:
@@ -56,7 +56,8 @@ def _join(a: int, b: int, beside: list[dict[int, tuple[float, float]]], queue: l
         known_border, known_total = beside[a].get(other, (0.0, 0.0))
         link = (known_border + border, known_total + total)
         beside[a][other] = beside[other][a] = link
-        heapq.heappush(queue, _entry(a, other, link))
+        if link[1] > 0:
+            heapq.heappush(queue, _entry(a, other, link))
     beside[b] = {}
 
 

@@ -40,52 +40,42 @@ class Plane:
         return Plane(-self.normal, -self.offset)
 
 
-def dominant_plane(
-    points: NDArray[np.float64],
-    rng: np.random.Generator,
-    up: NDArray[np.float64] | None = None,
-    near: float = NEAR,
-) -> tuple[Plane, float]:
-    """The plane most points lie on, and the share of the points within `near` of it.
+def dominant_plane(points: NDArray[np.float64], rng: np.random.Generator) -> Plane:
+    """The plane that most points lie on.
 
     Parameters
     ----------
     points : (n, 3) metres, finite
     rng : Generator
         Draws the hypotheses.
-    up : (3,) unit vector, optional
-        Only planes whose normal lies within 15° of it count.
-    near : float
-        Metres.
 
     Raises
     ------
     InputError
-        No three points span a plane (fewer than three, or all on one line), none faces `up`, or the best
-        holds less than 5 % of the points.
+        No three points span a plane (fewer than three, or all on one line), or the best holds less than 5 % of
+        the points.
     """
     sample = points if len(points) <= _SAMPLE else points[rng.choice(len(points), _SAMPLE, replace=False)]
-    normals, offsets = _hypotheses(sample, rng, up)
+    normals, offsets = _hypotheses(sample, rng)
     if len(normals) == 0:
         raise InputError("no plane can be found in the cloud; pass --up X,Y,Z (or z)")
     votes = np.concatenate(
         [
-            (np.abs(sample @ normals[i : i + _BATCH].T + offsets[i : i + _BATCH]) <= near).sum(axis=0)
+            (np.abs(sample @ normals[i : i + _BATCH].T + offsets[i : i + _BATCH]) <= NEAR).sum(axis=0)
             for i in range(0, len(normals), _BATCH)
         ]
     )
     best = int(votes.argmax())
     if votes[best] < _LEAST_SHARE * len(sample):
         raise InputError("no plane stands out in the cloud; pass --up X,Y,Z (or z)")
-    plane = refined(points, Plane(normals[best], float(offsets[best])), near)
-    return plane, float(np.mean(np.abs(plane.height(points)) <= near))
+    return refined(points, Plane(normals[best], float(offsets[best])))
 
 
-def refined(points: NDArray[np.float64], plane: Plane, near: float = NEAR) -> Plane:
+def refined(points: NDArray[np.float64], plane: Plane) -> Plane:
     """The least-squares plane of the points near `plane`, repeated up to five times with the new plane."""
     near_plane = None
     for _ in range(5):
-        before, near_plane = near_plane, np.abs(plane.height(points)) <= near
+        before, near_plane = near_plane, np.abs(plane.height(points)) <= NEAR
         if before is not None and np.array_equal(before, near_plane):
             return plane  # the same points give the same plane
         close = points[near_plane]
@@ -103,19 +93,14 @@ def refined(points: NDArray[np.float64], plane: Plane, near: float = NEAR) -> Pl
 
 
 def _hypotheses(
-    sample: NDArray[np.float64], rng: np.random.Generator, up: NDArray[np.float64] | None
+    sample: NDArray[np.float64], rng: np.random.Generator
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     if len(sample) < 3:
         return np.empty((0, 3)), np.empty(0)
-    # With a known up direction most triples are rejected, so more are drawn.
-    draws = _HYPOTHESES * (1 if up is None else 10)
-    a, b, c = sample[rng.integers(0, len(sample), (3, draws))]
+    a, b, c = sample[rng.integers(0, len(sample), (3, _HYPOTHESES))]
     normals = np.cross(b - a, c - a)
     lengths = np.linalg.norm(normals, axis=1)
     # Thin triangles give wild normals: the area must be more than a square of two millimetres.
     good = lengths > 8e-6
     normals, a = normals[good] / lengths[good, None], a[good]
-    if up is not None:
-        facing = np.abs(normals @ up) >= np.cos(np.radians(15.0))
-        normals, a = normals[facing][:_HYPOTHESES], a[facing][:_HYPOTHESES]
     return normals, -np.einsum("ij,ij->i", normals, a)

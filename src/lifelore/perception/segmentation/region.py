@@ -7,15 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.clouds.point_cloud import PointCloud
+from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.segmentation.surface_patches import Patch
 from lifelore.perception.segmentation.table_evidence import FRINGE, REACH
 from lifelore.perception.segmentation.table_search import Table
 
 AXES = ("XMIN", "XMAX", "YMIN", "YMAX", "ZMIN", "ZMAX")
-MAX_OBJECTS = 60
-"""Most objects of a cloud without labels; more come from a region that is too large."""
 OVERHANG = 0.30
 """Metres that an object on the table may reach beyond the table's visible outline."""
 _INSIDE_SHARE = 0.5
@@ -33,8 +33,6 @@ class Region:
         XMIN, XMAX, YMIN, YMAX, ZMIN, ZMAX in metres, in the frame of the cloud; points outside are dropped.
     max_range : float, optional
         Metres from the camera, or from the origin where the camera is unknown; points beyond are dropped.
-    max_objects : int
-        Largest number of objects cut from a cloud without labels.
 
     Raises
     ------
@@ -44,15 +42,12 @@ class Region:
 
     roi: Sequence[float] | None = None
     max_range: float | None = None
-    max_objects: int = MAX_OBJECTS
 
     def __post_init__(self) -> None:
         if self.roi is not None:
             _check_roi(self.roi)
         if self.max_range is not None and not (np.isfinite(self.max_range) and self.max_range > 0):
             raise InputError(f"max_range must be a positive number of metres, got {self.max_range}")
-        if self.max_objects < 1:
-            raise InputError(f"max_objects must be at least 1, got {self.max_objects}")
 
 
 def _check_roi(roi: Sequence[float]) -> None:
@@ -152,8 +147,6 @@ def _linked(points: NDArray[np.float64]) -> NDArray[np.int64]:
 
     if len(points) == 0:
         return np.empty(0, np.int64)
-    cells = np.floor((points - points.min(axis=0)) / _LINK).astype(np.int64)
-    key, cell = np.unique(np.ravel_multi_index(tuple(cells.T), tuple(cells.max(axis=0) + 1)), return_inverse=True)
-    places = np.stack(np.unravel_index(key, tuple(cells.max(axis=0) + 1)), axis=1)
-    touching = KDTree(places).query_pairs(1.8, output_type="ndarray")
-    return connected_parts(touching, len(key))[cell.reshape(-1)]
+    thin = voxelised(LabelledCloud(points - points.min(axis=0), np.zeros(len(points), np.int64)), _LINK)
+    cells = np.floor(thin.cloud.points / _LINK)
+    return connected_parts(KDTree(cells).query_pairs(1.8, output_type="ndarray"), len(cells))[thin.inverse]

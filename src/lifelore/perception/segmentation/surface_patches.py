@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -152,33 +153,53 @@ def _best_plane(voxels: OrientedVoxels, places: NDArray[np.int64], rng: np.rando
     starts = sample[rng.integers(0, len(sample), _HYPOTHESES)]
     normals = voxels.normals[starts]
     offsets = -np.einsum("ij,ij->i", normals, voxels.points[starts])
-    votes = _votes(voxels, sample, normals, offsets)
+    some = _Oriented(voxels.points[sample], voxels.normals[sample], voxels.bands[sample])
+    votes = _votes(some, normals, offsets)
     best, best_votes = None, -1
     for start in np.argsort(-votes, kind="stable")[:3]:
-        plane = Plane(normals[start], float(offsets[start]))
-        for _ in range(3):
-            plane = _fitted(voxels, sample, plane)
-        agreed = int(_votes(voxels, sample, plane.normal[None], np.array([plane.offset]))[0])
+        plane = _fitted(some, Plane(normals[start], float(offsets[start])), 3)
+        agreed = int(_agreeing(some, plane).sum())
         if agreed > best_votes:
             best, best_votes = plane, agreed
     assert best is not None
-    return _fitted(voxels, places, best)
+    return _fitted(_Oriented(voxels.points[places], voxels.normals[places], voxels.bands[places]), best, 1)
 
 
-def _votes(
-    voxels: OrientedVoxels, sample: NDArray[np.int64], normals: NDArray[np.float64], offsets: NDArray[np.float64]
-) -> NDArray[np.int64]:
-    near = np.abs(voxels.points[sample] @ normals.T + offsets) <= voxels.bands[sample, None]
-    return (near & (np.abs(voxels.normals[sample] @ normals.T) >= _ALIKE)).sum(axis=0)
+class _Oriented(NamedTuple):
+    """Some voxels: points and normals (k, 3), half widths of their bands (k,)."""
+
+    points: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    bands: NDArray[np.float64]
 
 
-def _fitted(voxels: OrientedVoxels, places: NDArray[np.int64], plane: Plane) -> Plane:
-    """The plane of least squares, each voxel weighed by its noise, of the voxels that agree with `plane`."""
-    agree = (np.abs(plane.height(voxels.points[places])) <= voxels.bands[places]) & (
-        np.abs(voxels.normals[places] @ plane.normal) >= _ALIKE
-    )
-    close = places[agree]
-    return plane if len(close) < 3 else plane_of(voxels.points[close], voxels.bands[close] ** -2, plane)
+def _votes(some: _Oriented, normals: NDArray[np.float64], offsets: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(h,) number of voxels that agree with each plane of `normals` (h, 3) and `offsets` (h,)."""
+    # In place: a new array of this size takes longer than its numbers.
+    away = some.points @ normals.T
+    away += offsets
+    near = np.abs(away, out=away) <= some.bands[:, None]
+    alike = np.matmul(some.normals, normals.T, out=away)
+    near &= np.abs(alike, out=alike) >= _ALIKE
+    return np.count_nonzero(near, axis=0)
+
+
+def _agreeing(some: _Oriented, plane: Plane) -> NDArray[np.bool_]:
+    return (np.abs(plane.height(some.points)) <= some.bands) & (np.abs(some.normals @ plane.normal) >= _ALIKE)
+
+
+def _fitted(some: _Oriented, plane: Plane, rounds: int) -> Plane:
+    """The plane of least squares, each voxel weighed by its noise, of the voxels that agree with the plane before.
+
+    It starts from `plane`, and stops where the same voxels agree again.
+    """
+    before = np.empty(0, bool)
+    for _ in range(rounds):
+        agree = _agreeing(some, plane)
+        if np.array_equal(agree, before) or np.count_nonzero(agree) < 3:
+            break
+        plane, before = plane_of(some.points[agree], some.bands[agree] ** -2, plane), agree
+    return plane
 
 
 def plane_of(points: NDArray[np.float64], weights: NDArray[np.float64], like: Plane) -> Plane:
@@ -205,10 +226,10 @@ def _pieces(voxels: OrientedVoxels, plane: Plane, on_it: NDArray[np.int64]) -> l
     ndimage.label(ndimage.binary_dilation(grid), np.ones((3, 3)), output=numbered)
     piece = numbered[tuple(cells.T)]
     parts = [np.flatnonzero(piece == number) for number in range(1, int(piece.max()) + 1)]
-    fine = np.floor(spread / voxels.size).astype(np.int64)
+    fine = np.floor(spread / voxels.size).astype(np.int64) @ np.array([2**31, 1])
     made = []
     for part in sorted(parts, key=len, reverse=True):
-        area = len(np.unique(fine[part], axis=0)) * voxels.size**2
+        area = len(np.unique(fine[part])) * voxels.size**2
         if area >= LEAST_AREA and len(part) >= 6:
             made.append(Patch(plane, on_it[part], flat, area, spread[part]))
     return made

@@ -18,7 +18,7 @@ from lifelore.perception.clouds.voxel import thinned
 from lifelore.perception.segmentation.camera_doubt import camera_doubt
 from lifelore.perception.segmentation.cut_confidence import CutCloud
 from lifelore.perception.segmentation.object_feet import with_feet
-from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, cut_cloud
+from lifelore.perception.segmentation.object_segmentation import TABLE_BAND, SegmentationSettings, cut_cloud
 from lifelore.perception.segmentation.outline import over_outline
 from lifelore.perception.segmentation.plane import NEAR, Plane, dominant_plane
 from lifelore.perception.segmentation.range_noise import band
@@ -28,6 +28,8 @@ from lifelore.perception.segmentation.table_search import Search, Table, find_ta
 
 Up = Literal["table", "z"] | ArrayLike
 EVERYWHERE = Region()
+MAX_OBJECTS = 60
+"""Most objects of a cloud without labels; more come from a region that is too large."""
 _FEW = 20
 
 
@@ -124,13 +126,13 @@ def segmented_scene(
     points = cloud.points.astype(np.float64)
     given = cloud.camera is not None
     seen = cloud if given else replace(cloud, camera=camera_from_pixels(cloud))
-    scene, doubt = _seen_scene(points, seen, up, segmentation, region)
+    scene, doubt = _seen_scene(points, seen, up, segmentation)
     if given and doubt is not None:
         seen = replace(cloud, camera=camera_from_pixels(cloud), other_cameras=None)
-        scene, _ = _seen_scene(points, seen, up, segmentation, region)
+        scene, _ = _seen_scene(points, seen, up, segmentation)
     if scene is None:
         unseen = replace(cloud, camera=None, other_cameras=None)
-        scene = _upright_scene(points, unseen, up, segmentation, region)
+        scene = _upright_scene(points, unseen, up, segmentation)
     return replace(scene, camera_doubt=doubt if given else None)
 
 
@@ -139,14 +141,13 @@ def _seen_scene(
     cloud: PointCloud,
     up: Up,
     segmentation: SegmentationSettings | None,
-    region: Region,
 ) -> tuple[SegmentedScene | None, str | None]:
     """The scene with the cloud's camera; none where its position is impossible, with the reason."""
     if cloud.camera is not None and cloud.other_cameras is None:
         doubt = camera_doubt(points, cloud.camera)
         if doubt is not None:
             return None, doubt
-    scene = _upright_scene(points, cloud, up, segmentation, region)
+    scene = _upright_scene(points, cloud, up, segmentation)
     depth = _depth_below_table(scene.cloud)
     return (None, f"it would be {depth:.2f} m below the table") if depth > 0 else (scene, None)
 
@@ -167,7 +168,6 @@ def _upright_scene(
     cloud: PointCloud,
     up: Up,
     segmentation: SegmentationSettings | None,
-    region: Region,
 ) -> SegmentedScene:
     """The scene of a cloud whose points are measured and within the region."""
     up_given = not (isinstance(up, str) and up == "table")
@@ -182,7 +182,7 @@ def _upright_scene(
         scene = LabelledCloud(scene_points, labels, cloud.colours, camera, others, origin)
         return SegmentedScene(scene, False, search.table, search.tilted, up_given=up_given)
     cut = _cut(points, scene_points, cloud, camera, search.table, segmentation or SegmentationSettings())
-    _check_number(cut, region, search)
+    _check_number(cut, search)
     scene = LabelledCloud(scene_points, cut.labels, cloud.colours, camera, others, origin)
     return SegmentedScene(scene, True, search.table, search.tilted, cut.confidence, up_given=up_given)
 
@@ -202,14 +202,14 @@ def _check_camera(camera: NDArray[np.float64] | None) -> None:
         )
 
 
-def _check_number(cut: CutCloud, region: Region, search: Search) -> None:
+def _check_number(cut: CutCloud, search: Search) -> None:
     n, hint = len(np.unique(cut.labels[cut.labels > TABLE])), ""
     if search.table is None:
         # Of a cloud that stands askew, most objects are unsure and have joined their neighbours.
         n, hint = max(n, cut.n_cut), "check up, which no plane is level with (--up); "
-    if n > region.max_objects:
+    if n > MAX_OBJECTS:
         raise InputError(
-            f"the cloud was cut into {n} objects, but at most {region.max_objects} are perceived; {hint}crop it to"
+            f"the cloud was cut into {n} objects, but at most {MAX_OBJECTS} are perceived; {hint}crop it to"
             " the table (--roi, --max-range), or give labels"
         )
 
@@ -229,7 +229,7 @@ def _cut(
     labels, bands = np.full(len(points), UNLABELLED, np.int64), band(points, cloud.camera)
     if table is None:
         chosen = np.arange(len(points))
-        lift = np.array([0.0, 0.0, 2 * settings.table_band - scene_points[:, 2].min()])
+        lift = np.array([0.0, 0.0, 2 * TABLE_BAND - scene_points[:, 2].min()])
         upright_points = scene_points + lift
         camera = None if camera is None else camera + lift
     else:
@@ -284,7 +284,7 @@ def _size_hint(points: NDArray[np.float64]) -> str:
 def _labelled_plane(points: NDArray[np.float64], cloud: PointCloud) -> Plane:
     """The plane of the points labelled as table; up is the side of the objects, without objects the camera's."""
     assert cloud.labels is not None
-    plane, _ = dominant_plane(points[cloud.labels == TABLE], stream(0, "perception", "table plane"))
+    plane = dominant_plane(points[cloud.labels == TABLE], stream(0, "perception", "table plane"))
     objects = points[cloud.labels > TABLE]
     if len(objects):
         side = float(np.median(plane.height(objects)))

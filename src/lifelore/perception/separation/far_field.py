@@ -47,16 +47,17 @@ class Cells(NamedTuple):
 
 def cell_order(points: Array) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The order (n,) that sorts points (3, n) by cell, and where each cell begins among them, with n (c + 1,)."""
-    index = np.floor((points - points.min(axis=1, keepdims=True)) / CELL).astype(np.int64)
+    index = ((points - points.min(axis=1, keepdims=True)) / CELL).astype(np.int64)
     sides = index.max(axis=1) + 1.0
     if np.prod(sides) < 2**16:
         # Short integers are sorted by radix.
         keys = (index[2] * int(sides[1]) + index[1]) * int(sides[0]) + index[0]
         order = np.argsort(keys.astype(np.uint16), kind="stable")
+        begins = np.diff(keys[order]) != 0
     else:
         order = np.lexsort(index)
-    begins = np.flatnonzero((np.diff(index[:, order]) != 0).any(axis=0)) + 1
-    return order, np.concatenate([[0], begins, [len(order)]])
+        begins = (np.diff(index[:, order]) != 0).any(axis=0)
+    return order, np.concatenate([[0], np.flatnonzero(begins) + 1, [len(order)]])
 
 
 def far_field_cells(points: Array, starts: NDArray[np.int64]) -> Cells:

@@ -18,8 +18,6 @@ from lifelore.perception.separation.gaussian import Array, kernel_sums
 from lifelore.perception.separation.separator_descent import descend
 from lifelore.perception.separation.separator_dual import Dual
 
-MOST_STEPS = 500_000
-"""Largest number of optimiser steps, some seconds; soft margins need hundreds to thousands."""
 MOST_WORK = 3e9
 """Largest number of evaluations of a Gaussian, four seconds."""
 _FURTHEST = 1e12
@@ -91,7 +89,6 @@ def separate(
     length: float = 0.12,
     cost: float = 1.0,
     tolerance: float = 1e-3,
-    max_steps: int = MOST_STEPS,
     max_work: float = MOST_WORK,
 ) -> Separator:
     """Separate two clouds by the soft-margin support vector machine of a Gaussian kernel.
@@ -106,11 +103,9 @@ def separate(
         C, the largest weight of a point, > 0.
     tolerance : float
         Greatest violation of the optimality conditions, > 0; 1e-3 is libsvm's default.
-    max_steps : int
-        Steps after which to stop; the violation is reported.
     max_work : float
-        Kernel evaluations after which to stop, > 0. Clouds that lie *in* each other have no surface between them
-        and would take minutes.
+        Kernel evaluations after which to stop, > 0; the violation is reported. Clouds that lie *in* each other
+        have no surface between them and would take minutes.
 
     Raises
     ------
@@ -131,8 +126,6 @@ def separate(
     for name, value in (("length", length), ("cost", cost), ("tolerance", tolerance)):
         if not (np.isfinite(value) and value > 0):
             raise InputError(f"{name} must be positive and finite, got {value}")
-    if max_steps < 1:
-        raise InputError(f"max_steps must be at least 1, got {max_steps}")
     if not max_work > 0:
         raise InputError(f"max_work must be above 0, got {max_work}")
     points = np.concatenate([a, b])
@@ -142,7 +135,7 @@ def separate(
     order, starts = cell_order(scaled)
     scaled = np.ascontiguousarray(scaled[:, order])
     dual = Dual(scaled, side[order], far_field_cells(scaled, starts), cost, max_work)
-    violation = descend(dual, tolerance, max_steps)
+    violation = descend(dual, tolerance)
     beta = np.empty(n)
     beta[order] = dual.beta
     support = np.flatnonzero(beta)

@@ -10,38 +10,36 @@ FIRST_WORKING = 500
 """Largest number of points of each cloud in the first working set; fewer need more working sets."""
 MOST_WORKING = 2000
 """Largest working set in points: its memory is 8 bytes times its square."""
+MOST_STEPS = 500_000
+"""Largest number of steps over a working set, some seconds; soft margins need hundreds to thousands."""
 MOST_ROUNDS = 100
 """Largest number of working sets; more cost time, not accuracy."""
 BAND = 0.25
 """Points within this share of the violation from violating join the working set beforehand."""
 
 
-def descend(dual: Dual, tolerance: float, max_steps: int) -> float:
+def descend(dual: Dual, tolerance: float) -> float:
     """Solve a dual in place, from an even subset of its points on; returns the violation.
 
     Parameters
     ----------
     dual : Dual
     tolerance : float
-        Violation at which to stop.
-    max_steps : int
-        Optimiser steps after which to stop. Where the dual's work runs out before, the returned violation is a
-        bound, infinite where it was never evaluated.
+        Violation at which to stop. Where the dual's work runs out before, the returned violation is a bound,
+        infinite where it was never evaluated.
     """
     working = np.concatenate([_even(np.flatnonzero(dual.side == sign), FIRST_WORKING) for sign in (1, -1)])
     if dual.affords(len(working)):
-        *_, steps = _step(dual, working, tolerance, max_steps)
-        max_steps -= steps
+        _step(dual, working, tolerance)
     dual.evaluate()
     for _ in range(MOST_ROUNDS):
         most, least = dual.extremes(tolerance)
-        if most - least <= tolerance or max_steps <= 0 or dual.spent:
+        if most - least <= tolerance or dual.spent:
             break
         working = _working_set(dual, most, least, tolerance)
         if not dual.affords(len(working)):
             break
-        changed, before, steps = _step(dual, working, tolerance, max_steps)
-        max_steps -= steps
+        changed, before = _step(dual, working, tolerance)
         slope = dual.slope[working]
         dual.pull(changed, dual.beta[changed] - before)
         dual.slope[working], dual.error[working] = slope, 0.0
@@ -49,18 +47,18 @@ def descend(dual: Dual, tolerance: float, max_steps: int) -> float:
     return max(most - least, 0.0)
 
 
-def _step(dual: Dual, working: Indices, tolerance: float, max_steps: int) -> tuple[Indices, Array, int]:
-    """Optimise over `working` alone; the points that changed, their β before, and the steps taken."""
+def _step(dual: Dual, working: Indices, tolerance: float) -> tuple[Indices, Array]:
+    """Optimise over `working` alone; the points that changed, and their β before."""
     dual.settle(working)
     points = np.ascontiguousarray(dual.points[:, working])
     beta, slope = dual.beta[working], dual.slope[working]
-    limit = int(min(dual.steps_left(len(working)), max_steps))
+    limit = int(min(dual.steps_left(len(working)), MOST_STEPS))
     steps = ascend(points, dual.lower[working], dual.upper[working], beta, slope, tolerance / 2, limit)
     dual.count_steps(steps, len(working))
     before = dual.beta[working]
     changed = beta != before
     dual.beta[working], dual.slope[working] = beta, slope
-    return working[changed], before[changed], steps
+    return working[changed], before[changed]
 
 
 def _working_set(dual: Dual, most: float, least: float, tolerance: float) -> Indices:
