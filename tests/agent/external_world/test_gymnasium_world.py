@@ -209,7 +209,7 @@ def test_key_of_a_function_without_source_is_asked_for(context):
         (lambda: begun().context(8, 0.0), "state must be the last state"),
         (
             lambda: begun(context=lambda seen: [seen]).context(0, 0.0),
-            "context must return a hashable value, got list",
+            "context or features must return a hashable value, got list",
         ),
         (lambda: begun(state=np.array), "state must return a hashable value, got ndarray"),
     ],
