@@ -135,3 +135,10 @@ def test_refusals(ask, tmp_path):
         assert said.status == 2
         assert words in said.err
         assert len(said.err.splitlines()) == 1
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_anything_is_stored(ask, world):
+    Path("runs.csv").write_text(csv_text([driven_run(world, 0)]))
+    said = ask("learn-from", "runs.csv", "--map", MAP, "--memory", "m.db", "--out", "runs.csv")
+    assert (said.status, len(said.err.splitlines())) == (2, 1)
+    assert not Path("m.db").exists()

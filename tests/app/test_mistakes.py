@@ -68,7 +68,7 @@ NUMBERS = {
     f"{BUILDING} --set robot_radius=50": "no free cell is left",
 }
 NAMES = {
-    f"{LATTICE} --domain moon": "domain must be one of building, lattice, noise, advice, got 'moon'",
+    f"{LATTICE} --domain moon": "building-days, got 'moon'",
     f"{LATTICE} --agent bob": "agent must be one of lore",
     f"{LATTICE} --set learner=sarsa": "learner must be one of model, q",
     f"{Q} --agent rmax": "learner 'q' has agents",

@@ -63,8 +63,13 @@ def learn_from(
         _shift(shift),
         dry_run,
     )
+    source = runs_of(runs, topic, bumps)
+    if out is not None:
+        from lifelore.agent.live.output.report import check_folder
+
+        check_folder(out)
     with progress_bar("learning") as progress:
-        report = learn(runs_of(runs, topic, bumps), settings, runs, progress)
+        report = learn(source, settings, runs, progress)
     if out is not None:
         from lifelore.agent.live.output.known_building import write_known_building
 

@@ -87,7 +87,11 @@ def live(
     next run continues the life.
     """
     from lifelore.agent.long_lived.families.by_name import FAMILIES
+    from lifelore.core.errors import NotFoundError
+    from lifelore.domains.worlds import domain_names
 
+    if domain not in (known := (*domain_names(), *FAMILIES)):
+        raise NotFoundError(f"domain must be one of {', '.join(known)}, got {domain!r}")
     keys = setting_keys(domain)
     if settings:
         keys.show(as_json)

@@ -169,7 +169,7 @@ def test_hashable_by_hand():
         (lambda: begun().context(8, 0.0), "state must be the last state"),
         (
             lambda: begun(context=lambda seen: [seen]).context(0, 0.0),
-            "context must return a hashable value, got list",
+            "context or features must return a hashable value, got list",
         ),
         (lambda: begun(state=np.array), "state must return a hashable value, got ndarray"),
     ],

@@ -256,3 +256,11 @@ def test_types_of_few_users_are_named(fitted):
 def test_two_values_read_as_amounts_are_told_so(model, warned, fitted):
     document, _ = fitted(drawn(0, FLAT, n_users=60), model=model)
     assert any("read as amounts" in note or "reads as amounts" in note for note in document["notes"]) == warned
+
+
+def test_users_spelt_in_two_ways_are_named(fitted):
+    table = drawn(0, RATES)
+    table["user"][0], table["user"][7] = "U0", "U1"
+    document, _ = fitted(table)
+    spelt = "2 users differ from another only in capitals or spaces ('U0', 'u0'); each counts"
+    assert [note for note in document["notes"] if "differ from another" in note] == [spelt]

@@ -62,3 +62,12 @@ def test_a_study_and_one_user_are_shown(serve_pages, open_page, check_page, wher
     expect(page.locator("#user")).to_contain_text("lively")
     expect(page.locator("#user b")).to_have_count(0)
     check_page(page)
+
+
+def test_the_study_of_the_command_line_is_shown_first(serve_pages, open_page, tmp_path):
+    library = PolicyLibrary.from_means(MEANS, 2.0, policies=["a", "b"])
+    with open_memory(tmp_path / "m.db") as memory:
+        for name in ("another", "default"):
+            Study(name, library, {"a": "active", "b": "active"}).keep(memory)
+    page = open_page(serve_pages(tmp_path / "m.db") + "/study")
+    expect(page.locator("#which")).to_have_value("default")

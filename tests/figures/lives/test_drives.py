@@ -38,6 +38,16 @@ def test_lost_minutes_are_added_up(n, tmp_path):
     assert words[1] == f"on the map alone\n{n} min, " + ("1 refused move" if n == 1 else f"{n} refused moves")
 
 
+def test_a_quiet_building_shows_that_nothing_was_lost():
+    figure = draw_drives(
+        np.arange(4), {"lore": {"lost": np.full(4, -1e-9), "refusals": np.zeros(4)}}, floor(), title=""
+    )
+    axes = figure.axes[0]
+    assert axes.get_ylim() == (0, 1)
+    assert axes.texts[0].get_text() == "with memory\n0 min, 0 refused moves"
+    assert axes.texts[0].xy[1] == 0  # a point below the axis would hide its words
+
+
 def test_searches_and_drives_in_one_picture(tmp_path):
     demo = run_path(str(Path(__file__).parents[3] / "examples" / "demo" / "known_and_hidden.py"))
     recent = demo["RECENT"]

@@ -120,9 +120,9 @@ def test_goals_as_a_person_writes_them(make_scene, goal, pddl):
     ("goal", "said"),
     [
         ("", "goal must be statements, got ''"),
-        ("on(o2", r"none from 'on\(o2'"),
+        ("on(o2", r"must be statements, got 'on\(o2' in 'on\(o2'"),
         ("on(o2, o3) or clear(o2)", r"must join statements by `and`, got 'or clear\(o2\)'"),
-        ("on(o2, o3) and", "none from ''"),
+        ("on(o2, o3) and", r"must be statements, got '' in 'on\(o2, o3\) and'"),
         (
             "under(o2, o3)",
             "goal must state one of on, adjacent, on-table, clear, holding, hand-empty, left_of, .*'under'",

@@ -152,7 +152,7 @@ class GymnasiumWorld(AbstractContextManager):
             return state
         observation = self._current[0]
         features = self._context(observation, last_reward) if self._with_reward else self._context(observation)
-        return _require_hashable("context", features)
+        return _require_hashable("context or features", features)
 
     def see(self, observation: Any) -> Hashable:
         """The state of an observation, which is now the present one."""

@@ -68,11 +68,14 @@ class Floor:
         return np.asarray(ndimage.distance_transform_edt(~self.solid))
 
     def pixels(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Pixel coordinates (n, 2) of `points`, (n, 2) x and y in metres of the map's frame."""
+        """Pixel coordinates (n, 2) of `points`, (n, 2) x and y in metres of the map's frame.
+
+        They are rounded to 1e-9, so that a point on a border lies in the same pixel in a map and in a part of it.
+        """
         x0, y0, yaw = self.occupancy.origin
         dx, dy = (np.asarray(points, float).reshape(-1, 2) - (x0, y0)).T / self.occupancy.resolution
         right, up = np.cos(yaw) * dx + np.sin(yaw) * dy, np.cos(yaw) * dy - np.sin(yaw) * dx
-        return np.column_stack([self.state.shape[0] - 0.5 - up, right - 0.5])
+        return np.column_stack([self.state.shape[0] - 0.5 - up, right - 0.5]).round(9)
 
     def metres(self, pixels: ArrayLike) -> NDArray[np.float64]:
         """Points (n, 2) in metres of the map's frame, of (n, 2) pixel coordinates; the inverse of `pixels`."""
@@ -112,35 +115,34 @@ class Floor:
                 f"{name} must be a free place of this map, in metres of its frame; {point[0]:g},{point[1]:g} "
                 f"{refusal.reason}; the nearest free place is {x:.3f},{y:.3f}"
             )
-        row, column = self.pixels(point)[0]
-        return int(self.state[round(row), round(column)])
+        return int(self.state[_nearest_pixel(self.pixels(point)[0])])
 
     def refusal(self, point: tuple[float, float]) -> "Refusal | None":
         """Why the robot's centre cannot be at a point in metres of the map's frame; None where it can."""
-        row, column = self.pixels(point)[0]
-        at = round(row), round(column)
+        pixel = self.pixels(point)[0]
+        at = _nearest_pixel(pixel)
         inside = 0 <= at[0] < self.state.shape[0] and 0 <= at[1] < self.state.shape[1]
-        if inside and self.state[at] >= 0 and self._is_clear((row, column)):
+        if inside and self.state[at] >= 0 and self._is_clear(pixel):
             return None
-        x, y = self.metres(self._nearest((row, column)))[0].tolist()
+        x, y = self.metres(self._nearest(pixel))[0].tolist()
         known = inside and bool(self.occupancy.state[at] != UNKNOWN)
         return Refusal(self._why_not(at if inside else None), known, (x, y))
 
-    def _is_clear(self, pixel: tuple[float, float]) -> bool:
+    def _is_clear(self, pixel: NDArray[np.float64]) -> bool:
         reach = int(self.radius) + 2
-        row, column = round(pixel[0]), round(pixel[1])
+        row, column = _nearest_pixel(pixel)
         top, left = max(row - reach, 0), max(column - reach, 0)
         near = np.argwhere(self.solid[top : row + reach + 1, left : column + reach + 1])
-        return bool((np.hypot(*(near + np.array([top, left]) - np.array(pixel)).T) > self.radius).all())
+        return bool((np.hypot(*(near + np.array([top, left]) - pixel).T) > self.radius).all())
 
-    def _nearest(self, pixel: tuple[float, float]) -> NDArray[np.int64]:
+    def _nearest(self, pixel: NDArray[np.float64]) -> NDArray[np.int64]:
         """The free pixel nearest to a pixel, looked for in growing squares around it."""
         reach = 32
         while True:
             low = np.maximum(np.rint(pixel).astype(int) - reach, 0)
             high = np.maximum(np.rint(pixel).astype(int) + reach + 1, 0)
             free = np.argwhere(self.state[low[0] : high[0], low[1] : high[1]] >= 0) + low
-            away = np.hypot(*(free - np.array(pixel)).T)
+            away = np.hypot(*(free - pixel).T)
             if away.size and (away.min() <= reach or away.size == np.count_nonzero(self.state >= 0)):
                 return free[away.argmin()]
             reach *= 2
@@ -154,6 +156,12 @@ class Floor:
         if self.distance[at] <= self.radius + 1:
             return f"is nearer to an obstacle than the robot's radius of {self.robot_radius:g} m"
         return "is free, but belongs to no place that the robot can reach"
+
+
+def _nearest_pixel(pixel: NDArray[np.float64]) -> tuple[int, int]:
+    """Whole row and column; on a border those of the larger numbers, as `clear_path` has them."""
+    row, column = np.floor(pixel + 0.5).astype(int).tolist()
+    return row, column
 
 
 def floor_of(occupancy: OccupancyMap, world: GridWorld) -> Floor:

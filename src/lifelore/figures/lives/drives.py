@@ -73,7 +73,7 @@ def draw_lost_time(axes: "Axes", jobs: ArrayLike, agents: Mapping[str, Mapping[s
     """Minutes lost, added up over jobs; a mark for each job in which a move was refused."""
     jobs = np.asarray(jobs)
     for name, of in agents.items():
-        minutes = np.cumsum(np.asarray(of["lost"], float)) / 60
+        minutes = (np.cumsum(np.asarray(of["lost"], float)) / 60).round(6) + 0.0  # no -0
         refused = np.asarray(of["refusals"]) > 0
         count = int(np.sum(of["refusals"]))
         moves = "1 refused move" if count == 1 else f"{count} refused moves"
@@ -85,10 +85,10 @@ def draw_lost_time(axes: "Axes", jobs: ArrayLike, agents: Mapping[str, Mapping[s
         )  # fmt: skip
         axes.annotate(
             f"{_WORDS.get(name, name)}\n{minutes[-1]:.0f} min, {moves}", (jobs[-1], minutes[-1]), (6, 0),
-            textcoords="offset points", va="center", color=colour, fontsize=8,
+            textcoords="offset points", va="center" if minutes[-1] else "bottom", color=colour, fontsize=8,
         )  # fmt: skip
     axes.set_title("Known goals: minutes lost to the building, added up")
-    axes.set(xlabel="job (a cross: a move was refused)", ylim=(0, None))
+    axes.set(xlabel="job (a cross: a move was refused)", ylim=(0, max(axes.get_ylim()[1], 1.0)))
     draw_task_axis(axes, jobs)
     axes.grid(axis="y")
 

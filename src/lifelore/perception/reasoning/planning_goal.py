@@ -41,7 +41,7 @@ def read_goal(text: str) -> tuple[Statement, ...]:
         match = STATEMENT.match(lower, at)
         if match is None:
             rest = text[at:].strip()[:80]
-            raise InputError(f"goal must be statements, got '{text[:80]}', which is none from '{rest}': {FORM}")
+            raise InputError(f"goal must be statements, got '{rest}' in '{text[:80]}': {FORM}")
         denied, name, inside = match.groups()
         arguments = tuple(part.strip() for part in inside.split(",")) if inside.strip() else ()
         statements.append(Statement(name, arguments, denied is None))

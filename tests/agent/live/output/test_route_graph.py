@@ -128,3 +128,17 @@ def test_two_names_of_one_place_share_its_node(two_rooms, tmp_path):
     names = {about.get("name") for _, about in loaded(tmp_path / "g.geojson").nodes(data=True)}
     assert names >= {"dock, charger", "lab"}
     assert MOST_PLACES >= 2
+
+
+@pytest.mark.parametrize("origin", [(0.0, 0.0, 0.0), (-2.0, -1.0, 0.0), (0.35, 7.1, 0.0)])
+def test_places_on_borders_of_cells_have_routes(origin, tmp_path):
+    # Corners of four cells: in a part of the map they must lie in the same pixel as in the whole.
+    state = np.ones((81, 121), np.uint8)
+    state[1:-1, 1:-1] = FREE
+    occupancy = OccupancyMap(state, 0.05, origin)
+    world = building_from_map(occupancy, 0.5, 0.2)
+    floor, n = floor_of(occupancy, world), world.n_states
+    costs = MoveCosts(world, np.ones((n, 4)), np.zeros((n, 4)))
+    places = {f"{x} {y}": (x / 2 + origin[0], y / 2 + origin[1]) for x in range(1, 12) for y in (2, 3, 5, 6)}
+    assert write_route_graph(tmp_path / "graph.geojson", costs, np.ones(n, bool), floor, places)
+    loaded(tmp_path / "graph.geojson")

@@ -1,6 +1,6 @@
 """What a fitted study personalises by, and what its user should know: sentences for the reader of `reuse fit`."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -100,4 +100,14 @@ def _warnings(document: Mapping[str, Any], log: ReuseLog, model: str) -> list[st
         found.append(
             f"outcomes have two values, which model {model} reads as amounts; --model categorical counts them"
         )
-    return found
+    return found + _spelt_twice("users", log.user.names) + _spelt_twice("policies", log.policy.names)
+
+
+def _spelt_twice(what: str, names: Sequence[str]) -> list[str]:
+    """Which names differ only in capitals or spaces at the ends."""
+    first: dict[str, str] = {}
+    twice = [(other, name) for name in names if (other := first.setdefault(name.strip().casefold(), name)) != name]
+    return [
+        f"{len(twice)} {what} differ from another only in capitals or spaces ('{one}', '{other}'); each counts"
+        for one, other in twice[:1]
+    ]

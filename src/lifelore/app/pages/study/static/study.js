@@ -18,7 +18,8 @@ async function start() {
   if (!studies.length) return;
   const options = studies.map((one) => make("option", { value: one.name }, one.name + (one.state === "archived" ? " (archived)" : "")));
   $("which").replaceChildren(...options);
-  const begin = studies.find((one) => one.name === address.get("study")) ?? studies.find((one) => one.state === "active") ?? studies[0];
+  const active = studies.filter((one) => one.state === "active");
+  const begin = studies.find((one) => one.name === address.get("study")) ?? active.find((one) => one.name === "default") ?? active[0] ?? studies[0];
   $("which").value = begin.name;
   if ([...$("days").options].some((one) => one.value === address.get("days"))) $("days").value = address.get("days");
   await read();
