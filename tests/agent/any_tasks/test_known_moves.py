@@ -39,9 +39,10 @@ def test_laws_are_those_of_the_formula():
         odds = log(q / (1 - q)) - evidence
         assert 0.01 < 1 / (1 + exp(-odds)) < 0.9  # the learnt share, the same in both causes
         for type_, own in enumerate((first, second)):
+            own_base = moves.own_base[type_, place].tolist()
             law = [
-                (1 - q) * (p + b) / (sum(pooled) + total) + q * (c + b) / (sum(own) + total)
-                for p, c, b in zip(pooled, own, base, strict=True)
+                (1 - q) * (p + b) / (sum(pooled) + total) + q * (c + mine) / (sum(own) + sum(own_base))
+                for p, c, b, mine in zip(pooled, own, base, own_base, strict=True)
             ]
             assert moves.laws[type_, place] == pytest.approx(law)
     assert moves.apart[0] > 0.9 > 0.5 > moves.apart[1]
@@ -49,6 +50,14 @@ def test_laws_are_those_of_the_formula():
     place, effect = moves.place(12, 5)
     assert 0.6 < moves.laws[1, place, effect] < moves.laws[0, place, effect]
     assert moves.laws.sum(axis=2) == pytest.approx(np.ones((2, 3)))
+
+
+def test_a_noisy_type_leaves_another_certain():
+    certain = {cause: {1: 10} for cause in range(2, 42, 2)}
+    noisy = {cause: {1: 4, 2: 3, 3: 3} for cause in range(2, 42, 2)}
+    moves = KnownMoves([counts_of(certain | {50: {1: 1}}), counts_of(noisy | {50: {2: 1}})])
+    (place, first), (_, second) = moves.place(50, 1), moves.place(50, 2)
+    assert moves.laws[0, place, first] > moves.laws[1, place, second] + 0.1
 
 
 def test_own_outcomes_of_the_task_teach_every_type():

@@ -1,7 +1,10 @@
+from collections import Counter
+
 import numpy as np
 import pytest
 
-from lifelore.agent.any_tasks.experience import Experience, TypeExperience
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.agent.any_tasks.experience import Experience, TaskNews, TypeExperience
 from lifelore.agent.any_tasks.known_returns import known_returns
 
 
@@ -27,3 +30,13 @@ def test_members_of_a_joined_type_count_together():
     experience.types["a"] = TypeExperience(returns={"a": sums(1.0)})
     experience.types["b"] = TypeExperience(returns={"a": sums(3.0, 5.0)})
     assert known_returns(experience, [("a", "b")], ("a",)).mean.tolist() == [[3.0]]
+
+
+def test_returns_of_a_policy_count_half_once_it_is_learnt_further():
+    experience = Experience("key", 2)
+    prior = ActionPrior(2, experience.prior.alpha0, experience.prior.key)
+    for value in (0.0, 10.0):
+        returns = {"a": [value] * 4, "b": [value] * 4}
+        experience.learn(TaskNews(0, 0, {"a": 1.0}, Counter(), returns, prior, learner="a", policy={}))
+    assert experience.types["a"].returns["a"] == pytest.approx(sums(*[0.0] * 2, *[10.0] * 4))
+    assert experience.types["a"].returns["b"] == pytest.approx(sums(*[0.0] * 4, *[10.0] * 4))

@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 
 from lifelore import LongLivedAgent, open_memory
+from lifelore.agent.any_tasks.one_task import SETTLED
+from lifelore.agent.any_tasks.reuse import TaskReuse
 from lifelore.agent.life.loop import Stopped
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.streams import stream
@@ -89,6 +91,44 @@ def test_ablations_keep_what_they_lack():
         assert bool(len(agent.prior)) == (name not in ("scratch", "textbook")), name
     for learner in ("model", "textbook"):
         assert life(2, learner=learner)[1][0][1].new
+
+
+def test_an_alarm_in_a_task_that_a_known_type_explains_adds_no_type(monkeypatch):
+    agent, found = life(2)
+    monkeypatch.setattr(TaskReuse, "alarmed", property(lambda self: True))
+    result = agent.live(WindyGrid(found[-1][0]))
+    assert result.alarm
+    assert not result.new
+    assert result.type == found[-1][1].type
+
+
+def test_a_settled_policy_is_explored_again_in_states_that_it_does_not_know():
+    """In the second wing it earns as much as it promises, and the other action pays more."""
+
+    class Wing(gymnasium.Env):
+        observation_space = gymnasium.spaces.MultiDiscrete([2, 21])
+        action_space = gymnasium.spaces.Discrete(2)
+
+        def __init__(self, wing):
+            self.pays = ((1.0, 0.0), (1.0, 5.0))[wing]
+            self.wing = wing
+
+        def reset(self, *, seed=None, options=None):
+            super().reset(seed=seed)
+            self.place = 0
+            return np.array((self.wing, self.place)), {}
+
+        def step(self, action):
+            self.place += 1
+            return np.array((self.wing, self.place)), self.pays[action], self.place == 20, False, {}
+
+    agent = LongLivedAgent(key="wings", state=lambda seen: tuple(seen.tolist()), features=lambda seen: 0)
+    agent.live(Wing(0))
+    agent._experience.types["robot.0"].idle = SETTLED
+    assert set(agent.live(Wing(0)).policies) == {"robot.0"}
+    result = agent.live(Wing(1))
+    assert result.policies[0] == "robot.0"
+    assert result.policies[-1] == "learner"
 
 
 # ---- memory ----------------------------------------------------------------------------------------------

@@ -27,6 +27,8 @@ from lifelore.memory import Memory
 COUNTS, POLICIES, VERSION = "task_counts", "task_policies", 1
 HOPELESS = 0.1
 """Share of the range of mean returns above the least one up to which a policy counts as worthless."""
+STALE = 0.5
+"""Share of a policy's earlier returns that no longer counts once a task has taught the policy more."""
 DATE_BITS = 32
 """Bits of a task's context beside its date in a slot."""
 
@@ -144,6 +146,8 @@ class Experience:
             yield counts_record(COUNTS, f"{self.key}/sightings/{name}", seen, bits=DATE_BITS)
             for policy, values in news.returns.items():
                 sums = belief * np.array([len(values), np.sum(values), np.square(values).sum()])
+                if policy == news.learner and name in self.types:
+                    sums -= STALE * self.types[name].returns.get(policy, 0.0)
                 key = f"{self.key}/returns/{name}/{policy}"
                 yield Record(COUNTS, key, VERSION, "add", np.arange(3), _fixed(sums))
         if news.learner is not None:

@@ -5,11 +5,11 @@ In most causes types are alike, in some they differ. For each cause c with count
     alike        outcomes of all types have one law: DM(Σ_i n_i)
     apart        each type has its own: Π_i DM(n_i)
     q_c          probability of *apart*, from both and the share ρ of such causes, which is learnt (EM)
-    P_i(o | c)   (1 − q_c) (Σ_j n_j + own + b) / … + q_c (n_i + own + b) / …
+    P_i(o | c)   (1 − q_c) (Σ_j n_j + own + b) / … + q_c (n_i + own + b_i) / …
 
 DM is the Dirichlet-multinomial law with pseudo-observations b: α spread over the outcomes that the cause has shown
 and one more, and θ of outcomes never shown. Both are learnt, and ρ, for moves and for rewards: each outcome is
-predicted from all others (leave one out).
+predicted from all others (leave one out). b_i is learnt from type i alone.
 ``own`` are the outcomes of the present task. So a cause that a type has not shown is expected to be as in other
 types, as far as causes are usually alike.
 """
@@ -61,15 +61,14 @@ class KnownMoves:
         0 where a cause is that of the next state, 1 where it is that of a reward.
     base : (n_causes, n_effects) float64
         The pseudo-observations b.
+    own_base : (n_types, n_causes, n_effects) float64
+        b as each type alone teaches it: one type is noisy and another is not.
     """
 
     def __init__(self, types: Sequence[Counts]) -> None:
         self.codes = sorted({cause for one in types for cause, _ in one})
         self._places = {code: place for place, code in enumerate(self.codes)}
-        totals: list[Counter[int]] = [Counter() for _ in self.codes]
-        for one in types:
-            for (cause, outcome), count in one.items():
-                totals[self._places[cause]][outcome] += count
+        totals = self._rows(*types)
         self._effects = [_most(row) for row in totals]
         n_effects = 1 + max((len(row) for row in self._effects), default=0)
         self.counts = np.zeros((len(types), len(self.codes), n_effects))
@@ -79,12 +78,26 @@ class KnownMoves:
         known = (np.arange(n_effects) < shown) | (np.arange(n_effects) == n_effects - 1)
         self.broad: Array = known / (shown + 1)
         self.kinds = np.array(self.codes, np.int64) & 1
-        self.base: Array = self.broad.copy()
+        self.base: Array = self._base(totals)
+        self.own_base: Array = np.array([self._base(self._rows(one)) for one in types])
+
+    def _rows(self, *types: Counts) -> list[Counter[int]]:
+        """Counts of types together by outcome, of each cause."""
+        rows: list[Counter[int]] = [Counter() for _ in self.codes]
+        for one in types:
+            for (cause, outcome), count in one.items():
+                rows[self._places[cause]][outcome] += count
+        return rows
+
+    def _base(self, rows: Sequence[Mapping[int, float]]) -> Array:
+        """The pseudo-observations that counts by outcome teach, of each kind its own, (n_causes, n_effects)."""
+        base = self.broad.copy()
         for kind in np.unique(self.kinds).tolist():
             own = self.kinds == kind
-            alpha, theta = learnt_base([row for row, mine in zip(totals, own.tolist(), strict=True) if mine])
-            self.base[own] *= alpha
-            self.base[own, -1] += theta
+            alpha, theta = learnt_base([row for row, mine in zip(rows, own.tolist(), strict=True) if mine])
+            base[own] *= alpha
+            base[own, -1] += theta
+        return base
 
     @property
     def n_causes(self) -> int:
@@ -139,7 +152,7 @@ class KnownMoves:
 
     def _law(self, causes: NDArray[np.int64], own: Array) -> Array:
         alike = self.pooled[causes] + own + self.base[causes]
-        each = self.counts[:, causes] + own + self.base[causes]
+        each = self.counts[:, causes] + own + self.own_base[:, causes]
         q = self.apart[causes, None]
         return (1 - q) * alike / alike.sum(axis=1, keepdims=True) + q * each / each.sum(axis=2, keepdims=True)
 

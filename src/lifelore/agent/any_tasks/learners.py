@@ -28,7 +28,7 @@ class Player(Protocol):
     """What acts in a task, and learns from each move that it makes."""
 
     def knows(self, state: int) -> bool:
-        """Whether a state, by code, was met before."""
+        """Whether it has acted in a state, by code, or learnt there."""
         ...
 
     def act(self, state: int, context: int, explore: bool) -> int:

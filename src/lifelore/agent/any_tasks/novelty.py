@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-SHARES = np.array([0.005, 0.03, 0.2, 0.8])
-"""Shares ρ of causes in which another type may differ."""
+SHARES = np.array([0.0, 0.005, 0.03, 0.2, 0.8])
+"""Shares ρ of causes in which another type may differ; 0 for one that differs in moves or rewards alone."""
 logsumexp = np.logaddexp.reduce
 AGAIN = 0.5
 """Probability that another type differs where known types differ."""

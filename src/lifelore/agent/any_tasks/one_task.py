@@ -7,7 +7,8 @@ for each episode:
         act by π, or by the learner; each move teaches what acted
         β, alarm ← the outcome of the move                                             notice
     explore, if no type fits or the policy of the type that fits still improves        learn
-count moves, returns, useful actions, and the belief in this context                   remember
+a new type, if all moves of the task say so; else the most believed type learns:
+moves, returns, useful actions, and the belief in this context                         remember
 """
 
 from collections import Counter
@@ -196,11 +197,10 @@ class OneTask:
         return own is not None and (self.experience.types[own].idle < SETTLED or strange)
 
     def begin_learning(self) -> None:
-        """Explore from here on: the policy that still improves, or one of its own from the best reused policy."""
+        """Explore from here on: the policy that still improves, or one of its own from the policy in reuse."""
         surely = self.reuse is not None and not self.alarmed and self.reuse.belief.max() >= SURE
         own = self.reuse.own_policy() if self.reuse is not None and surely else None
-        best = max(self.ran, key=lambda name: np.mean(self.ran[name]), default=self.policy)
-        start, self.goes_on_with = own or best, own
+        start, self.goes_on_with = own or self.policy, own
         if callable(self.settings.learner) and self.abilities.learner is None:
             self.learner = self.taught(self.settings.learner, None if start is None else self.known_policy(start))
             return
@@ -299,25 +299,32 @@ class OneTask:
         own = result.type if result.new or self.reuse is None else self.reuse.own_policy()
         if not belief or own is None:
             return news
-        if self.learner is not None and (result.new or self.goes_on_with == own):
+        if self.learner is not None and (result.new or self.goes_on_with == own or self.gained_on(own)):
             return self.with_learnt(news, own)
         if own in self.players:
             return news._replace(learner=own, policy=self.players[own].policy(), idle=experience.types[own].idle)
         return news
 
+    def learnt(self) -> list[float]:
+        """Returns of the learner's episodes."""
+        result = self.result
+        return [value for value, by in zip(result.returns, result.policies, strict=True) if by == LEARNER]
+
+    def gained_on(self, own: str) -> bool:
+        """Whether the learner has come above what the policy of a type has earned on it before."""
+        known = self.experience.types.get(own)
+        return gained(last_half(self.learnt()), None if known is None else known.returns.get(own))
+
     def with_learnt(self, news: TaskNews, own: str) -> TaskNews:
         """What a task has taught in which the policy of a type, `own`, was learnt."""
         assert self.learner is not None, "a policy was learnt"
-        result = self.result
-        learnt = [value for value, by in zip(result.returns, result.policies, strict=True) if by == LEARNER]
-        late = learnt[len(learnt) // 2 :]
-        returns = dict(news.returns) | {own: [*self.ran.get(own, []), *late]}
-        known = self.experience.types.get(own)
-        idle = 0
-        if known is not None and not self.experience.is_hopeless(own) and not gained(late, known.returns.get(own)):
+        learnt = self.learnt()
+        returns = dict(news.returns) | {own: [*self.ran.get(own, []), *last_half(learnt)]}
+        known, idle = self.experience.types.get(own), 0
+        if known is not None and not self.experience.is_hopeless(own) and not self.gained_on(own):
             idle = known.idle + 1
         fresh = self.learner.fresh_returns if isinstance(self.learner, Contest) else learnt
-        reached = fresh[len(fresh) // 2 :] if len(fresh) >= LEAST_FRESH else []
+        reached = last_half(fresh) if len(fresh) >= LEAST_FRESH else []
         policy = self.learner.policy()
         return news._replace(returns=returns, learner=own, policy=policy, idle=idle, fresh=reached)
 
@@ -325,10 +332,9 @@ class OneTask:
         """How much each type learns from the task; a new one has the given name."""
         if not self.abilities.reuse:
             return {}
-        if self.reuse is not None and not self.alarmed and not self.reuse.differs(moves):
-            believed = self.reuse.by_name(self.reuse.belief)
-            self.result.type = max(believed, key=believed.__getitem__)
-            return self.reuse.by_member()
+        if self.reuse is not None and not self.reuse.differs(moves):
+            self.result.type = self.reuse.names[self.reuse.best]
+            return self.reuse.best_member()
         self.result.type, self.result.new = name, True
         return {name: 1.0}
 
@@ -337,6 +343,11 @@ def episode_seeds(settings: TaskSettings, task: int) -> list[int]:
     """With what a world is reset for each episode of a task; the same for all agents of a seed."""
     streams = (stream(settings.seed, "task", task, "world", k) for k in range(settings.learning.episode_cap))
     return [int(one.integers(2**31)) for one in streams]
+
+
+def last_half(returns: Sequence[float]) -> Sequence[float]:
+    """The second half of returns."""
+    return returns[len(returns) // 2 :]
 
 
 def gained(late: Sequence[float], before: Any) -> bool:

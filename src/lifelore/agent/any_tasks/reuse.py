@@ -27,8 +27,6 @@ from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
 Array = NDArray[np.float64]
 
-LEAST_BELIEF = 0.01
-"""Types of less belief learn nothing from a task."""
 MOST_AGAINST = 1.0, 3.0
 """Most nats by which the return of one episode speaks for or against another type."""
 SIGNALS = ("moves", "returns")
@@ -96,6 +94,11 @@ class TaskReuse:
         return self.agent.belief
 
     @property
+    def best(self) -> int:
+        """Number of the type that is believed most."""
+        return int(self.belief.argmax())
+
+    @property
     def alarmed(self) -> bool:
         """Whether the alarm was raised: no known type fits."""
         return self.alarm.alarm
@@ -103,13 +106,15 @@ class TaskReuse:
     def select(self) -> str:
         """The policy that is worth most now, by name."""
         self.policy = self.policies[self.agent.select()]
-        self._promised = float(self.agent.expected_utility().max())
-        self._believed = int(self.belief.argmax())
+        self._believed = self.best
         return self.policy
 
     @property
     def shortfall(self) -> float:
-        """By how many deviations the episodes so far fell short of what the belief promised before each."""
+        """By how many deviations the episodes so far fell short of what the belief promised before each.
+
+        Where types that are believed promise different returns, a low one is no surprise.
+        """
         return float(np.sum(self._short) / np.sqrt(len(self._short))) if self._short else 0.0
 
     # ---- signals -----------------------------------------------------------------------------------
@@ -125,7 +130,7 @@ class TaskReuse:
                 self.agent.observe(self.policy, found)
                 place, effect = found
                 self._own.setdefault(place, np.zeros(self.known.moves.base.shape[1]))[effect] += 1
-        if int(self.belief.argmax()) != self._believed:
+        if self.best != self._believed:
             self.select()
 
     def end_episode(self, policy: str | None, earned: float, reused: bool) -> None:
@@ -141,7 +146,8 @@ class TaskReuse:
             Whether known policies played it.
         """
         if reused:
-            self._short.append((self._promised_at_begin - earned) / self._deviation)
+            mean, deviation = self._promised
+            self._short.append((mean - earned) / deviation)
         if policy is not None:
             self._ran.append((self.policies.index(policy), earned))
             if not self.by_moves:
@@ -151,7 +157,9 @@ class TaskReuse:
     def begin_episode(self) -> str:
         """The policy that is worth most for the next episode, by name."""
         policy = self.select()
-        self._promised_at_begin = self._promised
+        values = self.agent.library.performance.mean[:, self.policies.index(policy)]
+        mean = float(self.belief @ values)
+        self._promised = mean, float(np.hypot(self._deviation, np.sqrt(self.belief @ (values - mean) ** 2)))
         return policy
 
     def _log_likelihood(self, policy: int, found: tuple[int, int]) -> Array:
@@ -167,22 +175,25 @@ class TaskReuse:
         """A belief over the known types by name."""
         return dict(zip(self.names, belief.tolist(), strict=True))
 
-    def by_member(self) -> dict[str, float]:
-        """Belief in each type by the name of its first member, without those of little belief."""
-        pairs = zip(self.known.types, self.belief.tolist(), strict=True)
-        return {one.members[0]: value for one, value in pairs if value >= LEAST_BELIEF}
+    def best_member(self) -> dict[str, float]:
+        """Belief in the most believed type, by the name of its first member."""
+        return {self.known.types[self.best].members[0]: float(self.belief.max())}
 
     def own_policy(self) -> str | None:
         """A policy of the type that is believed most, by name; None where it has none."""
-        members = self.known.types[int(self.belief.argmax())].members
+        members = self.known.types[self.best].members
         if self.policy in members:
             return self.policy
         return next((name for name in members if name in self.policies), None)
 
     def differs(self, moves: Counts) -> bool:
-        """Whether the moves of the task are better explained by a type of its own."""
-        type_ = int(self.belief.argmax())
-        return self.known.moves.evidence_of_another(type_, moves) + self.returns_against(type_) > 0
+        """Whether the moves of the task, also after an alarm, are better explained by a type of its own.
+
+        Where moves are no signals, the alarm says it.
+        """
+        if self.alarmed and not self.by_moves:
+            return True
+        return self.known.moves.evidence_of_another(self.best, moves) + self.returns_against(self.best) > 0
 
     def returns_against(self, type_: int) -> float:
         """Evidence in nats that the returns of policies are not those that they get from a type."""

@@ -95,7 +95,7 @@ class TableLearner:
     # ---- act ---------------------------------------------------------------------------------------
 
     def knows(self, state: Hashable) -> bool:
-        """Whether a state was met before."""
+        """Whether it has acted in a state, or learnt there."""
         return state in self.q
 
     def act(self, state: Hashable, context: int, explore: bool = True) -> int:
@@ -144,7 +144,9 @@ class TableLearner:
         self.remembered += steps
 
     def _learn(self, step: Step) -> None:
-        future = 0.0 if step.ended else self.discount * float(self.q[step.following].max())
+        # A state that it only arrived in gets no row: it is not known.
+        ahead = None if step.ended else self.q.get(step.following)
+        future = 0.0 if ahead is None else self.discount * float(ahead.max())
         q = self.q[step.state]
         rate = self._falling_rate((step.state, step.action)) if self.replays else self.rate
         q[0, step.action] += rate * (step.reward + future - q[0, step.action])

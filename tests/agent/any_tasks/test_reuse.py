@@ -1,0 +1,43 @@
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from lifelore import LongLivedAgent
+from lifelore.agent.any_tasks.experience import Experience, TypeExperience
+from lifelore.agent.any_tasks.known_types import KnownTypes
+from lifelore.agent.any_tasks.one_task import SHORT
+from lifelore.agent.any_tasks.reuse import TaskReuse
+
+
+def sums(*values):
+    return np.array([len(values), np.sum(values), np.square(values).sum()])
+
+
+@pytest.fixture(scope="module")
+def experience():
+    """Two types that differ in ten moves; each has a policy, which earns nothing on the other."""
+    made = Experience("key", 2)
+    for name, other, outcome in (("a", "b", 1), ("b", "a", 2)):
+        moves = Counter({(cause, outcome): 10 for cause in range(2, 22, 2)})
+        returns = {name: sums(9.9, 10.1), other: sums(-0.1, 0.1)}
+        made.types[name] = TypeExperience(moves, Counter(), returns, {})
+    made.causes.update({(cause, 0): 2 for cause in range(2, 22, 2)})
+    made.n_tasks = 2
+    return made
+
+
+@pytest.mark.parametrize(("prior", "falls_short"), [((1.0, 0.0), True), ((0.6, 0.4), False)])
+def test_a_lost_bet_between_types_is_no_shortfall(experience, prior, falls_short):
+    reuse = TaskReuse(experience, KnownTypes(experience), np.array(prior), LongLivedAgent(key="key").settings)
+    assert reuse.begin_episode() == "a"
+    reuse.end_episode("a", 0.0, True)
+    assert (reuse.shortfall > SHORT) == falls_short
+    assert reuse.shortfall == pytest.approx(
+        (10 * prior[0]) / np.sqrt(reuse._deviation**2 + 100 * prior[0] * prior[1])
+    )
+
+
+def test_a_task_teaches_the_most_believed_type_alone(experience):
+    reuse = TaskReuse(experience, KnownTypes(experience), np.array([0.4, 0.6]), LongLivedAgent(key="key").settings)
+    assert reuse.best_member() == {"b": pytest.approx(0.6)}
