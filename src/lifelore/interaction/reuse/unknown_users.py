@@ -11,6 +11,7 @@ and deviation s of the policy's mean pay in the unknown type. So a policy is tri
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Law, Numbers
-from lifelore.interaction.outcomes.normal_law import NormalLaw
+from lifelore.interaction.outcomes.normal_law import EXACT, NormalLaw
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.novelty.broad_library import broad_moments
 from lifelore.interaction.reuse.user_model import UserModel
@@ -107,6 +108,8 @@ def unknown_law(library: PolicyLibrary, signals: Law) -> NormalLaw | None:
     """
     if not isinstance(signals, NormalLaw) or not isinstance(library.signal, ReturnSignal) or library.n_types < 2:
         return None
-    model = library.signal.outcomes
-    moments = broad_moments(model.mean, model.deviation, library.prior)
-    return NormalLaw(moments, Spread.known(0.0), signals.dtype.name)
+    known, prior = library.signal.outcomes.moments, library.prior
+    broad = broad_moments(known.mean, np.sqrt(known.variance), prior)
+    # The variances are as well known as those of the known types: only the mean pays shall tell a user from these.
+    broad = replace(broad, freedom=(prior @ np.minimum(known.freedom, EXACT))[None])
+    return NormalLaw(broad, Spread.known(0.0), signals.dtype.name)
