@@ -28,7 +28,7 @@ from lifelore.interaction.signals.return_signal import ReturnSignal
 
 Array = NDArray[Any]
 
-MASS = 0.2
+MASS = 0.15
 """Prior probability of the unknown type; more finds such users sooner, and takes more known users for such."""
 DEVIATIONS = 2.0
 """Deviations of a mean pay that count in favour of a policy; more tries policies longer."""
