@@ -87,11 +87,17 @@ class UnknownUsers(UserModel):
         return super().state(user) | {"log_odds": self.log_odds[user].copy()}
 
     def restore(self, user: int, state: Mapping[str, ArrayLike]) -> None:
-        """Take over a `state`; InputError where it is of another library."""
+        """Take over a `state`; InputError where it is of another library.
+
+        An empty state is of a session from before there was an unknown type: that user stays with the known types.
+        """
+        if not state:
+            self.shown[user], self.log_odds[user] = 0, -np.inf
+            return
         super().restore(user, state)
         log_odds = np.asarray(state.get("log_odds"), np.float64)
-        if log_odds.shape != () or not np.isfinite(log_odds):
-            raise InputError("a user's state must have the log odds of the unknown type, a finite number")
+        if log_odds.shape != () or not log_odds < np.inf:
+            raise InputError("a user's state must have the log odds of the unknown type, a number below infinity")
         self.log_odds[user] = log_odds
 
 
@@ -108,7 +114,8 @@ def unknown_law(library: PolicyLibrary, signals: Law) -> NormalLaw | None:
     """
     if not isinstance(signals, NormalLaw) or not isinstance(library.signal, ReturnSignal) or library.n_types < 2:
         return None
-    known, prior = library.signal.outcomes.moments, library.prior
+    model: Any = library.signal.outcomes
+    known, prior = model.moments, library.prior
     broad = broad_moments(known.mean, np.sqrt(known.variance), prior)
     # The variances are as well known as those of the known types: only the mean pays shall tell a user from these.
     broad = replace(broad, freedom=(prior @ np.minimum(known.freedom, EXACT))[None])
