@@ -122,13 +122,6 @@ def test_policies_are_tried_by_their_bounds_among_those_available(library):
     assert scores == pytest.approx(agent.expected_utility())
 
 
-def test_a_stranger_teaches_the_library_nothing(library):
-    before = library.performance.mean.copy()
-    agent = stranger(library)
-    assert agent.teach(least=float(agent.belief.max()) - 1e-9) is None
-    assert (library.performance.mean == before).all()
-
-
 def test_strangers_among_known_users_are_served_as_they_would_be_alone(library):
     strange, known, rows = stranger(library), BayesianPolicyReuse(library), ReuseAlgorithm(library, 3)
     every, generator = np.arange(3), np.random.default_rng(0)
