@@ -255,8 +255,7 @@ class BayesianPolicyReuse:
         Returns
         -------
         str or None
-            The type that learnt; None where no type is believed that much, no type is likely to fit, or nothing is
-            to be learnt.
+            The type that learnt; None where no type is believed that much, or nothing is to be learnt.
 
         Raises
         ------
@@ -269,8 +268,7 @@ class BayesianPolicyReuse:
             raise InputError("this task has taught the library before; its outcomes count once")
         belief, outcomes = self.belief, self.algorithm.outcomes
         type_ = int(belief.argmax())
-        unknown = self.algorithm.unknown
-        if belief[type_] < least or not outcomes.law.learns or (unknown is not None and unknown.log_odds[0] > 0):
+        if belief[type_] < least or not outcomes.law.learns:
             return None
         self.library.performance.absorb(type_, outcomes.state(0))  # pyright: ignore
         self.library.forget_tables()

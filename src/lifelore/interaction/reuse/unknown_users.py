@@ -11,6 +11,7 @@ and deviation s of the policy's mean pay in the unknown type. So a policy is tri
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Law, Numbers
-from lifelore.interaction.outcomes.normal_law import NormalLaw
+from lifelore.interaction.outcomes.normal_law import EXACT, NormalLaw
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.novelty.broad_library import broad_moments
 from lifelore.interaction.reuse.user_model import UserModel
@@ -27,7 +28,7 @@ from lifelore.interaction.signals.return_signal import ReturnSignal
 
 Array = NDArray[Any]
 
-MASS = 0.2
+MASS = 0.15
 """Prior probability of the unknown type; more finds such users sooner, and takes more known users for such."""
 DEVIATIONS = 2.0
 """Deviations of a mean pay that count in favour of a policy; more tries policies longer."""
@@ -86,11 +87,17 @@ class UnknownUsers(UserModel):
         return super().state(user) | {"log_odds": self.log_odds[user].copy()}
 
     def restore(self, user: int, state: Mapping[str, ArrayLike]) -> None:
-        """Take over a `state`; InputError where it is of another library."""
+        """Take over a `state`; InputError where it is of another library.
+
+        An empty state is of a session from before there was an unknown type: that user stays with the known types.
+        """
+        if not state:
+            self.shown[user], self.log_odds[user] = 0, -np.inf
+            return
         super().restore(user, state)
         log_odds = np.asarray(state.get("log_odds"), np.float64)
-        if log_odds.shape != () or not np.isfinite(log_odds):
-            raise InputError("a user's state must have the log odds of the unknown type, a finite number")
+        if log_odds.shape != () or not log_odds < np.inf:
+            raise InputError("a user's state must have the log odds of the unknown type, a number below infinity")
         self.log_odds[user] = log_odds
 
 
@@ -107,6 +114,9 @@ def unknown_law(library: PolicyLibrary, signals: Law) -> NormalLaw | None:
     """
     if not isinstance(signals, NormalLaw) or not isinstance(library.signal, ReturnSignal) or library.n_types < 2:
         return None
-    model = library.signal.outcomes
-    moments = broad_moments(model.mean, model.deviation, library.prior)
-    return NormalLaw(moments, Spread.known(0.0), signals.dtype.name)
+    model: Any = library.signal.outcomes
+    known, prior = model.moments, library.prior
+    broad = broad_moments(known.mean, np.sqrt(known.variance), prior)
+    # The variances are as well known as those of the known types: only the mean pays shall tell a user from these.
+    broad = replace(broad, freedom=(prior @ np.minimum(known.freedom, EXACT))[None])
+    return NormalLaw(broad, Spread.known(0.0), signals.dtype.name)
