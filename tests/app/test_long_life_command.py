@@ -30,13 +30,6 @@ def test_a_life_goes_on_where_it_ended(ask, where):
     assert whole["tasks"] == first["tasks"] + second["tasks"]
 
 
-def test_spare_time_goes_to_contexts_that_were_met(ask, where):
-    document = live(ask, where, "--set", "spare=3")
-    assert [task["spare"] for task in document["tasks"]] == [False] * 4 + [True] * 3
-    met = {task["context"] for task in document["tasks"][:4]}
-    assert {task["context"] for task in document["tasks"][4:]} <= met
-
-
 def test_explain_says_why(ask, where):
     live(ask, where)
     run = ask("explain", "3", "--memory", where)

@@ -10,7 +10,7 @@ from lifelore.agent.any_tasks.experience import Experience
 from lifelore.agent.any_tasks.known_moves import KnownMoves
 from lifelore.agent.any_tasks.moves import Counts
 from lifelore.agent.long_lived.same_type import JoinedType
-from lifelore.agent.long_lived.type_prior import TypePrior
+from lifelore.agent.long_lived.type_prior import Sightings
 
 Array = NDArray[np.float64]
 
@@ -47,15 +47,7 @@ class KnownTypes:
     def _moves(self, members: Sequence[str]) -> Counts:
         return sum((self.experience.types[name].moves for name in members), Counter())
 
-    def type_prior(self) -> TypePrior:
-        """The prior over types by context and date, learnt from the sightings."""
-        return TypePrior.of_sightings(len(self), self.sighted())
-
-    def sighted(self) -> dict[tuple[int, int], Array]:
-        """Belief in each type at the end of tasks, (n_types,), by date and context in their order."""
-        rows: dict[tuple[int, int], Array] = {}
-        for number, one in enumerate(self.types):
-            for name in one.members:
-                for when, belief in self.experience.types[name].sightings.items():
-                    rows.setdefault(when, np.zeros(len(self)))[number] += belief
-        return {when: rows[when] for when in sorted(rows)}
+    def sightings(self) -> Sightings:
+        """Where these types were seen."""
+        types = self.experience.types
+        return Sightings.of([[types[name].sightings for name in one.members] for one in self.types])

@@ -236,7 +236,7 @@ class LongLivedAgent(AbstractContextManager):
         """Contexts by how much the agent would rather meet them next: entropy × frequency, the largest first."""
         if self._experience is None:
             return []
-        known = curious_contexts(KnownTypes(self._experience))
+        known = curious_contexts(KnownTypes(self._experience).sightings())
         return [replace(one, context=self._label(one.context)) for one in known]
 
     def explain(self, result: TaskResult) -> str:

@@ -9,13 +9,12 @@ Tasks that disagree stay so however much is seen; the other two fall with more e
 """
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.agent.long_lived.knowledge import Knowledge
-from lifelore.agent.long_lived.type_prior import TypePrior
+from lifelore.agent.long_lived.type_prior import Sightings
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import entropy
 
@@ -70,27 +69,15 @@ class CuriousType:
     n_tasks: float
 
 
-class Sighted(Protocol):
-    """What has seen types in contexts."""
-
-    def sighted(self) -> dict[tuple[int, int], NDArray[np.float64]]:
-        """Belief in each known type at the end of tasks, (n_types,), by date and context."""
-        ...
-
-    def type_prior(self) -> TypePrior:
-        """The prior over the known types."""
-        ...
-
-
-def curious_contexts(knowledge: Sighted) -> list[CuriousContext]:
+def curious_contexts(sightings: Sightings) -> list[CuriousContext]:
     """Contexts that were met, the most interesting first."""
-    sighted = knowledge.sighted()
+    sighted = sightings.beliefs
     if not sighted:
         return []
     beliefs: dict[int, list[np.ndarray]] = {}
     for (_, context), belief in sighted.items():
         beliefs.setdefault(context, []).append(belief)
-    prior, today, found = knowledge.type_prior(), max(date for date, _ in sighted) + 1, []
+    prior, today, found = sightings.type_prior(), max(date for date, _ in sighted) + 1, []
     for context, tasks in beliefs.items():
         rows = np.array(tasks)
         rows /= rows.sum(axis=1, keepdims=True)
@@ -108,7 +95,7 @@ def context_to_practise(knowledge: Knowledge, generator: np.random.Generator) ->
     InputError
         No context was met yet.
     """
-    found = curious_contexts(knowledge)
+    found = curious_contexts(knowledge.sightings())
     if not found:
         raise InputError("a context to practise needs tasks that were lived; live through some first")
     # Where nothing is in doubt, often met contexts are practised.

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from lifelore.action.priors.action_prior import KIND, ActionPrior
 from lifelore.agent.long_lived.known_types import Effects, KnownTypes, effect_counts
 from lifelore.agent.long_lived.task_family import SharedKnowledge, TaskFamily
-from lifelore.agent.long_lived.type_prior import TypePrior
+from lifelore.agent.long_lived.type_prior import Sightings
 from lifelore.core.protocols import Record
 
 Array = NDArray[np.float64]
@@ -93,20 +93,10 @@ class Knowledge:
             self._view = KnownTypes.joined(family, names, counts)
         return self._view
 
-    def type_prior(self) -> TypePrior:
-        """The prior over `known_types` by context and date, learnt from the sightings."""
-        return TypePrior.of_sightings(len(self.known_types()), self.sighted())
-
-    def sighted(self) -> dict[tuple[int, int], Array]:
-        """Belief in each of `known_types` at the end of tasks, (n_types,), by date and context in their order."""
-        known = self.known_types()
-        rows: dict[tuple[int, int], Array] = {}
-        for number, one in enumerate(known.types):
-            for sightings in (self.types[name].sightings for name in one.members):
-                codes = sightings.contexts
-                for code, count in zip(codes.tolist(), sightings.counts(codes)[:, 0], strict=True):
-                    rows.setdefault(divmod(code, MOST_CONTEXTS), np.zeros(len(known)))[number] += count
-        return {key: rows[key] for key in sorted(rows)}
+    def sightings(self) -> Sightings:
+        """Where `known_types` were seen."""
+        known = self.known_types().types
+        return Sightings.of([[_by_when(self.types[name].sightings) for name in one.members] for one in known])
 
     # ---- learning ----------------------------------------------------------------------------------
 
@@ -156,6 +146,15 @@ class Knowledge:
                 n = {"type": family.n_effects, "acts": len(family.acts)}.get(kind, 1)
                 made.add({name: ActionPrior.from_record(replace(record, key=""), n)})
         return made
+
+
+def _by_when(sightings: ActionPrior) -> dict[tuple[int, int], float]:
+    """Beliefs by date and context."""
+    codes = sightings.contexts
+    return {
+        divmod(code, MOST_CONTEXTS): count
+        for code, count in zip(codes.tolist(), sightings.counts(codes)[:, 0], strict=True)
+    }
 
 
 def _counted(codes, results, n: int, weight: float = 1.0) -> ActionPrior:

@@ -110,7 +110,7 @@ def attempt_task(
     # Recognise: which types does this context usually have?
     lived.prior = np.full(len(known), 1 / max(len(known), 1))
     if abilities.prior and len(known):
-        lived.prior = knowledge.type_prior().prior(drawn.context, drawn.number)
+        lived.prior = knowledge.sightings().type_prior().prior(drawn.context, drawn.number)
     recognition = Recognition(knowledge, lived.prior, settings.false_alarm, settings.unknown, seed)
     shared.guided = abilities.prior
 

@@ -12,7 +12,7 @@ dated and never decay in memory, so those of several robots merge by addition. T
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -67,14 +67,6 @@ class TypePrior:
         self.half_lives = tuple(half_lives)
         self.dates: dict[int, ActionPrior] = {}
         self._forget_past()
-
-    @classmethod
-    def of_sightings(cls, n_types: int, sighted: Mapping[tuple[int, int], ArrayLike]) -> Self:
-        """The prior with a uniform G₀ from counted beliefs over types (n_types,), by date and context."""
-        made = cls(np.full(n_types, 1 / n_types))
-        for (date, context), counts in sighted.items():
-            made.learn(context, counts, date)
-        return made
 
     @property
     def n_types(self) -> int:
@@ -178,3 +170,31 @@ class TypePrior:
             return np.zeros((len(self.half_lives), self.n_types))
         last, rows = self._past[context]
         return rows * 0.5 ** ((date - last) / np.array(self.half_lives))[:, None]
+
+
+class Sightings(NamedTuple):
+    """Where known types were seen.
+
+    n_types : number of types
+    beliefs : sum of the beliefs in each type at the end of tasks, (n_types,), by date and context in their order
+    """
+
+    n_types: int
+    beliefs: dict[tuple[int, int], Array]
+
+    @classmethod
+    def of(cls, types: Sequence[Iterable[Mapping[tuple[int, int], float]]]) -> Self:
+        """The sightings of types, from the belief in each of their members by date and context."""
+        rows: dict[tuple[int, int], Array] = {}
+        for number, members in enumerate(types):
+            for seen in members:
+                for when, belief in seen.items():
+                    rows.setdefault(when, np.zeros(len(types)))[number] += belief
+        return cls(len(types), {when: rows[when] for when in sorted(rows)})
+
+    def type_prior(self) -> TypePrior:
+        """The prior that was learnt from them, with a uniform G₀."""
+        made = TypePrior(np.full(self.n_types, 1 / self.n_types))
+        for (date, context), belief in self.beliefs.items():
+            made.learn(context, belief, date)
+        return made

@@ -58,7 +58,8 @@ def known_family(memory: Memory, domain: str, seed: int = 0) -> dict[str, Any]:
 
 def _contexts(knowledge: Knowledge) -> list[dict[str, Any]]:
     names = [type_words(one.name) for one in knowledge.known_types().types]
-    prior, sighted = knowledge.type_prior(), list(knowledge.sighted())
+    sightings = knowledge.sightings()
+    prior, sighted = sightings.type_prior(), list(sightings.beliefs)
     today = max(date for date, _ in sighted)
     seen = [context for _, context in sighted]
 
@@ -75,7 +76,7 @@ def _contexts(knowledge: Knowledge) -> list[dict[str, Any]]:
             "interest": abs(round(one.interest, 4)),
         }
 
-    return [entry(one) for one in curious_contexts(knowledge)]
+    return [entry(one) for one in curious_contexts(sightings)]
 
 
 def _telling(knowledge: Knowledge) -> dict[str, list[str]]:
