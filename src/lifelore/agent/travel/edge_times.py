@@ -84,11 +84,15 @@ def typical_seconds(world: GridWorld, passes: Passes, clock: float) -> NDArray[n
     period = np.minimum(age / PERIOD, N_PERIODS - 1).astype(np.int64)
     axes = {"always": np.zeros_like(period), "hour": hour_of(rows.minute), "period": period}
     now = {"always": 0, "hour": int(hour_of(np.array(minute))), "period": 0}
+    # Groups in which nothing was observed change nothing: the tables hold the others, and that of the clock, last.
+    used = {axis: np.append(np.unique(groups), now[axis]) for axis, groups in axes.items()}
+    column = {axis: np.searchsorted(used[axis][:-1], groups) for axis, groups in axes.items()}
 
     def by_group(axis: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
         slot, shape = cell * WIDTHS[axis] + axes[axis], (len(entered), WIDTHS[axis])
         table = summed(slot, values, shape)
-        return smoothed_hours(table) if axis == "hour" else _smoothed(np.pad(table, ((0, 0), (1, 1))))
+        smooth = smoothed_hours(table) if axis == "hour" else _smoothed(np.pad(table, ((0, 0), (1, 1))))
+        return smooth[:, used[axis]]
 
     counts = {axis: by_group(axis, weight) for axis in WIDTHS}
     left = rows.log_seconds / rows.passes - np.log(nominal)
@@ -98,10 +102,10 @@ def typical_seconds(world: GridWorld, passes: Passes, clock: float) -> NDArray[n
     for _ in range(SWEEPS):
         for place, (is_near, axis, strength) in enumerate(LEVELS):
             left += explained[place]
-            sums, n, at = by_group(axis, weight * np.clip(left, -LARGEST, LARGEST)), counts[axis], now[axis]
+            sums, n = by_group(axis, weight * np.clip(left, -LARGEST, LARGEST)), counts[axis]
             everywhere, where_entered = around[is_near]
-            explained[place] = _shrunk(where_entered, sums, n, strength)[cell, axes[axis]]
-            log[place] = _shrunk(everywhere, sums[:, at], n[:, at], strength)
+            explained[place] = _shrunk(where_entered, sums, n, strength)[cell, column[axis]]
+            log[place] = _shrunk(everywhere, sums[:, -1], n[:, -1], strength)
             left -= explained[place]
     by_cell = nominal * np.exp(pace + log.sum(axis=0))
     return np.where(world.neighbour >= 0, by_cell[world.neighbour], nominal)
