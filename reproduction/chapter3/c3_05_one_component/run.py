@@ -18,6 +18,7 @@ from reproduction.chapter3.factory.comparison import UNIFORM, is_default
 from reproduction.chapter3.factory.learning import LEARNT, problem_of, tasks_of, tried_actions, with_pseudo_count
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.grid import Cell, Grid
+from reproduction.engine.learning_run import learnt
 from reproduction.engine.results_table import ResultsTable, curve_of
 
 SOURCES = ("exact", "learnt")
@@ -71,7 +72,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
                 prior = with_pseudo_count(priors[record["source"], record["encoding"]], record["alpha0"])
                 rows = learning.rows_of(problem, prior, record["encoding"], record["ties"])
             schedule = schedule_of({**settings, "max_steps": record["max_steps"]}, record["schedule"])
-            curve, learner = learning.learn_task(problem, rows, schedule)
+            curve, learner = learnt(problem.tables, problem.stream, rows, schedule)
             record["rewards"].append(float(curve.rewards.mean()))
             if record["source"] == "learnt":
                 own = tried_actions(learner, problem.solved.task.completed)
