@@ -81,10 +81,9 @@ def least_invariance(problem: Problem, prior: ActionPrior, default: Mapping) -> 
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The comparisons at the default, how much the prior holds the invariances, and remarks."""
-    found = Comparison(results, grid_of(settings))
+    """How much the prior holds the invariances at the default, and remarks."""
     invariant = {"least_invariance": mean_estimate([result["invariances"] for result in results])}
-    return {**_numbers(results, found, found.grid.default), **invariant, **found.remarks(METHODS)}
+    return {**invariant, **Comparison(results, grid_of(settings)).remarks(METHODS)}
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:

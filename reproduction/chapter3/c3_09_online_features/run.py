@@ -80,13 +80,10 @@ def mask_of(names: Sequence[str]) -> int:
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The comparisons at the default, and the share of episodes that end by a completed task."""
+    """The share of episodes that end by a completed task, at the default."""
     grid, table = grid_of(settings), table_of(settings, results)
     completed = [table.values("completed", **grid.where(m, grid.default)).mean(axis=1) for m in METHODS]
-    return {
-        **_numbers(results, grid, table, grid.default),
-        "completed": mean_estimate(np.mean(completed, axis=0)),
-    }
+    return {"completed": mean_estimate(np.mean(completed, axis=0))}
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:

@@ -121,7 +121,7 @@ def doubt(probs: NDArray[np.float64], best: NDArray[np.bool_]) -> tuple[float, f
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """At the default: entropy, surprise and rewards with acquired features, and which are acquired."""
+    """At the default: which features are acquired, and rewards with them."""
     shares = acquired_shares(results)
     acquired, every, plain = (
         np.array([np.mean(of_run["rewards"]) for of_run in found])
@@ -129,7 +129,6 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     )
     optimal = np.array([result["optimal"] for result in results])
     return {
-        **_gains(results, 0),
         "least_share_of_four": min((shares[name] for name in CARDINALS), key=lambda share: share.value),
         "largest_share_of_noise": max((shares[name] for name in NOISE), key=lambda share: share.value),
         "acquired_minus_all": ratio_estimate(acquired - every, optimal - plain),
@@ -157,7 +156,7 @@ def acquired_shares(results: Sequence[Mapping]) -> dict[str, Estimate]:
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
-    """The gains by start and least bits."""
+    """Entropy, surprise and rewards with acquired features, by start and least bits."""
     for place, choice in enumerate(choices_of(settings)):
         yield choice, _gains(results, place)
 

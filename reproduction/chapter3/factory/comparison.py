@@ -112,13 +112,12 @@ def functions_of(
 ) -> tuple[Callable, Callable, Callable]:
     """The functions ``measure``, ``readings`` and ``rows`` of a claim that compares `methods` over a grid.
 
-    ``numbers(found, cell)`` are its estimates in a cell; at the default it makes `Comparison.remarks` beside them,
-    and the row of each method is its curve there.
+    ``numbers(found, cell)`` are its estimates in a cell; beside them are `Comparison.remarks` at the default, and
+    the row of each method is its curve there.
     """
 
     def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-        found = Comparison(results, grid_of(settings))
-        return {**numbers(found, found.grid.default), **found.remarks(methods)}
+        return Comparison(results, grid_of(settings)).remarks(methods)
 
     def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:
         found = Comparison(results, grid_of(settings))
