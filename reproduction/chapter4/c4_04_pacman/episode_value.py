@@ -12,12 +12,12 @@ from lifelore.core.mdp import TERMINAL, Tables
 
 
 def return_moments(
-    tables: Tables, row_of: NDArray[np.int32], probs: NDArray[np.float64], max_steps: int, discount: float = 1.0
+    tables: Tables, row_of: NDArray[np.int32], probs: NDArray[np.float64], max_steps: int
 ) -> tuple[float, float]:
     """Mean and standard deviation of an episode's return.
 
     The moments of what is still to come, by state and backwards from the step limit:
-    ``E[G] = E[r + γ G']`` and ``E[G²] = E[r² + 2 γ r G' + γ² G'²]``.
+    ``E[G] = E[r + G']`` and ``E[G²] = E[r² + 2 r G' + G'²]``.
 
     Parameters
     ----------
@@ -28,8 +28,6 @@ def return_moments(
         The policy; rows sum to 1.
     max_steps : int
         Steps after which an episode is truncated.
-    discount : float
-        γ in [0, 1].
     """
     chances = np.diff(tables.by_pair.outcome_cum, prepend=0.0) * probs[row_of][:, :, None]
     state, action, outcome = np.nonzero(chances)
@@ -41,7 +39,7 @@ def return_moments(
     now, square_now = (np.bincount(state, chance * x, tables.n_states) for x in (reward, reward**2))
     first, second = np.zeros((2, tables.n_states))
     for _ in range(max_steps):
-        second = square_now + 2 * discount * (paid_onward @ first) + discount**2 * (onward @ second)
-        first = now + discount * (onward @ first)
+        second = square_now + 2 * (paid_onward @ first) + onward @ second
+        first = now + onward @ first
     mean = first[tables.starts].mean()
     return float(mean), float(np.sqrt(max(second[tables.starts].mean() - mean**2, 0.0)))
