@@ -12,6 +12,11 @@ from typing import Any
 Cell = dict[str, Any]
 
 
+def combinations(settings: Mapping[str, Sequence], keys: Sequence[str]) -> list[Cell]:
+    """Every combination of the settings' choices, the last key fastest; the first of them is the default."""
+    return [dict(zip(keys, values, strict=True)) for values in product(*(settings[key] for key in keys))]
+
+
 @dataclass(frozen=True)
 class Grid:
     """The cells of a grid.
@@ -52,8 +57,7 @@ class Grid:
         Each key is a setting with a list of choices, the first of them the default. `reads`: see the class.
         """
         default = {key: settings[key][0] for key in (*crossed, *singly)}
-        combinations = product(*(settings[key] for key in crossed))
-        cells = [{**default, **dict(zip(crossed, values, strict=True))} for values in combinations]
+        cells = [{**default, **values} for values in combinations(settings, crossed)]
         cells += [{**default, key: value} for key in singly for value in settings[key][1:]]
         return cls(default, tuple(cells), reads or {})
 

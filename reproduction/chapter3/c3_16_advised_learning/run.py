@@ -22,6 +22,7 @@ from reproduction.chapter3.advice.learning import (
 from reproduction.chapter3.advice.mazes import Maze
 from reproduction.chapter3.learning.grid_tasks import block_curve, even_blocks
 from reproduction.chapter3.learning.schedules import Epsilon
+from reproduction.engine.grid import combinations
 from reproduction.engine.results_table import having
 
 cells = mazes.maze_cells
@@ -88,10 +89,7 @@ def _found(results: Sequence[Mapping], place: int, use: int) -> dict[str, Estima
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """Goals found in a handful by loops, experts, α⁰, starts and schedule."""
-    uses = [
-        dict(zip(("starts", "schedule"), use, strict=True))
-        for use in product(settings["starts"], settings["schedule"])
-    ]
+    uses = combinations(settings, ("starts", "schedule"))
     for loops in settings["loops"]:
         own = having(results, loops=loops)
         for (place, choice), (number, use) in product(enumerate(mazes.choices_of(settings)), enumerate(uses)):

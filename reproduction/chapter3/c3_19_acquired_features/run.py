@@ -7,7 +7,6 @@ counts the exact optimal policies of the same training tasks, in all states alik
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +23,7 @@ from lifelore.domains.factory.factory import ACTION_NAMES
 from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET, Problem, problem_of, rewards_of
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.estimates import exact_share
+from reproduction.engine.grid import combinations
 
 PLAIN, START, ACQUIRED, ALL = METHODS = ("uniform", "start", "acquired", "all")
 STARTS = {"phi1": PHI["phi1"], "items": ("Items",), "north": ("PosUM", "Items")}
@@ -32,6 +32,7 @@ NOISE = ("Noise1", "Noise2")
 NOISE_SIZES = (4, 3)
 POOL = FeatureSet((*FULL_SET.names, *NOISE), (*FULL_SET.sizes, *NOISE_SIZES))
 ALPHA0 = 0.1
+CHOICES = ("start", "least")
 
 
 class Counted(NamedTuple):
@@ -41,14 +42,9 @@ class Counted(NamedTuple):
     codes: NDArray[np.int64]
 
 
-def choices_of(settings: Mapping) -> list[dict]:
-    """Starts crossed with least bits; the first makes the default."""
-    return [{"start": s, "least": b} for s, b in product(settings["start"], settings["least"])]
-
-
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: features acquired, and entropy, surprise and rewards in new tasks, by choice."""
-    own, choices = (seed, "C3.19", cell["run"]), choices_of(settings)
+    own, choices = (seed, "C3.19", cell["run"]), combinations(settings, CHOICES)
     order = stream(*own, "order").permutation(POOL.names).tolist()
     agents = [_agent(choice, order) for choice in choices]
     names_of = {**{start: STARTS[start] for start in settings["start"]}, ALL: FULL_SET.names}
@@ -157,7 +153,7 @@ def acquired_shares(results: Sequence[Mapping]) -> dict[str, Estimate]:
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """Entropy, surprise and rewards with acquired features, by start and least bits."""
-    for place, choice in enumerate(choices_of(settings)):
+    for place, choice in enumerate(combinations(settings, CHOICES)):
         yield choice, _gains(results, place)
 
 
