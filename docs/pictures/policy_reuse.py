@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from docs.pictures.figure_category_bars import draw_category_bars
 from docs.pictures.figure_graph_models import draw_interaction_model, draw_type_model
 from docs.pictures.figure_performance_curves import draw_performance_curves
 from docs.pictures.figure_reserve_map import draw_reserve_maps
@@ -26,7 +27,6 @@ from lifelore.domains.pacman.pacman import PacmanMaze, PacmanTask
 from lifelore.domains.pacman.picture import draw_pacman
 from lifelore.domains.surveillance.surveillance import BASE, LAYOUTS, SIDE, Surveillance
 from lifelore.figures.style import save_figure
-from reproduction.chapter4.golf.category_bars import draw_category_bars
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -3,9 +3,10 @@
 - ``claim.toml``: the thesis's sentence, its statements with the conditions that make them true, settings.
 - ``run.py``: ``cells(settings)`` lists the cells of a run (without it: `each_run`), ``run_cell(settings, cell,
   seed)`` computes one of them. Cells are independent plain dictionaries, run in any order in any thread
-  or process. ``measure(settings, results)`` gives named estimates at the default; ``readings(settings, results)``
-  gives pairs of a reading of the choices left open (a plain mapping) and the same estimates there;
-  ``rows(settings, results)`` gives what the figure needs beside them. The last two may be missing.
+  or process. ``readings(settings, results)`` gives pairs of a reading of the choices left open (a plain mapping)
+  and named estimates there, the default first; ``measure(settings, results)`` gives what is measured at the
+  default beside the first reading, or instead of it. One of the two may be missing. ``rows(settings, results)``
+  gives what the figure needs beside them, and may be missing.
 - ``figure.py``: ``draw(result)`` draws the thesis's figure from the finished result; it runs nothing again.
 
 Claims with the same ``run_cell`` share their finished cells where a module has ``shared = ("pairs", "camera")``:
@@ -51,6 +52,11 @@ def no_readings(settings: Settings, results: Sequence[CellResult]) -> list:
     return []
 
 
+def no_measures(settings: Settings, results: Sequence[CellResult]) -> dict:
+    """The measures of a claim that measures nothing beside its first reading."""
+    return {}
+
+
 @dataclass(frozen=True)
 class Claim:
     """One claim of the thesis as an experiment.
@@ -69,7 +75,7 @@ class Claim:
         One or more of them central.
     sizes : mapping
         Settings by mode, ``quick`` (for tests) and ``full`` (evidence); the same keys in both.
-    run_cell, measure, draw, cells, readings, rows : callable
+    run_cell, draw, measure, cells, readings, rows : callable
         The functions of the claim's modules, see above. `run_cell` is pure, and picklable by name.
     figure : tuple of str
         The thesis's figures and tables that it reproduces, such as ``3.7`` and ``Table 3.1``.
@@ -97,8 +103,8 @@ class Claim:
     statements: tuple[Statement, ...]
     sizes: Mapping[str, Settings]
     run_cell: Callable[[Settings, Cell, int], dict]
-    measure: Callable[[Settings, Sequence[CellResult]], Estimates]
     draw: Callable[[Mapping], "Figure"]
+    measure: Callable[[Settings, Sequence[CellResult]], Estimates] = no_measures
     cells: Callable[[Settings], list[dict]] = each_run
     readings: Callable[[Settings, Sequence[CellResult]], Iterable[tuple[Cell, Estimates]]] = no_readings
     rows: Callable[[Settings, Sequence[CellResult]], list[dict]] = no_readings
@@ -141,6 +147,14 @@ class Claim:
             data[name] = tuple(data.get(name, ()))
         return cls(id=claim_id, sizes=sizes, **data, **_functions(folder, package, full))
 
+    def measured(
+        self, settings: Settings, results: Sequence[CellResult]
+    ) -> tuple[Estimates, list[tuple[Cell, Estimates]]]:
+        """What is measured at the default, and in every reading."""
+        readings = list(self.readings(settings, results))
+        first = readings[0][1] if readings else {}
+        return {**first, **self.measure(settings, results)}, readings
+
     @property
     def central(self) -> list[Statement]:
         """The statements that its word rests on."""
@@ -181,11 +195,12 @@ def _functions(folder: Path, package: str, settings: Settings) -> dict[str, Any]
         for module in sorted(names)
         for name, value in vars(import_module(f"{package}.{module}")).items()
     }
-    known = ("run_cell", "measure", "draw", "cells", "readings", "rows", "check", "shared")
+    known = ("run_cell", "draw", "measure", "readings", "cells", "rows", "check", "shared")
     found = {name: scope[name] for name in known if name in scope}
-    if absent := [name for name in known[:3] if name not in found]:
+    absent = [name for name in known[:2] if name not in found]
+    if absent := absent + ([] if {"measure", "readings"} & found.keys() else ["measure"]):
         raise InputError(
-            f"modules of {folder} must define run_cell, measure and draw; missing {', '.join(absent)}"
+            f"modules of {folder} must define run_cell, draw and measure or readings; missing {', '.join(absent)}"
         )
     if unread := set(found.get("shared", ())) - settings.keys():
         raise InputError(f"shared of {folder} must name settings, got {', '.join(sorted(unread))}")

@@ -10,8 +10,11 @@ from itertools import product
 from typing import Any
 
 Cell = dict[str, Any]
-READ_WITHOUT_PRIOR = ("schedule", "max_steps")
-"""Keys that learners without a prior read."""
+
+
+def combinations(settings: Mapping[str, Sequence], keys: Sequence[str]) -> list[Cell]:
+    """Every combination of the settings' choices, the last key fastest; the first of them is the default."""
+    return [dict(zip(keys, values, strict=True)) for values in product(*(settings[key] for key in keys))]
 
 
 @dataclass(frozen=True)
@@ -29,13 +32,11 @@ class Grid:
 
     Examples
     --------
-    >>> grid = Grid.crossed(
-    ...     {"default": {"ties": "uniform", "schedule": 1}, "ties": ["uniform", "prior"], "schedules": [1, 2]},
-    ...     ("ties", "schedule"), {"ties": "ties", "schedule": "schedules"}, reads={"none": ("schedule",)},
-    ... )
+    >>> settings = {"ties": ["uniform", "prior"], "schedule": [1, 2]}
+    >>> grid = Grid.crossed(settings, ("ties", "schedule"), reads={"none": ("schedule",)})
     >>> len(grid.cells), grid.where("none", grid.default)
     (4, {'method': 'none', 'ties': None, 'schedule': 1})
-    >>> len(list(run_grid(grid, "method", "none", ["prior"], lambda method, cell: {})))
+    >>> len(list(run_grid(grid, ["none", "prior"], lambda method, cell: {})))
     6
     """
 
@@ -46,32 +47,18 @@ class Grid:
     @classmethod
     def crossed(
         cls,
-        settings: Mapping[str, Any],
-        keys: Sequence[str],
-        crossed: Mapping[str, str],
-        singly: Mapping[str, str] | None = None,
+        settings: Mapping[str, Sequence],
+        crossed: Sequence[str],
+        singly: Sequence[str] = (),
         reads: Mapping[str, Sequence[str]] | None = None,
     ) -> "Grid":
-        """A grid from a claim's settings.
+        """All combinations of the choices `crossed`, the last key fastest, then every other one of `singly` alone.
 
-        Parameters
-        ----------
-        settings : mapping
-            Has ``default``, and for each key a list of choices.
-        keys : sequence of str
-            The keys of a cell, in order.
-        crossed : mapping
-            Key → name of the setting with its choices; all combinations, the last key fastest.
-        singly : mapping, optional
-            The same for keys that leave the default one at a time.
-        reads : mapping, optional
-            See the class.
+        Each key is a setting with a list of choices, the first of them the default. `reads`: see the class.
         """
-        default = {key: settings["default"][key] for key in keys}
-        combinations = product(*(settings[setting] for setting in crossed.values()))
-        cells = [{**default, **dict(zip(crossed, values, strict=True))} for values in combinations]
-        for key, setting in (singly or {}).items():
-            cells += [{**default, key: value} for value in settings[setting] if value != default[key]]
+        default = {key: settings[key][0] for key in (*crossed, *singly)}
+        cells = [{**default, **values} for values in combinations(settings, crossed)]
+        cells += [{**default, key: value} for key in singly for value in settings[key][1:]]
         return cls(default, tuple(cells), reads or {})
 
     def key(self, cell: Mapping[str, Any]) -> tuple[Hashable, ...]:
@@ -83,49 +70,20 @@ class Grid:
         read = self.reads.get(method, self.default)
         return {key: cell[key] if key in read else None for key in self.default}
 
-    def where(self, method: str, cell: Mapping[str, Any], label: str = "method") -> Cell:
+    def where(self, method: str, cell: Mapping[str, Any]) -> Cell:
         """The keys of the method's records in a cell, for selections of a `ResultsTable`."""
-        return {label: method, **self.met_by(method, cell)}
-
-    def without_prior(self, cell: Mapping[str, Any]) -> Cell:
-        """A cell as learners without a prior meet it: the choices that they do not read are None."""
-        return {key: cell[key] if key in READ_WITHOUT_PRIOR else None for key in self.default}
-
-    def cells_without_prior(self) -> list[Cell]:
-        """The cells that learners without a prior meet, each once."""
-        return self._once(map(self.without_prior, self.cells))
+        return {"method": method, **self.met_by(method, cell)}
 
     def cells_of(self, method: str) -> list[Cell]:
         """The cells that a method meets, each once."""
-        return self._once(self.met_by(method, cell) for cell in self.cells)
-
-    def _once(self, cells) -> list[Cell]:
-        return list({self.key(cell): cell for cell in cells}.values())
+        met = (self.met_by(method, cell) for cell in self.cells)
+        return list({self.key(cell): cell for cell in met}.values())
 
 
 def run_grid(
-    grid: Grid,
-    label: str,
-    without_prior: str,
-    methods: Sequence[str],
-    numbers: Callable[[str, Cell], Mapping[str, Any]],
+    grid: Grid, methods: Sequence[str], numbers: Callable[[str, Cell], Mapping[str, Any]]
 ) -> Iterator[dict[str, Any]]:
-    """The records of a grid: the learner without a prior in its cells, then each method in each cell it meets.
-
-    Parameters
-    ----------
-    grid : Grid
-    label : str
-        The key under which a record names its method.
-    without_prior : str
-        The name of the learner without a prior. It reads `READ_WITHOUT_PRIOR` unless `Grid.reads` names it.
-    methods : sequence of str
-    numbers : callable
-        ``numbers(method, cell)``: what is measured, a plain mapping.
-    """
-    plain = grid.cells_of(without_prior) if without_prior in grid.reads else grid.cells_without_prior()
-    for cell in plain:
-        yield {label: without_prior, **cell, **numbers(without_prior, cell)}
+    """The records of each method in each cell it meets; ``numbers(method, cell)`` is what is measured there."""
     for method in methods:
         for cell in grid.cells_of(method):
-            yield {label: method, **cell, **numbers(method, cell)}
+            yield {"method": method, **cell, **numbers(method, cell)}

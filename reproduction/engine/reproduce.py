@@ -207,8 +207,8 @@ def finish(run: ClaimRun, kept: Sequence[Mapping]) -> dict:
     """The result of a run from its finished cells, plain data."""
     claim, mode, settings, seed = run
     results = [found["result"] for found in kept]
-    measured = _plain(claim.measure(settings, results))
-    readings = [{"cell": dict(cell), **_plain(found)} for cell, found in claim.readings(settings, results)]
+    estimates, each = claim.measured(settings, results)
+    measured, readings = _plain(estimates), [{"cell": dict(cell), **_plain(found)} for cell, found in each]
     module = claim.run_cell.__module__
     data = claim.data if settings.get("real", True) else ()
     seconds = round(sum(found["seconds"] for found in kept), 1)

@@ -155,6 +155,17 @@ def curve_of(curves: ArrayLike, digits: int | None = None, parts: Sequence[str] 
     return {part: (found[part] if digits is None else np.round(found[part], digits)).tolist() for part in parts}
 
 
+def having(records: Iterable[Mapping[str, Any]], **values: Any) -> list[Mapping[str, Any]]:
+    """The records with these values, in their order.
+
+    Examples
+    --------
+    >>> having([{"kind": "row", "holes": 1}, {"kind": "ring", "holes": 0}], kind="row")
+    [{'kind': 'row', 'holes': 1}]
+    """
+    return [record for record in records if all(record[key] == value for key, value in values.items())]
+
+
 def tally(records: Iterable[Mapping[str, Any]], label: str) -> list[dict[str, Any]]:
     """Each different record once, sorted by its values, with its number under `label`.
 

@@ -112,12 +112,12 @@ def word_of(statements: Sequence[Statement], marks: Sequence[str], in_error: boo
     return DIRECTION if 2 * default.count(NO) <= len(default) else FAILS
 
 
-def number_in_words(number: Mapping, significant: int = 3) -> str:
+def number_in_words(number: Mapping) -> str:
     """An estimate as people read it: ``1.23 [1.10, 1.31]``."""
     if number["value"] is None:
         return "no number"
-    ends = f" [{', '.join(short(x, significant) for x in number['ci95'])}]" if number["ci95"] else ""
-    return short(number["value"], significant) + ends
+    ends = f" [{', '.join(short(x) for x in number['ci95'])}]" if number["ci95"] else ""
+    return short(number["value"]) + ends
 
 
 def short(x: float, significant: int = 3) -> str:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from docs.pictures.figure_category_bars import draw_category_bars
 from docs.pictures.figure_performance_curves import draw_performance_curves
 from docs.pictures.figure_reserve_map import draw_reserve_maps
 from lifelore.domains.golf.golf import CLUBS, EDGES, HOLES, Golf
@@ -11,7 +12,6 @@ from lifelore.domains.telephone.telephone import ANGRY, HUNG_UP, OPEN, STATES, S
 from lifelore.figures.style import new_figure
 from reproduction.chapter4.c4_03_telephone_signals.call_graph import EDGES as CALL_EDGES
 from reproduction.chapter4.c4_03_telephone_signals.call_graph import PLACES, draw_call_graph
-from reproduction.chapter4.golf.category_bars import draw_category_bars
 
 
 def test_category_bars_show_the_tables():

@@ -9,7 +9,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from reproduction.engine import registry
-from reproduction.engine.claim import Claim
+from reproduction.engine.claim import Claim, no_readings
 from reproduction.engine.statement import Statement
 
 
@@ -86,6 +86,13 @@ def test_overriding_leaves_the_claim_as_it_was():
     assert one.settings("full")["runs"] == 5
 
 
+def test_measured_are_the_first_reading_and_what_measure_adds_to_it_or_replaces():
+    first, second = ({"reading": 1}, {"x": 1, "y": 2}), ({"reading": 2}, {"x": 0})
+    one = replace(claim(), readings=lambda *_: iter([first, second]), measure=lambda *_: {"y": 3, "z": 4})
+    assert one.measured({}, []) == ({"x": 1, "y": 3, "z": 4}, [first, second])
+    assert replace(one, readings=no_readings).measured({}, []) == ({"y": 3, "z": 4}, [])
+
+
 def test_a_claim_is_loaded_from_its_folder(tmp_path, monkeypatch):
     text = (Path(registry.__file__).parents[1] / "chapter3/c3_01_useful_actions/claim.toml").read_text()
     (tmp_path / "small").mkdir()
@@ -95,13 +102,12 @@ def test_a_claim_is_loaded_from_its_folder(tmp_path, monkeypatch):
     claim = Claim.load("C3.1", tmp_path / "small", "small")
     assert claim.cells is claim.draw is print
     assert claim.check is None
-    (tmp_path / "small/run.py").write_text("cells = run_cell = measure = rows = print  # no figure")
-    importlib.invalidate_caches()
-    monkeypatch.delitem(sys.modules, "small.run")
-    with pytest.raises(InputError, match="missing draw"):
-        Claim.load("C3.1", tmp_path / "small", "small")
-    (tmp_path / "small/run.py").write_text("cells = run_cell = measure = rows = draw = print; shared = ('speed',)")
-    importlib.invalidate_caches()
-    monkeypatch.delitem(sys.modules, "small.run")
-    with pytest.raises(InputError, match=r"shared of .* must name settings, got speed"):
-        Claim.load("C3.1", tmp_path / "small", "small")
+    for program, words in {
+        "run_cell = rows = print  # no figure": "missing draw, measure",
+        "run_cell = readings = draw = print; shared = ('speed',)": r"shared of .* must name settings, got speed",
+    }.items():
+        (tmp_path / "small/run.py").write_text(program)
+        importlib.invalidate_caches()
+        monkeypatch.delitem(sys.modules, "small.run")
+        with pytest.raises(InputError, match=words):
+            Claim.load("C3.1", tmp_path / "small", "small")

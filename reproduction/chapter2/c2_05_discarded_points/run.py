@@ -112,11 +112,6 @@ def row(a: int, b: int, gap: float, first: Sequence | NDArray, second: Sequence 
     return [a, b, round(gap, 6), np.round(moved.reshape(-1, 3), 5).tolist()]
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The measures of the thinned method."""
-    return measures(judged(settings, results)[THINNED])
-
-
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """The measures of each method."""
     for method, views in judged(settings, results).items():

@@ -53,11 +53,6 @@ def found_in(part: Scene, whole: Scene) -> dict[str, bool]:
     }
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Shares of stacks found in the other scene, and the reverse, of the objects alone."""
-    return shares(results, "objects")
-
-
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """The same by reading."""
     for name in READINGS:

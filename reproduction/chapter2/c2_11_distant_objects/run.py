@@ -113,11 +113,6 @@ def counts(a: Points, b: Points, length: float, cost: float) -> list[float]:
     return [sum(map(len, sides)) / 2, int(sum((own >= THRESHOLD).sum() for own in sizes))]
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The measures under the default kernel."""
-    return measures(results, kernel_name(*DEFAULT))
-
-
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """The measures under every kernel."""
     for length, cost in kernels(settings):

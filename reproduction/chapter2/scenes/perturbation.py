@@ -32,8 +32,6 @@ def without_table(cloud: LabelledCloud) -> LabelledCloud:
 
 def fewer_points(cloud: LabelledCloud, discarded: float, rng: np.random.Generator) -> LabelledCloud:
     """Each point discarded with probability `discarded`, in [0, 1)."""
-    if not 0 <= discarded < 1:
-        raise InputError(f"discarded must lie in [0, 1), got {discarded}")
     return part_of(cloud, rng.random(len(cloud.points)) >= discarded)
 
 

@@ -8,7 +8,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED
 
 FOUND = 0.5
@@ -36,14 +35,7 @@ def overlaps(truth: NDArray[np.int64], labels: NDArray[np.int64]) -> list[Object
     ----------
     truth, labels : (n,) int64
         True and found labels as in `LabelledCloud`; points whose true label is 0 do not count.
-
-    Raises
-    ------
-    InputError
-        The two differ in length.
     """
-    if truth.shape != labels.shape:
-        raise InputError(f"truth and labels must be of the same length, got {len(truth)} and {len(labels)}")
     known = truth != UNLABELLED
     objects, row = np.unique(truth[known], return_inverse=True)
     segments, column = np.unique(labels[known], return_inverse=True)

@@ -6,13 +6,12 @@ Thesis: §3.7.2, the one-shot tasks of the fixed-policy agents (Table 3.1, Figur
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from lifelore.action.advice.advice import TARGET, consider, observe
 from lifelore.action.advice.advisor import Advisor
 from lifelore.core.compiled.jit import inlined, kernel
 from lifelore.core.compiled.random_state import next_uniform, random_state
-from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learning import cumulative
 from lifelore.core.mdp import TERMINAL, Tables
 
@@ -39,12 +38,10 @@ class Walk(NamedTuple):
 
 def advised_walk(
     tables: Tables,
-    policy: ArrayLike,
+    policy: NDArray[np.float64],
     advisor: Advisor,
     generator: np.random.Generator,
-    max_steps: int = 5000,
-    *,
-    start: int | None = None,
+    max_steps: int,
     follows_advice: bool = True,
 ) -> Walk:
     """Simulate one task of an agent with a fixed policy.
@@ -59,24 +56,13 @@ def advised_walk(
     generator : numpy generator
         Draws the start, then one number a step, the same numbers with and without advice.
     max_steps : int
-        Maximum number of steps; the thesis uses 5,000.
-    start : int, optional
-        Default: one of the task's starts.
     follows_advice : bool
         Whether the agent follows the advice (§3.7.1.1); if not, the advisor only watches it.
-
-    Raises
-    ------
-    InputError
-        The task is not deterministic, or the shapes of task, policy and advisor differ.
     """
-    if max_steps < 1:
-        raise InputError(f"max_steps must be at least 1, got {max_steps}")
-    if start is not None and not 0 <= start < tables.n_states:
-        raise InputError(f"start must be a state in [0, {tables.n_states}), got {start}")
-    policy_cum = _cumulative_policy(policy, tables, advisor)
+    n_states, n_actions = tables.n_states, tables.n_actions
+    policy_cum = cumulative(policy.reshape(-1, n_actions)).reshape(n_states, -1, n_actions)
     random = random_state(generator)
-    drawn = int(tables.starts[int(next_uniform(random) * len(tables.starts))])
+    start = int(tables.starts[int(next_uniform(random) * len(tables.starts))])
     trace = (
         np.zeros(max_steps, np.int32),
         np.zeros(max_steps, np.int8),
@@ -91,28 +77,11 @@ def advised_walk(
         advisor.rule,
         advisor.watch(),
         random,
-        drawn if start is None else start,
+        start,
         follows_advice,
         trace,
     )
     return Walk(*[array[:n] for array in trace], reached=bool(reached), reward=float(reward))  # type: ignore[arg-type]
-
-
-def _cumulative_policy(policy: ArrayLike, tables: Tables, advisor: Advisor) -> NDArray[np.float64]:
-    """Cumulative probabilities of the policy, (n_states, 1 or n_actions + 1, n_actions); checks all shapes."""
-    policy = np.asarray(policy, np.float64)
-    shape = (tables.n_states, tables.n_actions)
-    if tables.n_outcomes != 1:
-        raise InputError("tables must be deterministic, with one outcome for each action")
-    if (advisor.n_states, advisor.n_actions) != shape or (policy.shape[0], policy.shape[-1]) != shape:
-        raise InputError(
-            f"task, policy and advisor must agree in states and actions, got {shape}, "
-            f"{(policy.shape[0], policy.shape[-1])} and {(advisor.n_states, advisor.n_actions)}"
-        )
-    flat = policy.reshape(-1, shape[1])
-    if (flat < 0).any() or not np.allclose(flat.sum(axis=1), 1, atol=1e-9):
-        raise InputError("policy must hold probabilities: non-negative rows that sum to 1")
-    return cumulative(flat).reshape(shape[0], -1, shape[1])
 
 
 @kernel

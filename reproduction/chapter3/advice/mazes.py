@@ -8,7 +8,6 @@ M₁. Everything compared in an errand shares its start and its random numbers. 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +23,7 @@ from lifelore.domains.advice.advice_maze import advice_maze, errand, maze_goals
 from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
 from lifelore.domains.grids.grid_world import GridWorld
 from reproduction.chapter3.advice.advised_walk import Walk, advised_walk
+from reproduction.engine.grid import combinations
 
 NO_PSEUDO_COUNT = 1e-9
 """α⁰ of M₁ where θ has none: an action that no expert took is next to impossible, not impossible."""
@@ -66,7 +66,7 @@ def maze_cells(settings: Mapping) -> list[dict]:
 
 def choices_of(settings: Mapping) -> list[dict]:
     """Kinds of experts crossed with α⁰, what is measured in one maze; the first makes the default."""
-    return [{"experts": e, "alpha0": a} for e, a in product(settings["experts"], settings["alpha0"])]
+    return combinations(settings, ("experts", "alpha0"))
 
 
 def readings_of(settings: Mapping) -> list[tuple[dict, float, int]]:

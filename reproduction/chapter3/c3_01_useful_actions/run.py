@@ -103,11 +103,6 @@ def _example(world: GridWorld, prior: ActionPrior) -> dict:
     }
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Shares over the mazes of the first generator."""
-    return _shares(_mazes(results, settings["generators"][0]))
-
-
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """The same for each generator."""
     for generator in settings["generators"]:

@@ -78,7 +78,7 @@ def online_prior(run: Tasks, choice: Mapping, schedule: Schedule) -> ActionPrior
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The comparison at the default, both learners' numbers, and how far the online prior is behind."""
+    """Both learners' numbers at the default, and how far the online prior is behind."""
     online, exact, plain = (
         np.array(values)
         for values in (
@@ -88,7 +88,6 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     )
     optimal = np.array([result["optimal"] for result in results])
     return {
-        **_numbers(results, 0),
         "first_q_learning": at_default(results, "first", PLAIN),
         "to_80_eps_qsap": at_default(results, "to_80", PRIOR),
         "to_80_q_learning": at_default(results, "to_80", PLAIN),

@@ -16,6 +16,7 @@ from reproduction.chapter3.factory.comparison import UNIFORM, Comparison, is_def
 from reproduction.chapter3.factory.learning import LEARNT, N_ACTIONS, Problem, contexts_of
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.grid import Cell, Grid, run_grid
+from reproduction.engine.learning_run import learnt
 
 ADVICE = {"expert": expert_actions, "incorrect": incorrect_actions}
 """Actions that a person advises, by name of the hand-made prior."""
@@ -48,7 +49,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
             prior = learning.with_pseudo_count(priors[how["encoding"] or method], how["alpha0"])
             rows = learning.rows_of(problem, prior, how["encoding"], how["ties"])
         schedule = schedule_of({**settings, **how}, how["schedule"])
-        curve, learner = learning.learn_task(problem, rows, schedule)
+        curve, learner = learnt(problem.tables, problem.stream, rows, schedule)
         found = summary([curve], settings["early"], is_default(grid, how, but=["max_steps"]))
         return {**found, "solution": learning.greedy_return(problem, learner.q)}
 
@@ -57,7 +58,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         "optimal": problem.solved.optimal_reward,
         "optimal_return": problem.solved.optimal_return,
         "invariances": least_invariance(problem, priors[grid.default["encoding"]], grid.default),
-        "found": list(run_grid(grid, "method", UNIFORM, METHODS[1:], numbers)),
+        "found": list(run_grid(grid, METHODS, numbers)),
     }
 
 
@@ -80,10 +81,9 @@ def least_invariance(problem: Problem, prior: ActionPrior, default: Mapping) -> 
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The comparisons at the default, how much the prior holds the invariances, and remarks."""
-    found = Comparison(results, grid_of(settings))
+    """How much the prior holds the invariances at the default, and remarks."""
     invariant = {"least_invariance": mean_estimate([result["invariances"] for result in results])}
-    return {**_numbers(results, found, found.grid.default), **invariant, **found.remarks(METHODS)}
+    return {**invariant, **Comparison(results, grid_of(settings)).remarks(METHODS)}
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:

@@ -18,7 +18,8 @@ from reproduction.chapter3.factory.comparison import UNIFORM, is_default
 from reproduction.chapter3.factory.learning import LEARNT, problem_of, tasks_of, tried_actions, with_pseudo_count
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.grid import Cell, Grid
-from reproduction.engine.results_table import ResultsTable, curve_of
+from reproduction.engine.learning_run import learnt
+from reproduction.engine.results_table import ResultsTable, curve_of, having
 
 SOURCES = ("exact", "learnt")
 N_COMPONENTS = 9
@@ -71,7 +72,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
                 prior = with_pseudo_count(priors[record["source"], record["encoding"]], record["alpha0"])
                 rows = learning.rows_of(problem, prior, record["encoding"], record["ties"])
             schedule = schedule_of({**settings, "max_steps": record["max_steps"]}, record["schedule"])
-            curve, learner = learning.learn_task(problem, rows, schedule)
+            curve, learner = learnt(problem.tables, problem.stream, rows, schedule)
             record["rewards"].append(float(curve.rewards.mean()))
             if record["source"] == "learnt":
                 own = tried_actions(learner, problem.solved.task.completed)
@@ -116,38 +117,31 @@ class Sequences(NamedTuple):
         return {**found, "gain_new": ratio_estimate(*zip(*new, strict=True))} if new else found
 
 
-def of_components(results: Sequence[Mapping], k: int) -> list[Mapping]:
-    """The results with a number of components."""
-    return [result for result in results if result["components"] == k]
-
-
 def seen_of(results: Sequence[Mapping]) -> NDArray[np.bool_]:
     """Whether each task was met before, (n_runs, n_tasks)."""
     return np.array([result["seen"] for result in results])
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Gains at the default, and how many tasks were met."""
-    k, grid = settings["components"][0], grid_of(settings)
-    own = of_components(results, k)
-    seen = seen_of(own)
+    """How many tasks were met."""
+    k = settings["components"][0]
+    own = having(results, components=k)
     return {
-        **Sequences.of(own, grid, grid.default).numbers(settings, seen),
-        "late_tasks_seen": mean_estimate(seen[:, list(windows(settings)[1])].mean(axis=1)),
+        "late_tasks_seen": mean_estimate(seen_of(own)[:, list(windows(settings)[1])].mean(axis=1)),
         "share_of_tasks_met": mean_estimate([result["met"] / comb(N_COMPONENTS, k) for result in own]),
     }
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:
     """The gains in every cell of the grid."""
-    own, grid = of_components(results, settings["components"][0]), grid_of(settings)
+    own, grid = having(results, components=settings["components"][0]), grid_of(settings)
     for cell in grid.cells:
         yield cell, Sequences.of(own, grid, cell).numbers(settings, seen_of(own))
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Mean reward and its standard deviation by number of prior tasks."""
-    own, grid = of_components(results, settings["components"][0]), grid_of(settings)
+    own, grid = having(results, components=settings["components"][0]), grid_of(settings)
     table = ResultsTable.nested(own, "found", keys=("method", *grid.default))
     found = {method: table.values("rewards", **grid.where(method, grid.default)) for method in (UNIFORM, LEARNT)}
     found["optimal"] = np.array([result["optimal"] for result in own])

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from reproduction.chapter3.factory import comparison
 from reproduction.chapter3.factory.comparison import UNIFORM
-from reproduction.chapter3.factory.modified_tasks import FULL_SET, learn_problem, problem_of
+from reproduction.chapter3.factory.modified_tasks import FULL_SET, problem_of
 from reproduction.chapter3.factory.online_selection import FULL, SELECTED, OnlineAgent
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.grid import Cell, Grid
+from reproduction.engine.learning_run import learnt
 from reproduction.engine.results_table import ResultsTable, curve_of
 
 METHODS = (UNIFORM, FULL, SELECTED)
@@ -64,7 +65,8 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         optimal.append(problem.optimal)
         for series, agent in zip(found, agents, strict=True):
             schedule = schedule_of({**settings, "max_steps": series["max_steps"]}, series["schedule"])
-            curve = agent.learn(problem, schedule) if agent else learn_problem(problem, None, schedule)[0]
+            plain = (problem.tables, problem.stream, None, schedule)
+            curve = agent.learn(problem, schedule) if agent else learnt(*plain)[0]
             series["first"].append(float(curve.rewards[0]))
             series["last"].append(float(curve.rewards[-1]))
             series["completed"].append(float(curve.reached.mean()))
@@ -78,13 +80,10 @@ def mask_of(names: Sequence[str]) -> int:
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The comparisons at the default, and the share of episodes that end by a completed task."""
+    """The share of episodes that end by a completed task, at the default."""
     grid, table = grid_of(settings), table_of(settings, results)
     completed = [table.values("completed", **grid.where(m, grid.default)).mean(axis=1) for m in METHODS]
-    return {
-        **_numbers(results, grid, table, grid.default),
-        "completed": mean_estimate(np.mean(completed, axis=0)),
-    }
+    return {"completed": mean_estimate(np.mean(completed, axis=0))}
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:

@@ -39,9 +39,9 @@ def settled_after(masks: NDArray[np.int64]) -> list[int]:
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """How surely φ2 is chosen at the default, and after how many tasks."""
+    """After how many tasks φ2 is settled on, at the default."""
     masks = masks_of(settings, results, grid_of(settings).default)
-    return {**numbers(masks, settings["last"]), "settled_after": mean_estimate(settled_after(masks))}
+    return {"settled_after": mean_estimate(settled_after(masks))}
 
 
 def numbers(masks: NDArray[np.int64], last: int) -> dict[str, Estimate]:
@@ -58,7 +58,7 @@ def numbers(masks: NDArray[np.int64], last: int) -> dict[str, Estimate]:
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:
-    """The same in every cell of the grid; an exact policy depends on no choice but which states count."""
+    """How surely φ2 is chosen in every cell; an exact policy depends on no choice but which states count."""
     grid = grid_of(settings)
     for cell in grid.cells:
         if cell["source"].startswith("learnt") or is_default(grid, cell, but=["source"]):

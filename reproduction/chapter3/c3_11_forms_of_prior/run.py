@@ -7,20 +7,20 @@ that share it, which makes hundreds of them; read otherwise, U is divided by the
 softmax is that of the proportions. Thesis: §3.2.2.1, §3.4.7, Figure 3.15.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.core.learning.q_learning import Rows
 from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.streams import stream
 from reproduction.chapter3.factory import comparison, modified_tasks
-from reproduction.chapter3.factory.comparison import UNIFORM, Comparison, is_default, summary
+from reproduction.chapter3.factory.comparison import UNIFORM, Comparison
 from reproduction.chapter3.factory.learning import with_pseudo_count
 from reproduction.chapter3.factory.modified_tasks import Problem
-from reproduction.chapter3.learning.schedules import schedule_of
-from reproduction.engine.grid import Cell, Grid, run_grid
+from reproduction.engine.grid import Cell, Grid
 
 PROPORTION, DIRICHLET, SOFTMAX = FORMS = ("proportion", "dirichlet", "softmax")
 METHODS = (UNIFORM, *FORMS)
@@ -41,26 +41,21 @@ def grid_of(settings: Mapping) -> Grid:
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: every form in every cell of the grid."""
-    own, grid = (seed, "C3.11", cell["run"]), grid_of(settings)
+    own = (seed, "C3.11", cell["run"])
     priors = modified_tasks.exact_priors(settings, (*own, "training"), settings["features"])
-    testing = modified_tasks.problems_of(settings, (*own, "testing"), settings["test_tasks"])
 
-    def numbers(form: str, how: Cell) -> dict:
-        def rows_for(problem: Problem):
-            if form == UNIFORM:
-                return None
-            prior = with_pseudo_count(priors[how["features"], how["policies"]], how["alpha0"])
+    def rows_of_form(form: str, how: Cell) -> Callable[[Problem], Rows]:
+        prior = with_pseudo_count(priors[how["features"], how["policies"]], how["alpha0"])
+
+        def rows_for(problem: Problem) -> Rows:
             random = stream(*problem.stream, "dirichlet")  # drawn from once for the task
             return modified_tasks.rows_of(
                 problem, how["features"], lambda codes: probs_of(prior, codes, form, how, random), how["ties"]
             )
 
-        schedule = schedule_of({**settings, "max_steps": how["max_steps"]}, how["schedule"])
-        curves = modified_tasks.curves_of(testing, rows_for, schedule)
-        return summary(curves, settings["early"], is_default(grid, how))
+        return rows_for
 
-    found = list(run_grid(grid, "method", UNIFORM, FORMS, numbers))
-    return {**cell, "optimal": float(np.mean([problem.optimal for problem in testing])), "found": found}
+    return {**cell, **modified_tasks.compared(settings, grid_of(settings), own, METHODS, rows_of_form)}
 
 
 def probs_of(
@@ -76,26 +71,10 @@ def probs_of(
     return prior.probs(codes, "softmax", beta=beta)
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The comparisons at the default."""
-    found = Comparison(results, grid_of(settings))
-    return {**_numbers(found, found.grid.default), **found.remarks(METHODS)}
-
-
-def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:
-    """The comparisons in every cell of the grid."""
-    found = Comparison(results, grid_of(settings))
-    for cell in found.grid.cells:
-        yield cell, _numbers(found, cell)
-
-
 def _numbers(found: Comparison, cell: Mapping) -> dict[str, Estimate]:
     """Rewards compared, and the ratio of the early standard deviations across tasks."""
     softmax, proportion = (found.values(form, cell, "spread") for form in (SOFTMAX, PROPORTION))
     return {**found.shares(cell, PAIRS), "spread_ratio": ratio_estimate(softmax, proportion)}
 
 
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The curve of each form at the default."""
-    found = Comparison(results, grid_of(settings))
-    return [found.curve(method, found.grid.default) for method in METHODS]
+measure, readings, rows = comparison.functions_of(grid_of, METHODS, _numbers)

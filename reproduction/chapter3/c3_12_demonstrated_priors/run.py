@@ -7,21 +7,18 @@ tied best actions in every state. All priors meet the same factories, lists and 
 Thesis: §3.4.8, Figure 3.16.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cache
-
-import numpy as np
 
 from lifelore.action.demonstrations.demonstrations import Demonstration, count_demonstrations
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.core.metrics import Estimate
+from lifelore.core.learning.q_learning import Rows
 from lifelore.core.streams import stream
 from reproduction.chapter3.c3_12_demonstrated_priors.simulated_person import simulated_demonstration
 from reproduction.chapter3.factory import comparison, modified_tasks
-from reproduction.chapter3.factory.comparison import UNIFORM, Comparison, is_default, summary
+from reproduction.chapter3.factory.comparison import UNIFORM
 from reproduction.chapter3.factory.modified_tasks import N_ACTIONS, Problem, contexts_of
-from reproduction.chapter3.learning.schedules import schedule_of
-from reproduction.engine.grid import Cell, Grid, run_grid
+from reproduction.engine.grid import Cell, Grid
 
 SELF, SHOWN = "self-trained", "shown"
 METHODS = (UNIFORM, SELF, SHOWN)
@@ -44,32 +41,19 @@ def grid_of(settings: Mapping) -> Grid:
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: every method in every cell of the grid."""
-    own, grid = (seed, "C3.12", cell["run"]), grid_of(settings)
+    own = (seed, "C3.12", cell["run"])
     training = modified_tasks.problems_of(settings, (*own, "training"), max(settings["trajectories"]))
-    testing = modified_tasks.problems_of(settings, (*own, "testing"), settings["test_tasks"])
 
     @cache
     def shown_by(people: str) -> list[Demonstration | None]:
         return [demonstrate(problem, people, i) for i, problem in enumerate(training)]
 
-    def prior_of(method: str, how: Cell) -> Callable:
+    def rows_of_method(method: str, how: Cell) -> Callable[[Problem], Rows]:
         known = training[: how["trajectories"]]
-        if method == SELF:
-            return self_trained(known, how).probs
-        return from_shown(known, shown_by(how["people"]), how).probs
+        prior = self_trained(known, how) if method == SELF else from_shown(known, shown_by(how["people"]), how)
+        return lambda problem: modified_tasks.rows_of(problem, how["features"], prior.probs, how["ties"])
 
-    def numbers(method: str, how: Cell) -> dict:
-        probs_of = None if method == UNIFORM else prior_of(method, how)
-
-        def rows_for(problem: Problem):
-            return probs_of and modified_tasks.rows_of(problem, how["features"], probs_of, how["ties"])
-
-        schedule = schedule_of({**settings, "max_steps": how["max_steps"]}, how["schedule"])
-        curves = modified_tasks.curves_of(testing, rows_for, schedule)
-        return summary(curves, settings["early"], is_default(grid, how))
-
-    found = list(run_grid(grid, "method", UNIFORM, METHODS[1:], numbers))
-    return {**cell, "optimal": float(np.mean([problem.optimal for problem in testing])), "found": found}
+    return {**cell, **modified_tasks.compared(settings, grid_of(settings), own, METHODS, rows_of_method)}
 
 
 def demonstrate(problem: Problem, people: str, number: int) -> Demonstration | None:
@@ -99,20 +83,4 @@ def from_shown(known: Sequence[Problem], shown: Sequence[Demonstration | None], 
     return prior
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The comparisons at the default, over all episodes."""
-    found = Comparison(results, grid_of(settings))
-    return {**found.shares(found.grid.default, PAIRS), **found.remarks(METHODS)}
-
-
-def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:
-    """The comparisons in every cell of the grid."""
-    found = Comparison(results, grid_of(settings))
-    for cell in found.grid.cells:
-        yield cell, found.shares(cell, PAIRS)
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The curve of each method at the default."""
-    found = Comparison(results, grid_of(settings))
-    return [found.curve(method, found.grid.default) for method in METHODS]
+measure, readings, rows = comparison.functions_of(grid_of, METHODS, lambda found, cell: found.shares(cell, PAIRS))

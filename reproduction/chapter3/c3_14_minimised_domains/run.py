@@ -24,6 +24,7 @@ from reproduction.chapter3.c3_14_minimised_domains.minimised_worlds import Solve
 from reproduction.chapter3.learning.grid_tasks import WINDOW, drawn_starts
 from reproduction.chapter3.learning.schedules import Epsilon, schedule_of
 from reproduction.engine.estimates import mean_or_unmeasured, share_of
+from reproduction.engine.results_table import having
 
 TRACE = 1e-12
 EQUAL = 1e-9
@@ -163,13 +164,8 @@ def exact(tasks: TaskSet) -> dict:
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """What is kept and traps over all sets; the costs within over those in the domain, in the worst kind."""
-    each = [_costs(of_kind(results, kind), 0) for kind in settings["kinds"]]
+    each = [_costs(having(results, kind=kind), 0) for kind in settings["kinds"]]
     return _kept(results) | {name: worst(costs[name] for costs in each) for name in each[0]}
-
-
-def of_kind(results: Sequence[Mapping], kind: str) -> list[Mapping]:
-    """The results of a kind of world."""
-    return [result for result in results if result["kind"] == kind]
 
 
 def _kept(results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -205,7 +201,7 @@ def worst(ratios: Iterable[Estimate]) -> Estimate:
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """Kind by kind; learning also by schedule."""
     for kind in settings["kinds"]:
-        own = of_kind(results, kind)
+        own = having(results, kind=kind)
         for place, schedule in enumerate(settings["schedule"]):
             costs = _costs(own, place)
             found = _kept(own) | costs if place == 0 else {"to_80_ratio": costs["to_80_ratio"]}
@@ -216,7 +212,7 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Kind by kind traps, collisions and episodes to 80 %, each in the domain and within."""
     found = []
     for kind in settings["kinds"]:
-        own = of_kind(results, kind)
+        own = having(results, kind=kind)
         trapped = [
             np.mean([traps for of_set in result["exact"] for traps in of_set["traps"]], 0) for result in own
         ]

@@ -13,31 +13,18 @@ from lifelore.action.advice.advisor import BETTER, Advisor
 from lifelore.action.advice.goal_model import extend_goal_models
 from lifelore.core.metrics import Estimate
 from lifelore.domains.advice.explorers import EXPLORERS
+from reproduction.chapter3.advice import mazes
 from reproduction.chapter3.advice.learning import (
     errand_tables,
     final_reward,
     learner_schedule,
     reached_by_learner,
 )
-from reproduction.chapter3.advice.mazes import (
-    AGENTS,
-    KAPPA,
-    WINDOW,
-    Maze,
-    choices_of,
-    errands_of,
-    goal_models_of,
-    maze_cells,
-    maze_estimate,
-    maze_of,
-    policies_of,
-    readings_of,
-    thesis_advisor,
-    walks_of,
-)
+from reproduction.chapter3.advice.mazes import AGENTS, KAPPA, WINDOW, Maze
 from reproduction.chapter3.learning.schedules import PRINTED
+from reproduction.engine.results_table import having
 
-cells = maze_cells
+cells = mazes.maze_cells
 LEARNER = "q_learning"
 LEARNT = 5
 """Tasks of a maze that are learnt."""
@@ -48,13 +35,13 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
     Q-learning is advised at the default loop density, elsewhere in ``reading_mazes`` mazes.
     """
-    maze = maze_of(settings, cell, seed)
+    maze = mazes.maze_of(settings, cell, seed)
     learns = cell["loops"] == settings["loops"][0] or cell["maze"] < settings["reading_mazes"]
-    each = [goal_models_of(maze, **choice) for choice in choices_of(settings)]
+    each = [mazes.goal_models_of(maze, **choice) for choice in mazes.choices_of(settings)]
     return {
         **cell,
-        "alone": rewards(settings, maze, thesis_advisor(each[0], float("inf")), learns),
-        "advised": [rewards(settings, maze, thesis_advisor(purposes), learns) for purposes in each],
+        "alone": rewards(settings, maze, mazes.thesis_advisor(each[0], float("inf")), learns),
+        "advised": [rewards(settings, maze, mazes.thesis_advisor(purposes), learns) for purposes in each],
         "apart": rewards(settings, maze, goals_apart(maze, each[0]), False),
     }
 
@@ -63,11 +50,11 @@ def rewards(settings: Mapping, maze: Maze, advisor: Advisor, learns: bool) -> di
     """Each agent's mean reward under an advisor, of 1000."""
     found = {}
     for agent in AGENTS:
-        walks = walks_of(settings, maze, policies_of(settings, maze, agent), advisor)
+        walks = mazes.walks_of(settings, maze, mazes.policies_of(settings, maze, agent), advisor)
         found[agent] = 1000 * float(np.mean([walk.reached for walk in walks]))
     if learns:
         schedule, learnt = learner_schedule(settings, maze, PRINTED), []
-        for number, errand in enumerate(errands_of(maze, min(LEARNT, settings["tasks"]))):
+        for number, errand in enumerate(mazes.errands_of(maze, min(LEARNT, settings["tasks"]))):
             tables = errand_tables(maze, errand, number, "one")
             learnt.append(final_reward(reached_by_learner(maze, tables, number, schedule, advisor)))
         found[LEARNER] = float(np.mean(learnt))
@@ -81,16 +68,15 @@ def goals_apart(maze: Maze, purposes: Sequence) -> Advisor:
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """At the default: what advice adds for each agent, and rewards."""
-    own = [result for result in results if result["loops"] == settings["loops"][0]]
+    """Rewards at the default."""
+    own = having(results, loops=settings["loops"][0])
     advised = [result["advised"][0] for result in own]
     return {
-        **_gains(own, 0),
         "explorers_alone": _mean_of_explorers([result["alone"] for result in own]),
         "explorers_advised": _mean_of_explorers(advised),
         "explorers_apart": _mean_of_explorers([result["apart"] for result in own]),
-        "q_learning_advised": maze_estimate([rewards[LEARNER] for rewards in advised]),
-        "optimal_advised": maze_estimate([rewards["optimal"] for rewards in advised]),
+        "q_learning_advised": mazes.maze_estimate([rewards[LEARNER] for rewards in advised]),
+        "optimal_advised": mazes.maze_estimate([rewards["optimal"] for rewards in advised]),
     }
 
 
@@ -98,7 +84,7 @@ def _gains(results: Sequence[Mapping], place: int) -> dict[str, Estimate]:
     """What advice adds to each agent's reward, by maze."""
     pairs = [(result["advised"][place], result["alone"]) for result in results]
     return {
-        f"gain_{agent}": maze_estimate(
+        f"gain_{agent}": mazes.maze_estimate(
             [advised[agent] - alone[agent] for advised, alone in pairs if agent in alone]
         )
         for agent in (*EXPLORERS, LEARNER)
@@ -106,23 +92,23 @@ def _gains(results: Sequence[Mapping], place: int) -> dict[str, Estimate]:
 
 
 def _mean_of_explorers(rewards: Sequence[Mapping]) -> Estimate:
-    return maze_estimate([np.mean([of_maze[agent] for agent in EXPLORERS]) for of_maze in rewards])
+    return mazes.maze_estimate([np.mean([of_maze[agent] for agent in EXPLORERS]) for of_maze in rewards])
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """What advice adds, by loop density, kind of experts and α⁰."""
-    for reading, loops, place in readings_of(settings):
-        yield reading, _gains([result for result in results if result["loops"] == loops], place)
+    for reading, loops, place in mazes.readings_of(settings):
+        yield reading, _gains(having(results, loops=loops), place)
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Each agent's reward alone, advised and with goals apart, at the default."""
-    own = [result for result in results if result["loops"] == settings["loops"][0]]
+    own = having(results, loops=settings["loops"][0])
     found = []
     for agent in (*EXPLORERS, LEARNER, "optimal"):
         ways = {"alone": [r["alone"] for r in own], "advised": [r["advised"][0] for r in own]}
         if agent != LEARNER:
             ways["apart"] = [result["apart"] for result in own]
-        numbers = {way: maze_estimate([of[agent] for of in each]).to_dict() for way, each in ways.items()}
+        numbers = {way: mazes.maze_estimate([of[agent] for of in each]).to_dict() for way, each in ways.items()}
         found.append({"agent": agent, **numbers})
     return found

@@ -12,26 +12,20 @@ from numpy.typing import NDArray
 
 from lifelore.action.advice.advisor import Advisor
 from lifelore.core.metrics import Estimate
+from reproduction.chapter3.advice import mazes
 from reproduction.chapter3.advice.learning import (
     errand_tables,
     final_reward,
     learner_schedule,
     reached_by_learner,
 )
-from reproduction.chapter3.advice.mazes import (
-    Maze,
-    choices_of,
-    errands_of,
-    goal_models_of,
-    maze_cells,
-    maze_estimate,
-    maze_of,
-    thesis_advisor,
-)
+from reproduction.chapter3.advice.mazes import Maze
 from reproduction.chapter3.learning.grid_tasks import block_curve, even_blocks
 from reproduction.chapter3.learning.schedules import Epsilon
+from reproduction.engine.grid import combinations
+from reproduction.engine.results_table import having
 
-cells = maze_cells
+cells = mazes.maze_cells
 HANDFUL = 10
 """Episodes within which a goal must be found."""
 DRAWN = 20
@@ -41,9 +35,11 @@ WAYS = ("plain", "advised")
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One maze: goals found in a handful of episodes by reading; at the default all episodes of both learners."""
-    maze = maze_of(settings, cell, seed)
-    advisors = [thesis_advisor(goal_models_of(maze, **choice)) for choice in choices_of(settings)]
-    silent = thesis_advisor(goal_models_of(maze, **choices_of(settings)[0]), float("inf"))
+    maze = mazes.maze_of(settings, cell, seed)
+    advisors = [
+        mazes.thesis_advisor(mazes.goal_models_of(maze, **choice)) for choice in mazes.choices_of(settings)
+    ]
+    silent = mazes.thesis_advisor(mazes.goal_models_of(maze, **mazes.choices_of(settings)[0]), float("inf"))
 
     def found_by(advisor: Advisor) -> list[float]:
         return [
@@ -69,15 +65,14 @@ def _reached(
     schedule = learner_schedule(settings, maze, epsilon, first)
     return np.array([
         reached_by_learner(maze, errand_tables(maze, errand, number, starts), number, schedule, advisor)
-        for number, errand in enumerate(errands_of(maze, settings["tasks"]))
+        for number, errand in enumerate(mazes.errands_of(maze, settings["tasks"]))
     ])  # fmt: skip
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """At the default: goals found in a handful of episodes, and the reward at the end."""
-    own = [result for result in results if result["loops"] == settings["loops"][0]]
-    final = {f"final_{way}": maze_estimate([result[f"final_{way}"] for result in own]) for way in WAYS}
-    return _found(own, 0, 0) | final
+    """The reward at the end, at the default."""
+    own = having(results, loops=settings["loops"][0])
+    return {f"final_{way}": mazes.maze_estimate([result[f"final_{way}"] for result in own]) for way in WAYS}
 
 
 def _found(results: Sequence[Mapping], place: int, use: int) -> dict[str, Estimate]:
@@ -86,27 +81,24 @@ def _found(results: Sequence[Mapping], place: int, use: int) -> dict[str, Estima
         for values in ([r["plain"] for r in results], [r["advised"][place] for r in results])
     )
     return {
-        "found_plain": maze_estimate(plain),
-        "found_advised": maze_estimate(advised),
-        "found_gain": maze_estimate(advised - plain),
+        "found_plain": mazes.maze_estimate(plain),
+        "found_advised": mazes.maze_estimate(advised),
+        "found_gain": mazes.maze_estimate(advised - plain),
     }
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """Goals found in a handful by loops, experts, α⁰, starts and schedule."""
-    uses = [
-        dict(zip(("starts", "schedule"), use, strict=True))
-        for use in product(settings["starts"], settings["schedule"])
-    ]
+    uses = combinations(settings, ("starts", "schedule"))
     for loops in settings["loops"]:
-        own = [result for result in results if result["loops"] == loops]
-        for (place, choice), (number, use) in product(enumerate(choices_of(settings)), enumerate(uses)):
+        own = having(results, loops=loops)
+        for (place, choice), (number, use) in product(enumerate(mazes.choices_of(settings)), enumerate(uses)):
             yield {"loops": loops, **choice, **use}, _found(own, place, number)
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """The learning curves of the first tasks at the default."""
-    own = [result for result in results if result["loops"] == settings["loops"][0]]
+    own = having(results, loops=settings["loops"][0])
     return [
         {"curve_of": way, **block_curve(np.array(blocks), settings["episodes"])}
         for way in WAYS

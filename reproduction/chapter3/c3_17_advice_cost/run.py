@@ -15,26 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate
+from reproduction.chapter3.advice import mazes
 from reproduction.chapter3.advice.learning import learner_schedule
-from reproduction.chapter3.advice.mazes import (
-    AGENTS,
-    KAPPA,
-    Maze,
-    choices_of,
-    errands_of,
-    goal_models_of,
-    maze_cells,
-    maze_estimate,
-    maze_of,
-    policies_of,
-    readings_of,
-    thesis_advisor,
-    walks_of,
-)
+from reproduction.chapter3.advice.mazes import AGENTS, KAPPA, Maze
 from reproduction.chapter3.learning.schedules import PRINTED
 from reproduction.engine.learning_run import learnt
+from reproduction.engine.results_table import having
 
-cells = maze_cells
+cells = mazes.maze_cells
 EARLY, LATE = "q_early", "q_late"
 """Q-learning after one episode, and after all."""
 
@@ -46,18 +34,20 @@ def kappas_of(settings: Mapping) -> list[float]:
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One maze: advised steps in 100 of every agent by κ, for each choice and heeded or not; the walks drawn."""
-    maze, kappas = maze_of(settings, cell, seed), kappas_of(settings)
+    maze, kappas = mazes.maze_of(settings, cell, seed), kappas_of(settings)
     policies, amounts, drawn = agent_policies(settings, maze), [], {}
-    for choice, heeds in product(choices_of(settings), settings["heeds"]):
-        purposes = goal_models_of(maze, **choice)
-        advisors = [thesis_advisor(purposes, kappa) for kappa in kappas]
+    for choice, heeds in product(mazes.choices_of(settings), settings["heeds"]):
+        purposes = mazes.goal_models_of(maze, **choice)
+        advisors = [mazes.thesis_advisor(purposes, kappa) for kappa in kappas]
         known = np.array(advisors[0].guide.theta[0].any(axis=1))
         of_agents = {}
         for agent, policy in policies.items():
             if heeds:
-                walked = [[w.advised for w in walks_of(settings, maze, policy, advisor)] for advisor in advisors]
+                walked = [
+                    [w.advised for w in mazes.walks_of(settings, maze, policy, advisor)] for advisor in advisors
+                ]
             else:
-                alone = walks_of(settings, maze, policy, advisors[0], heeds=False)
+                alone = mazes.walks_of(settings, maze, policy, advisors[0], heeds=False)
                 walked = [[known[w.states] & (w.gain >= kappa) for w in alone] for kappa in kappas]
             of_agents[agent] = [100 * float(np.concatenate(at_kappa).mean()) for at_kappa in walked]
             if not amounts and cell == cells(settings)[0] and agent in AGENTS:
@@ -68,12 +58,12 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 def agent_policies(settings: Mapping, maze: Maze) -> dict[str, list]:
     """The policy of each agent on each errand; those of Q-learning as it would go on."""
-    found = {agent: policies_of(settings, maze, agent) for agent in AGENTS}
+    found = {agent: mazes.policies_of(settings, maze, agent) for agent in AGENTS}
     for name, episodes in ((EARLY, 1), (LATE, settings["episodes"])):
         schedule = learner_schedule(settings, maze, PRINTED, episodes)
         learners = [
             learnt(errand.tables, (*maze.names, "learner", number), None, schedule)[1]
-            for number, errand in enumerate(errands_of(maze, settings["tasks"]))
+            for number, errand in enumerate(mazes.errands_of(maze, settings["tasks"]))
         ]
         found[name] = [greedy_policy(learner.q, float(schedule.epsilon[-1])) for learner in learners]
     return found
@@ -86,11 +76,10 @@ def greedy_policy(q: NDArray[np.float64], epsilon: float) -> NDArray[np.float64]
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """At the default: how advice falls, its largest rise, and Q-learning's two ends."""
-    own = [result for result in results if result["loops"] == settings["loops"][0]]
-    at_kappa = kappas_of(settings).index(KAPPA)
-    random = maze_estimate([result["amounts"][0]["random"][at_kappa] for result in own])
-    return _numbers(settings, own, 0) | {"random_at_kappa": random}
+    """How much random walks are advised under the thesis's κ, at the default."""
+    own, at_kappa = having(results, loops=settings["loops"][0]), kappas_of(settings).index(KAPPA)
+    random = [result["amounts"][0]["random"][at_kappa] for result in own]
+    return {"random_at_kappa": mazes.maze_estimate(random)}
 
 
 def _numbers(settings: Mapping, results: Sequence[Mapping], place: int) -> dict[str, Estimate]:
@@ -102,10 +91,10 @@ def _numbers(settings: Mapping, results: Sequence[Mapping], place: int) -> dict[
     at_kappa = {agent: amount[:, kappas_of(settings).index(KAPPA)] for agent, amount in amounts.items()}
     falls = [amount[:, 0] - amount[:, -1] for amount in amounts.values()]
     return {
-        "least_fall": maze_estimate(min(falls, key=np.mean)),
-        "largest_rise": maze_estimate(max(map(steepest_rise, amounts.values()), key=np.mean)),
-        "early_minus_random": maze_estimate(at_kappa[EARLY] - at_kappa["random"]),
-        "late_minus_optimal": maze_estimate(at_kappa[LATE] - at_kappa["optimal"]),
+        "least_fall": mazes.maze_estimate(min(falls, key=np.mean)),
+        "largest_rise": mazes.maze_estimate(max(map(steepest_rise, amounts.values()), key=np.mean)),
+        "early_minus_random": mazes.maze_estimate(at_kappa[EARLY] - at_kappa["random"]),
+        "late_minus_optimal": mazes.maze_estimate(at_kappa[LATE] - at_kappa["optimal"]),
     }
 
 
@@ -118,10 +107,10 @@ def steepest_rise(amounts: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
-    """The same by loops, experts, α⁰ and whether advice is heeded."""
+    """How advice falls, its largest rise, Q-learning's two ends: by loops, experts, α⁰ and obedience."""
     heeds = settings["heeds"]
-    for reading, loops, place in readings_of(settings):
-        own = [result for result in results if result["loops"] == loops]
+    for reading, loops, place in mazes.readings_of(settings):
+        own = having(results, loops=loops)
         for number, heeded in enumerate(heeds):
             yield {**reading, "heeds": heeded}, _numbers(settings, own, place * len(heeds) + number)
 

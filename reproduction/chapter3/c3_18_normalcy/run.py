@@ -11,20 +11,11 @@ import numpy as np
 from lifelore.action.advice.advisor import Advisor
 from lifelore.core.metrics import Estimate
 from lifelore.domains.advice.explorers import EXPLORERS
+from reproduction.chapter3.advice import mazes
 from reproduction.chapter3.advice.advised_walk import Walk
-from reproduction.chapter3.advice.mazes import (
-    choices_of,
-    goal_models_of,
-    maze_cells,
-    maze_estimate,
-    maze_of,
-    policies_of,
-    readings_of,
-    thesis_advisor,
-    walks_of,
-)
+from reproduction.engine.results_table import having
 
-cells = maze_cells
+cells = mazes.maze_cells
 BLOCKS = 50
 """Points of a drawn curve."""
 WAYS = ("alone", "advised")
@@ -32,12 +23,12 @@ WAYS = ("alone", "advised")
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One maze: what advice adds to the mean P(M₁ | H) of each explorer, by choice; own steps and curves once."""
-    maze, gains, own, curves = maze_of(settings, cell, seed), [], {}, []
-    for choice in choices_of(settings):
-        advisor, of_agents = thesis_advisor(goal_models_of(maze, **choice)), {}
+    maze, gains, own, curves = mazes.maze_of(settings, cell, seed), [], {}, []
+    for choice in mazes.choices_of(settings):
+        advisor, of_agents = mazes.thesis_advisor(mazes.goal_models_of(maze, **choice)), {}
         for agent in EXPLORERS:
-            policies = policies_of(settings, maze, agent)
-            walks = [walks_of(settings, maze, policies, advisor, heeds) for heeds in (False, True)]
+            policies = mazes.policies_of(settings, maze, agent)
+            walks = [mazes.walks_of(settings, maze, policies, advisor, heeds) for heeds in (False, True)]
             alone, advised = (np.array([w.p_normal.mean() for w in of_way]) for of_way in walks)
             of_agents[agent] = float((advised - alone).mean())
             if not gains:
@@ -75,22 +66,21 @@ def block_curve(walks: Sequence[Walk], max_steps: int) -> dict:
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Each explorer's gain in P(M₁ | H) at the default, and the explorers' mean gain by own steps."""
-    at_default = [result for result in results if result["loops"] == settings["loops"][0]]
-    own = maze_estimate([np.mean(list(result["own"].values())) for result in at_default])
-    return _gains(at_default, 0) | {"gain_own": own}
+    """The explorers' mean gain in P(M₁ | H) by own steps, at the default."""
+    own = [list(result["own"].values()) for result in having(results, loops=settings["loops"][0])]
+    return {"gain_own": mazes.maze_estimate(np.mean(own, axis=1))}
 
 
 def _gains(results: Sequence[Mapping], place: int) -> dict[str, Estimate]:
     gains = [result["gains"][place] for result in results]
-    each = {f"gain_{agent}": maze_estimate([of_maze[agent] for of_maze in gains]) for agent in EXPLORERS}
-    return each | {"gain": maze_estimate([np.mean(list(of_maze.values())) for of_maze in gains])}
+    each = {f"gain_{agent}": mazes.maze_estimate([of_maze[agent] for of_maze in gains]) for agent in EXPLORERS}
+    return each | {"gain": mazes.maze_estimate([np.mean(list(of_maze.values())) for of_maze in gains])}
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
-    """The gains by loops, experts and α⁰."""
-    for reading, loops, place in readings_of(settings):
-        yield reading, _gains([result for result in results if result["loops"] == loops], place)
+    """Each explorer's gain in P(M₁ | H) by loops, experts and α⁰."""
+    for reading, loops, place in mazes.readings_of(settings):
+        yield reading, _gains(having(results, loops=loops), place)
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

@@ -7,7 +7,6 @@ counts the exact optimal policies of the same training tasks, in all states alik
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +23,7 @@ from lifelore.domains.factory.factory import ACTION_NAMES
 from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET, Problem, problem_of, rewards_of
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.estimates import exact_share
+from reproduction.engine.grid import combinations
 
 PLAIN, START, ACQUIRED, ALL = METHODS = ("uniform", "start", "acquired", "all")
 STARTS = {"phi1": PHI["phi1"], "items": ("Items",), "north": ("PosUM", "Items")}
@@ -32,6 +32,7 @@ NOISE = ("Noise1", "Noise2")
 NOISE_SIZES = (4, 3)
 POOL = FeatureSet((*FULL_SET.names, *NOISE), (*FULL_SET.sizes, *NOISE_SIZES))
 ALPHA0 = 0.1
+CHOICES = ("start", "least")
 
 
 class Counted(NamedTuple):
@@ -41,14 +42,9 @@ class Counted(NamedTuple):
     codes: NDArray[np.int64]
 
 
-def choices_of(settings: Mapping) -> list[dict]:
-    """Starts crossed with least bits; the first makes the default."""
-    return [{"start": s, "least": b} for s, b in product(settings["start"], settings["least"])]
-
-
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: features acquired, and entropy, surprise and rewards in new tasks, by choice."""
-    own, choices = (seed, "C3.19", cell["run"]), choices_of(settings)
+    own, choices = (seed, "C3.19", cell["run"]), combinations(settings, CHOICES)
     order = stream(*own, "order").permutation(POOL.names).tolist()
     agents = [_agent(choice, order) for choice in choices]
     names_of = {**{start: STARTS[start] for start in settings["start"]}, ALL: FULL_SET.names}
@@ -121,7 +117,7 @@ def doubt(probs: NDArray[np.float64], best: NDArray[np.bool_]) -> tuple[float, f
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """At the default: entropy, surprise and rewards with acquired features, and which are acquired."""
+    """At the default: which features are acquired, and rewards with them."""
     shares = acquired_shares(results)
     acquired, every, plain = (
         np.array([np.mean(of_run["rewards"]) for of_run in found])
@@ -129,7 +125,6 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     )
     optimal = np.array([result["optimal"] for result in results])
     return {
-        **_gains(results, 0),
         "least_share_of_four": min((shares[name] for name in CARDINALS), key=lambda share: share.value),
         "largest_share_of_noise": max((shares[name] for name in NOISE), key=lambda share: share.value),
         "acquired_minus_all": ratio_estimate(acquired - every, optimal - plain),
@@ -157,8 +152,8 @@ def acquired_shares(results: Sequence[Mapping]) -> dict[str, Estimate]:
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
-    """The gains by start and least bits."""
-    for place, choice in enumerate(choices_of(settings)):
+    """Entropy, surprise and rewards with acquired features, by start and least bits."""
+    for place, choice in enumerate(combinations(settings, CHOICES)):
         yield choice, _gains(results, place)
 
 

@@ -4,15 +4,14 @@ The unit of every comparison is the distance from learning without a prior to th
 moves cost about what its task pays, so that the optimal reward itself lies near 0 and is no scale.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
-from itertools import product
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.learning.curve import Curve
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
-from reproduction.engine.grid import READ_WITHOUT_PRIOR, Grid
+from reproduction.engine.grid import Cell, Grid
 from reproduction.engine.results_table import ResultsTable, curve_of
 
 UNIFORM = "uniform"
@@ -30,16 +29,10 @@ def grid_of(
     singly: Sequence[str] = (),
     reads: Mapping[str, Sequence[str]] | None = None,
 ) -> Grid:
-    """The grid of choices: all combinations of `crossed`, then every other value of `singly` alone.
-
-    Each choice is a setting with a list of values, the first of them the default. `reads` names the choices that a
-    method reads; `UNIFORM` reads those of a learner without a prior, and the number of episodes.
-    """
-    default = {key: settings[key][0] for key in (*crossed, *singly)}
-    combinations = product(*(settings[key] for key in crossed))
-    cells = [{**default, **dict(zip(crossed, values, strict=True))} for values in combinations]
-    cells += [{**default, key: value} for key in singly for value in settings[key][1:]]
-    return Grid(default, tuple(cells), {UNIFORM: (*READ_WITHOUT_PRIOR, "episodes"), **(reads or {})})
+    """`Grid.crossed`, where `UNIFORM` reads what a learner without a prior reads."""
+    return Grid.crossed(
+        settings, crossed, singly, {UNIFORM: ("schedule", "max_steps", "episodes"), **(reads or {})}
+    )
 
 
 def is_default(grid: Grid, cell: Mapping, but: Sequence[str] = ()) -> bool:
@@ -112,3 +105,26 @@ class Comparison:
         records = self.table.select(**self.grid.where(method, cell)).records
         curves = [of_task for record in records for of_task in record["rewards"]]
         return {"curve_of": method, **curve_of(curves, digits=1, parts=("mean", "deviation"))}
+
+
+def functions_of(
+    grid_of: Callable[[Mapping], Grid], methods: Sequence[str], numbers: Callable[[Comparison, Mapping], dict]
+) -> tuple[Callable, Callable, Callable]:
+    """The functions ``measure``, ``readings`` and ``rows`` of a claim that compares `methods` over a grid.
+
+    ``numbers(found, cell)`` are its estimates in a cell; beside them are `Comparison.remarks` at the default, and
+    the row of each method is its curve there.
+    """
+
+    def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+        return Comparison(results, grid_of(settings)).remarks(methods)
+
+    def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:
+        found = Comparison(results, grid_of(settings))
+        return ((cell, numbers(found, cell)) for cell in found.grid.cells)
+
+    def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+        found = Comparison(results, grid_of(settings))
+        return [found.curve(method, found.grid.default) for method in methods]
+
+    return measure, readings, rows

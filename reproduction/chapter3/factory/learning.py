@@ -14,15 +14,13 @@ from numpy.typing import NDArray
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import prior_rows
 from lifelore.action.priors.policy_counts import actions_to_count
-from lifelore.core.learning.curve import Curve
-from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
+from lifelore.core.learning.q_learning import QLearner, Rows
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning.planning import best_actions, greedy_policy, policy_values
 from lifelore.core.streams import stream
 from lifelore.domains.factory.contexts import state_contexts
 from lifelore.domains.factory.factory import ACTION_NAMES, Factory, FactoryTask
 from lifelore.domains.factory.layout import factory
-from reproduction.engine.learning_run import learnt
 
 N_ACTIONS = len(ACTION_NAMES)
 LEARNT = "learnt"
@@ -137,11 +135,6 @@ def contexts_of(problem: Problem, encoding: str | None) -> NDArray[np.int64]:
 def rows_of(problem: Problem, prior: ActionPrior, encoding: str | None, ties: str) -> Rows:
     """ε-QSAP's rows (Alg. 2) with a prior whose contexts are `contexts_of`."""
     return prior_rows(problem.tables, contexts_of(problem, encoding), prior.probs, ties)
-
-
-def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[Curve, QLearner]:
-    """The curve and the learner after all episodes; without `rows` it is plain Q-learning."""
-    return learnt(problem.tables, problem.stream, rows, schedule)
 
 
 def greedy_return(problem: Problem, q: NDArray[np.float64]) -> float:

@@ -4,7 +4,7 @@ All methods meet a task with the same layout, list and random numbers, so that d
 paired. Thesis: §3.4.4.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -14,7 +14,7 @@ from lifelore.action.features.feature_set import FeatureSet
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import prior_rows
 from lifelore.core.learning.curve import Curve
-from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
+from lifelore.core.learning.q_learning import Rows, Schedule
 from lifelore.core.mdp import Tables
 from lifelore.core.planning.planning import best_actions
 from lifelore.core.streams import stream
@@ -22,7 +22,10 @@ from lifelore.domains.factory import contexts
 from lifelore.domains.factory.contexts import FEATURE_NAMES, FEATURE_SIZES, PHI
 from lifelore.domains.factory.factory import ACTION_NAMES, FactoryTask
 from lifelore.domains.factory.modified_factory import modified_factory
+from reproduction.chapter3.factory.comparison import UNIFORM, is_default, summary
 from reproduction.chapter3.factory.learning import optimal_way
+from reproduction.chapter3.learning.schedules import schedule_of
+from reproduction.engine.grid import Cell, Grid, run_grid
 from reproduction.engine.learning_run import learnt
 
 N_ACTIONS = len(ACTION_NAMES)
@@ -94,16 +97,11 @@ def rows_of(problem: Problem, conditioned_on: str, probs_of: Callable, ties: str
     return prior_rows(problem.tables, contexts_of(problem, conditioned_on), probs_of, ties)
 
 
-def learn_problem(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[Curve, QLearner]:
-    """The curve and the learner after all episodes; without `rows` it is plain Q-learning."""
-    return learnt(problem.tables, problem.stream, rows, schedule)
-
-
 def curves_of(
     problems: Iterable[Problem], rows_for: Callable[[Problem], Rows | None], schedule: Schedule
 ) -> list[Curve]:
     """The curve of each problem."""
-    return [learn_problem(problem, rows_for(problem), schedule)[0] for problem in problems]
+    return [learnt(problem.tables, problem.stream, rows_for(problem), schedule)[0] for problem in problems]
 
 
 def rewards_of(
@@ -111,3 +109,25 @@ def rewards_of(
 ) -> NDArray[np.float64]:
     """Reward of each episode of each problem, (n_problems, n_episodes)."""
     return np.array([curve.rewards for curve in curves_of(problems, rows_for, schedule)])
+
+
+def compared(
+    settings: Mapping,
+    grid: Grid,
+    names: tuple,
+    methods: Sequence[str],
+    rows_of_method: Callable[[str, Cell], Callable[[Problem], Rows]],
+) -> dict:
+    """A run of a `Comparison`: every method in every cell of the grid, in test tasks of the streams of `names`.
+
+    ``rows_of_method(method, cell)`` gives the rows of each problem; plain Q-learning is not asked for.
+    """
+    testing = problems_of(settings, (*names, "testing"), settings["test_tasks"])
+
+    def numbers(method: str, how: Cell) -> dict:
+        rows_for = (lambda _: None) if method == UNIFORM else rows_of_method(method, how)
+        schedule = schedule_of({**settings, "max_steps": how["max_steps"]}, how["schedule"])
+        return summary(curves_of(testing, rows_for, schedule), settings["early"], is_default(grid, how))
+
+    found = list(run_grid(grid, methods, numbers))
+    return {"optimal": float(np.mean([problem.optimal for problem in testing])), "found": found}

@@ -16,6 +16,7 @@ from lifelore.domains.factory.factory import ACTION_NAMES
 from reproduction.chapter3.factory import modified_tasks
 from reproduction.chapter3.factory.learning import tried_actions
 from reproduction.chapter3.factory.modified_tasks import FULL_SET, N_ACTIONS, Problem
+from reproduction.engine.learning_run import learnt
 
 FULL, SELECTED = "full", "selected"
 SOURCES = ("learnt", "learnt, all states", "exact", "exact, on the way")
@@ -58,7 +59,7 @@ class OnlineAgent:
         """Learn a task by ε-QPAP with the prior so far (Alg. 4), and count its policy."""
         prior = self.selection or self._full
         rows = modified_tasks.rows_of(problem, "phi4", prior.probs, self.ties)
-        curve, learner = modified_tasks.learn_problem(problem, rows, schedule)
+        curve, learner = learnt(problem.tables, problem.stream, rows, schedule)
         prior.update(modified_tasks.contexts_of(problem, "phi4"), counted(problem, learner, self.source))
         return curve
 

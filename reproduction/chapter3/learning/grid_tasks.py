@@ -5,7 +5,6 @@ methods are paired. Thesis: §3.4.1, Alg. 2 and 4.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -22,6 +21,7 @@ from lifelore.core.planning.planning import best_actions, mean_start_value, opti
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from reproduction.chapter3.learning.schedules import schedule_of
+from reproduction.engine.grid import combinations
 from reproduction.engine.learning_run import learnt
 
 STATE, PLACE, PERCEPT = "state", "place", "percept"
@@ -71,7 +71,7 @@ def problem_of(world: GridWorld, goal: int, names: tuple) -> Problem:
 
 def choices_of(settings: Mapping) -> list[dict]:
     """Every combination of the choices left open, `CHOICES`; the first values make the default."""
-    return [dict(zip(CHOICES, values, strict=True)) for values in product(*(settings[key] for key in CHOICES))]
+    return combinations(settings, CHOICES)
 
 
 def exact_prior(problems: Sequence[Problem], alpha0: float, kind: str = STATE) -> ActionPrior:

@@ -63,11 +63,6 @@ def follow_printed(library: PolicyLibrary) -> tuple[list[float], list[float]]:
     return entropies, iron[:-1]
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The default: histograms of the first setting."""
-    return _measured(results[0])
-
-
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """Each way to fit the models, and exact ones."""
     for result in results:

@@ -3,8 +3,21 @@
 from collections.abc import Mapping
 
 from lifelore.domains.golf.golf import CLUBS
-from lifelore.figures.style import BLUE, GREY, INK, LIGHT, VERMILION, Figure, house_style, new_figure
-from reproduction.chapter4.golf.category_bars import CLUB_COLOURS
+from lifelore.figures.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    LIGHT,
+    ORANGE,
+    PURPLE,
+    VERMILION,
+    Figure,
+    house_style,
+    new_figure,
+)
+
+CLUB_COLOURS = (BLUE, GREEN, ORANGE, PURPLE)
 
 
 @house_style()

@@ -5,7 +5,7 @@ is cut. So training discounts, although the claim's learners do not (errata).
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,6 @@ from lifelore.core.mdp import Tables
 from lifelore.core.streams import stream
 from lifelore.domains.pacman.pacman import MAX_STEPS, N_ACTIONS, STRATEGIES, PacmanMaze, PacmanTask
 from reproduction.chapter4.c4_04_pacman.episode_value import return_moments
-from reproduction.chapter4.c4_04_pacman.episodes import episode_returns
 
 Array = NDArray[np.float64]
 GREATEST = 140.0
@@ -44,13 +43,12 @@ class Arena:
 
     def returns_of_each(self, policies: Array, n: int, stream_of: tuple) -> Array:
         """Returns of `n` episodes of each policy, (n_policies, n)."""
-        found = []
+        plays, found = Schedule(np.ones(n), np.zeros(n), MAX_STEPS, 1.0), []
         for number, probs in enumerate(policies):
-            world, own = stream(*stream_of, number, "world"), stream(*stream_of, number, "policy")
-            choices = q_learning.cumulative(probs)
-            found.append(
-                episode_returns(self.tables, self.rows.q_row, choices, MAX_STEPS, n, world=world, own=own)
-            )
+            observed = self.rows.q_row
+            rows = q_learning.uniform_rows(self.tables, probs, context_row=observed)._replace(q_row=observed)
+            learner = self.begin((*stream_of, number))  # explores by the policy alone, and learns nothing
+            found.append(replace(self, rows=rows).learn(learner, plays).rewards)
         return np.array(found)
 
     def begin(self, stream_of: tuple) -> QLearner:

@@ -126,11 +126,6 @@ def _learn(settings: Mapping, name: str, arena: Arena, policies: Array, stream_o
     return prq.learn(arena.tables, arena.rows, policies, plan, reuser)[0].rewards
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The first reading is the default: the first number of samples, mean returns, and PRQ's returns in [0, 1]."""
-    return next(readings(settings, results))[1]
-
-
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """Each kind of models, meaning of convergence and unit of PRQ's returns; intervals are over layouts."""
     every = settings["episodes"]

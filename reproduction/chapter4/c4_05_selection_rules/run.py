@@ -8,7 +8,7 @@ from reproduction.chapter4.reuse.rules import FORMS, PI_PRINTED, RULES, STANDARD
 from reproduction.chapter4.surveillance.runs import DEFAULT, READ, by_group, by_method, each_place, reserve_cells
 from reproduction.chapter4.surveillance.runs import run_method as run_cell
 
-__all__ = ["cells", "measure", "readings", "rows", "run_cell", "shared"]
+__all__ = ["cells", "readings", "rows", "run_cell", "shared"]
 shared = READ
 SHOWN = (*STANDARD, "PI, printed")
 
@@ -16,11 +16,6 @@ SHOWN = (*STANDARD, "PI, printed")
 def cells(settings: Mapping) -> list[dict]:
     """Every rule in both forms: learnt models in the default reserve, exact ones in every reserve."""
     return reserve_cells(settings, RULES)
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Standard forms and learnt models."""
-    return convergence(by_method(results, DEFAULT), "standard")
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:

@@ -13,7 +13,7 @@ from reproduction.chapter4.ball_game.games import check_games as check
 from reproduction.chapter4.ball_game.play import Players, play_speeds, scale_of
 from reproduction.engine.estimates import exact_value
 
-__all__ = ["cells", "check", "measure", "readings", "rows", "run_cell"]
+__all__ = ["cells", "check", "readings", "rows", "run_cell"]
 SLOW, FAST = [0, 1], [3, 4]
 """Speeds 30 and 40, 60 and 70."""
 
@@ -48,11 +48,6 @@ def numbers(loss: NDArray[np.float64]) -> dict[str, Estimate]:
         "large_gains_by_slow": mean_estimate(fast[-1] - slow[-1]),
         "best_speed_falls_by": exact_value(best[0] - best[-1], loss.shape[-1]),
     }
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The numbers of the first game under the first normalisation."""
-    return numbers(losses(results[0], settings["normalisations"][0]))
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:

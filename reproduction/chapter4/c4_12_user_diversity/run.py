@@ -8,7 +8,7 @@ from lifelore.core.metrics import Estimate, ratio_estimate
 from reproduction.chapter4.ball_game.games import check_games as check
 from reproduction.chapter4.ball_game.trials import BEAT, EXP3, SHARED, STATIC, cells, readings_of, run_cell
 
-__all__ = ["cells", "check", "measure", "readings", "rows", "run_cell", "shared"]
+__all__ = ["cells", "check", "readings", "rows", "run_cell", "shared"]
 shared = SHARED
 FEW, THREE, MANY, ALL = slice(0, 3), slice(2, 3), slice(3, 6), slice(0, 6)
 """Populations of 1 to 3 types, of 3, of 4 to 6, and all; every size weighs as much."""
@@ -28,11 +28,6 @@ def numbers(result: Mapping, instead: Mapping[str, str]) -> dict[str, Estimate]:
         "to_static_at_3": ratio(STATIC, THREE),
         "to_static_many": ratio(STATIC, MANY),
     }
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The ratios in the first game."""
-    return numbers(results[0], {})
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterable[tuple[dict, dict[str, Estimate]]]:

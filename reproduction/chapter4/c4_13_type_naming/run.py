@@ -14,7 +14,7 @@ from reproduction.chapter4.ball_game.games import check_games as check
 from reproduction.chapter4.ball_game.trials import BEAT, SHARED, cells, readings_of, run_cell
 from reproduction.engine.estimates import exact_share, exact_value
 
-__all__ = ["cells", "check", "measure", "readings", "rows", "run_cell", "shared"]
+__all__ = ["cells", "check", "readings", "rows", "run_cell", "shared"]
 shared = SHARED
 
 
@@ -37,11 +37,6 @@ def numbers(result: Mapping, instead: Mapping[str, str]) -> dict[str, Estimate]:
         "pairs_confused_more_often": exact_value((pairs > pairs[0]).sum(), len(pairs)),
         "right_half": exact_share(np.repeat([True, False], [half.trace(), half.sum() - half.trace()])),
     }
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The numbers of the first game."""
-    return numbers(results[0], {})
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterable[tuple[dict, dict[str, Estimate]]]:

@@ -15,8 +15,6 @@ from reproduction.chapter4.c4_14_people.ball_round import BallRound, column
 from reproduction.chapter4.c4_14_people.study_plan import BEAT, STATIC, TEST, Round, StudySettings, plan_rounds
 from reproduction.chapter4.c4_14_people.training_models import TrainingTotals, beat_for, best_static_speed
 
-FINISHED = "finished"
-
 
 class StudySession:
     """A session.

@@ -20,7 +20,7 @@ from reproduction.chapter4.ball_game.trials import (
 from reproduction.chapter4.c4_13_type_naming.run import numbers as naming
 from reproduction.engine.results_table import BAND, curve_of
 
-__all__ = ["cells", "check", "measure", "readings", "rows", "run_cell", "shared"]
+__all__ = ["cells", "check", "readings", "rows", "run_cell", "shared"]
 shared = SHARED
 
 
@@ -41,11 +41,6 @@ def numbers(result: Mapping, instead: Mapping[str, str]) -> dict[str, Estimate]:
     if BEAT_OURS in losses:
         found["regret_to_exp3_without_exploration"] = regret_ratio(losses[BEAT_OURS])
     return found
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The numbers of the first game."""
-    return numbers(results[0], {})
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterable[tuple[dict, dict[str, Estimate]]]:

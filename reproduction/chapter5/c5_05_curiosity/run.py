@@ -25,7 +25,7 @@ from lifelore.core.streams import stream
 from lifelore.domains.factory.customer_orders import CUSTOMERS
 from lifelore.domains.task_stream import TaskStream
 from reproduction.engine.estimates import UNMEASURED, exact_share
-from reproduction.engine.results_table import BAND, curve_of
+from reproduction.engine.results_table import BAND, curve_of, having
 
 UNIFORM, CURIOUS = CHOOSERS = ("uniform", "curious")
 """How the context of a spare order is chosen."""
@@ -130,7 +130,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         [orders_needed(settings["span"], own, goal) for own, goal in zip(missed[name], goals, strict=True)]
         for name in (CURIOUS, UNIFORM)
     ]
-    late = [result for result in results if result["part"] == "late type"]
+    late = having(results, part="late type")
     return {
         "curious_over_uniform_orders": ratio_estimate(*needed),
         "spread_auc": auc_over_lives(late, SIGNS[0]),
@@ -141,7 +141,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """The belief's spread at the end of the task, and its mean over the task."""
-    late = [result for result in results if result["part"] == "late type"]
+    late = having(results, part="late type")
     for sign in SIGNS[:2]:
         yield {"belief": sign}, {"spread_auc": auc_over_lives(late, sign)}
 
@@ -182,7 +182,7 @@ def auc_over_lives(lives: Sequence[Mapping], sign: str) -> Estimate:
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """A row a chooser: points missed after each span of spare orders; and a row of each sign's values."""
-    late = [result for result in results if result["part"] == "late type"]
+    late = having(results, part="late type")
     found: list[dict] = [{"chooser": name, **curve_of(own, 3, BAND)} for name, own in curves(results).items()]
     for at in (0, 2):
         known = [task[at] for life in late for task in life["known"]]

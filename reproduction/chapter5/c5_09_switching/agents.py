@@ -36,7 +36,7 @@ class ReusePlayer:
     """Policy reuse by the default rule: it reads signals, and how episodes end."""
 
     def __init__(self, library: PolicyLibrary, dynamics: Any, seed: np.random.Generator) -> None:
-        self._agent = BayesianPolicyReuse(library, dynamics=dynamics, seed=seed)
+        self._agent: Any = BayesianPolicyReuse(library, dynamics=dynamics, seed=seed)
 
     def select(self) -> int:
         return self._agent.select()
@@ -48,17 +48,11 @@ class ReusePlayer:
         self._agent.end_episode(outcome)
 
 
-class OkrPlayer:
+class OkrPlayer(ReusePlayer):
     """Bayes-OKR: it reads signals, and the pay at the end."""
 
     def __init__(self, library: PolicyLibrary, seed: np.random.Generator) -> None:
         self._agent = BayesOKR(library, seed=seed)
-
-    def select(self) -> int:
-        return self._agent.select()
-
-    def observe(self, policy: int, signal: Any, pay: float | None = None) -> None:
-        self._agent.observe(policy, signal)
 
     def end_episode(self, outcome: Hashable, pay: float) -> None:
         self._agent.end_episode(pay)

@@ -2,8 +2,6 @@
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from lifelore.figures.style import (
     BLUE,
     GREEN,
@@ -20,6 +18,7 @@ from lifelore.figures.style import (
 from reproduction.chapter5.c5_09_switching.agents import AGENTS, KNOWS
 from reproduction.chapter5.c5_09_switching.run import key_of
 from reproduction.chapter5.c5_09_switching.schedules import GROUPS
+from reproduction.figures.interval_bars import draw_interval_bars
 
 LABELS = {
     "known": "static", "every_ten": "any type\nevery ten", "every_two": "any type\nevery two",
@@ -35,18 +34,15 @@ def draw(result: Mapping) -> Figure:
     """A group of bars for each kind of schedule, a bar for each agent; the line is who knows the type."""
     figure = new_figure(10.5, 3.8)
     axes = figure.subplots()
-    names = [name for name in AGENTS if name != KNOWS]
-    width = 0.85 / len(names)
-    for number, (name, colour) in enumerate(zip(names, COLOURS, strict=False)):
-        measured = [result["measured"][f"{key_of(name)}_{group}"] for group in GROUPS]
-        places = np.arange(len(GROUPS)) + (number - (len(names) - 1) / 2) * width
-        axes.bar(places, [one["value"] for one in measured], width * 0.9, color=colour, label=name)
-        for place, one in zip(places, measured, strict=True):
-            if one["ci95"]:
-                axes.plot([place, place], one["ci95"], color=INK, linewidth=1)
+    shares = {
+        name: [result["measured"][f"{key_of(name)}_{group}"] for group in GROUPS]
+        for name in AGENTS
+        if name != KNOWS
+    }
+    names = [LABELS[group] for group in GROUPS]
+    draw_interval_bars(axes, names, shares, colours=COLOURS, horizontal=False, words=None, legend=False)
     axes.axhline(1, color=INK, linestyle=":", linewidth=1)
     axes.set(ylabel="share of what is gained\nwith the type known", ylim=(0, 1.05))
-    axes.set_xticks(range(len(GROUPS)), [LABELS[group] for group in GROUPS])
     axes.grid(axis="y", color=LIGHT)
     axes.set_axisbelow(True)
     figure.legend(loc="outside right upper")

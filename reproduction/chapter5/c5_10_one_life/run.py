@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from reproduction.chapter5.c5_10_one_life.lives import AGENTS, FULL, PARTS, SCRATCH, TEXTBOOK, drawn_tasks, lived
 from reproduction.engine.estimates import UNMEASURED, exact_share, exact_value, share_of
+from reproduction.engine.results_table import having
 
 Array = NDArray[np.float64]
 Results = Sequence[Mapping]
@@ -44,7 +45,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 def measure(settings: Mapping, results: Results) -> dict[str, Estimate]:
     """Shares of the way, recognised types, alarms, and what parts pay; over all families, or the least of all."""
-    families = [of_family(results, name) for name in settings["families"]]
+    families = [having(results, family=name) for name in settings["families"]]
     found = {
         "first_share": first_share(families),
         "first_least": least([first_share([own]) for own in families]),
@@ -68,14 +69,14 @@ def least(found: Sequence[Estimate]) -> Estimate:
 def readings(settings: Mapping, results: Results) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """The same for each family."""
     for name in settings["families"]:
-        yield {"family": name}, measure({**settings, "families": [name]}, of_family(results, name))
+        yield {"family": name}, measure({**settings, "families": [name]}, having(results, family=name))
 
 
 def rows(settings: Mapping, results: Results) -> list[dict]:
     """By family: mean return, and first return on seen types, of each agent, in the family's own unit."""
     found = []
     for name in settings["families"]:
-        own = of_family(results, name)
+        own = having(results, family=name)
         first = {agent: first_returns(own, agent) for agent in (*AGENTS, INFORMED)}
         both = {"mean": mean_returns(own), "first": first}
         found.append({"family": name} | {key: _means(values) for key, values in both.items()})
@@ -85,11 +86,6 @@ def rows(settings: Mapping, results: Results) -> list[dict]:
 def _means(values: Mapping[str, Array]) -> dict[str, float | None]:
     known = {agent: own[np.isfinite(own)] for agent, own in values.items()}
     return {agent: round(float(own.mean()), 3) if own.size else None for agent, own in known.items()}
-
-
-def of_family(results: Results, name: str) -> list[Mapping]:
-    """The lives in a family."""
-    return [one for one in results if one["family"] == name]
 
 
 # ---- first episodes ----------------------------------------------------------------------------------------

@@ -77,11 +77,6 @@ def auc(known: Array, unseen: Array) -> float:
     return float(below.mean() / (2 * len(known)))
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Numbers of the first kind of models and of held-out targets, over libraries."""
-    return numbers(results, settings["models"][0], HELD)
-
-
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """The same for every kind of models and of unknown tasks."""
     for models, unseen in product(settings["models"], (HELD, CELLS)):

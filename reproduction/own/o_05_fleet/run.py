@@ -77,11 +77,6 @@ def rounds_to_competence(fleet: Sequence[float], nothing: Sequence[float], compe
     return len(fleet)
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Rounds and their ratios to those of one robot, paired by building, at the first level of competence."""
-    return numbers(settings, results, settings["competent"][0])
-
-
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """The same for every level of competence."""
     for competent in settings["competent"]:

@@ -38,7 +38,7 @@ WRONG_TURN, WRONG_SHIFT = 5.0, 0.02
 """Degrees, and metres at the middle of the objects."""
 NEAR = 0.02
 """Metres between a true contact and the contact point that finds it."""
-ALONE, TRUE, REGISTERED = VIEWS = ("one view", "true poses", "registered")
+ALONE, TRUE, REGISTERED = ("one view", "true poses", "registered")
 
 
 def cells(settings: Mapping) -> list[dict]:

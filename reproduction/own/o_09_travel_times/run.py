@@ -131,11 +131,6 @@ def _by_bin(probability: NDArray[np.float64], refused: NDArray[np.bool_]) -> NDA
     return np.column_stack(sums).astype(np.float64)
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Ratios of errors to those of the better baseline of each life, and refusals against their probabilities."""
-    return _numbers(results, "seconds")
-
-
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """The same for errors in seconds and in their logarithms."""
     for scale in ("seconds", "logarithms"):

@@ -4,12 +4,10 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.core.learning.q_learning import cumulative
 from lifelore.core.mdp import COLLISION, TERMINAL
-from lifelore.core.streams import stream
-from lifelore.domains.pacman.pacman import STRATEGIES, PacmanMaze, PacmanTask, step
+from lifelore.domains.pacman.pacman import MAX_STEPS, STRATEGIES, PacmanMaze, PacmanTask, step
 from reproduction.chapter4.c4_04_pacman.episode_value import return_moments
-from reproduction.chapter4.c4_04_pacman.episodes import episode_returns
+from reproduction.chapter4.c4_04_pacman.pacman_library import Arena
 
 NORTH, SOUTH, EAST, WEST = range(4)
 SMALL = PacmanMaze(5, 5)
@@ -116,11 +114,9 @@ def test_exact_moments_agree_with_episodes(strategy):
     task = PacmanTask(SMALL, FOODS, strategy)
     tables = task.tables()
     probs = np.random.default_rng(1).dirichlet(np.ones(4), task.n_observations)
-    mean, deviation = return_moments(tables, task.observation_of, probs, 60)
+    mean, deviation = return_moments(tables, task.observation_of, probs, MAX_STEPS)
     n = 20_000
-    returns = episode_returns(
-        tables, task.observation_of, cumulative(probs), 60, n, world=stream(1, "w"), own=stream(1, "o")
-    )
+    (returns,) = Arena.of(task).returns_of_each(probs[None], n, (1, strategy))
     # Five standard errors; of a deviation σ it is at most about σ √(kurtosis / 4n), returns lie within 240.
     assert abs(returns.mean() - mean) < 5 * deviation / np.sqrt(n)
     assert abs(returns.std() - deviation) < 5 * 240 / np.sqrt(4 * n)

@@ -18,6 +18,7 @@ from reproduction.chapter2.c2_01_nearest_displacements.run import (
 from reproduction.chapter2.c2_02_label_components import figure as c2_2
 from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES, MIX, STANDARD
 from reproduction.chapter2.scoring.pair_validation import FIXED, SCALED, Reading, votes_of_neighbours
+from tests.perception.conftest import box_surface
 
 WEAK = KERNEL_NAMES[0]
 """Under this kernel no contact of A in the rows below has seven support vectors."""
@@ -138,16 +139,9 @@ def test_neighbours_that_never_say_none_leave_it_to_pictures_without_a_displacem
     assert (shares[0] + shares[2], shares[1] + shares[2]) == (0.5, 0.5)
 
 
-def block(low, high) -> np.ndarray:
-    """Points 5 mm apart on the faces of a block."""
-    axes = [np.linspace(a, b, round((b - a) / 0.005) + 1) for a, b in zip(low, high, strict=True)]
-    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    return grid[((grid == low) | (grid == high)).any(axis=1)]
-
-
 def test_left_or_right_turns_into_behind_with_the_camera():
     # 3 stands 10 mm north of 2, their middles 60 mm apart.
-    parts = block((0, 0, 0), (0.05, 0.05, 0.05)), block((0, 0.06, 0), (0.05, 0.11, 0.05))
+    parts = box_surface((0, 0, 0), (0.05, 0.05, 0.05)), box_surface((0, 0.06, 0), (0.05, 0.11, 0.05))
     points, labels = np.vstack(parts), np.repeat([2, 3], [len(part) for part in parts])
     stands = {"south": (0.025, -1, 0.5), "east": (1.025, 0.055, 0.5), "north": (0.025, 1.11, 0.5),
               "west": (-0.975, 0.055, 0.5)}  # fmt: skip

@@ -8,6 +8,7 @@ from lifelore.core.relations import ADJACENT, ON, PairLabel
 from reproduction.chapter2.c2_03_displacements_by_relation.run import CHOICES, measure, plotted
 from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES, STANDARD, pair_rows
 from reproduction.chapter2.scoring.pair_validation import FIXED, Reading, displacements
+from tests.perception.conftest import box_surface
 
 
 def row(scene, relation, first, second, right=0.0, behind=0.0):
@@ -61,16 +62,9 @@ def test_which_displacements_of_a_pair_are_looked_at(choice, heights):
     assert (-1000 * plot.at[:, 1]).tolist() == pytest.approx(heights)
 
 
-def block(middle, size=0.04, step=0.003):
-    """Points on the faces of a cube, metres."""
-    side = np.arange(-size / 2, size / 2 + 1e-9, step)
-    grid = np.stack(np.meshgrid(side, side, side), axis=-1).reshape(-1, 3)
-    return grid[(np.abs(grid) > size / 2 - step / 2).any(axis=1)] + middle
-
-
 def only_row(relation, a, b):
     """The row of two blocks whose middles are given in metres; the camera stands where y is negative."""
-    clouds = block(np.array(a)), block(np.array(b))
+    clouds = [box_surface(np.array(middle) - 0.02, np.array(middle) + 0.02, 0.003) for middle in (a, b)]
     labels = np.repeat([2, 3], [len(cloud) for cloud in clouds])
     cloud = LabelledCloud(np.concatenate(clouds), labels, None, np.array([0.0, -0.7, 0.5]))
     (found,) = pair_rows("blocks", cloud, [PairLabel(2, 3, relation)])

@@ -9,7 +9,8 @@ from lifelore.perception.contacts.contact_points import ContactPoint
 from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene
-from reproduction.chapter2.c2_09_substructure.run import READINGS, found_in, measure, readings
+from reproduction.chapter2.c2_09_substructure.run import READINGS, found_in, readings
+from reproduction.engine.registry import claim_of
 
 
 def scene(*pairs):
@@ -43,7 +44,8 @@ def test_measures_and_readings_by_hand():
     row = {"in two contacts": yes, "reversed": no}
     missed = {"in two contacts": {**no, "connected": True}, "reversed": no}
     results = [{"scenes": [row, row, missed], "examples": []}]
-    assert measure({}, results)["stack_in_two_contacts"].value == pytest.approx(2 / 3)
-    assert measure({}, results)["two_contacts_in_stack"].value == 0.0
+    measured, _ = claim_of("C2.9").measured({}, results)
+    assert measured["stack_in_two_contacts"].value == pytest.approx(2 / 3)
+    assert measured["two_contacts_in_stack"].value == 0.0
     found = {cell["subgraph"]: numbers["stack_in_two_contacts"].value for cell, numbers in readings({}, results)}
     assert found == pytest.approx({"objects": 2 / 3, "with the ground": 2 / 3, "connected": 1})

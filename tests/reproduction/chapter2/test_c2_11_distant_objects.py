@@ -10,8 +10,10 @@ from lifelore.perception.contacts.contact_points import linked
 from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS
 from lifelore.perception.separation.separator import separate
 from reproduction.chapter2.c2_11_distant_objects import run as c2_11
-from reproduction.chapter2.c2_11_distant_objects.run import away, bearing_pairs, measure, readings, rows, shift_to
+from reproduction.chapter2.c2_11_distant_objects.run import away, bearing_pairs, readings, rows, shift_to
 from reproduction.chapter2.scenes.tabletop_pairs import STANDARD
+from reproduction.engine.registry import claim_of
+from tests.perception.conftest import box_surface
 
 SETTINGS = {"gaps": [1.0, 0.1], "lengths": [0.25], "costs": [10.0]}
 
@@ -98,7 +100,7 @@ def test_measures_readings_and_rows_by_hand():
         "found": {STANDARD: [[8, 1], [6, 0], [12, 1]], "250 mm, C 10": [[10, 2], [5, 0], [2, 0]]},
     }
     results = [{"pairs": [first]}, {"pairs": [second]}]
-    found = measure(SETTINGS, results)
+    found, _ = claim_of("C2.11").measured(SETTINGS, results)
     assert (found["no_contacts_far"].value, found["support_vectors_far"].value) == (0.5, 8.5)
     assert found["far_over_seen"].value == pytest.approx((5 / 20 + 12 / 8) / 2)
     assert [numbers["no_contacts_far"].value for _, numbers in readings(SETTINGS, results)] == [0.5, 1]
@@ -109,19 +111,12 @@ def test_measures_readings_and_rows_by_hand():
 # --- far apart there are support vectors all the same (errata) ---------------------------------------------
 
 
-def cube(side: float, *corner: float, step: float = 0.006) -> np.ndarray:
-    """The surface of a cube as points `step` apart."""
-    axis = np.arange(round(side / step) + 1) * step
-    grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1).reshape(-1, 3)
-    return grid[((grid == axis[0]) | (grid == axis[-1])).any(axis=1)] + np.array(corner or (0, 0, 0))
-
-
 @pytest.mark.parametrize("apart", [1.0, 2.0])
 def test_far_apart_a_separator_describes_each_thing_by_its_own_corners(apart):
     side = DEFAULT_CONTACT_SETTINGS.length
-    found = separate(
-        cube(side, 0, 0, side + apart), cube(side), length=side, cost=DEFAULT_CONTACT_SETTINGS.cost, tolerance=1e-6
-    )
+    upper = box_surface((0, 0, side + apart), (side, side, 2 * side + apart), 0.006)
+    lower = box_surface((0, 0, 0), (side, side, side), 0.006)
+    found = separate(upper, lower, length=side, cost=DEFAULT_CONTACT_SETTINGS.cost, tolerance=1e-6)
     corners = {tuple(map(float, corner)) for corner in np.ndindex(2, 2, 2)}
     for points, alpha, foot in (
         (found.points_first, found.alpha_first, side + apart),
@@ -140,7 +135,7 @@ def test_far_apart_a_separator_describes_each_thing_by_its_own_corners(apart):
 @pytest.mark.parametrize("length", [0.03, 0.06, 0.12, 0.25, 1.0])
 @pytest.mark.parametrize("cost", [1.0, 1e4])
 def test_no_kernel_leaves_a_side_without_support_vectors(length, cost):
-    first, second = cube(0.06, 0, 0, 1.06), cube(0.06)
+    first, second = (box_surface((0, 0, z), (0.06, 0.06, z + 0.06), 0.006) for z in (1.06, 0))
     found = separate(first, second, length=length, cost=cost)
     assert found.max_violation <= 1e-3
     assert min(len(found.alpha_first), len(found.alpha_second)) > 0

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from reproduction.chapter2.scoring.segmentation_scoring import overlaps
 
 
@@ -24,8 +23,3 @@ def test_points_of_the_table_and_points_left_over():
     # One point of the object is called table, one of the table object; a point without truth does not count.
     assert overlaps(labels("1112220"), labels("1122212")) == [(3, 2 / 4, 2, 1)]
     assert overlaps(labels("1122"), labels("1100")) == [(2, 0.0, 0, 0)]
-
-
-def test_labels_of_another_number_of_points_are_refused():
-    with pytest.raises(InputError, match="same length"):
-        overlaps(labels("12"), labels("1"))

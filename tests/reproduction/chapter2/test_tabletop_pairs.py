@@ -19,17 +19,10 @@ from reproduction.chapter2.scenes.tabletop_pairs import (
     pair_rows,
     run_cell,
 )
+from tests.perception.conftest import box_surface
 
 CAMERA = np.array([0.05, -1.0, 0.6])
 SETTINGS = {"data_sets": 2, "pairs": 50, "camera": "stereo", "real": False}
-
-
-def box(low, high, spacing=0.005) -> np.ndarray:
-    """Points on the six faces of a block, metres."""
-    low, high = np.array(low, float), np.array(high, float)
-    steps = [np.linspace(a, b, round((b - a) / spacing) + 1) for a, b in zip(low, high, strict=True)]
-    grid = np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1).reshape(-1, 3)
-    return grid[((grid == low) | (grid == high)).any(axis=1)]
 
 
 @pytest.fixture(scope="module")
@@ -37,10 +30,10 @@ def blocks() -> LabelledCloud:
     """3 stands on 2 with 2 mm between them, 4 far off; a patch of table, and three points of nobody."""
     parts = {
         0: np.full((3, 3), 0.3),
-        1: box((0, 0, -0.01), (0.1, 0.1, -0.005), 0.01),
-        2: box((0, 0, 0), (0.1, 0.08, 0.05)),
-        3: box((0.02, 0.02, 0.052), (0.06, 0.06, 0.102)),
-        4: box((0.5, 0.5, 0), (0.55, 0.55, 0.05)),
+        1: box_surface((0, 0, -0.01), (0.1, 0.1, -0.005), 0.01),
+        2: box_surface((0, 0, 0), (0.1, 0.08, 0.05)),
+        3: box_surface((0.02, 0.02, 0.052), (0.06, 0.06, 0.102)),
+        4: box_surface((0.5, 0.5, 0), (0.55, 0.55, 0.05)),
     }
     labels = np.repeat(list(parts), [len(part) for part in parts.values()])
     return LabelledCloud(np.vstack(list(parts.values())), labels, None, CAMERA)

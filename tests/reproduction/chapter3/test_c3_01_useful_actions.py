@@ -7,7 +7,7 @@ import pytest
 from scipy import ndimage
 
 from lifelore.domains.grids.grid_world import GridWorld
-from reproduction.chapter3.c3_01_useful_actions.run import measure, prior_of, uniform_maze
+from reproduction.chapter3.c3_01_useful_actions.run import prior_of, uniform_maze
 from reproduction.engine.estimates import quantile_estimate
 from reproduction.engine.registry import claim_of
 
@@ -78,7 +78,7 @@ def test_measures_by_hand():
         for u, p in ((38, 40), (42, 42), (57, 57), (60, 60))
     ]
     settings = {**FULL, "generators": ["uniform"]}
-    found = measure(settings, [{"generator": "uniform", "mazes": mazes}])
+    found, _ = claim_of("C3.1").measured(settings, [{"generator": "uniform", "mazes": mazes}])
     assert found["rank_of_42_of_76"].value == 1.5 / 4  # one below, half of the one that is equal
     assert found["rank_of_48_of_76"].value == 2 / 4
     assert found["passable_found_useful"].value == pytest.approx((38 / 40 + 3) / 4)

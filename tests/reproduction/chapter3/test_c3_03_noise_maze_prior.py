@@ -6,7 +6,7 @@ import pytest
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
 from lifelore.domains.grids.noise_maze import noise_maze
-from reproduction.chapter3.c3_03_noise_maze_prior.run import measure, run_of
+from reproduction.chapter3.c3_03_noise_maze_prior.run import measure, readings, run_of
 from reproduction.chapter3.learning.grid_tasks import PERCEPT, PLACE, exact_prior
 from reproduction.engine.registry import claim_of
 
@@ -57,7 +57,8 @@ def test_pairs_by_hand():
         return {"first": first, "mean": first + 10, "to_50": 20, "to_80": to_80}
 
     methods = {"q_learning": learner(-50.0, 100), "qsap": learner(-60.0, 120), "qpap": learner(-5.0, 60)}
-    found = measure(SMALL, [{"optimal": 50.0, "choices": [methods]}] * 3)
+    results = [{"optimal": 50.0, "choices": [methods]}] * 3
+    found = {**next(readings(SMALL, results))[1], **measure(SMALL, results)}
     assert found["qpap_first_gain"].value == 45.0
     assert found["qpap_to_qsap_first_gain"].value == 55.0
     assert found["qpap_to_80_ratio"].value == pytest.approx(0.6)

@@ -5,7 +5,6 @@ import pytest
 
 from lifelore.core.errors import InputError
 from reproduction.chapter3.c3_05_one_component.run import Sequences, grid_of
-from reproduction.chapter3.c3_06_four_components.run import measure
 from reproduction.engine.registry import claim_of
 
 SETTINGS = {**claim_of("C3.5").settings("quick"), "prior_tasks": 6, "late": 2, "components": [1]}
@@ -42,7 +41,7 @@ def test_gains_by_hand():
 def test_four_components_less_one_by_hand():
     settings = {**SETTINGS, "components": [4, 1]}
     results = [sequence(run, 4, per_task=2.0) for run in range(4)] + RESULTS
-    found = measure(settings, results)
+    found, _ = claim_of("C3.6").measured(settings, results)
     # Late gains are 11 + r and 55 + r, of 200 each.
     assert found["gain_less_one_component"].value == pytest.approx(-44 / 200)
     assert found["share_of_tasks_met"].value == pytest.approx(3.5 / 126)

@@ -4,7 +4,7 @@ import pytest
 from scipy.stats import beta
 
 from reproduction.chapter3.c3_15_advice_table.figure import PRINTED
-from reproduction.chapter3.c3_15_advice_table.run import measure, readings, rows
+from reproduction.chapter3.c3_15_advice_table.run import readings, rows
 from reproduction.engine.registry import claim_of
 
 CLAIM = claim_of("C3.15")
@@ -21,7 +21,7 @@ def maze(loops, gain, learns=True):
 
 def test_numbers_by_hand():
     results = [maze(0.1, 100.0), maze(0.1, 300.0), maze(0.4, -20.0), maze(0.4, -40.0, learns=False)]
-    found = measure(SETTINGS, results)
+    found, _ = CLAIM.measured(SETTINGS, results)
     assert found["gain_random"].value == found["gain_q_learning"].value == 200.0
     assert found["explorers_alone"].value == 87.5
     assert found["explorers_advised"].value == 287.5

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from reproduction.chapter3.c3_16_advised_learning.run import measure, readings, rows
+from reproduction.chapter3.c3_16_advised_learning.run import readings, rows
 from reproduction.engine.registry import claim_of
 
 SETTINGS = {
@@ -21,7 +21,7 @@ def maze(loops, advised):
 
 def test_numbers_by_hand():
     results = [maze(0.1, 0.4), maze(0.1, 0.6), maze(0.4, 0.7)]
-    found = measure(SETTINGS, results)
+    found, _ = claim_of("C3.16").measured(SETTINGS, results)
     assert (found["found_plain"].value, found["found_advised"].value) == (0.1, 0.5)
     assert found["found_gain"].value == 0.4
     assert found["final_advised"].value == 700.0

@@ -11,7 +11,6 @@ from reproduction.chapter3.c3_17_advice_cost.run import (
     EARLY,
     LATE,
     greedy_policy,
-    measure,
     readings,
     rows,
     steepest_rise,
@@ -62,7 +61,7 @@ def test_numbers_by_hand():
         }
         for n in range(3)
     ]
-    found = measure(SETTINGS, results)
+    found, _ = claim_of("C3.17").measured(SETTINGS, results)
     assert found["least_fall"].value == 50
     assert found["largest_rise"].value == 0
     assert (found["early_minus_random"].value, found["late_minus_optimal"].value) == (1, 3)

@@ -6,7 +6,7 @@ import pytest
 from lifelore.action.advice.advisor import Advisor
 from reproduction.chapter3.advice.advised_walk import Walk
 from reproduction.chapter3.c3_18_normalcy import run
-from reproduction.chapter3.c3_18_normalcy.run import block_curve, measure, own_normalcy, readings
+from reproduction.chapter3.c3_18_normalcy.run import block_curve, own_normalcy, readings
 from reproduction.engine.registry import claim_of
 from tests.action.advice.goal_models import goal_model_of
 
@@ -43,7 +43,7 @@ def test_numbers_by_hand():
     gains = {"random": 0.1, "avoid": 0.2, "left": 0.0, "bug": 0.3}
     others = dict.fromkeys(gains, 0.05)
     results = [{"loops": 0.1, "gains": [gains, others], "own": dict.fromkeys(gains, 0.02)}] * 3
-    found = measure(settings, results)
+    found, _ = claim_of("C3.18").measured(settings, results)
     assert (found["gain_bug"].value, found["gain_own"].value) == (0.3, 0.02)
     assert found["gain"].value == pytest.approx(0.15)
     (_, same), (cell, other) = readings(settings, results)

@@ -10,7 +10,6 @@ from reproduction.chapter3.c3_19_acquired_features.run import (
     POOL,
     START,
     doubt,
-    measure,
     readings,
     rows,
 )
@@ -35,14 +34,15 @@ def test_measures_by_hand():
         }
         for run in range(3)
     ]
-    found = measure(SETTINGS, results)
+    only = {**SETTINGS, "start": ["phi1"], "least": SETTINGS["least"][:2]}
+    found, _ = claim_of("C3.19").measured(only, results)
     assert found["reward_gain"].value == 21.0
     assert found["entropy_fall"].value == pytest.approx(0.8)
     assert found["surprise_fall"].value == pytest.approx(1.6)
     assert found["acquired_minus_all"].value == pytest.approx(-0.01)
     assert found["least_share_of_four"].value == 1.0
     assert found["largest_share_of_noise"].value == pytest.approx(2 / 3)
-    (first, at_first), (second, at_second), *_ = readings({**SETTINGS, "start": ["phi1"]}, results)
+    (first, at_first), (second, at_second) = readings(only, results)
     assert (first["least"], second["least"]) == (0.1, 0.05)
     assert (at_first["reward_gain"].value, at_second["reward_gain"].value) == (21.0, -1.0)
     drawn = rows(SETTINGS, results)

@@ -10,12 +10,7 @@ SETTINGS = {"schedule": ["printed", [0.1, 1.0, 0.1]], "ties": ["uniform", "prior
 GRID = grid_of(SETTINGS, ("schedule", "ties"), ("alpha0",))
 
 
-def test_the_first_values_are_the_default_and_each_other_choice_is_met():
-    assert GRID.default == {"schedule": "printed", "ties": "uniform", "alpha0": 0.1}
-    assert len(GRID.cells) == 2 * 2 + 1
-    assert GRID.cells[0] == GRID.default
-    assert GRID.cells[-1] == {**GRID.default, "alpha0": 1.0}
-    # Without a prior, neither ties nor α⁰ matter.
+def test_without_a_prior_neither_ties_nor_pseudo_counts_matter():
     assert [cell["schedule"] for cell in GRID.cells_of("uniform")] == SETTINGS["schedule"]
 
 

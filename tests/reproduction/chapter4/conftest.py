@@ -1,5 +1,5 @@
 """Random worlds, as in the tests of core."""
 
-from tests.core.conftest import big_random, draw_world
+from tests.core.conftest import draw_world
 
-__all__ = ["big_random", "draw_world"]
+__all__ = ["draw_world"]

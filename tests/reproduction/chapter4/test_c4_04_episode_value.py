@@ -7,7 +7,7 @@ from lifelore.core.mdp import TERMINAL
 from reproduction.chapter4.c4_04_pacman.episode_value import return_moments
 
 
-def naive_moments(tables, row_of, probs, steps, discount):
+def naive_moments(tables, row_of, probs, steps):
     """E[G] and E[G²] by following every branch."""
 
     def onward(s, left):
@@ -20,23 +20,23 @@ def naive_moments(tables, row_of, probs, steps, discount):
                 if not tables.event[s, a, k] & TERMINAL:
                     later, later2 = onward(tables.next_state[s, a, k], left - 1)
                 p = probs[row_of[s], a] * w
-                first += p * (r + discount * later)
-                second += p * (r * r + 2 * r * discount * later + discount**2 * later2)
+                first += p * (r + later)
+                second += p * (r * r + 2 * r * later + later2)
         return first, second
 
     return np.mean([onward(s, steps) for s in tables.starts], axis=0)
 
 
-@pytest.mark.parametrize(("seed", "discount"), [(0, 1.0), (1, 0.7), (2, 1.0)])
-def test_moments_equal_the_recursion(draw_world, seed, discount):
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_moments_equal_the_recursion(draw_world, seed):
     tables = draw_world(seed, n_states=6, n_actions=2, n_outcomes=2)
     random = np.random.default_rng(seed)
     # Two states share a row: a hidden state.
     row_of = np.array([0, 1, 2, 3, 4, 0], np.int32)
     probs = random.dirichlet(np.ones(2), 5)
     probs[1] = [1.0, 0.0]
-    first, second = naive_moments(tables, row_of, probs, 5, discount)
-    mean, deviation = return_moments(tables, row_of, probs, 5, discount)
+    first, second = naive_moments(tables, row_of, probs, 5)
+    mean, deviation = return_moments(tables, row_of, probs, 5)
     assert mean == pytest.approx(first, abs=1e-12)
     assert deviation == pytest.approx(np.sqrt(second - first**2), abs=1e-9)
 

@@ -3,7 +3,7 @@
 import pytest
 
 from lifelore.core.errors import InputError
-from reproduction.chapter4.c4_04_pacman.run import LASTING, RETURNS, measure, readings
+from reproduction.chapter4.c4_04_pacman.run import LASTING, RETURNS, readings
 from reproduction.engine.registry import claim_of
 
 SETTINGS = {"episodes": 10_000}
@@ -24,7 +24,7 @@ RESULTS = [layout(1, 1000, 100, 10), layout(10, None, 1000, 10), layout(1, 100, 
 
 
 def test_powers_of_ten_by_hand():
-    found = measure(SETTINGS, RESULTS)
+    found, _ = claim_of("C4.4").measured(SETTINGS, RESULTS)
     # Never counts as all 10,000: 3, 3 and 2; 2, 2 and 4.
     assert found["orders_q"].value == pytest.approx(8 / 3)
     assert found["orders_prq"].value == pytest.approx(8 / 3)

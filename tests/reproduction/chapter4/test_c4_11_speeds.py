@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from reproduction.chapter4.c4_11_speeds.run import losses, measure, numbers, readings, rows
+from reproduction.chapter4.c4_11_speeds.run import losses, numbers, readings, rows
+from reproduction.engine.registry import claim_of
 
 
 def made(best, n=40, noise=0.01):
@@ -35,6 +36,6 @@ def test_every_game_is_read_under_every_normalisation():
     assert [(cell["layout"], cell["normalisation"]) for cell, _ in found] == [
         ("blobs", "fixed"), ("blobs", "maxima"), ("s-maze 110", "fixed"), ("s-maze 110", "maxima"),
     ]  # fmt: skip
-    assert found[0][1] == measure(settings, results)
+    assert found[0][1] == claim_of("C4.11").measured(settings, results)[0]
     assert losses(results[0], "maxima").max() == pytest.approx(1)
     assert rows(settings, results)[0]["loss"][0] == np.round(loss[0].mean(axis=1), 4).tolist()

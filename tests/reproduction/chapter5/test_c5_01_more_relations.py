@@ -16,6 +16,7 @@ from reproduction.chapter5.c5_01_more_relations.run import (
     true_compounds,
     word_counts,
 )
+from tests.perception.conftest import box_surface
 
 CUBE = box(0.06, 0.06, 0.06)
 
@@ -24,16 +25,9 @@ def at(x: float, y: float, z: float = 0.03) -> Pose:
     return Pose(np.array([x, y, z]), np.eye(3))
 
 
-def surface(low, size, step=0.004) -> np.ndarray:
-    axes = [np.arange(0, side + step / 2, step) for side in size]
-    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    last = np.array([axis[-1] for axis in axes])
-    return grid[((grid == 0) | (grid == last)).any(axis=1)] + np.array(low)
-
-
 def made(poses: list[Pose], truth: list[PairLabel], shapes=None) -> SimpleNamespace:
     """Cubes (or other shapes) where they are put, and what is true of them; the cubes' surfaces as the cloud."""
-    parts = [surface(pose.position - 0.03, (0.06,) * 3) for pose in poses]
+    parts = [box_surface(pose.position - 0.03, pose.position + 0.03, 0.004) for pose in poses]
     cloud = LabelledCloud(
         np.concatenate(parts),
         np.repeat(np.arange(2, 2 + len(parts)), [len(part) for part in parts]),

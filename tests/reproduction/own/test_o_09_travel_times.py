@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.domains.grids.grid_world import GridWorld
-from reproduction.own.o_09_travel_times.run import BINS, Baselines, _by_bin, _shortest_way, measure, rows
+from reproduction.engine.registry import claim_of
+from reproduction.own.o_09_travel_times.run import BINS, Baselines, _by_bin, _shortest_way, rows
 
 
 def test_baselines_by_hand():
@@ -38,7 +39,7 @@ def test_measures_by_hand():
         "squared": 0.05,
     }
     other = life | {"seconds": [0.4, 0.8, 1.0, 0.2]}
-    found = measure({}, [life, other])
+    found, _ = claim_of("O9").measured({}, [life, other])
     assert found["moves_to_better"].value == pytest.approx(0.7 / 1.3)
     assert found["ways_to_better"].value == pytest.approx(5 / 4)
     assert found["squared_to_share"].value == pytest.approx(0.05 / 0.25)

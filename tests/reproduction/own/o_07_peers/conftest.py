@@ -5,16 +5,11 @@ import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
-
-STEP = 0.01
+from tests.perception.conftest import box_surface
 
 
 def box(low, size) -> np.ndarray:
-    """The surface of a box as points `STEP` apart, ``(n, 3)``."""
-    axes = [np.arange(0, side + STEP / 2, STEP) for side in size]
-    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    last = np.array([axis[-1] for axis in axes])
-    return grid[((grid == 0) | (grid == last)).any(axis=1)] + np.array(low)
+    return box_surface(low, np.add(low, size), 0.01)
 
 
 def table() -> np.ndarray:

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lifelore.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, Figure, house_style, new_figure
+from lifelore.figures.style import GREY, Figure, house_style, new_figure
+from reproduction.chapter4.c4_02_golf_holes.figure import CLUB_COLOURS
 
-CLUB_COLOURS = (BLUE, GREEN, ORANGE, PURPLE)
 _REACH = 80.0
 """Yards to which the two outer categories are drawn; they have no end."""
 
