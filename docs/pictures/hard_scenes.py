@@ -61,8 +61,10 @@ def main() -> None:
         cloud = read_cloud(path)
         cloud = cloud.only(cloud.measured)
         assert cloud.labels is not None
-        assert cloud.pixels is not None
-        on_object = cloud.pixels[cloud.labels > 1]
+        assert cloud.grid is not None
+        assert cloud.source_rows is not None
+        pixels = np.stack(np.divmod(cloud.source_rows, cloud.grid[1]), axis=1)
+        on_object = pixels[cloud.labels > 1]
         low, high = np.maximum(on_object.min(axis=0) - 20, 0), on_object.max(axis=0) + 20
         window = slice(low[0], high[0]), slice(low[1], high[1])
         place = ROOT / "out" / "labels.npy"
@@ -70,7 +72,7 @@ def main() -> None:
         for axes, labels in zip(
             row, (cloud.labels, found_by(old, path, place), found_by(ROOT, path, place)), strict=True
         ):
-            draw(axes, cloud.pixels, labels, window)
+            draw(axes, pixels, labels, window)
     for axes, title in zip(grid[0], ("labels by hand", "before", "now"), strict=True):
         axes.set_title(title)
     figure.savefig(ROOT / "docs" / "pictures" / "hard_scenes.png", dpi=80)
