@@ -96,7 +96,7 @@ def steps_of(world: GridWorld, start: int, goal: int) -> Iterator[tuple[int, int
 
 
 def make_runs(folder: Path) -> None:
-    """Twenty runs along shortest paths, with a pose every 0.1 m and localisation noise of 2 cm."""
+    """Twenty runs of a morning along shortest paths, with a pose every 0.1 m and localisation noise of 2 cm."""
     world = make_world("building", map=folder / "office.yaml")
     draw, lines = stream(0, "example runs"), ["run,time,x,y,outcome"]
     for run in range(20):
@@ -104,9 +104,10 @@ def make_runs(folder: Path) -> None:
         points = world.positions(np.array([*(state for state, _ in steps_of(world, start, goal)), goal]))
         points = np.vstack([*(np.linspace(a, b, 6)[:-1] for a, b in pairwise(points)), points[-1:]])
         points[1:-1] += draw.normal(0, 0.02, points[1:-1].shape)
-        last = len(points) - 1
+        last, start_time = len(points) - 1, 1_704_096_000 + 600 * run  # Monday, 2024-01-01, from 8:00 on
         lines += [
-            f"{run},{0.2 * i:.1f},{x:.2f},{y:.2f},{'goal' if i == last else ''}" for i, (x, y) in enumerate(points)
+            f"{run},{start_time + 0.2 * i:.1f},{x:.2f},{y:.2f},{'goal' if i == last else ''}"
+            for i, (x, y) in enumerate(points)
         ]
     (folder / "runs.csv").write_text("\n".join(lines) + "\n")
 
