@@ -154,3 +154,10 @@ def test_none_is_looked_for_where_models_are_exact_or_a_type_is_alone(library):
     assert ReuseAlgorithm(library, models="plug-in").unknown is None
     assert ReuseAlgorithm(PolicyLibrary.from_means(MEANS, 1.0)).unknown is None
     assert ReuseAlgorithm(PolicyLibrary.from_samples(np.random.default_rng(0).random((1, 2, 9)))).unknown is None
+
+
+def test_an_explanation_says_how_probably_no_type_fits(library):
+    assert stranger(library).explain().novelty == pytest.approx(1 / (1 + np.exp(-1)))
+    assert BayesianPolicyReuse(library).explain().novelty == pytest.approx(MASS)
+    assert BayesianPolicyReuse(library, models="plug-in").explain().novelty is None
+    assert BayesianPolicyReuse(library, novelty=0.05).explain().novelty == pytest.approx(0.05)

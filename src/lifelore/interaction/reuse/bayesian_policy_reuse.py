@@ -326,7 +326,7 @@ class BayesianPolicyReuse:
             log_evidence=[float(signal.log_evidence) for signal in last],
             surprise=float(self.surprise),
             unexplained=int(self.unexplained),
-            novelty=None if self.novelty is None else self.novelty.probability,
+            novelty=self.algorithm.unknown_probability(0) if self.novelty is None else self.novelty.probability,
         )
 
     def _mask(self, available: Available | None) -> Any:

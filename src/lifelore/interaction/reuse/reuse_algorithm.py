@@ -224,6 +224,10 @@ class ReuseAlgorithm:
             shares[likely] = tied_shares(bounds)
         return shares
 
+    def unknown_probability(self, user: int) -> float | None:
+        """Probability that no known type fits a user; None where such users are not looked for."""
+        return None if self.unknown is None else float(np.exp(-np.logaddexp(0.0, -self.unknown.log_odds[user])))
+
     # ---- likelihood, belief, dynamics --------------------------------------------------------------------
 
     def observe(self, users: Numbers, policies: Numbers, signals: Any, outcomes: Any = None) -> Observed:
