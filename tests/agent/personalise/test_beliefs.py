@@ -121,6 +121,19 @@ def test_another_library_means_a_replay(memory):
     same_as_twin(memory, new, "ann", shown)
 
 
+def test_a_belief_that_an_earlier_lifelore_stored_in_another_form_means_a_replay(file_memory):
+    memory, study = file_memory, learnt_study("gaussian").keep(file_memory)
+    shown = {user: [(one_more(memory, study, user, 1.0), 1.0)] for user in ("ann", "bo")}
+    with memory.studies.writing(study.number) as rows:
+        user = rows.users(["ann"])["ann"]
+        rows.keep_beliefs([(user.number, user.state[:-8])], study.version)
+    more = decide(memory, study, [Request("ann"), Request("bo")])  # both forms at once
+    observe(memory, study, [(one["decision"], 3.0) for one in more])
+    for one in more:
+        shown[one["user"]].append((one["policy"], 3.0))
+        same_as_twin(memory, study, one["user"], shown[one["user"]])
+
+
 def test_a_policy_that_the_library_does_not_know_gives_no_evidence(memory):
     study = study_of(change=0.1).keep(memory)
     add_lines(memory, study, [Line("ann", "gone", 8.0, 1), Line("ann", "big", 8.0, 2)])

@@ -1,8 +1,9 @@
 """Beliefs about users of a study as rows of Algorithm 7: from stored bytes, or by a replay of the evidence.
 
-A stored belief holds for one version of the study. After a new version, and where a user's context, features or
-named type have changed, it follows from the evidence again: the outcomes of the past, then those of decisions in
-the order in which they came. An outcome that comes late is thus learnt when it comes.
+A stored belief holds for one version of the study. After a new version, where a user's context, features or named
+type have changed, and where an earlier Lifelore stored it in another form, it follows from the evidence again: the
+outcomes of the past, then those of decisions in the order in which they came. An outcome that comes late is thus
+learnt when it comes.
 """
 
 from collections.abc import Iterable, Sequence
@@ -36,7 +37,11 @@ def open_beliefs(rows: StudyRows, study: Study, users: Sequence[UserRow]) -> Bel
     """The beliefs about users."""
     algorithm = study.algorithm.new_rows(len(users))
     start_at_priors(algorithm, study, users)
-    current = [user.version == study.version for user in users]
+    # Beliefs of another width are of another Lifelore.
+    width = 8 * algorithm.width
+    current = [
+        user.version == study.version and (user.state is None or len(user.state) == width) for user in users
+    ]
     stored = [place for place, user in enumerate(users) if current[place] and user.state is not None]
     if stored:
         packed = np.frombuffer(b"".join(users[place].state or b"" for place in stored), "<f8")

@@ -330,7 +330,7 @@ class ReuseAlgorithm:
     def packed(self, users: Numbers) -> Array:
         """All that is known of distinct `users` (k,), a row each, (k, width) float64; `unpack` restores it.
 
-        Between episodes only. The width depends on the library, the dynamics and the models.
+        Between episodes only. The `width` depends on the library, the dynamics and the models.
         """
         rows = np.atleast_1d(users)
         return np.concatenate(
@@ -346,14 +346,18 @@ class ReuseAlgorithm:
             The rows are of another library, other dynamics or other models.
         """
         rows, at = np.asarray(rows, np.float64), 0
-        arrays = self._user_arrays()
-        if (width := sum(array[0].size for array in arrays)) != rows.shape[-1]:
-            raise InputError(f"rows must have {width} numbers for this library, got {rows.shape[-1]}")
-        for array in arrays:
+        if self.width != rows.shape[-1]:
+            raise InputError(f"rows must have {self.width} numbers for this library, got {rows.shape[-1]}")
+        for array in self._user_arrays():
             size = array[0].size
             array[users] = rows[:, at : at + size].reshape(-1, *array.shape[1:])
             at += size
         self._begun[users] = True
+
+    @property
+    def width(self) -> int:
+        """Number of numbers of a `packed` row."""
+        return sum(array[0].size for array in self._user_arrays())
 
     def _user_arrays(self) -> list[Array]:
         """Every array with a row for each user, but for whether an episode has begun."""
