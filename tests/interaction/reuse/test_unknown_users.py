@@ -9,6 +9,7 @@ from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.reuse.unknown_users import DEVIATIONS, MASS
 from lifelore.interaction.selection import InformationDirected
+from lifelore.interaction.signals.return_signal import ReturnSignal
 
 MEANS = np.array([[1.0, 0.0, 0.7], [0.0, 1.0, 0.7]])
 STRANGER = [0.5, 0.5, 2.0]
@@ -154,6 +155,16 @@ def test_none_is_looked_for_where_models_are_exact_or_a_type_is_alone(library):
     assert ReuseAlgorithm(library, models="plug-in").unknown is None
     assert ReuseAlgorithm(PolicyLibrary.from_means(MEANS, 1.0)).unknown is None
     assert ReuseAlgorithm(PolicyLibrary.from_samples(np.random.default_rng(0).random((1, 2, 9)))).unknown is None
+
+
+def test_none_is_looked_for_where_the_signals_are_not_the_outcomes(library):
+    """Bounds of signals are no outcomes: here the third policy has the highest signals and the lowest outcomes."""
+    outcomes = PolicyLibrary.from_means([[1.0, 0.0, -9.0], [0.0, 1.0, -9.0]], 1.0).performance
+    agent = BayesianPolicyReuse(PolicyLibrary(outcomes, ReturnSignal(library.performance)))
+    for policy in TRIED:
+        agent.update(policy, STRANGER[policy])
+    assert agent.algorithm.unknown is None
+    assert agent.select() != 2
 
 
 def test_an_explanation_says_how_probably_no_type_fits(library):

@@ -70,8 +70,8 @@ class ReuseAlgorithm:
     dtype : {"f8", "f4"}
         Precision of the rows. float32 is faster and needs half the memory.
     unknown_users : bool
-        Whether users whom no known type fits are looked for, where pays are the signals and their models are
-        uncertain, see `unknown_users`; costs memory for three numbers a policy.
+        Whether users whom no known type fits are looked for, where the outcomes are the signals and their models
+        are uncertain, see `unknown_users`; costs memory for three numbers a policy.
 
     Attributes
     ----------
@@ -111,7 +111,7 @@ class ReuseAlgorithm:
         laws = {"signal": law_of(library.signal, library.n_types, models, **settings)}
         if not (isinstance(library.signal, ReturnSignal) and library.signal.outcomes is library.performance):
             laws["outcomes"] = law_of(library.performance, library.n_types, models, **settings)
-        if unknown_users and (unknown := unknown_law(library, laws["signal"])) is not None:
+        elif unknown_users and (unknown := unknown_law(library, laws["signal"])) is not None:
             laws["unknown"] = unknown
         self._begin(n_users, laws)
 

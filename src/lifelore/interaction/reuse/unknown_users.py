@@ -24,7 +24,6 @@ from lifelore.interaction.outcomes.normal_law import EXACT, NormalLaw
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.novelty.broad_library import broad_moments
 from lifelore.interaction.reuse.user_model import UserModel
-from lifelore.interaction.signals.return_signal import ReturnSignal
 
 Array = NDArray[Any]
 
@@ -104,19 +103,19 @@ class UnknownUsers(UserModel):
 _FIRST = float(np.log(MASS / (1 - MASS)))
 
 
-def unknown_law(library: PolicyLibrary, signals: Law) -> NormalLaw | None:
-    """The law of the unknown type; None where signals are no pays with means in doubt, or there is a single type.
+def unknown_law(library: PolicyLibrary, outcomes: Law) -> NormalLaw | None:
+    """The law of the unknown type; None where outcomes have no means in doubt, or there is a single type.
 
     Parameters
     ----------
-    signals : Law
-        Of the library's signals.
+    outcomes : Law
+        Of the library's outcomes.
     """
-    if not isinstance(signals, NormalLaw) or not isinstance(library.signal, ReturnSignal) or library.n_types < 2:
+    if not isinstance(outcomes, NormalLaw) or library.n_types < 2:
         return None
-    model: Any = library.signal.outcomes
+    model: Any = library.performance
     known, prior = model.moments, library.prior
     broad = broad_moments(known.mean, np.sqrt(known.variance), prior)
     # The variances are as well known as those of the known types: only the mean pays shall tell a user from these.
     broad = replace(broad, freedom=(prior @ np.minimum(known.freedom, EXACT))[None])
-    return NormalLaw(broad, Spread.known(0.0), signals.dtype.name)
+    return NormalLaw(broad, Spread.known(0.0), outcomes.dtype.name)
