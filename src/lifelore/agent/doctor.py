@@ -26,9 +26,9 @@ PACKAGES = {
     "gymnasium": "environments",
     "matplotlib": "figures",
     "scikit-learn": "learning relations",
-    "networkx": "contact point networks",
+    "networkx": "route graphs, holes in objects",
     "pypcd4": "PCD clouds",
-    "trimesh": "PLY clouds and meshes",
+    "trimesh": "PLY clouds",
     "clingo": "logic over scenes",
 }
 """Packages that every installation has, and what they are for."""

@@ -109,6 +109,13 @@ def test_a_session_of_an_earlier_lifelore_improves_the_outcome():
     assert played(loaded, 12) == played(agent, 12)
 
 
+def test_a_session_whose_rule_had_a_setting_that_is_gone_goes_on():
+    agent = BayesianPolicyReuse(library(), seed=5)
+    played(agent, 3)
+    earlier = repacked(session_bytes(agent), lambda header, _: header["settings"].update(trials=False))
+    assert played(session_from_bytes(earlier), 12) == played(agent, 12)
+
+
 @pytest.mark.parametrize("models", ["uncertain", "plug-in"])
 @pytest.mark.parametrize("kind", ["gaussian", "categorical"])
 def test_the_evidence_of_an_unknown_type_goes_on_to_the_bit(models, kind):

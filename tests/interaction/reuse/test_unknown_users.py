@@ -171,4 +171,8 @@ def test_an_explanation_says_how_probably_no_type_fits(library):
     assert stranger(library).explain().novelty == pytest.approx(1 / (1 + np.exp(-1)))
     assert BayesianPolicyReuse(library).explain().novelty == pytest.approx(MASS)
     assert BayesianPolicyReuse(library, models="plug-in").explain().novelty is None
+    earlier = BayesianPolicyReuse(library)  # restored from before there was an unknown type
+    earlier.algorithm.restore(0, earlier.log_belief, ReuseAlgorithm(library, unknown_users=False).state(0))
+    earlier.update(0, 9.0)
+    assert earlier.explain().novelty is None
     assert BayesianPolicyReuse(library, novelty=0.05).explain().novelty == pytest.approx(0.05)

@@ -23,8 +23,8 @@ class KnownValue:
     """Mean value, over a task's starts, of the best path that a model knows.
 
     Between two calls of `update` only `explore` with this learner may change the model. Where values do not depend
-    on distances alone (moves that cost, several goals, a remembered model that differs
-    from this world), every state is evaluated instead.
+    on distances alone (moves that cost, several goals, a remembered model that differs from this world), every
+    state is evaluated instead.
 
     Parameters
     ----------

@@ -226,7 +226,8 @@ class ReuseAlgorithm:
 
     def unknown_probability(self, user: int) -> float | None:
         """Probability that no known type fits a user; None where such users are not looked for."""
-        return None if self.unknown is None else float(np.exp(-np.logaddexp(0.0, -self.unknown.log_odds[user])))
+        log_odds = -np.inf if self.unknown is None else float(self.unknown.log_odds[user])
+        return None if log_odds == -np.inf else float(np.exp(-np.logaddexp(0.0, -log_odds)))
 
     # ---- likelihood, belief, dynamics --------------------------------------------------------------------
 

@@ -47,6 +47,8 @@ BEFORE: dict[str, dict[str, Any]] = {
     "knowledge-gradient": {"candidates": "responses"},
 }
 """Settings that rules had before they could be chosen or before their defaults changed, for files without them."""
+GONE = {"information-directed": ("trials",)}
+"""Settings in earlier files that rules no longer have."""
 
 __all__ = [
     "DEFAULT_RULE", "RULES", "BeliefEntropy", "BeliefSampling", "EpsilonGreedy", "ExpectedImprovement", "Greedy",
@@ -123,9 +125,12 @@ def rule_of(rule: SelectionRule | str | None, library: Any) -> SelectionRule:
 def restored_rule(name: str, settings: Mapping[str, Any]) -> SelectionRule:
     """The rule that was saved with these settings; a setting that is missing has the value that it had then.
 
+    Settings that the rule no longer has are passed over.
+
     Examples
     --------
     >>> restored_rule("expected-improvement", {"variant": "standard"})
     ExpectedImprovement(variant='standard', of='outcome')
     """
-    return rule_named(name, **{**BEFORE.get(name, {}), **settings})
+    kept = {key: value for key, value in settings.items() if key not in GONE.get(name, ())}
+    return rule_named(name, **{**BEFORE.get(name, {}), **kept})
