@@ -118,3 +118,13 @@ def test_a_larger_library_before_leaves_nothing_in_a_later_study(file_memory):
     replace(study_of(), library=large, states=dict.fromkeys(large.policies, "active")).keep(file_memory)
     assert study_of().keep(file_memory).version == 2
     assert open_study(file_memory, "s").library.policies == study_of().library.policies
+
+
+def test_a_study_whose_rule_had_a_setting_that_is_gone_is_opened(file_memory):
+    study = replace(learnt_study("gaussian"), rule="information-directed", rule_settings={"mass": 0.9}).keep(
+        file_memory
+    )
+    found = file_memory.studies.newest("s")
+    earlier = found.about | {"rule_settings": found.about["rule_settings"] | {"trials": False}}
+    assert file_memory.studies.keep("s", earlier, found.content).version == 2
+    assert open_study(file_memory, "s").selection == study.selection
