@@ -61,9 +61,7 @@ def main() -> None:
         cloud = read_cloud(path)
         cloud = cloud.only(cloud.measured)
         assert cloud.labels is not None
-        assert cloud.grid is not None
-        assert cloud.source_rows is not None
-        pixels = np.stack(np.divmod(cloud.source_rows, cloud.grid[1]), axis=1)
+        pixels = cloud.pixels
         on_object = pixels[cloud.labels > 1]
         low, high = np.maximum(on_object.min(axis=0) - 20, 0), on_object.max(axis=0) + 20
         window = slice(low[0], high[0]), slice(low[1], high[1])

@@ -46,8 +46,7 @@ def test_ctrl_c_keeps_what_is_finished(start, answer, ask, wait_for_tasks, tmp_p
     child.send_signal(signal.SIGINT)
     said = answer(child)
     assert said.status == 130
-    size, stopping = said.err.splitlines()
-    assert size.startswith("341 places; about ")
+    (stopping,) = said.err.splitlines()
     assert stopping.startswith("stopping: ")
     life = said.document
     stored = sound_tasks(memory)
@@ -188,8 +187,7 @@ def test_a_full_disk_is_one_line_and_keeps_what_is_finished(start, answer, ask, 
     )  # fmt: skip
     said = answer(child)
     assert (said.status, said.out) == (2, "")
-    size, line = said.err.splitlines()
-    assert size.startswith("341 places; about ")
+    (line,) = said.err.splitlines()
     assert line.startswith(f"lifelore: memory {known}: ")
     assert "full" in line or "no space" in line
     stored = sound_tasks(known)

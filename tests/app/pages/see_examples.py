@@ -1,4 +1,7 @@
-"""Makes the example clouds of the page /see again (extra sim): python tests/app/pages/see_examples.py [FOLDER]."""
+"""Makes the example clouds of the page /see again: PYTHONPATH=. python tests/app/pages/see_examples.py [FOLDER].
+
+Needs the extra sim.
+"""
 
 import sys
 from dataclasses import replace
@@ -11,22 +14,23 @@ from lifelore.core.streams import stream
 from lifelore.domains.tabletop.scene_folder import save_cloud
 from lifelore.domains.tabletop.settings import TabletopSettings
 from lifelore.domains.tabletop.tabletop import sample_scene
+from reproduction.chapter2.scenes.figure_scenes import figure_scene
 
 SHIPPED = Path(__file__).parents[3] / "src" / "lifelore" / "app" / "pages" / "see" / "static" / "examples"
 MARGIN = 0.1
 """Metres of table around the objects."""
+CROWD = TabletopSettings(n_objects=(4, 6))
 EXAMPLES = {
-    # name: seed and number of the scene, its settings, share of the table's points, of the objects' points, labels
-    "tower": (1, 0, TabletopSettings(arrangement="stack-two-contacts"), 0.2, 0.6, True),
-    "crowded_table": (3, 0, TabletopSettings(n_objects=(4, 6)), 0.08, 0.25, True),
-    "without_labels": (3, 2, TabletopSettings(n_objects=(4, 6)), 0.3, 0.3, False),
+    # name: scene, share of the table's points, of the objects' points, whether it has labels
+    "tower": (figure_scene("stack-two-contacts", 1, 0, TabletopSettings()), 0.2, 0.6, True),
+    "crowded_table": (sample_scene(3, 0, CROWD), 0.08, 0.25, True),
+    "without_labels": (sample_scene(3, 2, CROWD), 0.3, 0.3, False),
 }
 
 
 def make_examples(folder: Path) -> None:
     """Write the clouds as PCD: the objects and the table around them, with a part of the points."""
-    for name, (seed, number, settings, table_share, object_share, labelled) in EXAMPLES.items():
-        scene = sample_scene(seed, number, settings)
+    for name, (scene, table_share, object_share, labelled) in EXAMPLES.items():
         chosen = _part(scene.cloud, table_share, object_share)
         labels = scene.cloud.labels[chosen]
         assert scene.cloud.colours is not None, "the simulated camera sees colours"

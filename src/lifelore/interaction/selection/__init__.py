@@ -96,7 +96,7 @@ def default_rule(library: Any) -> SelectionRule:
     --------
     >>> from lifelore.interaction.library.policy_library import PolicyLibrary
     >>> default_rule(PolicyLibrary.from_means([[10.0, 6.0]], 1.0))
-    InformationDirected(mass=0.999, n_bins=8, trials=False)
+    InformationDirected(mass=0.999, n_bins=8)
     """
     return rule_named(DEFAULT_RULE if library.has_table else WITHOUT_TABLE)
 

@@ -146,6 +146,22 @@ class PointCloud:
             raise InputError(f"source_rows must lie in 0 to {pixels - 1} for grid {self.grid}")
 
     @property
+    def pixels(self) -> NDArray[np.int64]:
+        """(n, 2) int64: row and column of each point in the grid.
+
+        Raises
+        ------
+        InputError
+            The cloud is not organised.
+        """
+        if self.grid is None:
+            raise InputError(
+                "pixels need an organised cloud (grid of height and width), but this cloud has no grid"
+            )
+        numbers = np.arange(len(self.points)) if self.source_rows is None else self.source_rows
+        return np.stack(np.divmod(numbers, self.grid[1]), axis=1)
+
+    @property
     def measured(self) -> NDArray[np.bool_]:
         """(n,) bool: points with three finite coordinates."""
         return finite_rows(self.points)
