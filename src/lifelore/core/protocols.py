@@ -21,6 +21,8 @@ class World(Protocol):
     n_actions : int
         Actions are the integers in [0, n_actions).
 
+    States and contexts are finite numbers, text, tuples and the like, which have the same code in every process.
+
     Examples
     --------
     >>> from lifelore import GymnasiumWorld

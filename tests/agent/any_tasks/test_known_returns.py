@@ -40,3 +40,25 @@ def test_returns_of_a_policy_count_half_once_it_is_learnt_further():
         experience.learn(TaskNews(0, 0, {"a": 1.0}, Counter(), returns, prior, learner="a", policy={}))
     assert experience.types["a"].returns["a"] == pytest.approx(sums(*[0.0] * 2, *[10.0] * 4))
     assert experience.types["a"].returns["b"] == pytest.approx(sums(*[0.0] * 4, *[10.0] * 4))
+
+
+def test_robots_that_learn_a_policy_further_at_the_same_time_leave_a_mean_that_was_earned():
+    shared = Experience("key", 2)
+    prior = ActionPrior(2, shared.prior.alpha0, shared.prior.key)
+
+    def task(value, n):
+        return TaskNews(0, 0, {"a": 1.0}, Counter(), {"a": [value] * n}, prior, learner="a", policy={})
+
+    first = shared.learn(task(0.0, 8))
+    apart = [Experience("key", 2) for _ in range(3)]
+    for one in apart:
+        one.add(first)
+    later = [one.learn(task(1.0, 2)) for one in apart]
+    for records in later:
+        shared.add(records)
+    assert shared.types["a"].returns["a"] == pytest.approx(sums(*[0.0] * 4, *[1.0] * 6))
+
+    # The first robot's task is forgotten.
+    rest = Experience("key", 2)
+    rest.add([record for records in later for record in records])
+    assert rest.types["a"].returns["a"] == pytest.approx(sums(*[1.0] * 6))

@@ -235,7 +235,7 @@ def test_what_is_no_world_is_refused_and_a_memory_needs_the_meaning_of_contexts(
         live_in(gymnasium.make("FrozenLake-v1"))  # type: ignore[arg-type]
     with pytest.raises(InputError, match=r"world\.n_actions must lie in"):
         live_in(Doors(2**16))
-    with pytest.raises(InputError, match="context must be"):
+    with pytest.raises(InputError, match="a state or context must be"):
         live_in(Doors(context=object()))
     with pytest.raises(InputError, match="key must name the meaning of the contexts in the memory"):
         live_in(Doors(), memory=tmp_path / "m.db")

@@ -11,7 +11,7 @@ import gymnasium
 import numpy as np
 import pytest
 
-from lifelore import LongLivedAgent, open_memory
+from lifelore import LongLivedAgent, compare_agents, open_memory
 from lifelore.agent.any_tasks.one_task import SETTLED
 from lifelore.agent.any_tasks.reuse import TaskReuse
 from lifelore.agent.life.loop import Stopped
@@ -282,6 +282,24 @@ def test_a_learner_of_the_user_is_called_and_its_policy_reused(tmp_path):
         assert isinstance(start, Constant)
     with pytest.raises(InputError, match="from_bytes"), LongLivedAgent(**settings | {"learner": "q"}) as agent:
         agent.live(WindyGrid(0))
+
+
+def test_a_learner_of_the_user_may_play_more_episodes_than_a_task_has():
+    n_played = 2 * SETTINGS["episodes"]
+
+    def learner(env, prior, start):
+        for seed in range(n_played):
+            env.reset(seed=seed)
+            env.step(3)
+        env.reset(seed=n_played)
+        return Constant(3)
+
+    agents = {"full": None, "scratch": None}
+    with LongLivedAgent(**SETTINGS, learner=learner) as agent:
+        assert len(agent.live(WindyGrid(0)).returns) == n_played + 1  # and one by what it has learnt
+    assert compare_agents(WindyGrid, [0], agents, **SETTINGS, learner=learner)["tasks"][0]["agents"].keys() == set(
+        agents
+    )
 
 
 def test_returns_alone_tell_types_apart_too():

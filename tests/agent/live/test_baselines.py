@@ -40,7 +40,8 @@ def test_an_agent_lives_alone_in_a_big_world_unless_the_settings_decide(tmp_path
     settings = LifeSettings(WorldSettings("lattice"), memory=MemorySettings(str(tmp_path / "life.db")), tasks=1)
     report = live(settings, notify=lines.append).report
     assert len(lines) == 1
-    assert "above 100 places scratch lives beside lore only with --set compare=true" in lines[0]
+    said = "above 100 places scratch lives beside lore only with --set compare=true; a smaller size"
+    assert said in lines[0]
     assert list(report["tasks"][0]["agents"]) == ["lore"]
     assert list(report["summary"]) == ["agents"]
     compared = LifeSettings(WorldSettings("lattice"), memory=settings.memory, tasks=1, compare=True)

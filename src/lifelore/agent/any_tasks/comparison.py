@@ -8,7 +8,7 @@ from typing import Any
 import gymnasium
 
 from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent
-from lifelore.agent.any_tasks.one_task import episode_seeds
+from lifelore.agent.any_tasks.one_task import episode_seed
 from lifelore.agent.any_tasks.side_by_side import SideBySide
 from lifelore.agent.any_tasks.task_settings import AGENTS
 from lifelore.agent.external_world.life_summary import summarise_life
@@ -82,7 +82,8 @@ def compare_agents(
     with usual.world(make) as world:
         beside = SideBySide(world, lived, own, common, usual.key)
         for number, context in enumerate(contexts):
-            found = beside.live(number, context, episode_seeds(common, number), stop or Event()).measures
+            seeds = [episode_seed(common.seed, number, episode) for episode in range(common.learning.episode_cap)]
+            found = beside.live(number, context, seeds, stop or Event()).measures
             tasks.append({"index": number, "context": context, "agents": {name: found[name] for name in given}})
             if progress:
                 progress(number + 1, len(contexts), f"task {number}")

@@ -44,7 +44,10 @@ class TypeExperience:
     sightings : Counts
         Belief in the type at the end of tasks, by date and context.
     returns : dict of str to (3,) float64
-        Number, sum and sum of squares of the returns of each policy, by name, in tasks of this type.
+        Number, sum and sum of squares of the returns of each policy, by name, in tasks of this type; those from
+        before a policy was learnt further count less, see `STALE`.
+    rounds : dict of str to int
+        How often each policy was learnt further.
     policy : QTable, StoredPolicy or callable, optional
         Learnt in tasks of this type, under its name.
     idle : int
@@ -56,6 +59,16 @@ class TypeExperience:
     returns: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     policy: Any = None
     idle: int = 0
+    rounds: dict[str, int] = field(default_factory=dict)
+
+    def add_returns(self, policy: str, record: Record) -> None:
+        """Add returns of a policy, by the round in which it earned them; exact in any order."""
+        of_record, column = np.divmod(record.slots, 3)
+        known = self.rounds.get(policy, 0)
+        self.rounds[policy] = newest = max(known, int(of_record.max(initial=0)))
+        sums = self.returns.setdefault(policy, np.zeros(3))
+        sums *= (1 - STALE) ** (newest - known)
+        np.add.at(sums, column, record.values / ONE * (1 - STALE) ** (newest - of_record))
 
 
 class TaskNews(NamedTuple):
@@ -146,10 +159,10 @@ class Experience:
             yield counts_record(COUNTS, f"{self.key}/sightings/{name}", seen, bits=DATE_BITS)
             for policy, values in news.returns.items():
                 sums = belief * np.array([len(values), np.sum(values), np.square(values).sum()])
-                if policy == news.learner and name in self.types:
-                    sums -= STALE * self.types[name].returns.get(policy, 0.0)
+                known = self.types.get(name)
+                round_ = 0 if known is None else known.rounds.get(policy, 0) + (policy == news.learner)
                 key = f"{self.key}/returns/{name}/{policy}"
-                yield Record(COUNTS, key, VERSION, "add", np.arange(3), _fixed(sums))
+                yield Record(COUNTS, key, VERSION, "add", 3 * round_ + np.arange(3), _fixed(sums))
         if news.learner is not None:
             idle = np.array([news.idle], np.int64)
             yield Record(
@@ -210,8 +223,7 @@ class Experience:
             case "sightings":
                 self._type(name).sightings.update(counts_of(record, DATE_BITS))
             case "returns":
-                sums = self._type(name).returns.setdefault(policy, np.zeros(3))
-                sums += record.values / ONE
+                self._type(name).add_returns(policy, record)
             case "idle":
                 self._type(name).idle = values[0]
             case "table":

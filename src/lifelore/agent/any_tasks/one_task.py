@@ -70,8 +70,8 @@ class OneTask:
         Code of the task's context.
     stop : threading.Event
         Set it to drop the task: `live` raises `Stopped`.
-    seeds : sequence of int, optional
-        With which the world is reset, one for each episode; by default those of `episode_seeds`.
+    seeds : sequence of int
+        With which the world is reset, one for each episode; `episode_seed` gives those that are missing.
     """
 
     def __init__(
@@ -83,12 +83,11 @@ class OneTask:
         result: TaskResult,
         context: int,
         stop: Event,
-        seeds: Sequence[int] | None = None,
+        seeds: Sequence[int] = (),
     ) -> None:
         self.experience, self.world, self.codes, self.settings = experience, world, codes, settings
         self.abilities, self.result, self.context = settings.abilities, result, context
-        self.stop = stop
-        self.seeds = seeds or episode_seeds(settings, result.number)
+        self.stop, self.seeds = stop, seeds
         self.generator = stream(settings.seed, "task", result.number, "own")
         self.reuse: TaskReuse | None = None
         self.players: dict[str, Player] = {}  # policies that ran; each learns from the moves that it makes
@@ -134,8 +133,10 @@ class OneTask:
 
     def live_episode(self) -> None:
         """Play an episode by the learner, or by the policy that is worth most; take in each move."""
-        number = self.result.number
-        seed = self.seeds[len(self.result.returns)]
+        number, episode = self.result.number, len(self.result.returns)
+        # A learner of the user may have played more episodes than the task has.
+        known = episode < len(self.seeds)
+        seed = self.seeds[episode] if known else episode_seed(self.settings.seed, number, episode)
         began = self.reuse.begin_episode() if self.learner is None and self.reuse is not None else LEARNER
         self.whole = True
         most = self.settings.learning.step_cap
@@ -340,10 +341,9 @@ class OneTask:
         return {name: 1.0}
 
 
-def episode_seeds(settings: TaskSettings, task: int) -> list[int]:
-    """With what a world is reset for each episode of a task; the same for all agents of a seed."""
-    streams = (stream(settings.seed, "task", task, "world", k) for k in range(settings.learning.episode_cap))
-    return [int(one.integers(2**31)) for one in streams]
+def episode_seed(seed: int, task: int, episode: int) -> int:
+    """With what a world is reset; the same for all agents of a seed."""
+    return int(stream(seed, "task", task, "world", episode).integers(2**31))
 
 
 def last_half(returns: Sequence[float]) -> Sequence[float]:

@@ -57,8 +57,8 @@ def _canonical(part: Hashable) -> str:
         values = tuple(getattr(part, f.name) for f in fields(part) if f.compare)
         return type(part).__qualname__ + _canonical(values)
     raise InputError(
-        "context must be made of finite numbers, text, bytes, enum members, tuples, frozensets or dataclasses, "
-        f"got {ascii(part)[:60]} of type {type(part).__name__}; return a tuple of such features"
+        "a state or context must be made of finite numbers, text, bytes, enum members, tuples, frozensets or "
+        f"dataclasses, got {ascii(part)[:60]} of type {type(part).__name__}; return a tuple of such features"
     )
 
 
@@ -83,7 +83,7 @@ class ContextCodes:
             return self._meet(context)
         except TypeError:
             raise InputError(
-                f"context must be hashable, got {type(context).__name__}; return a tuple or a number"
+                f"a state or context must be hashable, got {type(context).__name__}; return a tuple or a number"
             ) from None
 
     def _meet(self, context: Hashable) -> int:

@@ -166,9 +166,11 @@ def _names(settings: LifeSettings, places: int, notify: Callable[[str], None]) -
     small = places <= baselines.BIG
     names = agents_for(settings.agent, settings.learner, small if settings.compare is None else settings.compare)
     if settings.compare is None and names != agents_for(settings.agent, settings.learner):
+        building = settings.world.domain == "building"
+        smaller = "a larger cell (--set cell=METRES)" if building else "a smaller size (--set size=CELLS)"
         notify(
             f"{places:,} places: above {baselines.BIG:,} places scratch lives beside {settings.agent} only with "
-            "--set compare=true; a larger cell (--set cell=METRES) takes less time"
+            f"--set compare=true; {smaller} takes less time"
         )
     return names
 

@@ -27,7 +27,7 @@ from lifelore.domains.tabletop.truth import NEAR, Gap, bearing, true_relations
 JAMMED = -0.001
 """Metres: surfaces that overlap more were pressed together, not set down."""
 BALANCE = 0.05
-"""Part of its weight by which a object's support may be off: more, and it is about to tip."""
+"""Part of its weight by which an object's support may be off: more, and it is about to tip."""
 ATTEMPTS = 400
 Shows = Callable[[NDArray[np.float64], Contacts, Sequence[Pose]], bool]
 """Called with the shares of the objects' weights (see `Bearing`), the contacts and the poses."""
