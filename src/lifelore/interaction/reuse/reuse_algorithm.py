@@ -13,6 +13,7 @@ explanation, `UserBeliefs` many rows with names. Thesis: §4.2, Alg. 7; §4.5.2,
 
 from collections.abc import Mapping
 from copy import copy
+from math import prod
 from typing import Any, Literal, NamedTuple, Self
 
 import numpy as np
@@ -350,7 +351,7 @@ class ReuseAlgorithm:
         if self.width != rows.shape[-1]:
             raise InputError(f"rows must have {self.width} numbers for this library, got {rows.shape[-1]}")
         for array in self._user_arrays():
-            size = array[0].size
+            size = prod(array.shape[1:])
             array[users] = rows[:, at : at + size].reshape(-1, *array.shape[1:])
             at += size
         self._begun[users] = True
@@ -358,12 +359,12 @@ class ReuseAlgorithm:
     @property
     def width(self) -> int:
         """Number of numbers of a `packed` row."""
-        return sum(array[0].size for array in self._user_arrays())
+        return sum(prod(array.shape[1:]) for array in self._user_arrays())
 
     def _user_arrays(self) -> list[Array]:
         """Every array with a row for each user, but for whether an episode has begun."""
         of_models = [array for model in self._models.values() if model.law.learns for array in model.arrays()]
-        return [array for array in (self.log_belief, *of_models, *self.changes.arrays()) if array[0].size]
+        return [array for array in (self.log_belief, *of_models, *self.changes.arrays()) if prod(array.shape[1:])]
 
     @property
     def nbytes(self) -> int:
