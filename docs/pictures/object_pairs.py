@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
-from lifelore.figures.style import save_figure
+from lifelore.figures.style import house_style, save_figure
 from reproduction.chapter2.scenes.tabletop_pairs import LEAST_CONFIDENCE, MIX
 from reproduction.figures.gallery import draw_gallery
 
@@ -36,6 +36,7 @@ def pairs(seed: int = 0, n: int = PAIRS) -> list[tuple[LabelledCloud, str]]:
     return found
 
 
+@house_style()
 def draw_pairs(seen: list[tuple[LabelledCloud, str]]):
     """The pictures in rows of four, each under its relation."""
     return draw_gallery([(cloud, NOTHING, words) for cloud, words in seen], columns=COLUMNS, layers=("cloud",))

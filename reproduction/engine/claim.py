@@ -7,7 +7,8 @@
   and named estimates there, the default first; ``measure(settings, results)`` gives what is measured at the
   default beside the first reading, or instead of it. One of the two may be missing. ``rows(settings, results)``
   gives what the figure needs beside them, and may be missing.
-- ``figure.py``: ``draw(result)`` draws the thesis's figure from the finished result; it runs nothing again.
+- ``figure.py``: ``draw(result)`` draws the thesis's figure from the finished result, in the house style, which the
+  engine sets; it runs nothing again. Most are functions of panels, see `reproduction.figures.panels`.
 
 Claims with the same ``run_cell`` share their finished cells where a module has ``shared = ("pairs", "camera")``:
 the names of the settings that ``run_cell`` reads. Without it all settings count, and cells belong to one claim.

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from lifelore.figures.style import BLUE, GREY, INK, ORANGE, VERMILION, Axes, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, INK, ORANGE, VERMILION, Axes, Figure, new_figure
 from reproduction.engine.claim import Claim
 from reproduction.engine.statement import HALF, MISSING, NO, YES, Statement
 
@@ -25,21 +25,18 @@ def draw_readings(claim: Claim, result: Mapping) -> Figure:
     found = {one: readings for one, readings in found.items() if readings}
     rows = {one: _rows(one, readings) for one, readings in found.items()}
     heights = [1.0 + 0.28 * len(rows[one][1]) for one in found]
-    with house_style():
-        figure = new_figure(7.6, 0.5 + sum(heights))
-        strips = figure.subplots(len(found), 1, squeeze=False, height_ratios=heights)[:, 0]
-        for axes, (statement, readings) in zip(strips, found.items(), strict=True):
-            _draw_strip(
-                axes, statement, readings, *rows[statement], result["measured"][statement.measure]["value"]
-            )
-        looks = {"marker": "o", "linestyle": "", "markersize": 4}
-        handles = [Line2D([], [], color=COLOURS[mark], label=words, **looks) for mark, words in WORDS.items()]
-        handles += [
-            Line2D([], [], color=INK, lw=0.8, label="default"),
-            Line2D([], [], color=GREY, ls="--", label="bound"),
-        ]
-        figure.legend(handles=handles, loc="outside lower left", ncols=5, fontsize=8)
-        figure.suptitle(f"{claim.id}: every reading of the choices left open, a dot each", x=0.01, ha="left")
+    figure = new_figure(7.6, 0.5 + sum(heights))
+    strips = figure.subplots(len(found), 1, squeeze=False, height_ratios=heights)[:, 0]
+    for axes, (statement, readings) in zip(strips, found.items(), strict=True):
+        _draw_strip(axes, statement, readings, *rows[statement], result["measured"][statement.measure]["value"])
+    looks = {"marker": "o", "linestyle": "", "markersize": 4}
+    handles = [Line2D([], [], color=COLOURS[mark], label=words, **looks) for mark, words in WORDS.items()]
+    handles += [
+        Line2D([], [], color=INK, lw=0.8, label="default"),
+        Line2D([], [], color=GREY, ls="--", label="bound"),
+    ]
+    figure.legend(handles=handles, loc="outside lower left", ncols=5, fontsize=8)
+    figure.suptitle(f"{claim.id}: every reading of the choices left open, a dot each", x=0.01, ha="left")
     return figure
 
 

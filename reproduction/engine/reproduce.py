@@ -252,12 +252,13 @@ def _write(claim: Claim, result: dict, folder: Path) -> None:
 
 def draw(claim: Claim, result: Mapping, folder: Path) -> None:
     """Draw ``figure.png``, and ``readings.png`` where there are several readings; nothing is run."""
-    from lifelore.figures.style import save_figure
+    from lifelore.figures.style import house_style, save_figure
     from reproduction.engine.readings_figure import draw_readings
 
-    save_figure(claim.draw(result), folder / "figure.png")
-    if len(result["readings"]) > 2:
-        save_figure(draw_readings(claim, result), folder / "readings.png")
+    with house_style():
+        save_figure(claim.draw(result), folder / "figure.png")
+        if len(result["readings"]) > 2:
+            save_figure(draw_readings(claim, result), folder / "readings.png")
 
 
 def _one_row_a_line(result: dict) -> str:

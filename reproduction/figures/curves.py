@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lifelore.core.errors import InputError
 from lifelore.figures.style import GREY, INK
 
 if TYPE_CHECKING:
@@ -45,8 +44,6 @@ def draw_curves(
     for label, curve in series.items():
         mean = np.asarray(curve["mean"], float)
         places = np.asarray(curve.get("x", x if x is not None else np.arange(1, len(mean) + 1)), float)
-        if places.shape != mean.shape:
-            raise InputError(f"x and mean of '{label}' must agree in shape, got {places.shape} and {mean.shape}")
         look = {"color": GREY, **(looks or {}).get(label, {})}
         band = _band(curve, mean)
         if band is not None:

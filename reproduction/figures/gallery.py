@@ -3,10 +3,9 @@
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.figures.scenes.scene_picture import LAYERS, draw_scene_on
-from lifelore.figures.style import house_style, new_figure
+from lifelore.figures.style import new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure, FigureBase, SubFigure
@@ -30,38 +29,26 @@ def draw_gallery(
         At least 1.
     layers : collection of str
         Which of `scene_picture.LAYERS` to draw.
-
-    Raises
-    ------
-    InputError
-        There is no scene, or no column.
     """
-    if not scenes or columns < 1:
-        raise InputError(f"a gallery needs a scene and a column, got {len(scenes)} scenes and {columns} columns")
     columns = min(columns, len(scenes))
     wide, high = _size(columns)
     rows = -(-len(scenes) // columns)
-    with house_style():
-        size = (columns * (wide + _GUTTER) + _GUTTER, rows * (high + _CAPTION + _GUTTER) + _GUTTER)
-        figure = new_figure(*size)
-        figure.set_layout_engine("none")
-        _draw(figure, size, scenes, columns, layers)
+    size = (columns * (wide + _GUTTER) + _GUTTER, rows * (high + _CAPTION + _GUTTER) + _GUTTER)
+    figure = new_figure(*size)
+    figure.set_layout_engine("none")
+    _draw(figure, size, scenes, columns, layers)
     return figure
 
 
 def gallery_above(
     scenes: Sequence[PictureOfScene], below: float, *, columns: int = 3, layers: Collection[str] = LAYERS
 ) -> tuple["Figure", "SubFigure"]:
-    """A figure with a row of pictures, and its lower part of `below` inches for charts.
-
-    Draw the charts within `house_style`.
-    """
+    """A figure with a row of pictures, and its lower part of `below` inches for charts."""
     _, high = _size(columns)
     above = high + _CAPTION + 2 * _GUTTER if scenes else 0.01
-    with house_style():
-        figure = new_figure(_WIDTH, above + below)
-        top, bottom = figure.subfigures(2, 1, squeeze=False, height_ratios=[above, below])[:, 0]
-        _draw(top, (_WIDTH, above), scenes[:columns], columns, layers)
+    figure = new_figure(_WIDTH, above + below)
+    top, bottom = figure.subfigures(2, 1, squeeze=False, height_ratios=[above, below])[:, 0]
+    _draw(top, (_WIDTH, above), scenes[:columns], columns, layers)
     return figure, bottom
 
 

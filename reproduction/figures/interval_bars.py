@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Number = Mapping[str, Any]
-"""``{"value", "ci95"}``; `ci95` is (low, high) or None. With ``words`` it has a text of its own."""
+"""``{"value", "ci95"}``; `ci95` is (low, high) or None."""
 
 
 def draw_interval_bars(
@@ -17,7 +17,7 @@ def draw_interval_bars(
     names: Sequence[str],
     groups: Mapping[str, Sequence[Number | None]],
     *,
-    colours: Mapping[str, Any] | Sequence[str] = (),
+    colours: Mapping[str, str] | Sequence[str] = (),
     horizontal: bool = True,
     words: Callable[[float], str] | None = "{:.3g}".format,
     title: str = "",
@@ -64,7 +64,7 @@ def draw_interval_bars(
                 axes.plot(*ends, color=INK, linewidth=1.1, solid_capstyle="butt")
             if words:
                 end = max(number["value"], interval[1] if interval else number["value"])
-                _write(axes, number.get("words") or words(number["value"]), end, at, horizontal)
+                _write(axes, words(number["value"]), end, at, horizontal)
     _ticks(axes, names, horizontal)
     axes.set(title=title, **{"xlabel" if horizontal else "ylabel": label})
     if len(groups) > 1 if legend is None else legend:
@@ -73,8 +73,7 @@ def draw_interval_bars(
 
 def _colour(colours, group: str, g: int, place: int, n_groups: int) -> str:
     if isinstance(colours, Mapping):
-        colour = colours.get(group, BLUE)
-        return colour[place] if isinstance(colour, list) else colour
+        return colours.get(group, BLUE)
     if not colours:
         return BLUE
     return colours[place if n_groups == 1 and len(colours) > 1 else g]

@@ -1,12 +1,11 @@
 """Scatter plots: points of several groups, faded where they are many, with the axes through zero."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lifelore.core.errors import InputError
 from lifelore.figures.scenes.object_palette import mixed
 from lifelore.figures.style import GREY, INK, LIGHT
 
@@ -19,7 +18,7 @@ def draw_scatter(
     groups: Mapping[str, ArrayLike],
     *,
     colours: Mapping[str, str] | None = None,
-    markers: Mapping[str, str | Sequence[str]] | None = None,
+    markers: Mapping[str, str] | None = None,
     size: float = 18,
     legend: Mapping[str, Any] | None = None,
     title: str = "",
@@ -36,33 +35,22 @@ def draw_scatter(
     colours : mapping, optional
         Label → colour.
     markers : mapping, optional
-        Label → matplotlib's marker of the group, or a marker for each of its points.
+        Label → matplotlib's marker of the group.
     size : float
         Of a marker, points squared.
     legend : mapping, optional
         Arguments of the legend; None draws no legend.
     title, xlabel, ylabel : str
-
-    Raises
-    ------
-    InputError
-        A group's places are not (n, 2), or its markers are not n.
     """
     axes.axhline(0, color=LIGHT, lw=1, zorder=0)
     axes.axvline(0, color=LIGHT, lw=1, zorder=0)
     for label, places in groups.items():
-        at, colour = np.asarray(places, float).reshape(-1, 2), (colours or {}).get(label, GREY)
-        own = (markers or {}).get(label, "o")
-        each = np.full(len(at), own) if isinstance(own, str) else np.array(own)
-        if np.shape(places) != at.shape or each.shape != at.shape[:1]:
-            raise InputError(f"places of '{label}' must be (n, 2) and its markers n, got {np.shape(places)}")
+        at = np.asarray(places, float).reshape(-1, 2)
+        colour, marker = (colours or {}).get(label, GREY), (markers or {}).get(label, "o")
         alpha = float(np.clip(12 / np.sqrt(max(1, len(at))), 0.25, 0.85))
-        for marker in dict.fromkeys(each.tolist()):
-            edge = {} if marker == "x" else {"edgecolors": mixed(colour, INK, 0.3)}
-            found = at[each == marker]
-            axes.scatter(*found.T, s=size, marker=marker, color=colour, alpha=alpha, linewidths=0.5, **edge)
-        sign = own if isinstance(own, str) else each[0] if len(set(each.tolist())) == 1 else "o"
-        axes.scatter([], [], s=22, marker=sign, color=colour, label=label)
+        edge = {} if marker == "x" else {"edgecolors": mixed(colour, INK, 0.3)}
+        axes.scatter(*at.T, s=size, marker=marker, color=colour, alpha=alpha, linewidths=0.5, **edge)
+        axes.scatter([], [], s=22, marker=marker, color=colour, label=label)
     axes.set(title=title, xlabel=xlabel, ylabel=ylabel)
     if legend is not None:
         axes.legend(**{"handletextpad": 0.2, **legend})

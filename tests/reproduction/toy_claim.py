@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from lifelore.core.metrics import mean_estimate
-from lifelore.figures.style import house_style, new_figure
+from lifelore.figures.style import new_figure
 from reproduction.engine.claim import Claim
 from reproduction.engine.statement import Statement
 
@@ -30,7 +30,6 @@ def toy_claim(settings: dict, run_cell: Callable[..., dict], **more: Any) -> Cla
 
 
 def draw(result):
-    with house_style():
-        figure = new_figure(2, 2)
-        figure.subplots().plot([0, 1], [0, len(result["rows"])])
+    figure = new_figure(2, 2)
+    figure.subplots().plot([0, 1], [0, len(result["rows"])])
     return figure

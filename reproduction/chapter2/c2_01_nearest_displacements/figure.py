@@ -5,13 +5,12 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.core.relations import CORE_RELATIONS
-from lifelore.figures.style import BLUE, GREY, INK, PAPER, VERMILION, Axes, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, INK, PAPER, VERMILION, Axes, Figure, new_figure
 
 PRINTED = [[64, 6, 13, 0], [2, 20, 5, 0], [4, 5, 12, 0], [0, 1, 0, 0]]
 """Figure 2.5: predicted by actual, in the order of `CORE_RELATIONS`."""
 
 
-@house_style()
 def draw(result: Mapping) -> Figure:
     """The matrices side by side."""
     matrices = {"thesis, printed": PRINTED}

@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import BLUE, LIGHT, VERMILION, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, VERMILION, Axes
+from reproduction.figures.panels import panels
 
 PRINTED = {"on_right": 40, "adjacent_right": 39, "on_agreement": 28, "adjacent_agreement": 18}
 """Of 49 test relationships (§2.4.1)."""
@@ -14,11 +15,9 @@ NAMES = (
 )
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(6.4, 2.6, grid="x")
+def draw(result: Mapping, axes: Axes) -> None:
     """A bar for each share with its interval, and a line at the printed one."""
-    figure = new_figure(6.4, 2.6)
-    axes = figure.subplots()
     for place, (name, printed) in enumerate(PRINTED.items()):
         number = result["measured"][name]
         low, high = number["ci95"] or [number["value"]] * 2
@@ -31,6 +30,4 @@ def draw(result: Mapping) -> Figure:
     axes.set_yticks(range(len(NAMES)), NAMES)
     axes.invert_yaxis()
     axes.set(xlim=(0, 100), xlabel="test relationships (%)")
-    axes.grid(axis="x", color=LIGHT)
     axes.legend(loc="upper left", bbox_to_anchor=(1, 1))
-    return figure

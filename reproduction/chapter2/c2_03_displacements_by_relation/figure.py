@@ -6,21 +6,20 @@ import numpy as np
 
 from lifelore.core.relations import ADJACENT
 from lifelore.figures.scenes.object_palette import mixed
-from lifelore.figures.style import INK, PAPER, Axes, Figure, house_style, new_figure
+from lifelore.figures.style import INK, PAPER, Axes
 from reproduction.chapter2.c2_03_displacements_by_relation.run import EDGE
-from reproduction.figures.palettes import RELATION_MARKERS, relation_palette
+from reproduction.figures.palettes import RELATION_COLOURS, RELATION_MARKERS
+from reproduction.figures.panels import panels
 from reproduction.figures.scatter import draw_scatter
 
 CLOSE = 20
 """Millimetres; how far the second view reaches."""
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(9.6, 4.6, 1, 2, grid="")
+def draw(result: Mapping, whole: Axes, close: Axes) -> None:
     """All displacements, and those close to the origin."""
     rows = result["rows"]
-    figure = new_figure(9.6, 4.6)
-    whole, close = figure.subplots(1, 2)
     furthest = 1.05 * max(np.abs(row["mm"]).max() for row in rows)
     draw_displacements(whole, rows, "all displacements", furthest)
     draw_displacements(close, rows, f"within {CLOSE} mm", CLOSE)
@@ -31,7 +30,6 @@ def draw(result: Mapping) -> Figure:
     box = {"facecolor": PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 2}
     close.annotate(words, (0.03, 0.03), xycoords="axes fraction", fontsize=8, color=INK, bbox=box, zorder=6)
     close.annotate("band of adjacent (thesis: above y = −0.1)", (0.04, 0.95), xycoords="axes fraction", fontsize=8)
-    return figure
 
 
 def draw_displacements(axes: Axes, rows: Sequence[Mapping], title: str, reach: float) -> None:
@@ -39,13 +37,13 @@ def draw_displacements(axes: Axes, rows: Sequence[Mapping], title: str, reach: f
 
     `rows` are ``{"relation", "mm", "middle_of_on"}``.
     """
-    palette, down = relation_palette([]), rows[0]["middle_of_on"][1]
+    down = rows[0]["middle_of_on"][1]
     groups = {row["relation"]: np.array(row["mm"]).reshape(-1, 2) for row in rows}
     draw_scatter(
         axes,
         groups,
-        colours={name: palette[name] for name in groups},
-        markers={name: RELATION_MARKERS[name] for name in groups},
+        colours=RELATION_COLOURS,
+        markers=RELATION_MARKERS,
         size=20,
         title=title,
         xlabel="x (mm to the right)",
@@ -53,6 +51,6 @@ def draw_displacements(axes: Axes, rows: Sequence[Mapping], title: str, reach: f
     )
     if down is not None:
         ends = sorted((EDGE * down, -np.sign(down) * 2 * reach))
-        axes.axhspan(ends[0], ends[1], color=mixed(palette[ADJACENT], PAPER, 0.85), lw=0, zorder=-1)
+        axes.axhspan(ends[0], ends[1], color=mixed(RELATION_COLOURS[ADJACENT], PAPER, 0.85), lw=0, zorder=-1)
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
     axes.set_aspect("equal")

@@ -4,15 +4,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.style import BLUE, GREY, LIGHT, ORANGE, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, ORANGE, Axes
 from reproduction.chapter2.c2_04_time_per_image.run import KINDS
+from reproduction.figures.panels import panels
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(5.6, 3.0, grid="both")
+def draw(result: Mapping, axes: Axes) -> None:
     """A curve for each kind of picture; a line at a second."""
-    figure = new_figure(5.6, 3.0)
-    axes = figure.subplots()
     for row, colour in zip(result["rows"], (BLUE, ORANGE), strict=False):
         points = result["measured"][f"points_{row['kind']}"]["value"]
         share = 100 * np.arange(1, len(row["seconds"]) + 1) / len(row["seconds"])
@@ -23,6 +22,4 @@ def draw(result: Mapping) -> Figure:
     axes.set(
         xlabel="seconds of processor a picture", ylabel="share of pictures (%)", xlim=(0, None), ylim=(0, 101)
     )
-    axes.grid(color=LIGHT)
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
-    return figure

@@ -2,18 +2,17 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import BLUE, GREY, LIGHT, ORANGE, VERMILION, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, ORANGE, VERMILION, Axes
 from reproduction.chapter2.c2_05_discarded_points.run import METHODS
 from reproduction.figures.curves import draw_curves
+from reproduction.figures.panels import panels
 
 LOOKS = dict(zip(METHODS, (BLUE, ORANGE, VERMILION), strict=True))
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(5.6, 3.4)
+def draw(result: Mapping, axes: Axes) -> None:
     """A curve for each method with its 95 % band; a line at the thesis's 70 %."""
-    figure = new_figure(5.6, 3.4)
-    axes = figure.subplots()
     curves = {}
     for method in METHODS:
         own = [row for row in result["rows"] if row["method"] == method]
@@ -31,6 +30,4 @@ def draw(result: Mapping) -> Figure:
     axes.axvline(70, color=GREY, lw=1, ls=(0, (4, 3)), zorder=1)
     axes.annotate("thesis: robust up to 70 %", (70, 0.02), (-4, 0), xycoords=("data", "axes fraction"),
                   textcoords="offset points", ha="right", fontsize=8, color=GREY)  # fmt: skip
-    axes.grid(axis="y", color=LIGHT)
     axes.set_ylim(0, 100)
-    return figure

@@ -2,17 +2,16 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import BLUE, GREEN, LIGHT, ORANGE, VERMILION, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREEN, ORANGE, VERMILION, Axes
 from reproduction.chapter2.c2_11_distant_objects.run import DEFAULT
+from reproduction.figures.panels import panels
 
 COLOURS = (BLUE, ORANGE, GREEN, VERMILION)
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(8.4, 3.2, 1, 2, sharex=True)
+def draw(result: Mapping, left: Axes, right: Axes) -> None:
     """A line for each length of the kernel at the default cost, ours in bold."""
-    figure = new_figure(8.4, 3.2)
-    left, right = figure.subplots(1, 2, sharex=True)
     lines = sorted((row for row in result["rows"] if row["cost"] == DEFAULT[1]), key=lambda row: row["length"])
     for number, row in enumerate(lines):
         look = {
@@ -25,7 +24,4 @@ def draw(result: Mapping) -> Figure:
     right.set(ylabel="pairs with a contact point (%)", xlabel="gap (m)")
     left.set_ylim(bottom=0)
     right.set_ylim(-2, 102)
-    for axes in (left, right):
-        axes.grid(axis="y", color=LIGHT)
     right.legend(title="length of the kernel", title_fontsize=8)
-    return figure

@@ -5,25 +5,24 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.figures.scenes.object_palette import object_palette
-from lifelore.figures.style import Figure, house_style, new_figure
-from reproduction.figures.palettes import relation_palette
+from lifelore.figures.style import Axes
+from reproduction.figures.palettes import RELATION_COLOURS
+from reproduction.figures.panels import panels
 from reproduction.figures.scatter import draw_scatter
 
 REACH = 40
 """Millimetres shown around the origin; a note counts the displacements beyond."""
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(9.0, 4.4, 1, 2, sharex=True, sharey=True, grid="")
+def draw(result: Mapping, left: Axes, right: Axes) -> None:
     """The relations on the left, the clusters on the right."""
     row = result["rows"][0]
     at = np.asarray(row["mm"], float)
-    figure = new_figure(9.0, 4.4)
-    left, right = figure.subplots(1, 2, sharex=True, sharey=True)
     for axes, key, title in ((left, "relations", "relations"), (right, "clusters", "clusters of X-means")):
         labels = np.array(row[key])
         names = list(dict.fromkeys(sorted(labels.tolist())))
-        palette = relation_palette(names) if key == "relations" else object_palette([name + 2 for name in names])
+        palette = RELATION_COLOURS if key == "relations" else object_palette([name + 2 for name in names])
         groups = {f"{name}" if key == "relations" else f"rel {name + 1}": name for name in names}
         colours = [palette[name if key == "relations" else name + 2] for name in names]
         draw_scatter(
@@ -39,4 +38,3 @@ def draw(result: Mapping) -> Figure:
         f"{beyond} of {len(at)} lie beyond", (0.97, 0.03), xycoords="axes fraction", ha="right", fontsize=8
     )
     left.set(xlim=(-REACH, REACH), ylim=(-REACH, REACH), ylabel="above B (mm)")
-    return figure

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import BLUE, LIGHT, ORANGE, Figure, house_style
+from lifelore.figures.style import BLUE, ORANGE, Figure
 from reproduction.chapter2.c2_13_contacts_and_centres.run import ON_BLOCK, ON_POST
 from reproduction.chapter2.scenes.scene_example import examples_of
 from reproduction.figures.gallery import gallery_above
@@ -17,13 +17,12 @@ def draw(result: Mapping) -> Figure:
     figure, below = gallery_above(examples_of(result), 2.0, columns=2, layers=("cloud", "networks"))
     told = {(row["told by"], row["arrangement"]): row for row in result["rows"] if "told by" in row}
     bars = {name: [per_cent(told[name, at]) for at in NAMES] for name in COLOURS}
-    with house_style():
-        axes = below.subplots()
-        draw_interval_bars(
-            axes, list(NAMES.values()), bars, colours=COLOURS, words="{:.0f}".format, label="classified right (%)"
-        )
-        axes.set(xlim=(0, 112), xticks=range(0, 101, 20))
-        axes.grid(axis="x", color=LIGHT)
+    axes = below.subplots()
+    draw_interval_bars(
+        axes, list(NAMES.values()), bars, colours=COLOURS, words="{:.0f}".format, label="classified right (%)"
+    )
+    axes.set(xlim=(0, 112), xticks=range(0, 101, 20))
+    axes.grid(axis="x")
     return figure
 
 

@@ -5,11 +5,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.figures.lives.prior_arrows import draw_prior
-from lifelore.figures.style import BLUE, GREY, SKY, VERMILION, Axes, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, SKY, VERMILION, Axes, Figure, new_figure
 from reproduction.chapter3.c3_01_useful_actions.run import PRINTED, PRINTED_OF
 
 
-@house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result: examples that its rows hold, then the spread of shares."""
     examples = [row for row in result["rows"] if "example" in row]

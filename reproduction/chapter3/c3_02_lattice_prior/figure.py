@@ -2,11 +2,10 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import Figure, house_style
+from lifelore.figures.style import Figure
 from reproduction.chapter3.figures.return_curves import draw_return_curves
 
 
-@house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result: one run's tasks, with one standard deviation."""
     return draw_return_curves(

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import BLUE, GREEN, GREY, VERMILION, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREEN, GREY, VERMILION, Figure, new_figure
 from reproduction.chapter3.c3_04_factory_priors.run import METHODS
 from reproduction.chapter3.factory.figure import caption, draw_rewards, looks_of
 
@@ -17,7 +17,6 @@ LOOKS = looks_of(
 )
 
 
-@house_style()
 def draw(result: Mapping) -> Figure:
     """A panel for the default, and one for the first other cap of an episode's steps."""
     settings = result["settings"]

@@ -4,8 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.style import BLUE, GREY, INK, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, INK, Axes
 from reproduction.figures.curves import draw_curves
+from reproduction.figures.panels import panels
 
 LOOKS = {
     "learnt": ("accumulated prior", {"color": BLUE}),
@@ -14,12 +15,10 @@ LOOKS = {
 }
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(6.4, 4.2, grid="")
+def draw(result: Mapping, axes: Axes) -> None:
     """The figure from the result of C3.5 or C3.6."""
     settings, rows = result["settings"], {row["curve_of"]: row for row in result["rows"]}
-    figure = new_figure(6.4, 4.2)
-    axes = figure.subplots()
     series = {label: rows[name] for name, (label, _) in LOOKS.items()}
     series["optimal"] = {"mean": rows["optimal"]["mean"]}
     draw_curves(
@@ -29,8 +28,7 @@ def draw(result: Mapping) -> Figure:
     axes.set_xlim(0, settings["prior_tasks"])
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
     axes.legend(loc="center right")
-    figure.supxlabel(
+    axes.figure.supxlabel(
         f"{settings['runs']} runs, {settings['episodes']} episodes a task; shaded: one standard deviation.",
         fontsize=8, color=GREY,
     )  # fmt: skip
-    return figure

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import GREY, VERMILION, Figure, colour_of, house_style
+from lifelore.figures.style import GREY, VERMILION, Figure, colour_of
 from reproduction.chapter3.c3_07_feature_sets.run import METHODS
 from reproduction.chapter3.factory.figure import looks_of, one_panel
 
@@ -19,7 +19,6 @@ LOOKS = looks_of(
 )
 
 
-@house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     return one_panel(result, LOOKS, plain=("state", "phi1", "phi2", "phi4"))

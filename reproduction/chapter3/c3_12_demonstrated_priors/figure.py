@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import BLUE, GREEN, GREY, Figure, house_style
+from lifelore.figures.style import BLUE, GREEN, GREY, Figure
 from reproduction.chapter3.c3_12_demonstrated_priors.run import METHODS
 from reproduction.chapter3.factory.figure import looks_of, one_panel
 
@@ -16,7 +16,6 @@ LOOKS = looks_of(
 )
 
 
-@house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     return one_panel(result, LOOKS)

@@ -4,21 +4,19 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.style import BLUE, GREEN, INK, LIGHT, ORANGE, Axes, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREEN, INK, ORANGE, Axes
+from reproduction.figures.panels import panels
 
 NO_TASK = 0.35
 """Place of "no task" on the logarithmic axis."""
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(8.6, 3.6, 1, 2, grid="")
+def draw(result: Mapping, constructed: Axes, found: Axes) -> None:
     """Constructed worlds, then worlds as found."""
-    figure = new_figure(8.6, 3.6)
-    constructed, found = figure.subplots(1, 2)
     _draw_constructed(constructed, [row for row in result["rows"] if "formula" in row])
     constructed.set_title(f"Worst case, {result['settings']['actions'][0]} actions")
     _draw_found(found, [row for row in result["rows"] if "kind" in row])
-    return figure
 
 
 def _draw_constructed(axes: Axes, rows: list[Mapping]) -> None:
@@ -33,7 +31,7 @@ def _draw_constructed(axes: Axes, rows: list[Mapping]) -> None:
     axes.set(xscale="log", yscale="log", xlabel="tasks so far", ylabel="probability of the one action")
     axes.set_xticks([tick or NO_TASK for tick in ticks], [str(tick) if tick else "none" for tick in ticks])
     axes.minorticks_off()
-    axes.grid(color=LIGHT)
+    axes.grid()
     axes.legend()
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import BLUE, GREY, LIGHT, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, Figure, new_figure
 from reproduction.figures.interval_bars import draw_interval_bars
 
 PANELS = {
@@ -14,7 +14,6 @@ PANELS = {
 COLOURS = {"domain": GREY, "minimised": BLUE}
 
 
-@house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result: kinds of worlds downwards."""
     figure = new_figure(9.2, 0.9 + 0.42 * len(result["rows"]))
@@ -26,7 +25,7 @@ def draw(result: Mapping) -> Figure:
         names = [row["kind"] for row in result["rows"]]
         draw_interval_bars(axes, names, groups, colours=COLOURS, words="{:.3g}".format, title=title, legend=False)
         axes.set_xlim(0, 1.2 * axes.get_xlim()[1])
-        axes.grid(axis="x", color=LIGHT)
+        axes.grid(axis="x")
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower left", ncols=2)
     return figure
 

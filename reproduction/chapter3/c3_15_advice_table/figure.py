@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import INK, LIGHT, Figure, house_style, new_figure
+from lifelore.figures.style import INK, Axes
 from reproduction.chapter3.advice.figures import ADVICE_COLOURS, AGENTS
 from reproduction.figures.interval_bars import draw_interval_bars
+from reproduction.figures.panels import panels
 
 WAYS = dict(zip(("alone", "advised", "apart"), ADVICE_COLOURS, strict=True))
 PRINTED = {
@@ -18,13 +19,11 @@ PRINTED = {
 """Table 3.1: reward without advice and with it."""
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(6.8, 4.6, grid="x")
+def draw(result: Mapping, axes: Axes) -> None:
     """The figure from the result: agents downwards."""
     rows = result["rows"]
     groups = {label: [row.get(way) for row in rows] for way, label in WAYS.items()}
-    figure = new_figure(6.8, 4.6)
-    axes = figure.subplots()
     names = [AGENTS[row["agent"]] for row in rows]
     draw_interval_bars(
         axes, names, groups, colours=ADVICE_COLOURS, words=None, label="mean reward, of 1000", legend=False
@@ -37,6 +36,4 @@ def draw(result: Mapping) -> Figure:
                 reward, place + (way - 1) * height, "D", ms=5, mfc="none", color=INK, clip_on=False, label=label
             )
     axes.set_xlim(0, 1000)
-    axes.grid(axis="x", color=LIGHT)
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower left", ncols=4)
-    return figure
+    axes.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower left", ncols=4)

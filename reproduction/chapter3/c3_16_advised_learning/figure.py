@@ -4,25 +4,22 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.style import LIGHT, Figure, house_style, new_figure
+from lifelore.figures.style import Axes
 from reproduction.chapter3.advice.figures import ADVICE_COLOURS
 from reproduction.figures.curves import draw_curves
+from reproduction.figures.panels import panels
 
 LABELS = {"plain": "without advice", "advised": "with advice"}
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(6.4, 3.6)
+def draw(result: Mapping, axes: Axes) -> None:
     """The figure from the result: tasks of the first mazes, with one standard deviation."""
     series = {}
     for row in result["rows"]:
         mean, spread = np.array(row["mean"]), np.array(row["deviation"])
         band = {"low": np.clip(mean - spread, 0, None), "high": np.clip(mean + spread, None, 1000)}
         series[LABELS[row["curve_of"]]] = {"x": row["x"], "mean": mean, **band}
-    figure = new_figure(6.4, 3.6)
-    axes = figure.subplots()
     looks = {label: {"color": ADVICE_COLOURS[label]} for label in series}
     draw_curves(axes, None, series, looks=looks, xlabel="episode", ylabel="reward of an episode")
     axes.set(ylim=(0, 1020), xlim=(0, result["settings"]["episodes"]))
-    axes.grid(axis="y", color=LIGHT)
-    return figure

@@ -2,18 +2,17 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import GREY, LIGHT, Figure, house_style, new_figure
+from lifelore.figures.style import GREY, Axes
 from reproduction.chapter3.advice.figures import AGENT_COLOURS, AGENTS
 from reproduction.chapter3.advice.mazes import KAPPA
 from reproduction.chapter3.c3_17_advice_cost.run import kappas_of
+from reproduction.figures.panels import panels
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(6.4, 3.8)
+def draw(result: Mapping, axes: Axes) -> None:
     """The figure from the result: walks of one maze, with one standard deviation."""
     kappas = kappas_of(result["settings"])
-    figure = new_figure(6.4, 3.8)
-    axes = figure.subplots()
     for place, row in enumerate(result["rows"]):
         agent, shift = row["curve_of"], 0.004 * kappas[-1] * (place - 2)
         axes.errorbar(
@@ -22,6 +21,4 @@ def draw(result: Mapping) -> Figure:
         )  # fmt: skip
     axes.axvline(KAPPA, color=GREY, lw=0.9, ls=(0, (4, 3)))
     axes.set(xlabel="κ (nats)", ylabel="advised steps in 100", ylim=(0, 104))
-    axes.grid(axis="y", color=LIGHT)
     axes.legend()
-    return figure

@@ -2,10 +2,11 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import BLUE, GREEN, GREY, LIGHT, VERMILION, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREEN, GREY, VERMILION, Axes
 from reproduction.chapter3.figures.feature_words import features_in_words
 from reproduction.figures.curves import draw_curves
 from reproduction.figures.interval_bars import draw_interval_bars
+from reproduction.figures.panels import panels
 
 LABELS = {
     "uniform": ("no prior", GREY),
@@ -15,18 +16,16 @@ LABELS = {
 }
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(9.2, 3.8, 1, 2, width_ratios=(0.8, 1), grid="")
+def draw(result: Mapping, left: Axes, right: Axes) -> None:
     """Shares of runs by feature, and mean rewards by episode, one standard deviation of the acquired shaded."""
     features = [row for row in result["rows"] if "feature" in row]
     curves = {row["curve_of"]: row for row in result["rows"] if "curve_of" in row}
-    figure = new_figure(9.2, 3.8)
-    left, right = figure.subplots(1, 2, width_ratios=(0.8, 1))
     shares = [{"value": 100 * row["value"], "ci95": [100 * end for end in row["ci95"]]} for row in features]
     names = features_in_words([row["feature"] for row in features])
     draw_interval_bars(left, names, {"": shares}, words=None, title="Runs in which a feature is acquired (%)")
     left.set_xlim(0, 100)
-    left.grid(axis="x", color=LIGHT)
+    left.grid(axis="x")
     series = {label: {"mean": curves[name]["mean"]} for name, (label, _) in LABELS.items()}
     series[LABELS["acquired"][0]]["deviation"] = curves["acquired"]["deviation"]
     draw_curves(
@@ -39,4 +38,3 @@ def draw(result: Mapping) -> Figure:
     lowest = min(min(row["mean"]) for row in curves.values())
     right.set(xlim=(1, result["settings"]["episodes"]), ylim=(1.1 * lowest, -0.06 * lowest))
     right.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
-    return figure

@@ -3,29 +3,16 @@
 from collections.abc import Mapping
 
 from lifelore.domains.golf.golf import CLUBS
-from lifelore.figures.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    LIGHT,
-    ORANGE,
-    PURPLE,
-    VERMILION,
-    Figure,
-    house_style,
-    new_figure,
-)
+from lifelore.figures.style import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, PURPLE, VERMILION, Axes
+from reproduction.figures.panels import panels
 
 CLUB_COLOURS = (BLUE, GREEN, ORANGE, PURPLE)
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(7.6, 3.9, grid="")
+def draw(result: Mapping, axes: Axes) -> None:
     """Distance on the left axis with a level for each club, entropy on the right axis."""
     (row,), settings = result["rows"], result["settings"]
-    figure = new_figure(7.6, 3.9)
-    axes = figure.subplots()
     shots = range(1, settings["shots"] + 1)
     axes.axhspan(10, 15, color=LIGHT, alpha=0.7, lw=0)
     axes.text(shots[-1], 15.4, "10–15 yards", ha="right", va="bottom", fontsize=8, color=GREY)
@@ -38,6 +25,5 @@ def draw(result: Mapping) -> Figure:
     right.plot(shots, row["entropy"][:-1], "s-", color=VERMILION, ms=4, label="entropy (right axis)")
     right.set(ylim=(0, None), ylabel="entropy of the belief before the shot (nats)")
     right.spines["right"].set_visible(True)
-    figure.legend(loc="outside right upper")
+    axes.figure.legend(loc="outside right upper")
     axes.set_title(f"{settings['groups']} × {settings['holes']} unknown holes, exact models")
-    return figure

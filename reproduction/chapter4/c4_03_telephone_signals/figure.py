@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.style import Figure, house_style, new_figure
+from lifelore.figures.style import Figure, new_figure
 from reproduction.chapter4.c4_03_telephone_signals.call_graph import draw_call_graph
 from reproduction.chapter4.reuse.looks import draw_linear, look_of
 
@@ -12,7 +12,6 @@ SHOWN = 100
 """Calls drawn: later ones are without regret."""
 
 
-@house_style()
 def draw(result: Mapping) -> Figure:
     """The system above; regret of each call, and summed up to it, where the signals differ most, below."""
     rows, settings = result["rows"], result["settings"]

@@ -6,16 +6,15 @@ import numpy as np
 
 from lifelore.domains.pacman.pacman import PacmanMaze, PacmanTask
 from lifelore.domains.pacman.picture import draw_pacman
-from lifelore.figures.style import INK, LIGHT, Figure, house_style, new_figure
+from lifelore.figures.style import INK, Axes
 from reproduction.chapter4.reuse.looks import look_of
+from reproduction.figures.panels import panels
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(9.4, 3.9, 1, 2, width_ratios=[0.62, 1.38], grid="")
+def draw(result: Mapping, left: Axes, axes: Axes) -> None:
     """A task, the ghost in sight or not; means of twenty tasks, one standard deviation shaded."""
     (*curves, level), settings = result["rows"], result["settings"]
-    figure = new_figure(9.4, 3.9)
-    left, axes = figure.subplots(1, 2, width_ratios=[0.62, 1.38])
     task = PacmanTask(PacmanMaze(settings["rows"], settings["columns"]), tuple(level["foods"]), "clockwise")
     left.imshow(draw_pacman(task, int(task.starts[0])))
     left.set_axis_off()
@@ -28,6 +27,5 @@ def draw(result: Mapping) -> Figure:
     axes.axhline(level["best"], color=INK, ls=":", lw=1, label="library's best")
     axes.set(xlim=(0, settings["episodes"]), xlabel="episode", ylabel="return")
     axes.set_title(f"Pacman, {curves[0]['tasks']} tasks")
-    axes.grid(axis="y", color=LIGHT)
-    figure.legend(loc="outside right upper")
-    return figure
+    axes.grid(axis="y")
+    axes.figure.legend(loc="outside right upper")

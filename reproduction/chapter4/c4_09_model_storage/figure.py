@@ -2,19 +2,18 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import INK, LIGHT, Figure, house_style, new_figure
+from lifelore.figures.style import INK, Axes
 from reproduction.chapter4.reuse.looks import PRINTED, look_of
+from reproduction.figures.panels import panels
 
 NAMES = {"performance": "performance", "reward": "(s, a, r)", "state_action_state": "(s, a, s′)"}
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(6.4, 3.8)
+def draw(result: Mapping, axes: Axes) -> None:
     """Solid: tables that were learnt; dashed: the printed formula of the same colour."""
     rows = sorted(result["rows"], key=lambda row: row["rewards"])
     n_states, n_rewards = rows[0]["states"], [row["rewards"] for row in rows]
-    figure = new_figure(6.4, 3.8)
-    axes = figure.subplots()
     for name, label in NAMES.items():
         colour = look_of(label)["color"]
         axes.plot(n_rewards, [row["table"][name] for row in rows], label=label, color=colour)
@@ -25,6 +24,4 @@ def draw(result: Mapping) -> Figure:
     axes.text(n_states, 0.98, " |R| = |S|", transform=axes.get_xaxis_transform(), va="top", fontsize=8)
     axes.set(ylim=(0, None), xlabel="number of rewards |R|", ylabel="entries of the table")
     axes.set_title(f"Three observation models, |S| = {n_states}")
-    axes.grid(axis="y", color=LIGHT)
     axes.legend()
-    return figure

@@ -4,15 +4,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.style import BLUE, GREY, INK, LIGHT, ORANGE, VERMILION, Axes, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, INK, ORANGE, VERMILION, Axes
 from reproduction.chapter4.c4_10_landmark_regret.run import BINS, EXAMPLE
+from reproduction.figures.panels import panels
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(8.4, 3.4, 1, 2, width_ratios=[0.8, 1.2], grid="")
+def draw(result: Mapping, left: Axes, right: Axes) -> None:
     """The example on the left; on the right the share of tasks that cost more than so many ε."""
-    figure = new_figure(8.4, 3.4)
-    left, right = figure.subplots(1, 2, width_ratios=[0.8, 1.2])
     _draw_example(left)
     edges = np.linspace(0, 2, BINS + 1)[1:]
     for row, colour in zip(result["rows"], (ORANGE, BLUE), strict=True):
@@ -24,9 +23,8 @@ def draw(result: Mapping) -> Figure:
     right.annotate("printed bound: ε", (1, right.get_ylim()[1]), (4, -8), textcoords="offset points", fontsize=8)
     right.set(xlim=(0, 2), ylim=(0, None), xlabel="regret (ε)", ylabel="tasks that cost more (%)")
     right.set_title("The worst member as landmark")
-    right.grid(axis="y", color=LIGHT)
+    right.grid(axis="y")
     right.legend()
-    return figure
 
 
 def _draw_example(axes: Axes) -> None:

@@ -2,17 +2,16 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import GREY, LIGHT, Figure, house_style, new_figure
+from lifelore.figures.style import GREY, Axes
 from reproduction.chapter4.ball_game.looks import size_lines
 from reproduction.figures.curves import draw_curves
+from reproduction.figures.panels import panels
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(6.4, 3.8)
+def draw(result: Mapping, axes: Axes) -> None:
     """A curve for each true size."""
     *sizes, last = result["rows"]
-    figure = new_figure(6.4, 3.8)
-    axes = figure.subplots()
     series = {f"b = {row['size']}": {"mean": row["ratio"]} for row in sizes}
     draw_curves(axes, None, series, looks=size_lines([row["size"] for row in sizes], linewidth=1.6))
     axes.axhline(1, color=GREY, linestyle=(0, (4, 2)), linewidth=1)
@@ -22,6 +21,4 @@ def draw(result: Mapping) -> Figure:
         xycoords=("data", "axes fraction"), textcoords="offset points", color=GREY,
     )  # fmt: skip
     axes.set(xlabel="step of the first episode", ylabel="most likely size / true size", ylim=(0, None))
-    axes.grid(axis="y", color=LIGHT)
     axes.legend(title="true size", ncols=2)
-    return figure

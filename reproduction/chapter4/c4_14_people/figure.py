@@ -2,20 +2,19 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import GREY, LIGHT, Axes, Figure, house_style, new_figure
+from lifelore.figures.style import GREY, Axes
 from reproduction.chapter4.ball_game.looks import METHODS, WORDS, size_lines
 from reproduction.figures.curves import draw_curves
+from reproduction.figures.panels import panels
 
 TITLES = {"person": "people", "scripted": "scripted players; no person has played"}
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(10.6, 3.8, 1, 3)
+def draw(result: Mapping, left: Axes, middle: Axes, right: Axes) -> None:
     """The three figures side by side."""
     row = result["rows"][0]  # people come first
     sizes = [one["size"] for one in row["named"]]
-    figure = new_figure(10.6, 3.8)
-    left, middle, right = figure.subplots(1, 3)
     _draw_losses(left, row, sizes)
     for name, key in (("static", "static"), ("BEAT", "beat")):
         values = [one[key] for one in row["diversity"]]
@@ -28,13 +27,10 @@ def draw(result: Mapping) -> Figure:
     draw_curves(right, None, named, looks=size_lines(sizes), title="Figure 4.20", legend=False)
     right.axhline(1, color=GREY, linestyle=(0, (4, 2)), linewidth=1)
     right.set(xlabel="move of a round with BEAT", ylabel="most likely size / true size", ylim=(0, None))
-    for axes in (left, middle, right):
-        axes.grid(axis="y", color=LIGHT)
-    figure.legend(
+    left.figure.legend(
         *right.get_legend_handles_labels(), title="size of the ball", ncols=6, loc="outside lower center"
     )
-    figure.suptitle(f"{row['sessions']} {TITLES[row['player']]}", fontsize=10)
-    return figure
+    left.figure.suptitle(f"{row['sessions']} {TITLES[row['player']]}", fontsize=10)
 
 
 def _draw_losses(axes: Axes, row: Mapping, sizes: list[int]) -> None:

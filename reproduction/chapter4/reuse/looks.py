@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lifelore.core.errors import NotFoundError
-from lifelore.figures.style import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, PURPLE, SKY, VERMILION, YELLOW, Axes
+from lifelore.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, YELLOW, Axes
 from reproduction.chapter4.reuse.rules import RULES
 
 PRINTED = (0, (2, 1.2))
@@ -38,7 +38,7 @@ def draw_linear(axes: Axes, curves: Mapping[str, list[float]], first: int, **pro
     for name, values in curves.items():
         axes.plot(range(first, first + len(values)), values, label=name, lw=1.5, **look_of(name))
     axes.set(ylim=(0, None), xlim=(0, None), **properties)
-    axes.grid(axis="y", color=LIGHT)
+    axes.grid(axis="y")
 
 
 for _name in RULES:

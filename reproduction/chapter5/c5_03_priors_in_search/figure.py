@@ -4,26 +4,25 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from lifelore.figures.style import BLUE, GREEN, GREY, LIGHT, VERMILION, Axes, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREEN, GREY, VERMILION, Axes
 from reproduction.figures.curves import draw_curves
 from reproduction.figures.interval_bars import draw_interval_bars
+from reproduction.figures.panels import panels
 
 KINDS = {None: ("no prior", GREY), "place": ("prior on places", BLUE), "percept": ("prior on percepts", GREEN)}
 INDICES = {"ucb1": "Bandits: UCB1", "beta": "Bandits: Thompson sampling"}
 EVEN = ("pseudo-pulls spread evenly", VERMILION)
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(12.4, 3.6, 1, 4, width_ratios=(0.8, 0.8, 1, 1))
+def draw(result: Mapping, *every: Axes) -> None:
     """The figure from the result."""
-    figure = new_figure(12.4, 3.6)
-    panels = figure.subplots(1, 4, width_ratios=(0.8, 0.8, 1, 1))
     searched = [row for row in result["rows"] if "reached" in row]
     words = (
         ("reached", "Tree search", "share of goals reached"),
         ("expanded", "Depth-first search", "nodes expanded"),
     )
-    for axes, (key, title, label) in zip(panels, words, strict=False):
+    for axes, (key, title, label) in zip(every, words, strict=False):
         names, colours = zip(*(KINDS[row["kind"]] for row in searched), strict=True)
         names = [name.replace("prior on ", "prior on\n") for name in names]
         numbers = {key: [row[key] for row in searched]}
@@ -37,14 +36,12 @@ def draw(result: Mapping) -> Figure:
             title=title,
             label=label,
         )
-        axes.grid(axis="y", color=LIGHT)
-    for axes, (index, title) in zip(panels[2:], INDICES.items(), strict=True):
+    for axes, (index, title) in zip(every[2:], INDICES.items(), strict=True):
         _draw_regret(
             axes, result["settings"]["pulls"], [r for r in result["rows"] if r.get("index") == index], title
         )
-    panels[2].set_ylabel("regret so far")
-    figure.legend(*panels[3].get_legend_handles_labels(), loc="outside lower right", ncols=4)
-    return figure
+    every[2].set_ylabel("regret so far")
+    every[3].figure.legend(*every[3].get_legend_handles_labels(), loc="outside lower right", ncols=4)
 
 
 def _draw_regret(axes: Axes, pulls: int, rows: Sequence[Mapping], title: str) -> None:
@@ -54,4 +51,3 @@ def _draw_regret(axes: Axes, pulls: int, rows: Sequence[Mapping], title: str) ->
     colours = {name: {"color": colour} for name, colour in looks.values()}
     draw_curves(axes, x, series, looks=colours, title=title, xlabel="pulls", legend=False)
     axes.set_ylim(bottom=0)
-    axes.grid(axis="y", color=LIGHT)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.style import BLUE, GREY, INK, LIGHT, ORANGE, SKY, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, INK, ORANGE, SKY, Axes
 from reproduction.chapter5.c5_04_learnt_type_prior.run import (
     CONTEXT,
     CONTEXTS,
@@ -16,6 +16,7 @@ from reproduction.chapter5.c5_04_learnt_type_prior.run import (
     TRUE,
 )
 from reproduction.figures.curves import draw_curves
+from reproduction.figures.panels import panels
 
 TITLES = {
     STEADY: "Popularity alike in all contexts",
@@ -32,13 +33,11 @@ LOOKS = {
 """Label and line of each agent."""
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(12.4, 4.2, 1, 3, sharey=True)
+def draw(result: Mapping, *every: Axes) -> None:
     """The figure from the result."""
     settings = result["settings"]
-    figure = new_figure(12.4, 4.2)
-    panels = figure.subplots(1, 3, sharey=True)
-    for axes, (world, title) in zip(panels, TITLES.items(), strict=True):
+    for axes, (world, title) in zip(every, TITLES.items(), strict=True):
         own = [row for row in result["rows"] if row["world"] == world]
         series = {LOOKS[row["agent"]][0]: row for row in own}
         n = len(own[0]["mean"])
@@ -52,9 +51,7 @@ def draw(result: Mapping) -> Figure:
             xlabel="tasks lived",
             legend=False,
         )
-        axes.grid(axis="y", color=LIGHT)
-    panels[0].set_ylim(0, None)
-    panels[0].set_ylabel(f"regret of a task's first {settings['early']} episodes")
-    panels[0].legend(loc="lower left")
-    figure.suptitle(f"Means of {settings['lives']} lives with 95 % intervals", x=0.01, ha="left")
-    return figure
+    every[0].set_ylim(0, None)
+    every[0].set_ylabel(f"regret of a task's first {settings['early']} episodes")
+    every[0].legend(loc="lower left")
+    every[0].figure.suptitle(f"Means of {settings['lives']} lives with 95 % intervals", x=0.01, ha="left")

@@ -4,9 +4,10 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.figures.style import BLUE, GREY, LIGHT, VERMILION, Axes, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, VERMILION, Axes
 from reproduction.chapter5.c5_05_curiosity.run import CURIOUS, UNIFORM
 from reproduction.figures.curves import draw_curves
+from reproduction.figures.panels import panels
 
 LABELS = {UNIFORM: "uniform replay", CURIOUS: "by entropy × frequency"}
 LOOKS = {"uniform replay": {"color": GREY}, "by entropy × frequency": {"color": BLUE, "linewidth": 2.2}}
@@ -14,23 +15,20 @@ XLABELS = {"spread at the end": "entropy of the belief (nats)", "alarm": "score 
 BINS = 12
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(11.0, 3.4, 1, 3, width_ratios=(1.3, 1, 1), grid="")
+def draw(result: Mapping, axes: Axes, *beside: Axes) -> None:
     """The figure from the result."""
     settings = result["settings"]
-    figure = new_figure(11.0, 3.4)
-    axes, *beside = figure.subplots(1, 3, width_ratios=(1.3, 1, 1))
     series = {LABELS[row["chooser"]]: row for row in result["rows"] if "chooser" in row}
     orders = settings["span"] * np.arange(settings["spans"] + 1)
     draw_curves(axes, orders, series, looks=LOOKS, title="Practice in spare time", xlabel="spare orders")
     axes.set_ylabel("points below the best return")
     axes.set_ylim(bottom=0)
-    axes.grid(axis="y", color=LIGHT)
+    axes.grid(axis="y")
     for panel, row in zip(beside, (row for row in result["rows"] if "sign" in row), strict=True):
         _draw_sign(panel, row)
     beside[0].set_ylabel("share of tasks (%)")
     beside[1].legend(loc="upper right")
-    return figure
 
 
 def _draw_sign(axes: Axes, row: Mapping) -> None:

@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import BLUE, GREY, LIGHT, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, Axes
 from reproduction.figures.interval_bars import draw_interval_bars
+from reproduction.figures.panels import panels
 
 KINDS = {
     "": "all", "_varied": "varied: groups,\npiles, books", "_flush": "flush: blocks\nwithout a crease",
@@ -11,11 +12,9 @@ KINDS = {
 }  # fmt: skip
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(6.2, 3.4, grid="x")
+def draw(result: Mapping, axes: Axes) -> None:
     """The figure from the result."""
-    figure = new_figure(6.2, 3.4)
-    axes = figure.subplots()
     groups = {
         words: [result["measured"][f"found_{when}{kind}"] for kind in KINDS]
         for when, words in (("before", "local convexity"), ("after", "after pushes"))
@@ -26,6 +25,4 @@ def draw(result: Mapping) -> Figure:
         title="Objects found", label="share with an IoU of at least 0.5", legend=False,
     )  # fmt: skip
     axes.set_xlim(0, 1.12)
-    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower right", ncols=2)
-    axes.grid(axis="x", color=LIGHT)
-    return figure
+    axes.figure.legend(*axes.get_legend_handles_labels(), loc="outside lower right", ncols=2)

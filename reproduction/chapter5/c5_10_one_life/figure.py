@@ -2,17 +2,16 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import GREEN, INK, LIGHT, ORANGE, PURPLE, Figure, house_style, new_figure
+from lifelore.figures.style import GREEN, INK, ORANGE, PURPLE, Axes
 from reproduction.figures.interval_bars import draw_interval_bars
+from reproduction.figures.panels import panels
 
 COLOURS = {"prior": ORANGE, "reuse": GREEN, "context": PURPLE}
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(9.0, 5.0, 2, 1, sharex=True)
+def draw(result: Mapping, above: Axes, below: Axes) -> None:
     """Above: the share of the way to an agent that knows the type. Below: what each part pays in mean return."""
-    figure = new_figure(9.0, 5.0)
-    above, below = figure.subplots(2, 1, sharex=True)
     readings = result["readings"]
     names = [one["cell"]["family"] for one in readings]
     shares = {"": [one["first_share"] for one in readings]}
@@ -28,6 +27,4 @@ def draw(result: Mapping) -> Figure:
     below.axhline(0, color=INK, linewidth=1)
     below.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=len(COLOURS))
     for axes in (above, below):
-        axes.grid(axis="y", color=LIGHT)
         axes.set_axisbelow(True)
-    return figure

@@ -5,13 +5,12 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.core.metrics import Estimate
-from lifelore.figures.style import BLUE, GREY, INK, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, INK, Figure, new_figure
 from reproduction.own.o_03_your_worlds.run import numbers
 
 SHOWN = {"all_over_textbook": ("over all episodes", BLUE), "last_over_textbook": ("in the last tenth", GREY)}
 
 
-@house_style()
 def draw(result: Mapping) -> Figure:
     """A row a world; gains in units of the deviation of the gain of a life, as returns have different scales."""
     worlds = result["settings"]["worlds"]

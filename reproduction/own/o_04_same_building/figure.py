@@ -3,10 +3,9 @@
 from collections.abc import Mapping
 
 from lifelore.agent.live.buildings.recognition import LEAST_MATCH
-from lifelore.figures.style import BLUE, GREY, LIGHT, VERMILION, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, VERMILION, Figure, new_figure
 
 
-@house_style()
 def draw(result: Mapping) -> Figure:
     """Blue: the same building; red: another one."""
     rows = result["rows"]
@@ -18,5 +17,5 @@ def draw(result: Mapping) -> Figure:
     axes.axvline(LEAST_MATCH, color=GREY, linestyle=(0, (1, 2)))
     axes.set(yticks=range(len(rows)), yticklabels=[row["map"] for row in rows], xlabel="share of walls that match")
     axes.set(xlim=(0, 1.02), ylim=(len(rows) - 0.5, -0.5))
-    axes.grid(axis="x", color=LIGHT)
+    axes.grid(axis="x")
     return figure

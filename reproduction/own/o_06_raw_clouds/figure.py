@@ -2,17 +2,16 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import BLUE, LIGHT, SKY, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, SKY, Axes
 from reproduction.figures.interval_bars import draw_interval_bars
+from reproduction.figures.panels import panels
 
 NAMES = {"convexity": "local convexity", "clusters": "distance clusters", "colour": "colour clusters"}
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(6.2, 3.0, grid="x")
+def draw(result: Mapping, axes: Axes) -> None:
     """The figure from the result: a group of bars for simulated scenes, one for real ones."""
-    figure = new_figure(6.2, 3.0)
-    axes = figure.subplots()
     groups = {f"{row['scenes']} scenes": [row[name] for name in NAMES] for row in result["rows"]}
     colours = dict(zip(groups, (BLUE, SKY), strict=False))
     draw_interval_bars(
@@ -20,5 +19,3 @@ def draw(result: Mapping) -> Figure:
         title="Objects found without labels", label="share with an IoU of at least 0.5",
     )  # fmt: skip
     axes.set_xlim(0, 1.12)
-    axes.grid(axis="x", color=LIGHT)
-    return figure

@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import BLUE, GREY, LIGHT, SKY, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, SKY, Axes
 from reproduction.figures.interval_bars import draw_interval_bars
+from reproduction.figures.panels import panels
 
 LOOKS = {
     "exact_contacts": ("contacts with scene logic", BLUE),
@@ -14,11 +15,9 @@ LOOKS = {
 }
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(6.4, 2.6, grid="x")
+def draw(result: Mapping, axes: Axes) -> None:
     """The figure from the result."""
-    figure = new_figure(6.4, 2.6)
-    axes = figure.subplots()
     names, colours = zip(*LOOKS.values(), strict=True)
     draw_interval_bars(
         axes, names, {"": [result["measured"][name] for name in LOOKS]},
@@ -26,5 +25,3 @@ def draw(result: Mapping) -> Figure:
         title="Relations of unseen shapes", label="share of pairs with the exact relation",
     )  # fmt: skip
     axes.set_xlim(0, 1.1)
-    axes.grid(axis="x", color=LIGHT)
-    return figure

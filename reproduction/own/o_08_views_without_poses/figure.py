@@ -2,15 +2,14 @@
 
 from collections.abc import Mapping
 
-from lifelore.figures.style import BLUE, GREY, LIGHT, SKY, VERMILION, Figure, house_style, new_figure
+from lifelore.figures.style import BLUE, GREY, SKY, VERMILION, Axes
+from reproduction.figures.panels import panels
 from reproduction.own.o_08_views_without_poses.run import WRONG_SHIFT, WRONG_TURN
 
 
-@house_style()
-def draw(result: Mapping) -> Figure:
+@panels(6.0, 3.4, grid="both")
+def draw(result: Mapping, axes: Axes) -> None:
     """The figure from the result: a point a registration; dashed: what counts as wrong."""
-    figure = new_figure(6.0, 3.4)
-    axes = figure.subplots()
     for row, colour, marker in zip(result["rows"], (SKY, BLUE, VERMILION), "o^s", strict=False):
         turns, shifts = zip(*row["errors"], strict=True) if row["errors"] else ((), ())
         label = f"{row['angle']}° apart, {row['refused']} refused"
@@ -19,6 +18,4 @@ def draw(result: Mapping) -> Figure:
     axes.axhline(WRONG_TURN, color=GREY, ls=(0, (3, 2)))
     axes.set(xlabel="error at the objects (mm)", ylabel="error of the turn (degrees)")
     axes.set(title="Registrations of two views", xlim=(0, None), ylim=(0, None))
-    axes.grid(color=LIGHT)
     axes.legend(loc="center right", bbox_to_anchor=(0.93, 0.5))
-    return figure

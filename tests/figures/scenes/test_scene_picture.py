@@ -10,7 +10,6 @@ from lifelore.figures.scenes import scene_picture
 from lifelore.figures.scenes.scene_document import Bond
 from lifelore.figures.scenes.scene_picture import draw_scene
 from lifelore.figures.style import MAX_BYTES, save_figure
-from reproduction.figures.gallery import draw_gallery
 
 
 @pytest.fixture(autouse=True)
@@ -171,14 +170,6 @@ def test_the_same_scene_gives_the_same_bytes(tmp_path):
     document = document_of(cloud, [relation(2, 3, "both")])
     one, two = (save_figure(draw_scene(cloud, document), tmp_path / f"{k}.png").read_bytes() for k in (1, 2))
     assert one == two
-
-
-def test_a_gallery_has_a_captioned_picture_a_scene():
-    cloud = cloud_of(2, 100)
-    figure = draw_gallery([(cloud, document_of(cloud), name) for name in "abcd"], columns=3)
-    assert [axes.get_title("left") for axes in figure.axes] == list("abcd")
-    tops = [axes.get_position().y1 for axes in figure.axes]
-    assert tops[0] == tops[2] > tops[3]
 
 
 def test_the_layers_are_cloud_networks_predicates():
