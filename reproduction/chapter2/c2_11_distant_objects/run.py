@@ -120,12 +120,11 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
 
 
 def measures(results: Sequence[Mapping], kernel: str) -> dict[str, Estimate]:
-    """Far apart: share of pairs without a contact, support vectors, and their ratio to those as seen."""
+    """Far apart: share of pairs without a contact, and the ratio of support vectors to those as seen."""
     found = np.array([pair["found"][kernel] for result in results for pair in result["pairs"]])
     seen, far = found[:, 0, 0], found[:, -1, 0]
     return {
         "no_contacts_far": exact_share(found[:, -1, 1] == 0),
-        "support_vectors_far": mean_estimate(far),
         "far_over_seen": mean_estimate(far / seen),
     }
 

@@ -46,7 +46,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
             world = uniform_maze(random, size, obstacles, settings["discount"])
         goals = random.integers(world.n_states, size=settings["tasks"])
         prior = prior_of(world, goals)
-        found["mazes"].append(_counts(world, prior, goals))
+        found["mazes"].append(_counts(world, prior))
         useful = found["mazes"][-1]["useful"]
         if useful in PRINTED:
             found["examples"].setdefault(str(useful), _example(world, prior))
@@ -67,29 +67,19 @@ def uniform_maze(random: np.random.Generator, size: int, obstacles: int, discoun
     )
 
 
-def prior_of(world: GridWorld, goals: NDArray[np.int64], goal_rows: bool = False) -> ActionPrior:
-    """The prior from exact optimal policies; `goal_rows` counts every goal's own row too, an error (E3)."""
+def prior_of(world: GridWorld, goals: NDArray[np.int64]) -> ActionPrior:
+    """The prior from exact optimal policies, without the goals' own rows (E3)."""
     prior = ActionPrior(4)
     for goal, times in zip(*np.unique(goals, return_counts=True), strict=True):
         best = best_actions(optimal_q(world.task(int(goal)).tables(), world.discount))
-        best[goal] = goal_rows  # at the goal every action ties: nothing was chosen there
+        best[goal] = False  # at the goal every action ties: nothing was chosen there
         prior.update(np.arange(world.n_states), best, weight=float(times))
     return prior
 
 
-def _counts(world: GridWorld, prior: ActionPrior, goals: NDArray[np.int64]) -> dict:
-    useful, passable = _useful(world, prior), world.neighbour >= 0
-    with_goals = _useful(world, prior_of(world, goals, goal_rows=True))
-    return {
-        "actions": useful.size,
-        "useful": int(useful.sum()),
-        "passable": int(passable.sum()),
-        "useful_with_goal_rows": int(with_goals.sum()),
-    }
-
-
-def _useful(world: GridWorld, prior: ActionPrior) -> NDArray[np.bool_]:
-    return prior.counts(np.arange(world.n_states)) > 0
+def _counts(world: GridWorld, prior: ActionPrior) -> dict:
+    useful, passable = prior.counts(np.arange(world.n_states)) > 0, world.neighbour >= 0
+    return {"actions": useful.size, "useful": int(useful.sum()), "passable": int(passable.sum())}
 
 
 def _example(world: GridWorld, prior: ActionPrior) -> dict:
@@ -115,10 +105,7 @@ def _mazes(results: Sequence[Mapping], generator: str) -> list[Mapping]:
 
 def _shares(mazes: Sequence[Mapping]) -> dict[str, Estimate]:
     counts = {key: np.array([maze[key] for maze in mazes], float) for key in mazes[0]}
-    found = {
-        "passable_found_useful": mean_estimate(counts["useful"] / counts["passable"]),
-        "useful_share_goal_rows_counted": mean_estimate(counts["useful_with_goal_rows"] / counts["actions"]),
-    }
+    found = {"passable_found_useful": mean_estimate(counts["useful"] / counts["passable"])}
     for printed in PRINTED:
         # Mid-ranks: of the mazes that have exactly this share, half count as below.
         apart = counts["useful"] / counts["actions"] - printed / PRINTED_OF

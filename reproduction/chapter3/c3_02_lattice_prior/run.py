@@ -88,7 +88,6 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     )
     optimal = np.array([result["optimal"] for result in results])
     return {
-        "first_q_learning": at_default(results, "first", PLAIN),
         "to_80_eps_qsap": at_default(results, "to_80", PRIOR),
         "to_80_q_learning": at_default(results, "to_80", PLAIN),
         "optimal_return": mean_estimate(optimal),

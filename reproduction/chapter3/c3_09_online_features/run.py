@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
+from lifelore.core.metrics import Estimate, ratio_estimate
 from reproduction.chapter3.factory import comparison
 from reproduction.chapter3.factory.comparison import UNIFORM
 from reproduction.chapter3.factory.modified_tasks import FULL_SET, problem_of
@@ -49,7 +49,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: a series of tasks of every method in every cell of the grid."""
     grid = grid_of(settings)
     found = [
-        {"method": method, **how, "first": [], "last": [], "completed": [], "chosen": []}
+        {"method": method, **how, "first": [], "last": [], "chosen": []}
         for method in METHODS
         for how in grid.cells_of(method)
     ]
@@ -69,7 +69,6 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
             curve = agent.learn(problem, schedule) if agent else learnt(*plain)[0]
             series["first"].append(float(curve.rewards[0]))
             series["last"].append(float(curve.rewards[-1]))
-            series["completed"].append(float(curve.reached.mean()))
             series["chosen"].append(mask_of(agent.chosen) if agent else 0)
     return {**cell, "optimal": optimal, "found": found}
 
@@ -77,13 +76,6 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 def mask_of(names: Sequence[str]) -> int:
     """Chosen features as a number: bit i is set where the i-th of φ4 is chosen."""
     return sum(1 << i for i, name in enumerate(FULL_SET.names) if name in names)
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The share of episodes that end by a completed task, at the default."""
-    grid, table = grid_of(settings), table_of(settings, results)
-    completed = [table.values("completed", **grid.where(m, grid.default)).mean(axis=1) for m in METHODS]
-    return {"completed": mean_estimate(np.mean(completed, axis=0))}
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.core.metrics import Estimate
 from reproduction.chapter3.c3_09_online_features.run import DRAWN, grid_of, mask_of, run_cell, shared, table_of
 from reproduction.chapter3.factory.comparison import is_default
 from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET
@@ -16,7 +16,7 @@ from reproduction.chapter3.factory.online_selection import SELECTED
 from reproduction.engine.estimates import exact_share
 from reproduction.engine.grid import Cell
 
-__all__ = ["measure", "readings", "rows", "run_cell", "shared"]
+__all__ = ["readings", "rows", "run_cell", "shared"]
 
 GOAL = mask_of(CARDINALS)
 
@@ -31,17 +31,6 @@ def shares(masks: NDArray[np.int64]) -> NDArray[np.float64]:
     """Share of runs in which each feature is chosen, (10, n_tasks), from (n_runs, n_tasks) masks."""
     bits = masks[:, :, None] >> np.arange(len(FULL_SET)) & 1
     return bits.mean(axis=0).T
-
-
-def settled_after(masks: NDArray[np.int64]) -> list[int]:
-    """Number of tasks of each run after which the set is φ2 to the end; n_tasks + 1 where it never is."""
-    return [1 + max((np.flatnonzero(run != GOAL) + 1).tolist(), default=0) for run in masks]
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """After how many tasks φ2 is settled on, at the default."""
-    masks = masks_of(settings, results, grid_of(settings).default)
-    return {"settled_after": mean_estimate(settled_after(masks))}
 
 
 def numbers(masks: NDArray[np.int64], last: int) -> dict[str, Estimate]:

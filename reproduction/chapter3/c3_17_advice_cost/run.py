@@ -75,13 +75,6 @@ def greedy_policy(q: NDArray[np.float64], epsilon: float) -> NDArray[np.float64]
     return (1 - epsilon) * best / best.sum(axis=1, keepdims=True) + epsilon / q.shape[1]
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """How much random walks are advised under the thesis's κ, at the default."""
-    own, at_kappa = having(results, loops=settings["loops"][0]), kappas_of(settings).index(KAPPA)
-    random = [result["amounts"][0]["random"][at_kappa] for result in own]
-    return {"random_at_kappa": mazes.maze_estimate(random)}
-
-
 def _numbers(settings: Mapping, results: Sequence[Mapping], place: int) -> dict[str, Estimate]:
     """The least fall and the largest rise of any agent, and what parts Q-learning from random and optimal."""
     amounts = {

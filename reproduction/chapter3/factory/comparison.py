@@ -4,7 +4,7 @@ The unit of every comparison is the distance from learning without a prior to th
 moves cost about what its task pays, so that the optimal reward itself lies near 0 and is no scale.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,17 +43,13 @@ def is_default(grid: Grid, cell: Mapping, but: Sequence[str] = ()) -> bool:
 def summary(curves: Sequence[Curve], early: int, drawn: bool) -> dict:
     """A run's numbers from the curves of its tasks.
 
-    Returns mean rewards of ``all`` and of the first `early` episodes; the share of these that end by ``completed``
-    tasks; their ``spread``, the standard deviation across tasks (with several tasks); and, if `drawn`, the
-    ``rewards`` in even blocks of episodes, (n_tasks, at most `POINTS`).
+    Returns mean rewards of ``all`` and of the first `early` episodes; the ``spread`` of these, the standard
+    deviation across tasks (with several tasks); and, if `drawn`, the ``rewards`` in even blocks of episodes,
+    (n_tasks, at most `POINTS`).
     """
     rewards = np.array([curve.rewards for curve in curves])
     first = rewards[:, :early]
-    found = {
-        "all": float(rewards.mean()),
-        "early": float(first.mean()),
-        "completed": float(np.mean([curve.reached[:early] for curve in curves])),
-    }
+    found = {"all": float(rewards.mean()), "early": float(first.mean())}
     if len(curves) > 1:
         found["spread"] = float(first.std(axis=0, ddof=1).mean())
     return {**found, "rewards": in_blocks(rewards).tolist()} if drawn else found
@@ -95,11 +91,6 @@ class Comparison:
         read = {key for method in methods for key in self.grid.reads.get(method, self.grid.default)}
         return all(cell[key] == value for key, value in self.grid.default.items() if key not in read)
 
-    def remarks(self, methods: Iterable[str]) -> dict[str, Estimate]:
-        """At the default: the optimal reward, and the share of early episodes that end by a completed task."""
-        completed = np.mean([self.values(method, self.grid.default, "completed") for method in methods], axis=0)
-        return {"optimal_reward": mean_estimate(self.optimal), "completed": mean_estimate(completed)}
-
     def curve(self, method: str, cell: Mapping) -> dict:
         """A row with a method's ``mean`` rewards and their standard ``deviation`` across the tasks of all runs."""
         records = self.table.select(**self.grid.where(method, cell)).records
@@ -112,12 +103,12 @@ def functions_of(
 ) -> tuple[Callable, Callable, Callable]:
     """The functions ``measure``, ``readings`` and ``rows`` of a claim that compares `methods` over a grid.
 
-    ``numbers(found, cell)`` are its estimates in a cell; beside them are `Comparison.remarks` at the default, and
-    the row of each method is its curve there.
+    ``numbers(found, cell)`` are its estimates in a cell; beside them is the optimal reward, and the row of each
+    method is its curve at the default.
     """
 
     def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-        return Comparison(results, grid_of(settings)).remarks(methods)
+        return {"optimal_reward": mean_estimate([result["optimal"] for result in results])}
 
     def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:
         found = Comparison(results, grid_of(settings))

@@ -78,7 +78,6 @@ def _measured(result: Mapping) -> dict[str, Estimate]:
         "irons_after_printed": mean_estimate(result["irons"]),
         "rounds_on_iron": mean_estimate(result["rounds_on_iron"]),
         "entropy_2": mean_estimate(first),
-        "entropy_3": mean_estimate(second),
         "rank_of_0_2237": mean_estimate(rank),
         "entropy_3_is_0": mean_estimate(second < 5e-5),
     }

@@ -60,13 +60,6 @@ def _play_clubs(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict
     return {"club": [miss(np.full(len(luck), j)) for j in range(golf.n_clubs)], "best": miss(best)}
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Exact models and greedy's own first club; beside it the error after club 1."""
-    found = {tuple(reading.values()): numbers for reading, numbers in readings(settings, results)}
-    forced = found["exact", FIRST[WOOD]]["error_shot_2"]
-    return found["exact", FIRST[None]] | {"error_shot_2_club_1": forced}
-
-
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """Each kind of models with each first club; intervals are over groups of holes."""
     clubs = np.array(results[-1]["club"])

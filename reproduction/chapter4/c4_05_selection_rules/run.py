@@ -34,7 +34,7 @@ def convergence(found: Mapping[str, Mapping], form: str) -> dict[str, Estimate]:
     of = {name: found[in_form(name, form)] for name in STANDARD}
     sums = {name: by_group(result, "sums") for name, result in of.items()}
     best_other = min((name for name in of if name != "EI"), key=lambda name: sums[name].mean())
-    ended = ("BE", "KG", "sampling", "EI", "PI")
+    ended = ("BE", "KG", "sampling", "EI")
     late = {"late_PI": "PI", "late_eps_greedy": "ε-greedy"}
     return {
         **{f"ended_{name}": grouped_quantile(by_group(of[name], "ended"), 0.5) for name in ended},

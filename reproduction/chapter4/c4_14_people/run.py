@@ -36,7 +36,6 @@ COLUMNS = ("phase", "size", "speed", "method", "loss")
 """Columns of a round that the measures read."""
 LEAST = 3
 """People with whom the thesis measures."""
-WORDS = {PERSON: "people", SCRIPTED: "scripted"}
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -107,14 +106,11 @@ def _summary(done: Sequence[dict]) -> dict:
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The same numbers of people and of scripted players, by their names; none of fewer than three players."""
-    found = {}
-    for player, word in WORDS.items():
-        sessions = _sessions(results, player)
-        numbers = _numbers(settings, sessions) if len(sessions) >= LEAST else {}
-        found |= {f"{word}_{name}": number for name, number in numbers.items()}
-        found[f"{word}_sessions"] = exact_value(len(sessions), len(sessions))
-    return found
+    """Numbers of people, none of fewer than three; and how many scripted sessions stand in for them."""
+    people, scripted = (_sessions(results, player) for player in PLAYERS)
+    numbers = _numbers(settings, people) if len(people) >= LEAST else {}
+    found = {f"people_{name}": number for name, number in numbers.items()}
+    return found | {"scripted_sessions": exact_value(len(scripted), len(scripted))}
 
 
 def _sessions(results: Sequence[Mapping], player: str) -> list[dict]:

@@ -13,7 +13,7 @@ from scipy.optimize import nnls
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.depth_camera import CAMERAS
 from lifelore.domains.tabletop.photograph import FIRST_OBJECT, Photograph
@@ -143,15 +143,12 @@ def distance_to_hull(point: NDArray[np.float64], corners: NDArray[np.float64]) -
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Shares registered and wrong, mean errors, and contacts found more than by one view."""
+    """Shares registered and wrong, and contacts found more than by one view."""
     pairs = [pair for result in results for pair in result["pairs"]]
-    right = [(turn, shift) for _, turn, shift in pairs if turn is not None]
     found = {
         "registered": exact_share(turn is not None for _, turn, _ in pairs),
         "wrong": exact_share(t is not None and (t > WRONG_TURN or s > WRONG_SHIFT) for _, t, s in pairs),
     }
-    for name, errors in zip(("turn_degrees", "shift_metres"), zip(*right, strict=True), strict=False):
-        found[name] = mean_estimate(errors)
     scenes = [scene for result in results for scene in result["contacts"] if scene[ALONE]]
     n = [len(scene[ALONE]) for scene in scenes]
     for name, how in (("true_poses", TRUE), ("registered", REGISTERED)):

@@ -145,8 +145,6 @@ def _numbers(results: Sequence[Mapping], scale: str) -> dict[str, Estimate]:
     share = refused / n
     return {
         "moves_to_better": ratio_estimate(moves[:, 0], moves[:, 1:3].min(axis=1)),
-        "moves_to_last": ratio_estimate(moves[:, 0], moves[:, 1]),
-        "moves_to_mean": ratio_estimate(moves[:, 0], moves[:, 2]),
         "truth_to_better": ratio_estimate(moves[:, 3], moves[:, 1:3].min(axis=1)),
         "ways_to_better": ratio_estimate(ways[:, 0], ways[:, 1:3].min(axis=1)),
         "squared_to_share": ratio_estimate([result["squared"] for result in results], share * (1 - share)),

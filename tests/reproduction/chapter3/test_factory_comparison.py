@@ -14,20 +14,20 @@ def test_without_a_prior_neither_ties_nor_pseudo_counts_matter():
     assert [cell["schedule"] for cell in GRID.cells_of("uniform")] == SETTINGS["schedule"]
 
 
-def curve(rewards, reached):
+def curve(rewards):
     found = new_curve(len(rewards))
-    found.rewards[:], found.reached[:] = rewards, reached
+    found.rewards[:] = rewards
     return found
 
 
 def test_summary_by_hand():
     # Two tasks, four episodes; deviations (n - 1) of two numbers are their distance over the root of 2.
-    curves = [curve([-8, -4, 0, 2], [0, 1, 1, 1]), curve([-4, -4, 4, 6], [1, 1, 1, 1])]
+    curves = [curve([-8, -4, 0, 2]), curve([-4, -4, 4, 6])]
     found = summary(curves, 2, drawn=True)
     assert found.pop("rewards") == [[-8, -4, 0, 2], [-4, -4, 4, 6]]
-    assert found == pytest.approx({"early": -5.0, "all": -1.0, "completed": 0.75, "spread": 2 * 2**-0.5})
+    assert found == pytest.approx({"early": -5.0, "all": -1.0, "spread": 2 * 2**-0.5})
     # Opposite ups and downs spread every episode, and not the means of the tasks.
-    opposite = [curve([0, 2], [1, 1]), curve([2, 0], [1, 1])]
+    opposite = [curve([0, 2]), curve([2, 0])]
     assert summary(opposite, 2, drawn=False)["spread"] == pytest.approx(2 * 2**-0.5)
     assert "spread" not in summary(opposite[:1], 9, drawn=False)
 

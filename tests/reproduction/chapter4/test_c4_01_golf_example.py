@@ -52,6 +52,6 @@ def test_numbers_of_a_kind_of_models_by_hand():
     assert cell == {"models": "100 shots", "pseudo_count": 0.0}
     values = {name: one.value for name, one in found.items()}
     assert values == pytest.approx({
-        "irons_after_printed": 0.75, "rounds_on_iron": 0.8, "entropy_2": 0.2, "entropy_3": 0.1,
+        "irons_after_printed": 0.75, "rounds_on_iron": 0.8, "entropy_2": 0.2,
         "rank_of_0_2237": 0.5, "entropy_3_is_0": 0.5,
     })  # fmt: skip

@@ -61,7 +61,6 @@ def test_measures_by_hand():
     assert found["people_least_gain_of_diversities"].value == pytest.approx(-0.2 * 1.02)
     assert found["people_pairs_confused_more_often"].value == 0
     assert found["scripted_sessions"].value == 0
-    assert "scripted_beat_less_static" not in found
 
 
 def test_finished_sessions_of_people_are_read_from_a_file(tmp_path):

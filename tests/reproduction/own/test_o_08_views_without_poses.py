@@ -38,7 +38,6 @@ def test_measures_by_hand():
     }
     found = measure({}, [result])
     assert (found["registered"].value, found["wrong"].value) == (0.75, 0.5)
-    assert found["turn_degrees"].value == pytest.approx(8 / 3)
     assert found["contacts_gained_registered"].value == 0.25
     assert found["contacts_gained_true_poses"].value == 0.5
     assert [row["refused"] for row in rows({"angles": [20, 45]}, [result])] == [0, 1]
