@@ -13,22 +13,25 @@ import numpy as np
 from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
-from lifelore.perception.pairs.scene_pairs import ScenePairs, scene_pairs
+from lifelore.perception.pairs.scene_pairs import scene_pairs
 from lifelore.perception.pairs.side_faces import pairs_beside
 from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from reproduction.chapter2.scoring.relation_scoring import judged_scene
-from reproduction.own.o_07_unseen_scenes.peers import PEERS
-from reproduction.own.o_07_unseen_scenes.peers.described_pairs import described_pairs
+from reproduction.own.o_07_unseen_scenes.peers import (
+    BoundingBoxRule,
+    OrientationTrees,
+    described,
+    pairs_of_objects,
+)
 
 OURS, SHIPPED, THESIS, HISTOGRAM, RULE = METHODS = ("contacts", "shipped", "thesis", "histogram", "rule")
-PEER = {HISTOGRAM: "orientation histogram", RULE: "bounding-box rule"}
-"""Name of a peer of `reproduction.own.o_07_unseen_scenes.peers`."""
+PEERS = {HISTOGRAM: OrientationTrees, RULE: BoundingBoxRule}
 MODELS: dict[str, Callable[[], Any]] = {
     OURS: RelationClassifier,
     THESIS: lambda: RelationClassifier("displacement"),
-    **{name: PEERS[peer] for name, peer in PEER.items()},
+    **PEERS,
 }
 """Methods that learn in each round; `SHIPPED` has learnt before."""
 
@@ -63,14 +66,14 @@ def _drawn(seed: int, number: int, shapes: str, n: int) -> list[TabletopScene]:
 
 def seen(scene: TabletopScene) -> tuple[TabletopScene, dict[str, Any]]:
     """A scene, and what each method sees of it."""
-    contacts = scene_pairs(scene.cloud)
-    peers = {name: described_pairs(scene.cloud, PEERS[peer].describe) for name, peer in PEER.items()}
+    contacts, pairs = scene_pairs(scene.cloud), pairs_of_objects(scene.cloud)
+    peers = {name: described(pairs, peer.describe) for name, peer in PEERS.items()}
     return scene, {OURS: contacts, SHIPPED: contacts, THESIS: contacts, **peers}
 
 
 def answers(model: Any, view: Any, scene: TabletopScene) -> Sequence[Relation]:
     """The relations that a model names; those of our own classifier by contacts are reconciled by scene logic."""
-    if not isinstance(view, ScenePairs) or model.method == "displacement":
+    if not isinstance(model, RelationClassifier) or model.method == "displacement":
         return model.predict_pairs(view)
     beliefs = alternatives(model.beliefs_of(view))
     return most_likely_scene(beliefs, scene.cloud.objects, beside=pairs_beside(view)).relations
