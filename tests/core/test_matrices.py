@@ -127,6 +127,7 @@ NEGATIVE[4, 0, :2] = [-0.5, 1.5]
         ((T, np.full(7, np.inf)), "rewards must be finite, got inf for R"),
         ((T, R, [7]), r"terminal must be whole numbers from 0 to 6, got \[7\]"),
         ((T, R, [0.5]), "terminal must be whole numbers"),
+        ((T, R, [0, 0, 1, 0, 0, 0, 0]), "terminal as a mask must hold booleans"),
         ((T, R, [True]), r"terminal as a mask must have shape \(7,\)"),
         ((T, R, [1], [1, 2]), r"starts must name at least one state, none of them terminal, got \[1\]"),
         ((T, R, range(7)), "starts must name at least one state, got none"),

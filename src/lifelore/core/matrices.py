@@ -72,6 +72,8 @@ def checked_numbers(given: Any, n: int, name: str) -> Ints:
         return np.empty(0, np.int64)
     if numbers.ndim != 1 or numbers.dtype.kind not in "iu" or numbers.min() < 0 or numbers.max() >= n:
         raise InputError(f"{name} must be whole numbers from 0 to {n - 1}, got {given!r:.80}")
+    if numbers.size == n > 2 and numbers.max() <= 1:
+        raise InputError(f"{name} as a mask must hold booleans, got numbers 0 and 1; give astype(bool)")
     return numbers.astype(np.int64)
 
 

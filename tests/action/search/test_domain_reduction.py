@@ -267,7 +267,7 @@ def test_broken_rules(call, message):
 def test_the_transitions_of_the_minimised_domain_term_by_term(drawn, form):
     tasks, policies = drawn
     tables, domain = tasks[0], minimised_domain(tasks, policies, form)
-    found = minimised_transitions(tables, domain)
+    found = minimised_transitions(tasks, domain)
     probs = np.diff(tables.outcome_cum, prepend=0.0)
     for s in range(tables.n_states):
         for a in range(tables.n_actions):
@@ -279,3 +279,24 @@ def test_the_transitions_of_the_minimised_domain_term_by_term(drawn, form):
             row = found[a][[s]].toarray()[0]
             assert row == pytest.approx([eta * own.get(t, 0.0) for t in range(tables.n_states)])
             assert row.sum() == pytest.approx(float(domain.pairs[s, a] and not domain.without_successor[s, a]))
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_the_goal_of_one_task_has_the_moves_of_another(first):
+    # A line 0 - 1 - 2 - 3 in which the step right from 1 slips; matrices do not read the row of a task's goal.
+    T = np.zeros((4, 2, 4))
+    for s in range(4):
+        T[s, 0, max(s - 1, 0)] = T[s, 1, min(s + 1, 3)] = 1.0
+    T[1, 1] = [0.0, 0.25, 0.75, 0.0]
+    tasks = [Tables.from_matrices(T, np.eye(4)[goal], terminal=goal, starts=[0]) for goal in (1, 2)]
+    policies = [best_of(tasks[0], 1), best_of(tasks[1], 2)]
+    tasks, policies = [tasks[first], tasks[1 - first]], [policies[first], policies[1 - first]]
+    assert domain_futile_states(tasks, policies).tolist() == [False, False, False, True]
+    domain = minimised_domain(tasks, policies)
+    assert np.argwhere(domain.pairs).tolist() == [[0, 1], [1, 1]]
+    assert minimised_transitions(tasks, domain)[1].toarray()[1].tolist() == [0.0, 0.25, 0.75, 0.0]
+    assert minimised_domain(tasks, policies, "closed").states.tolist() == [True, True, True, False]
+    other = T.copy()
+    other[3, 0] = [1.0, 0.0, 0.0, 0.0]
+    with pytest.raises(InputError, match=r"share their transitions .*, got others in task 2"):
+        minimised_domain([*tasks, Tables.from_matrices(other, np.eye(4)[0], terminal=0)], [*policies, policies[0]])

@@ -302,6 +302,13 @@ def test_a_learner_of_the_user_may_play_more_episodes_than_a_task_has():
     )
 
 
+def test_states_that_hardly_repeat_are_a_warning():
+    env = gymnasium.make("CartPole-v1")
+    with pytest.warns(UserWarning, match="began in a state that the task had not met before"):
+        LongLivedAgent(key="pole", episodes=40).live(env)
+    LongLivedAgent(key="pole", episodes=40, state=lambda seen: tuple(seen[2:].round(1))).live(env)
+
+
 def test_returns_alone_tell_types_apart_too():
     class Paid(gymnasium.Env):
         """A bandit whose states never come again; the hidden type says which arm pays."""

@@ -7,7 +7,7 @@ import pytest
 from lifelore.agent.any_tasks.live_in import live_in
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld
 from lifelore.agent.external_world.life_summary import summarise_life
-from lifelore.agent.external_world.life_warnings import ContextNovelty, life_warnings
+from lifelore.agent.external_world.life_warnings import ContextNovelty, life_warnings, new_states
 
 pytestmark = pytest.mark.filterwarnings("ignore:(Nothing that was observed|The action prior is empty)")
 
@@ -67,3 +67,11 @@ def test_each_trouble_has_its_sentence_and_a_good_life_none():
         "The", "Nothing", "Of",
     ]  # fmt: skip
     assert "96% have a context" in warned(novelty=0.96)[0]
+
+
+def test_states_that_hardly_repeat():
+    assert new_states("lake", range(199)) == []
+    assert new_states("lake", [*range(179), *range(21)]) == []
+    [said] = new_states("lake", [*range(180), *range(20)])
+    assert "Of 200 moves in a task of lake, 90% began in a state that the task had not met before" in said
+    assert "Pass state=" in said

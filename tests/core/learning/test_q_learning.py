@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import new_curve
+from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import Rows, Schedule, cumulative, learn, new_learner, uniform_rows
 from lifelore.core.mdp import NOTHING, TERMINAL, Tables
 from lifelore.core.planning.planning import optimal_q, policy_values
@@ -157,3 +158,17 @@ def test_probabilities_by_pair_learn_as_the_twin(draw_world, naive_learn):
 
 def agree_arrays(one, other) -> bool:
     return all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
+
+
+@pytest.mark.parametrize(
+    ("discount", "rows", "message"),
+    [
+        (1.5, None, r"discount must lie in \[0, 1\], got 1.5"),
+        (float("nan"), None, "got nan"),
+        (0.9, np.full((2, 2), 0.5), "rows must come from prior_rows or feature_rows, got ndarray"),
+    ],
+)
+def test_what_q_learning_refuses(discount, rows, message):
+    tables = Tables.from_matrices(np.eye(2)[[[1, 1], [1, 1]]], [0.0, 1.0], terminal=1)
+    with pytest.raises(InputError, match=message):
+        QLearning(5).learn(tables, discount, rows=rows)

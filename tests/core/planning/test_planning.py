@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL, Tables
 from lifelore.core.planning.planning import (
     best_actions,
@@ -50,6 +51,19 @@ def test_a_policy_on_a_cycle_and_into_it():
         np.zeros(1, np.int32),
     )
     assert policy_values(row, np.zeros(3, int), 0.5).tolist() == [-0.5, -1.0, -2.0]
+
+
+@pytest.mark.parametrize(("discount", "message"), [(1.2, r"lie in \[0, 1\], got 1.2"), (np.nan, "got nan")])
+def test_a_discount_out_of_range_is_refused(discount, message):
+    with pytest.raises(InputError, match=message):
+        optimal_q(ring(), discount)
+
+
+def test_without_discount_values_that_grow_for_ever_are_refused():
+    with pytest.raises(InputError, match="discount must be below 1 in this task"):
+        optimal_q(ring(), 1.0)
+    ended = np.array([[[0, 1.0], [0, 1.0]], [[1.0, 0], [1.0, 0]]])
+    assert optimal_q(Tables.from_matrices(ended, -np.ones((2, 2)), terminal=1), 1.0)[0].tolist() == [-1.0, -1.0]
 
 
 @settings(max_examples=40, deadline=None)

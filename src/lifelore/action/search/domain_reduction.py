@@ -29,6 +29,7 @@ FORMS = ("repaired", "printed", "closed")
 
 States = NDArray[np.bool_]
 Pairs = NDArray[np.bool_]
+Moves = tuple[NDArray[np.int32], NDArray[np.float64]]
 
 
 def reachable_states(tables: Tables, best: ArrayLike) -> States:
@@ -88,7 +89,7 @@ def domain_futile_states(tasks: Sequence[Tables], policies: Sequence[ArrayLike])
     >>> domain_futile_states([tables], [[[False, True], [False, True], [False, False]]]).tolist()
     [True, False, False]
     """
-    futile = [task_futile_states(tables, best) for tables, best in _paired(tasks, policies)]
+    futile = [task_futile_states(tables, best) for tables, best in _paired(tasks, policies)[0]]
     return np.logical_and.reduce(futile)
 
 
@@ -154,22 +155,27 @@ def minimised_domain(
     """
     if form not in FORMS:
         raise NotFoundError(f"form must be one of {', '.join(FORMS)}, got '{form}'")
-    paired = _paired(tasks, policies)
+    paired, moves = _paired(tasks, policies)
     reached = [reachable_states(tables, best) for tables, best in paired]
     own = [best & here[:, None] for (_, best), here in zip(paired, reached, strict=True)]
     kept = np.logical_or.reduce(own if form == "repaired" else [best for _, best in paired])
-    states = _closure(paired, kept) if form == "closed" else np.logical_or.reduce(reached)
+    starts = np.concatenate([tables.starts for tables in tasks])
+    follow, outcome_probs = moves
+    states = (
+        # On a path of `kept` pairs from the starts of any task, also beyond the end of another task.
+        states_from(starts, len(kept), lambda some: follow[some][kept[some]])
+        if form == "closed"
+        else np.logical_or.reduce(reached)
+    )
     pairs = kept & states[:, None]
-    tables = paired[0][0]
-    inside = states[tables.next_state]
-    outcome_probs = np.diff(tables.by_pair.outcome_cum, prepend=0.0)
+    inside = states[follow]
     # Exactly 1 where every outcome lies in Ŝ, because the sum of the probabilities may round to another number.
     mass = np.where(inside.all(axis=2), 1.0, np.minimum((inside * outcome_probs).sum(axis=2), 1 - 1e-16))
     return MinimisedDomain(form, states, pairs, np.where(pairs, mass, 0.0))
 
 
-def minimised_transitions(tables: Tables, domain: MinimisedDomain) -> list[sparse.csr_array]:
-    """T̂(s, a, s') = η(s, a) T(s, a, s') of Def. 3.2.5: one (n_states, n_states) matrix an action.
+def minimised_transitions(tasks: Sequence[Tables], domain: MinimisedDomain) -> list[sparse.csr_array]:
+    """T̂(s, a, s') = η(s, a) T(s, a, s') of Def. 3.2.5, of the domain's tasks: a square matrix for each action.
 
     Rows of pairs in the domain sum to 1, other rows are 0. With the form "printed" a pair all of whose outcomes
     leave Ŝ (`MinimisedDomain.without_successor`, η = 1/0) has a row of zeros, too.
@@ -179,29 +185,22 @@ def minimised_transitions(tables: Tables, domain: MinimisedDomain) -> list[spars
     >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
     >>> tables = Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2)
     >>> domain = minimised_domain([tables], [[[False, True], [False, True], [False, False]]], form="printed")
-    >>> minimised_transitions(tables, domain)[1].toarray().tolist()
+    >>> minimised_transitions([tables], domain)[1].toarray().tolist()
     [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]]
     """
-    follow = tables.next_state
-    inside = domain.pairs[:, :, None] & domain.states[follow]
-    mass = np.where(inside, np.diff(tables.by_pair.outcome_cum, prepend=0.0), 0.0)
+    follow, outcome_probs = _shared_moves(tasks)
+    n_states, n_actions, n_outcomes = follow.shape
+    mass = np.where(domain.pairs[:, :, None] & domain.states[follow], outcome_probs, 0.0)
     kept = mass.sum(axis=2, keepdims=True)
     mass = np.divide(mass, kept, out=np.zeros_like(mass), where=kept > 0)
-    state = np.repeat(np.arange(tables.n_states), tables.n_outcomes)
-    shape = (tables.n_states, tables.n_states)
+    state = np.repeat(np.arange(n_states), n_outcomes)
     matrices = [
-        sparse.csr_array((mass[:, a].ravel(), (state, follow[:, a].ravel())), shape)
-        for a in range(tables.n_actions)
+        sparse.csr_array((mass[:, a].ravel(), (state, follow[:, a].ravel())), (n_states, n_states))
+        for a in range(n_actions)
     ]
     for matrix in matrices:
         matrix.eliminate_zeros()
     return matrices
-
-
-def _closure(paired: Sequence[tuple[Tables, Pairs]], kept: Pairs) -> States:
-    """States on a path of `kept` pairs from the starts of any task, also beyond the end of another task."""
-    follow, starts = paired[0][0].next_state, np.concatenate([tables.starts for tables, _ in paired])
-    return states_from(starts, len(kept), lambda states: follow[states][kept[states]])
 
 
 def tables_within(tables: Tables, pairs: ArrayLike, dead_ends: str = "stay") -> Tables:
@@ -277,26 +276,40 @@ def futile_goal_probability(n_actions: int, n_tasks: ArrayLike, alpha0: float) -
     return alpha0 / ((n_actions - 1) * (tasks + alpha0) + alpha0)
 
 
-def _paired(tasks: Sequence[Tables], policies: Sequence[ArrayLike]) -> list[tuple[Tables, Pairs]]:
+def _paired(tasks: Sequence[Tables], policies: Sequence[ArrayLike]) -> tuple[list[tuple[Tables, Pairs]], Moves]:
+    """Each task with its policy, and the moves of the domain."""
     if not tasks or len(tasks) != len(policies):
         raise InputError(f"give a policy for each task, at least one, got {len(tasks)} and {len(policies)}")
     paired = [(tables, _checked(tables, best)) for tables, best in zip(tasks, policies, strict=True)]
-    for number, tables in enumerate(tasks):
-        _check_shared(tables, tasks[0], number)
-    return paired
+    return paired, _shared_moves(tasks)
 
 
-def _check_shared(tables: Tables, first: Tables, number: int) -> None:
-    """Refuse a task with other transitions than the first, wherever both have an action to take."""
-    if tables.next_state.shape != first.next_state.shape:
-        raise InputError(f"tasks must be of one domain, got task {number} with other states, actions or outcomes")
-    acting = ~(_ended(tables) | _ended(first))
-    one, other = (
-        (task.next_state[acting], np.broadcast_to(task.outcome_cum, task.next_state.shape)[acting])
-        for task in (tables, first)
-    )
-    if not all(np.array_equal(mine, its) for mine, its in zip(one, other, strict=True)):
-        raise InputError(f"tasks must share their transitions (§3.2.2), got others in task {number}")
+def _shared_moves(tasks: Sequence[Tables]) -> Moves:
+    """Next states and probabilities of the tasks' domain; each state's are from the tasks that do not end there.
+
+    Raises
+    ------
+    InputError
+        Two tasks have other states, actions or transitions.
+    """
+    n_outcomes = max(tables.n_outcomes for tables in tasks)
+    following, cumulative, acting = [], [], []
+    for tables in tasks:
+        unused = ((0, 0), (0, 0), (0, n_outcomes - tables.n_outcomes))
+        following.append(np.pad(tables.next_state, unused, "edge"))
+        cumulative.append(np.pad(tables.by_pair.outcome_cum, unused, "edge"))
+        acting.append(~_ended(tables))
+    known = acting[0].copy()
+    for number in range(1, len(tasks)):
+        if following[number].shape != following[0].shape:
+            raise InputError(f"tasks must be of one domain, got task {number} with other states or actions")
+        both, new = known & acting[number], acting[number] & ~known
+        for shared, its in ((following[0], following[number]), (cumulative[0], cumulative[number])):
+            if not np.array_equal(shared[both], its[both]):
+                raise InputError(f"tasks must share their transitions (§3.2.2), got others in task {number}")
+            shared[new] = its[new]
+        known |= new
+    return following[0], np.diff(cumulative[0], prepend=0.0)
 
 
 def _ended(tables: Tables) -> NDArray[np.bool_]:

@@ -14,7 +14,7 @@ from lifelore.agent.any_tasks.task_settings import AGENTS as ABLATIONS
 from lifelore.agent.any_tasks.task_settings import TaskSettings, check_names
 from lifelore.agent.external_world.context_code import MOST_ACTIONS
 from lifelore.agent.external_world.life_summary import summarise_life
-from lifelore.agent.external_world.life_warnings import ContextNovelty, life_warnings
+from lifelore.agent.external_world.life_warnings import ContextNovelty, life_warnings, new_states
 from lifelore.agent.external_world.own_agent import OwnAgent, check_own_agents
 from lifelore.agent.external_world.task_differences import TaskDifferences
 from lifelore.agent.life.loop import LivedTask, opened_memory, run_life
@@ -114,8 +114,8 @@ def live_in(
         equal ends where all differences are equal. ``n_contexts``: the number of contexts in the prior at the
         end. ``warnings``: sentences on what makes the life useless or its comparison misleading; empty where all
         is well. They say that the prior is still empty, that nothing observed tells the tasks apart, that nearly
-        every context is new, or that the final return of ``lore`` is certainly below that of ``scratch`` or
-        ``textbook``.
+        every state or context is new, or that the final return of ``lore`` is certainly below that of ``scratch``
+        or ``textbook``.
 
     Warns
     -----
@@ -176,7 +176,9 @@ def live_in(
         run_life(life, tasks, memory=opened, robot=robot, progress=progress, stop=stop)
     done, n_contexts = life.finished, len(life.lore.prior)
     summary = summarise_life(done, names) if done else {}
-    found = life_warnings(name, len(done), n_contexts, life.novelty.late, life.differences.one_task, summary)
+    found = new_states(name, life.last_states)
+    novelty = 0.0 if found else life.novelty.late  # where states are new, their contexts are, too
+    found += life_warnings(name, len(done), n_contexts, novelty, life.differences.one_task, summary)
     for sentence in found:
         warnings.warn(sentence, stacklevel=2)
     return {
@@ -215,7 +217,7 @@ class _ExternalLife:
 
     def __post_init__(self) -> None:
         self.states, self.finished = set[Hashable](), list[dict]()
-        self.differences = TaskDifferences()
+        self.differences, self.last_states = TaskDifferences(), list[int]()
 
     @property
     def lore(self) -> Experience:
@@ -242,6 +244,7 @@ class _ExternalLife:
         for step in lived.tasks["scratch"].steps:
             self.differences.see(step.state, step.action, step.following, step.reward, step.ended)
         self.differences.end_task()
+        self.last_states = [step.state for step in lived.tasks["scratch"].steps]
         self.novelty.end_task(lived.tasks["lore"].running.best()[0].tolist())
         return LivedTask(lived.records["lore"], {"index": number, "world": self.name}, (number, lived))
 

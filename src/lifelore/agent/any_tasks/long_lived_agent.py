@@ -1,6 +1,7 @@
 """`LongLivedAgent`: an agent that lives in tasks of anyone's Gymnasium environments and becomes good at them."""
 
-from collections.abc import Callable, Hashable
+import warnings
+from collections.abc import Callable, Hashable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,6 +21,7 @@ from lifelore.agent.any_tasks.task_result import TaskResult
 from lifelore.agent.any_tasks.task_settings import AGENTS, TaskSettings, check_names
 from lifelore.agent.external_world.context_code import CONTEXT_BITS, ContextCodes
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld, ResetBy
+from lifelore.agent.external_world.life_warnings import new_states
 from lifelore.agent.life.loop import LivedTask, Stopped, run_life
 from lifelore.agent.live.life_settings import PriorSettings
 from lifelore.agent.long_lived.curiosity import CuriousContext, curious_contexts
@@ -180,6 +182,11 @@ class LongLivedAgent(AbstractContextManager):
             The environment has other actions, a state is not hashable, or a reward is not finite.
         StoreError
             Memory cannot store the task, or another process has taken it over.
+
+        Warns
+        -----
+        UserWarning
+            The states hardly repeat, and the learner is one of a table.
         """
         if not isinstance(env, gymnasium.Env):
             raise InputError(f"env must be a gymnasium.Env, got {type(env).__name__}; pass gymnasium.make(...)")
@@ -187,6 +194,9 @@ class LongLivedAgent(AbstractContextManager):
         run_life(task, 1, memory=self._memory, robot=self.robot, stop=stop, notify=lost.append)
         if task.result is None:
             raise StoreError(f"{lost[0]}; live it again") if lost else Stopped
+        if not callable(self.settings.learner):
+            for sentence in new_states(task.world.name, task.states):
+                warnings.warn(sentence, stacklevel=2)
         return task.result
 
     def world(self, env: gymnasium.Env | Callable[[int], gymnasium.Env]) -> GymnasiumWorld:
@@ -267,6 +277,7 @@ class _NextTask:
     world: GymnasiumWorld
     context: Hashable
     result: TaskResult | None = None
+    states: Sequence[int] = ()
 
     def recall(self) -> None:
         """Know what other processes have stored."""
@@ -282,6 +293,7 @@ class _NextTask:
         )  # fmt: skip
         news = task.live(f"{agent.robot}.{number}")
         records = [] if news is None else experience.learn(news)
+        self.states = [step.state for step in task.steps]
         # What memory refuses was not learnt: the agent knows it from `finish` on.
         agent._experience = None
         document = {"key": agent.key, "world": self.world.name, **result.to_dict()}

@@ -7,6 +7,22 @@ LEAST_TASKS = 4
 MOSTLY_NEW = 0.95
 """Share of the states of the last tasks whose context no earlier task has, from which a prior cannot help."""
 
+LEAST_MOVES = 200
+"""Moves of a task below which new states say nothing: each first episode has new ones."""
+HARDLY_REPEAT = 0.9
+"""Share of a task's moves that begin in a state not met before, from which nothing is learnt of a state."""
+
+
+def new_states(world: str, states: Sequence[int]) -> list[str]:
+    """A sentence if the states in which a task's moves began hardly repeat, else none."""
+    share = len(set(states)) / len(states) if len(states) >= LEAST_MOVES else 0.0
+    if share < HARDLY_REPEAT:
+        return []
+    return [
+        f"Of {len(states):,} moves in a task of {world}, {share:.0%} began in a state that the task had not met "
+        "before, so hardly anything can be learnt. Pass state= to bin continuous observations."
+    ]
+
 
 class ContextNovelty:
     """Share of the states of each task whose context was in no earlier task and has no counts in the prior."""

@@ -113,7 +113,7 @@ class QLearning:
         ----------
         tables : Tables
         discount : float
-            γ in [0, 1).
+            γ in [0, 1].
         world, own : numpy generators, optional
             Draws of starts and outcomes; draws of the learner. Compared methods share the world's. By default two
             streams of `seed`.
@@ -126,7 +126,16 @@ class QLearning:
         Returns
         -------
         learner, curve : Learner, Curve
+
+        Raises
+        ------
+        InputError
+            `discount` is out of range, or `rows` is not a `Rows`.
         """
+        if not 0 <= discount <= 1:
+            raise InputError(f"discount must lie in [0, 1], got {discount}")
+        if not isinstance(rows, Rows | None):
+            raise InputError(f"rows must come from prior_rows or feature_rows, got {type(rows).__name__}")
         rows = rows or uniform_rows(tables)
         world, own = world or stream(seed, "world"), own or stream(seed, "learner")
         learner = new_learner(int(rows.q_row.max()) + 1, tables.n_actions, world, own)

@@ -14,6 +14,8 @@ TIE_TOLERANCE = 1e-9
 """Actions whose values differ by no more than this, relative to the row's best, are tied."""
 TIE_FLOOR = 1e-12
 """Also tied are values that differ by less than this, relative to the largest value: rounding is no better."""
+MOST_SWEEPS = 100_000
+"""Sweeps after which values without discount are taken to grow for ever; more only costs time."""
 
 
 def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDArray[np.float64]:
@@ -23,23 +25,39 @@ def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDAr
     reward but a terminal one is zero or a loss, values settle exactly after as many sweeps as the longest
     shortest path.
 
+    Raises
+    ------
+    InputError
+        `discount` lies outside [0, 1]; or it is 1, and the values grow for ever.
+
     Examples
     --------
     >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
     >>> optimal_q(Tables.from_matrices(T, [0.0, 0.0, 1.0], terminal=2), 0.9).round(2).tolist()
     [[0.81, 0.9], [0.81, 1.0], [0.0, 0.0]]
     """
-    return _sweep(tables.by_pair, float(discount), tolerance * max(1.0, float(np.abs(tables.reward).max())))
+    if not 0 <= discount <= 1:
+        raise InputError(f"discount must lie in [0, 1], got {discount}")
+    sweeps = MOST_SWEEPS if discount == 1 else np.iinfo(np.int64).max
+    tolerance *= max(1.0, float(np.abs(tables.reward).max()))
+    q, settled = _sweep(tables.by_pair, float(discount), tolerance, sweeps)
+    if not settled:
+        raise InputError(
+            f"discount must be below 1 in this task: its values still grow after {MOST_SWEEPS:,} sweeps, because "
+            "some state never reaches a terminal one without an endless loss, or moves in a circle pay"
+        )
+    return q
 
 
 @kernel
-def _sweep(tables, discount, tolerance):
+def _sweep(tables, discount, tolerance, sweeps):
     n_states, n_actions = tables.next_state.shape[:2]
     q, value = np.zeros((n_states, n_actions)), np.zeros(n_states)
     moved = tolerance + 1.0
     forwards = True
-    while moved > tolerance:
+    while moved > tolerance and sweeps > 0:
         moved = 0.0
+        sweeps -= 1
         for i in range(n_states):
             s = i if forwards else n_states - 1 - i
             best = q[s, 0] = backup(tables, s, 0, discount, value)
@@ -51,7 +69,7 @@ def _sweep(tables, discount, tolerance):
                 moved = abs(best - value[s])
             value[s] = best
         forwards = not forwards
-    return q
+    return q, moved <= tolerance
 
 
 @inlined
