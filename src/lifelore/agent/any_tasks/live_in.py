@@ -226,7 +226,7 @@ class _ExternalLife:
         """Read what memory holds under the key."""
         if self.memory is not None:
             key, n_actions, alpha0 = self.lore.key, self.lore.n_actions, self.beside.common.guidance.alpha0
-            found = Experience.recalled(key, self.memory, alpha0, labels=False)
+            found = Experience.recalled(key, self.memory, alpha0)
             found = found or Experience(key, n_actions, alpha0)
             found.check_actions(n_actions)
             self.beside.experience["lore"] = found
