@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from lifelore.agent.long_lived.curiosity import context_to_practise
 from lifelore.agent.long_lived.families.factory_customers import FactoryFamily
 from lifelore.agent.long_lived.knowledge import Knowledge
-from lifelore.agent.long_lived.live_task import LivingSettings, attempt_task, live_task
+from lifelore.agent.long_lived.live_task import live_task
 from lifelore.agent.long_lived.task_family import AGENTS
 from lifelore.agent.long_lived.task_log import TaskLog
 from lifelore.core.intervals import percentile_interval
@@ -31,7 +31,7 @@ UNIFORM, CURIOUS = CHOOSERS = ("uniform", "curious")
 """How the context of a spare order is chosen."""
 SPARE_NUMBER, TEST_NUMBER = 10_000, 20_000
 """Numbers of the first spare and of the first test order: their layouts are those of no order of the life."""
-FULL, ONCE = AGENTS["full"], LivingSettings(n_episodes=1)
+FULL = AGENTS["full"]
 MET = 2
 """Tasks of a type after which it counts as known."""
 GAIN = 0.8
@@ -61,9 +61,9 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 def _spare_time(
     settings: Mapping, family: FactoryFamily, best: Sequence[float], chooser: str, life: int, seed: int
 ) -> list[float]:
-    knowledge, living = Knowledge.empty(family), LivingSettings(n_episodes=settings["episodes"])
+    knowledge, n_episodes = Knowledge.empty(family), settings["episodes"]
     for number in range(settings["lived"]):
-        live_task(knowledge, *family.meet(number, FULL), FULL, living, f"lived.{number}", seed)
+        _lived(knowledge, number, f"lived.{number}", n_episodes, seed)
     random = stream(seed, "C5.5", "spare time", life)
     missed = [_missed(settings, knowledge, best)]
     for number in range(SPARE_NUMBER, SPARE_NUMBER + settings["spans"] * settings["span"]):
@@ -72,10 +72,20 @@ def _spare_time(
         else:
             context = family.stream.draw(int(random.integers(settings["lived"]))).context
         # The date goes on from task to task: spare orders are the latest.
-        live_task(knowledge, *family.meet(number, FULL, context), FULL, living, f"spare.{number}", seed)
+        _lived(knowledge, number, f"spare.{number}", n_episodes, seed, context)
         if (number + 1 - SPARE_NUMBER) % settings["span"] == 0:
             missed.append(_missed(settings, knowledge, best))
     return missed
+
+
+def _lived(
+    knowledge: Knowledge, number: int, name: str, n_episodes: int, seed: int, context: int | None = None
+) -> TaskLog:
+    """A task that was lived and learnt from."""
+    met = knowledge.family.meet(number, FULL, context)
+    lived, news = live_task(knowledge, *met, FULL, name, n_episodes=n_episodes, seed=seed)
+    knowledge.learn(news)
+    return lived
 
 
 def _tests(settings: Mapping) -> range:
@@ -87,7 +97,7 @@ def _missed(settings: Mapping, knowledge: Knowledge, best: Sequence[float]) -> f
     """Mean points that the first episodes of new orders miss of their `best`; nothing is learnt from them."""
     missed = []
     for number, most in zip(_tests(settings), best, strict=True):
-        lived, _ = attempt_task(knowledge, *knowledge.family.meet(number, FULL), FULL, ONCE, "test")
+        lived, _ = live_task(knowledge, *knowledge.family.meet(number, FULL), FULL, "test", n_episodes=1)
         missed.append(most - lived.returns[0])
     return round(float(np.mean(missed)), 4)
 
@@ -101,15 +111,14 @@ def late_type(life: int, arrival: int, episodes: int) -> dict:
     types = tuple(CUSTOMERS)
     late = types[life % len(types)]
     family = FactoryFamily(TaskStream(types, life, len(types), arrivals={late: arrival}), life)
-    knowledge, living = Knowledge.empty(family), LivingSettings(n_episodes=episodes)
+    knowledge = Knowledge.empty(family)
     met, known = Counter[str](), []
     for number in range(arrival):
-        drawn, task = family.meet(number, FULL)
-        lived, _ = live_task(knowledge, drawn, task, FULL, living, f"agent.{number}", life)
-        if met[drawn.hidden_type] >= MET:
+        lived = _lived(knowledge, number, f"agent.{number}", episodes, life)
+        if met[lived.drawn.hidden_type] >= MET:
             known.append(signs(lived))
-        met[drawn.hidden_type] += 1
-    last, _ = live_task(knowledge, *family.meet(arrival, FULL), FULL, living, "late", life)
+        met[lived.drawn.hidden_type] += 1
+    last = _lived(knowledge, arrival, "late", episodes, life)
     return {"known": known, "late": signs(last), "learnt": last.learnt == "late"}
 
 

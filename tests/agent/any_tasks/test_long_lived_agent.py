@@ -14,6 +14,7 @@ import pytest
 from lifelore import LongLivedAgent, compare_agents, open_memory
 from lifelore.agent.any_tasks.one_task import SETTLED
 from lifelore.agent.any_tasks.reuse import TaskReuse
+from lifelore.agent.external_world.context_labels import ContextLabels
 from lifelore.agent.life.loop import Stopped
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.streams import stream
@@ -149,6 +150,17 @@ def test_a_life_goes_on_in_another_agent(tmp_path):
     assert [result.type for result in found] == [result.type for _, result in one]
     for before, after in zip(one, found, strict=True):
         assert after.returns == pytest.approx(before[1].returns)
+
+
+def test_features_behind_contexts_are_read_when_they_are_shown(tmp_path):
+    for _ in range(2):
+        with LongLivedAgent(**SETTINGS, memory=tmp_path / "life.db") as agent:
+            agent.live(WindyGrid(1))
+    assert set(agent.prior.labels.values()) <= {-1, 0, 1}
+    assert set(agent.prior.labels) == set(agent.prior.contexts.tolist())
+    with open_memory(tmp_path / "life.db") as memory:
+        labels = ContextLabels(lambda: memory.recall("context_labels", "windy grid/features", 1))
+        assert dict(labels) == agent.prior.labels
 
 
 def test_robots_share_what_they_learn(tmp_path):

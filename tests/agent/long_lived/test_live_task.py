@@ -8,7 +8,7 @@ import pytest
 from lifelore.agent.long_lived.curiosity import context_to_practise, curious_contexts, curious_types
 from lifelore.agent.long_lived.explanation import explained, task_document, type_words
 from lifelore.agent.long_lived.knowledge import Knowledge, TaskNews
-from lifelore.agent.long_lived.live_task import LivingSettings, live_task
+from lifelore.agent.long_lived.live_task import live_task
 from lifelore.agent.long_lived.long_life import recalled
 from lifelore.agent.long_lived.task_family import AGENTS
 from lifelore.core.errors import InputError
@@ -16,7 +16,6 @@ from lifelore.domains.task_stream import DrawnTask, TaskStream
 from lifelore.memory import open_memory
 from tests.agent.long_lived.doors import Doors, DoorTask
 
-LIVING = LivingSettings(n_episodes=4)
 FULL = AGENTS["full"]
 TWO = Doors(TaskStream(("0", "1"), n_contexts=2, loyalty=1.0, zipf=0.0))
 """Each of two contexts has a type of its own."""
@@ -29,9 +28,9 @@ def lived(family, n, agent="full", start=0, knowledge=None, robot="r"):
         if not AGENTS[agent].memory:
             knowledge = Knowledge.empty(family)
         drawn, task = family.meet(number, AGENTS[agent])
-        one, news = live_task(knowledge, drawn, task, AGENTS[agent], LIVING, f"{robot}.{number}")
+        one, news = live_task(knowledge, drawn, task, AGENTS[agent], f"{robot}.{number}", n_episodes=4)
         tasks.append(one)
-        records.append(news)
+        records.append(knowledge.learn(news))
     return knowledge, tasks, records
 
 
@@ -56,7 +55,7 @@ def test_effects_overrule_a_wrong_expectation(settled):
     """In a context whose usual type has changed, the agent turns to the other door within the task."""
     usual = TWO.meet(0, FULL)[0]
     drawn = DrawnTask(400, usual.context, str(1 - int(usual.hidden_type)))
-    one, _ = live_task(deepcopy(settled[0]), drawn, DoorTask(drawn), FULL, LIVING, "r.400")
+    one, _ = live_task(settled[0], drawn, DoorTask(drawn), FULL, "r.400", n_episodes=4)
     first, last = one.decisions[0][0], one.decisions[-1][0]
     assert (first.act, last.act) == (int(usual.hidden_type), int(drawn.hidden_type))
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.agent.long_lived.knowledge import Knowledge
-from lifelore.agent.long_lived.live_task import LivingSettings, live_task
+from lifelore.agent.long_lived.live_task import live_task
 from lifelore.agent.long_lived.recognition import Recognition
 from lifelore.agent.long_lived.task_family import AGENTS
 from lifelore.domains.task_stream import TaskStream
@@ -16,7 +16,7 @@ FULL = AGENTS["full"]
 def test_a_cause_tells_of_the_type_once_and_is_counted_each_time():
     two = Knowledge.empty(family := Doors(TaskStream(("0", "1"), n_contexts=1, loyalty=0.0)))
     for number in range(20):
-        live_task(two, *family.meet(number, FULL), FULL, LivingSettings(n_episodes=4), f"r.{number}")
+        two.learn(live_task(two, *family.meet(number, FULL), FULL, f"r.{number}", n_episodes=4)[1])
     assert len(two.known_types()) == 2
     recognition = Recognition(two, np.array([0.6, 0.4]), 0.05, 0.05, 0)
     assert recognition.belief == pytest.approx([0.95 * 0.6, 0.95 * 0.4, 0.05])

@@ -16,7 +16,7 @@ from lifelore.agent.long_lived.families.tabletop_task import TabletopTask, rewar
 from lifelore.agent.long_lived.families.tray_features import look_at_raw_cloud, look_with_labels  # noqa: E402
 from lifelore.agent.long_lived.families.tray_features import look_without_relations as look_at_places  # noqa: E402
 from lifelore.agent.long_lived.knowledge import Knowledge  # noqa: E402
-from lifelore.agent.long_lived.live_task import LivingSettings, live_task  # noqa: E402
+from lifelore.agent.long_lived.live_task import live_task  # noqa: E402
 from lifelore.agent.long_lived.task_family import AGENTS  # noqa: E402
 from lifelore.core.errors import InputError  # noqa: E402
 from lifelore.core.labelled_cloud import LabelledCloud  # noqa: E402
@@ -138,7 +138,8 @@ def test_a_single_box_is_brought_and_the_second_time_at_once():
     for number in range(3):
         drawn = family.stream.draw(number)
         task = TabletopTask(JobReplay(tree, KIND.user), look_at_places)
-        lived, _ = live_task(knowledge, drawn, task, AGENTS["full"], LivingSettings(n_episodes=6), f"r.{number}")
+        lived, news = live_task(knowledge, drawn, task, AGENTS["full"], f"r.{number}", n_episodes=6)
+        knowledge.learn(news)
         returns.append(lived.returns)
     best = tree.best(KIND.user).value
     assert returns[0][0] < best

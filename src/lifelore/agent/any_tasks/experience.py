@@ -7,6 +7,7 @@ that nothing tells apart are joined when experience is read, never in memory.
 from collections import ChainMap, Counter
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,7 +23,7 @@ from lifelore.agent.external_world.context_labels import VERSION as LABELS_VERSI
 from lifelore.agent.external_world.context_labels import ContextLabels, labels_record
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
-from lifelore.memory import Memory
+from lifelore.memory import Memory, open_memory
 
 COUNTS, POLICIES, VERSION = "task_counts", "task_policies", 1
 HOPELESS = 0.1
@@ -177,7 +178,8 @@ class Experience:
         one, about = np.array([bool(news.belief)], np.int64), {"n_actions": self.n_actions}
         yield Record(COUNTS, f"{self.key}/tasks", VERSION, "add", np.zeros(1, np.int64), one, about)
         yield news.prior.to_record({"prior": "tasks", "means": self.key})
-        features = {code: one for code, one in news.prior.labels.items() if code not in self.prior.labels}
+        met = self.prior.counts(list(news.prior.labels)).any(axis=1).tolist()
+        features = {code: one for (code, one), old in zip(news.prior.labels.items(), met, strict=True) if not old}
         contexts = {} if news.context in self.labels else {news.context: news.label}
         yield labels_record(f"{self.key}/features", features)
         yield labels_record(f"{self.key}/contexts", contexts)
@@ -197,14 +199,9 @@ class Experience:
             if record.kind == PRIOR_KIND and record.key == self.prior.key:
                 self.prior.merge(ActionPrior.from_record(record, self.n_actions, self.prior.alpha0))
             elif record.kind == LABELS and record.key == f"{self.key}/features":
-                # The first ones, which may be all of a memory, are decoded when somebody asks for them.
-                new: Any = ContextLabels(record)
-                if self._features:
-                    self._features.maps[0].update(new)
-                else:
-                    self._features.maps.append(new)
+                self._features.maps[0].update(ContextLabels(lambda record=record: record))
             elif record.kind == LABELS and record.key == f"{self.key}/contexts":
-                self.labels |= ContextLabels(record)
+                self.labels |= ContextLabels(lambda record=record: record)
             elif record.kind in (COUNTS, POLICIES) and record.key.startswith(f"{self.key}/"):
                 self._add(part, rest, record)
 
@@ -248,11 +245,12 @@ class Experience:
 
     @classmethod
     def recalled(
-        cls, key: str, memory: Memory, alpha0: float = 0.1, *, labels: bool = True
+        cls, key: str, memory: Memory, alpha0: float = 0.1, *, labels: str | Path | None = None
     ) -> "Experience | None":
         """What a memory holds under this key; None where it holds nothing.
 
-        Without `labels` contexts have their codes alone, which a memory of many contexts reads five times as fast.
+        `labels` is where the memory is: the features behind contexts, which take most of the time, are read there
+        when somebody asks for them. Without, contexts have their codes alone.
         """
         about = {
             (kind, name, version): about
@@ -264,11 +262,16 @@ class Experience:
         if tasks is None:
             return None
         made = cls(key, int(tasks["n_actions"]), alpha0)
-        keys = list(about)
-        if labels:
-            keys += [(LABELS, f"{key}/{part}", LABELS_VERSION) for part in ("features", "contexts")]
-        found = (memory.recall(*name) for name in [*keys, (PRIOR_KIND, made.prior.key, PRIOR_VERSION)])
+        keys = [*about, (LABELS, f"{key}/contexts", LABELS_VERSION), (PRIOR_KIND, made.prior.key, PRIOR_VERSION)]
+        found = (memory.recall(*name) for name in keys)
         made.add([record for record in found if record is not None])
+
+        def features() -> Record | None:
+            with open_memory(labels, read_only=True) as again:
+                return again.recall(LABELS, f"{key}/features", LABELS_VERSION)
+
+        if labels is not None:
+            made._features.maps.append(ContextLabels(features))
         return made
 
 

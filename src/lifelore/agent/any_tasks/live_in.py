@@ -9,14 +9,15 @@ from pathlib import Path
 from threading import Event
 
 from lifelore.agent.any_tasks.experience import Experience
+from lifelore.agent.any_tasks.moves import counted
 from lifelore.agent.any_tasks.side_by_side import LivedBeside, SideBySide
+from lifelore.agent.any_tasks.task_differences import TaskDifferences
 from lifelore.agent.any_tasks.task_settings import AGENTS as ABLATIONS
 from lifelore.agent.any_tasks.task_settings import TaskSettings, check_names
 from lifelore.agent.external_world.context_code import MOST_ACTIONS
 from lifelore.agent.external_world.life_summary import summarise_life
 from lifelore.agent.external_world.life_warnings import ContextNovelty, life_warnings, new_states
 from lifelore.agent.external_world.own_agent import OwnAgent, check_own_agents
-from lifelore.agent.external_world.task_differences import TaskDifferences
 from lifelore.agent.life.loop import LivedTask, opened_memory, run_life
 from lifelore.agent.live.life_settings import PriorSettings
 from lifelore.agent.live.output.long_table import LongTable
@@ -27,6 +28,8 @@ from lifelore.core.streams import stream
 from lifelore.memory import Memory
 
 AGENTS = ("lore", "scratch", "textbook")
+MOST_COMPARED = 5000
+"""Steps of a task by which tasks are told apart; more cost time and tell finer differences."""
 TEXTBOOK = {"epsilon": 0.1, "epsilon_decay": 1.0, "epsilon_floor": 0.1}
 """The textbook agent's ε: constant, as in Sutton and Barto (2018), "Reinforcement Learning", Example 6.6."""
 
@@ -228,7 +231,7 @@ class _ExternalLife:
         """Read what memory holds under the key."""
         if self.memory is not None:
             key, n_actions, alpha0 = self.lore.key, self.lore.n_actions, self.beside.common.guidance.alpha0
-            found = Experience.recalled(key, self.memory, alpha0, labels=False)
+            found = Experience.recalled(key, self.memory, alpha0)
             found = found or Experience(key, n_actions, alpha0)
             found.check_actions(n_actions)
             self.beside.experience["lore"] = found
@@ -240,11 +243,10 @@ class _ExternalLife:
         common = self.beside.common
         drawn = stream(common.seed, "task", number, "world").integers(2**31, size=common.learning.episode_cap)
         lived = self.beside.live(number, None, drawn.tolist(), stop)
-        # Transitions are compared where exploration is uniform.
-        for step in lived.tasks["scratch"].steps:
-            self.differences.see(step.state, step.action, step.following, step.reward, step.ended)
-        self.differences.end_task()
-        self.last_states = [step.state for step in lived.tasks["scratch"].steps]
+        # Moves are compared where exploration is uniform.
+        steps = lived.tasks["scratch"].steps
+        self.differences.end_task(counted(steps[:MOST_COMPARED], self.beside.codes))
+        self.last_states = [step.state for step in steps]
         self.novelty.end_task(lived.tasks["lore"].running.best()[0].tolist())
         return LivedTask(lived.records["lore"], {"index": number, "world": self.name}, (number, lived))
 

@@ -149,7 +149,7 @@ class LongLivedAgent(AbstractContextManager):
         self._reset_by: ResetBy = reset_by
         self._codes, self._contexts = MoveCodes(), ContextCodes(CONTEXT_BITS)
         self._experience: Experience | None = None
-        self._memory = None if memory is None else open_memory(memory)
+        self._where, self._memory = memory, None if memory is None else open_memory(memory)
         self._revision = ""
         self._lived = 0
         self._recall()
@@ -206,7 +206,7 @@ class LongLivedAgent(AbstractContextManager):
     def _recall(self) -> None:
         """Read what is known again where another process has changed the memory."""
         if self._memory is not None and (self._experience is None or self._memory.revision() != self._revision):
-            self._experience = Experience.recalled(self.key, self._memory)
+            self._experience = Experience.recalled(self.key, self._memory, labels=self._where)
             self._revision = self._memory.revision()
 
     def experience_for(self, n_actions: int) -> Experience:

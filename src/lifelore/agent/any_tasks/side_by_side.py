@@ -59,7 +59,7 @@ class SideBySide:
         self.experience = {
             name: Experience(key, world.n_actions, settings.guidance.alpha0) for name, settings in agents.items()
         }
-        self._codes, self._contexts = MoveCodes(), ContextCodes(CONTEXT_BITS)
+        self.codes, self._contexts = MoveCodes(), ContextCodes(CONTEXT_BITS)
 
     def live(self, number: int, context: Hashable, seeds: Sequence[int], stop: Event) -> LivedBeside:
         """Live a task, an episode a seed.
@@ -73,7 +73,7 @@ class SideBySide:
         for name, settings in self.agents.items():
             experience, result = self.experience[name], TaskResult(number, context)
             code = self._contexts[context]
-            task = OneTask(experience, self.world, self._codes, settings, result, code, stop, seeds=seeds)
+            task = OneTask(experience, self.world, self.codes, settings, result, code, stop, seeds=seeds)
             if (news := task.live(f"{name}.{number}")) is not None:
                 taught[name] = news
             found.tasks[name], found.returns[name] = task, result.returns

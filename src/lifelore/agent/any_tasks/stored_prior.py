@@ -57,9 +57,10 @@ def prior_from_memory(location: str | Path, *, key: str | None = None, alpha0: f
         if key is None and len(known) > 1:
             raise InputError(f"key must select one prior in {location}; it has {', '.join(known)}")
         wanted = key if key is not None or not known else known[0]
-        found = None if wanted is None else Experience.recalled(wanted, memory, alpha0)
+        found = None if wanted is None else Experience.recalled(wanted, memory, alpha0, labels=location)
         if found is None:
             raise NotFoundError(f"no prior of key {wanted!r} in {location}; it has {', '.join(known) or 'none'}")
+        len(found.prior.labels)  # Read now: the memory may be gone later.
         return found.prior
 
 

@@ -1,5 +1,5 @@
 """A world of the user: its episodes, states and contexts, and a learner by table in one of its tasks.
 
 Read in this order: `gymnasium_world`, `episode`, `table_learner`, `useful_actions`, `own_agent`, `context_code`,
-`context_labels`; then `life_summary`, `life_warnings` and `task_differences`, which judge a life.
+`context_labels`; then `life_summary` and `life_warnings`, which judge a life.
 """

@@ -1,4 +1,4 @@
-"""Stores the features behind context codes in a memory as text, and reads them again when a table shows them.
+"""Stores the features behind context codes in a memory as text, and reads them when a table shows them.
 
 A record holds a context in up to 16 slots: code · 16 + place. The first value is the number of bytes of the text,
 the others are its bytes, eight a value. Each contribution writes a context completely and the newest wins, so that
@@ -6,7 +6,9 @@ texts never mix, also after robots' memories were merged.
 """
 
 import ast
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
+from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -44,25 +46,45 @@ def _plain(part: Any) -> Any:
 
 
 class ContextLabels(Mapping[int, Any]):
-    """Context code to the features in a record of `labels_record`; a text is decoded when it is asked for.
+    """Context code to the features in a record of `labels_record`.
+
+    The record is read when the first label is asked for, and a text decoded when it is asked for.
 
     Features that Python can read again (tuples of numbers and text) are values as in the life; others, and those
     that were cut, are text.
 
+    Parameters
+    ----------
+    read : callable
+        Gives the record, or None where there are no labels.
+
     Examples
     --------
-    >>> labels = ContextLabels(labels_record("k", {7: ("free", 1, np.int64(3)), 9: None}))
+    >>> labels = ContextLabels(lambda: labels_record("k", {7: ("free", 1, np.int64(3)), 9: None}))
     >>> labels[7], list(labels), labels.get(8, "unknown")
     (('free', 1, 3), [7, 9], 'unknown')
     """
 
-    def __init__(self, record: Record) -> None:
+    def __init__(self, read: Callable[[], Record | None]) -> None:
+        self._read = read
+
+    @cached_property
+    def _record(self) -> Record:
+        """The record, by rising slots."""
+        record = self._read() or labels_record("", {})
         if (record.kind, record.version) != (KIND, VERSION):
             raise InputError(f"record must be {KIND} version {VERSION}, got {record.kind} {record.version}")
         order = np.argsort(record.slots)
-        self._slots, self._values = record.slots[order], record.values[order]
-        self._starts = np.flatnonzero(self._slots % SLOTS == 0)
-        self._codes = self._slots[self._starts] // SLOTS
+        return replace(record, slots=record.slots[order], values=record.values[order])
+
+    @cached_property
+    def _starts(self) -> NDArray[np.int64]:
+        """The first place of each context in the record."""
+        return np.flatnonzero(self._record.slots % SLOTS == 0)
+
+    @cached_property
+    def _codes(self) -> NDArray[np.int64]:
+        return self._record.slots[self._starts] // SLOTS
 
     def __len__(self) -> int:
         return len(self._codes)
@@ -75,8 +97,9 @@ class ContextLabels(Mapping[int, Any]):
         if place == len(self) or self._codes[place] != code:
             raise KeyError(code)
         start = self._starts[place]
-        size = int(self._values[start])
-        text = bytes_of(self._values[start + 1 : start + SLOTS], size).decode("utf-8", "ignore")
+        values = self._record.values
+        size = int(values[start])
+        text = bytes_of(values[start + 1 : start + SLOTS], size).decode("utf-8", "ignore")
         try:
             return ast.literal_eval(text)
         except (ValueError, SyntaxError, TypeError, MemoryError, RecursionError):

@@ -12,8 +12,6 @@ an alarm, or effects that tell the task from its type: a new type; else as belie
 count the effects, the best acts, and the belief in this context                       remember
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -23,43 +21,14 @@ from lifelore.agent.long_lived.known_types import Effects, KnownTypes
 from lifelore.agent.long_lived.recognition import Recognition
 from lifelore.agent.long_lived.task_family import Abilities, AgentTask
 from lifelore.agent.long_lived.task_log import Decision, TaskLog
-from lifelore.core.errors import InputError
-from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
 from lifelore.domains.task_stream import DrawnTask
 
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
-class LivingSettings:
-    """How the agent lives through a task.
-
-    Parameters
-    ----------
-    n_episodes : int
-        Number of episodes of a task, at least 1.
-    false_alarm : float
-        Probability of an alarm in a task of a known type, in (0, 1).
-    unknown : float
-        Prior probability that no known type fits, in (0, 1).
-
-    Raises
-    ------
-    InputError
-        A setting is out of its range.
-    """
-
-    n_episodes: int = 8
-    false_alarm: float = 0.05
-    unknown: float = 0.05
-
-    def __post_init__(self) -> None:
-        if self.n_episodes < 1:
-            raise InputError(f"episodes must be at least 1, got {self.n_episodes}")
-        for name in ("false_alarm", "unknown"):
-            if not 0 < getattr(self, name) < 1:
-                raise InputError(f"{name} must lie between 0 and 1, got {getattr(self, name)}")
+UNKNOWN = 0.05
+"""Prior probability that no known type fits."""
 
 
 def live_task(
@@ -67,43 +36,35 @@ def live_task(
     drawn: DrawnTask,
     task: AgentTask,
     abilities: Abilities,
-    settings: LivingSettings,
     name: str,
+    *,
+    n_episodes: int = 8,
+    false_alarm: float = 0.05,
     seed: int = 0,
-) -> tuple[TaskLog, list[Record]]:
-    """Live through a task; `knowledge` learns from it.
+) -> tuple[TaskLog, TaskNews]:
+    """Live through a task.
 
     Parameters
     ----------
     knowledge : Knowledge
+        Only read.
     drawn : DrawnTask
         Its context is observed; its hidden type is only copied into the result.
     task : AgentTask
     abilities : Abilities
-    settings : LivingSettings
     name : str
         Of the new type, if the task has one; unique in the fleet.
+    n_episodes : int
+        Number of episodes of a task, at least 1.
+    false_alarm : float
+        Probability of an alarm in a task of a known type, in (0, 1).
     seed : int
 
     Returns
     -------
-    (TaskLog, list of Record)
-        What happened, and the records by which memory adds what was learnt.
+    (TaskLog, TaskNews)
+        What happened, and what `Knowledge.learn` takes in.
     """
-    lived, news = attempt_task(knowledge, drawn, task, abilities, settings, name, seed)
-    return lived, knowledge.learn(news)
-
-
-def attempt_task(
-    knowledge: Knowledge,
-    drawn: DrawnTask,
-    task: AgentTask,
-    abilities: Abilities,
-    settings: LivingSettings,
-    name: str,
-    seed: int = 0,
-) -> tuple[TaskLog, TaskNews]:
-    """`live_task` without its last step: what happened, and what `Knowledge.learn` would take in."""
     known, shared = knowledge.known_types(), knowledge.shared
     lived = TaskLog(drawn, types=[one.name for one in known.types])
 
@@ -111,14 +72,14 @@ def attempt_task(
     lived.prior = np.full(len(known), 1 / max(len(known), 1))
     if abilities.prior and len(known):
         lived.prior = knowledge.sightings().type_prior().prior(drawn.context, drawn.number)
-    recognition = Recognition(knowledge, lived.prior, settings.false_alarm, settings.unknown, seed)
+    recognition = Recognition(knowledge, lived.prior, false_alarm, UNKNOWN, seed)
     shared.guided = abilities.prior
 
     # Act: perceive, reuse the behaviours of the known types, and let every effect tell more of the type.
     effects: list[tuple[int, int]] = []
-    for episode in range(settings.n_episodes):
+    for episode in range(n_episodes):
         task.begin()
-        between = 0 < episode < settings.n_episodes - 1
+        between = 0 < episode < n_episodes - 1
         decisions, ended = [], False
         while not ended:
             generator = stream(seed, "long-lived", "episode", drawn.number, episode) if between else None

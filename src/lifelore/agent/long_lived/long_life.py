@@ -15,7 +15,7 @@ from lifelore.agent.long_lived.curiosity import context_to_practise
 from lifelore.agent.long_lived.explanation import task_document
 from lifelore.agent.long_lived.families.by_name import family_named
 from lifelore.agent.long_lived.knowledge import Knowledge
-from lifelore.agent.long_lived.live_task import LivingSettings, live_task
+from lifelore.agent.long_lived.live_task import live_task
 from lifelore.agent.long_lived.task_family import AGENTS, TaskFamily
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress
@@ -94,10 +94,9 @@ def live_long(
     """
     family = family_named(family, seed) if isinstance(family, str) else family
     check_constants(family)
-    _check_settings(family, tasks, agent, spare)
-    living = LivingSettings(episodes, false_alarm)
+    _check_settings(family, tasks, agent, episodes, spare, false_alarm)
     with opened_memory(memory) as opened:
-        life = _FamilyLife(family, agent, tasks, living, seed, robot, opened, watch)
+        life = _FamilyLife(family, agent, tasks, episodes, false_alarm, seed, robot, opened, watch)
         run_life(life, tasks + spare, memory=opened, robot=robot, refresh=refresh, progress=progress, stop=stop)
     return {
         "domain": family.domain,
@@ -108,13 +107,16 @@ def live_long(
     }
 
 
-def _check_settings(family: TaskFamily, tasks: int, agent: str, spare: int) -> None:
+def _check_settings(
+    family: TaskFamily, tasks: int, agent: str, episodes: int, spare: int, false_alarm: float
+) -> None:
     if agent not in AGENTS:
         raise NotFoundError(f"agent must be one of {', '.join(AGENTS)} in {family.domain}, got {agent!r}")
-    if tasks < 1:
-        raise InputError(f"tasks must be at least 1, got {tasks}")
-    if spare < 0:
-        raise InputError(f"spare must be at least 0, got {spare}")
+    for name, value, least in (("tasks", tasks, 1), ("episodes", episodes, 1), ("spare", spare, 0)):
+        if value < least:
+            raise InputError(f"{name} must be at least {least}, got {value}")
+    if not 0 < false_alarm < 1:
+        raise InputError(f"false_alarm must lie between 0 and 1, got {false_alarm}")
     if spare and agent != "full":
         raise InputError(f"spare tasks are chosen by what memory holds; the agent must be full, got {agent}")
 
@@ -126,7 +128,8 @@ class _FamilyLife:
     family: TaskFamily
     agent: str
     n_tasks: int
-    living: LivingSettings
+    n_episodes: int
+    false_alarm: float
     seed: int
     robot: str
     memory: Memory | None
@@ -150,7 +153,11 @@ class _FamilyLife:
             context = context_to_practise(self.knowledge, stream(self.seed, "spare time", number))
         drawn, task = checked_meeting(family, number, family.meet(number, abilities, context))
         name = f"{self.robot}.{number}"
-        lived, records = live_task(self.knowledge, drawn, task, abilities, self.living, name, self.seed)
+        lived, news = live_task(
+            self.knowledge, drawn, task, abilities, name, n_episodes=self.n_episodes,
+            false_alarm=self.false_alarm, seed=self.seed,
+        )  # fmt: skip
+        records = self.knowledge.learn(news)
         best = checked_best_return(family, number, family.best_return(number, context))
         document = task_document(lived, family, best) | {"spare": context is not None}
         return LivedTask(

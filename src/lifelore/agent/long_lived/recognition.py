@@ -25,8 +25,10 @@ class Recognition:
         Read once; what it learns later does not count.
     prior : (n_types,) float
         Over `Knowledge.known_types`.
-    false_alarm, unknown : float
-        As in `LivingSettings`.
+    false_alarm : float
+        Probability of an alarm in a task of a known type, in (0, 1).
+    unknown : float
+        Prior probability that no known type fits, in (0, 1).
     seed : int
 
     Attributes
