@@ -89,7 +89,7 @@ def way(
     seed: int = 0,
     **more: Any,
 ) -> "Way":
-    """The way from one place of a building to another, from memory, as a path that is clear of obstacles.
+    """The quickest path from one place of a building to another by what memory knows, clear of obstacles.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def way(
     Raises
     ------
     NotFoundError
-        Memory knows no way, or not the name, or not the building.
+        Memory knows not the building, or not the name.
     InputError
         A setting or the map breaks its rule, or a point is no free place.
     StoreError
