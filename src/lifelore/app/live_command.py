@@ -3,7 +3,6 @@
 import os
 import sys
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -146,7 +145,7 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json
     settings = LifeSettings(**keys.arguments(LifeSettings, values | places | jobs))
     if l2log is not None and settings.driven:
         raise InputError(f"l2log logs episodes of searches, got {l2log} with known goals; leave it out")
-    new_folders = _missing_folders(memory, out)
+    new_folder = out is not None and not os.path.exists(out)  # also a name too long for a file
     if out is not None:
         check_folder(out)
     if "log" in values:
@@ -161,8 +160,8 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json
 
         def show(done: int, total: int, label: str) -> None:
             # Before the first task, when no setting can be refused any more: a mistyped path is seen at once.
-            for folder in new_folders if done == 0 else ():
-                _notify(f"new folder {folder}")
+            if new_folder and done == 0:
+                _notify(f"new folder {out}")
             progress(done, total, label)
 
         def record(task: dict, results: dict) -> None:
@@ -199,15 +198,6 @@ def _write_log(life: "Life", path: str) -> str:
     with refused_writes(path, "log"):
         write_life_log(path, *logged_life(life))
     return path
-
-
-def _missing_folders(memory: str | None, out: str | None) -> list[Path]:
-    """The folders that a life will create."""
-    from lifelore.memory.location import locate
-
-    place = locate(memory)
-    folders = ([place.parent] if isinstance(place, Path) else []) + ([Path(out)] if out else [])
-    return [folder for folder in folders if not os.path.exists(folder)]  # also a name too long for a file
 
 
 def _notify(line: str) -> None:
