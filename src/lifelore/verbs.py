@@ -51,7 +51,7 @@ def live(
     notify : callable, optional
         Called with a line of text that a person should read.
     **keys
-        Settings by key: those of ``lifelore live --settings`` except ``watch``, and ``map``, ``tasks``, ``goal``,
+        Settings by key: those of ``lifelore live --settings``, and ``map``, ``tasks``, ``goal``,
         ``goals`` (a job list's path), ``agent``, ``robot``, ``memory`` and ``seed``. A point is a pair of metres.
 
     Returns

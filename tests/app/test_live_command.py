@@ -168,7 +168,7 @@ def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
                   "lore compared with scratch, last third", "wrote out/summary.json"):  # fmt: skip
         assert words in said.out
     written = [Path(line.removeprefix("wrote ")) for line in said.out.splitlines() if line.startswith("wrote ")]
-    assert {path.name for path in written} >= {"summary.json", "life.png", "world.png", "prior.png"}
+    assert {path.name for path in written} >= {"summary.json", "life.png", "world.png"}
     assert all(path.stat().st_size > 0 for path in written)
     assert set(json.loads(Path("out/summary.json").read_text())) == DOCUMENT
 
@@ -225,7 +225,7 @@ def test_every_episode_is_logged_where_it_is_told(ask, tmp_path):
 SET = {
     "building": {
         "cell": 0.4, "robot_radius": 0.15, "min_free": 0.5, "sensor": "lidar", "range": 4.0, "refresh": True,
-        "compare": False, "watch": True, "building": "home", "start": [1.5, 1.5],
+        "compare": False, "building": "home", "start": [1.5, 1.5],
     },
     "lattice": {"destinations": 3, "size": 9, "learner": "q", "episodes": 7, "jobs": 1, "max_steps": 30,
         "discount": 0.9, "goal_reward": 7.0, "wall_reward": -3.0, "prior": "state", "alpha0": 0.3, "weight": 2.0,

@@ -188,8 +188,6 @@ class LifeSettings:
         times, while goals are driven to; by default in a generated office and not on your own map.
     move_names : bool
         Whether a name of `goals` may move from its remembered place to one that is more than a cell away.
-    watch : bool
-        Whether to read the map again between tasks when its files have changed.
     jobs : int
         Number of threads, on which results do not depend.
 
@@ -218,7 +216,6 @@ class LifeSettings:
     jobs: int = 2
     goal: Place | None = None
     goals: tuple[Job, ...] = ()
-    watch: bool = False
     busy: bool | None = None
     move_names: bool = False
     sensor: SensorSettings = field(default_factory=SensorSettings)
@@ -255,8 +252,6 @@ class LifeSettings:
             )
         if self.sensor.kind == "lidar" and self.learner != "model":
             raise InputError(f"sensor lidar needs learner model, which plans on places seen, got '{self.learner}'")
-        if self.watch and self.world.map is None:
-            raise InputError("watch needs the map of a building, got none; give the YAML file of a ROS map")
 
     def _check_driven(self) -> None:
         """Refuse what chooses how to search."""
