@@ -18,7 +18,6 @@ from lifelore.agent.long_lived.long_life import live_long
 from lifelore.app.pages.mount import app_with_pages
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.tokens import add_token
-from lifelore.core.learning.q_learner import QLearning
 from lifelore.domains.worlds import WorldSettings
 from lifelore.memory import open_memory
 
@@ -124,9 +123,8 @@ def test_a_life_of_drives_shows_metres_and_seconds(serve_pages, open_page: Opene
 
 
 def test_a_life_that_remembers_no_map_says_so(serve_pages: Callable[..., str], open_page: Opened, where: Path):
-    learning = QLearning(episodes=20)
     memory = MemorySettings(str(where), "ada")
-    live(LifeSettings(WorldSettings("lattice", size=7), "q", learning, memory=memory, tasks=1, jobs=1))
+    live(LifeSettings(WorldSettings("lattice", size=7), agent="prior", memory=memory, tasks=1, jobs=1))
     page = open_page(serve_pages(where) + "/life")
     expect(page.locator("#map")).to_have_text("This agent remembers no map.")
     expect(page.locator("#curve circle")).to_have_count(2)

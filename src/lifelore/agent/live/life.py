@@ -108,7 +108,7 @@ def live(
     """
     stop, notify = stop or Event(), notify or (lambda line: None)
     began = time.perf_counter()
-    first = agents_for(settings.agent, settings.learner)[0]  # a mistake in the name shows before the map is read
+    first = agents_for(settings.agent)[0]  # a mistake in the name shows before the map is read
     occupancy = map_from_settings(settings.world) if settings.world.domain == "building" else None
     world = world_from_settings(settings.world, occupancy)
     with open_memory(settings.memory.location) as memory, ThreadPoolExecutor(settings.jobs) as pool:
@@ -152,8 +152,8 @@ def live(
 def _names(settings: LifeSettings, places: int, notify: Callable[[str], None]) -> list[str]:
     """Names of the agents that live; in a big world, `scratch` lives beside the others only if it is asked for."""
     small = places <= baselines.BIG
-    names = agents_for(settings.agent, settings.learner, small if settings.compare is None else settings.compare)
-    if settings.compare is None and names != agents_for(settings.agent, settings.learner):
+    names = agents_for(settings.agent, small if settings.compare is None else settings.compare)
+    if settings.compare is None and names != agents_for(settings.agent):
         building = settings.world.domain == "building"
         smaller = "a larger cell (--set cell=METRES)" if building else "a smaller size (--set size=CELLS)"
         notify(

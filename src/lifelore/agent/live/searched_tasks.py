@@ -67,8 +67,8 @@ class SearchedTasks:
     def recall(self) -> None:
         """The first agent knows what memory holds; at the start all agents do, and then learn by themselves."""
         settings, place = self._settings, self._place
-        scope = prior_scope(place.world, settings.prior.condition)
-        first = Lore.recalled(place.world, scope, settings.prior.alpha0, self._memory, place.grid)
+        scope = prior_scope(place.world, settings.prior)
+        first = Lore.recalled(place.world, scope, settings.alpha0, self._memory, place.grid)
         self._lores = self._lores or {name: first.copy() for name in self.names}
         self._lores[self.names[0]] = first
 
@@ -102,7 +102,7 @@ class SearchedTasks:
         """Add a finished task to the knowledge of one agent; return the records that memory is to store."""
         kind, lore, records = self._kinds[name], self._lores[name], []
         if kind.uses_prior:
-            records.append(lore.learn_prior(result.best, goal, self._settings.prior.weight))
+            records.append(lore.learn_prior(result.best, goal, self._settings.weight))
         if kind.remembers:
             records.append(lore.model_news())
             if self._settings.destinations and result.reached:

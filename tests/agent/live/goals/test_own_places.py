@@ -176,7 +176,6 @@ def test_places_that_break_a_rule_are_found_before_the_first_task(room, changes,
     [
         ({"goal": (1, 1), "destinations": 3, "domain": "lattice"}, "goal and destinations exclude each other"),
         ({"goal": (1.0, 1.0), "agent": "scratch"}, "agent applies to hidden goals"),
-        ({"goal": (1.0, 1.0), "learner": "q"}, "learner applies to hidden goals"),
         ({"busy": True}, "busy applies to goals that are driven to"),
         ({"goal": (1.0, 1.0), "goals": jobs(Destination(LAB))}, "goal and goals exclude each other"),
         ({"goals": jobs(Destination(LAB)), "domain": "lattice"}, "goals needs a building"),

@@ -57,8 +57,8 @@ class DrivenTasks:
     def recall(self) -> None:
         """Know what memory holds of the building, and where the robot stands."""
         place, memory = self._place, self._memory
-        scope = prior_scope(place.world, self._settings.prior.condition)
-        self._lore = Lore.recalled(place.world, scope, self._settings.prior.alpha0, memory, place.grid)
+        scope = prior_scope(place.world, self._settings.prior)
+        self._lore = Lore.recalled(place.world, scope, self._settings.alpha0, memory, place.grid)
         self._travel = Travel.recalled(place.world, place.grid, memory)
         self._clock = RobotClock.recalled(place, self._settings.memory.robot, memory)
 
