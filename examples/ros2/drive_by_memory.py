@@ -49,7 +49,7 @@ class Driver(Protocol):
 class DriveByMemory(Behaviour):
     """Drive to a place by the way that memory knows.
 
-    It fails where memory knows no way or the drive ends elsewhere; `feedback_message` then says why.
+    It fails where memory does not know the building or the drive ends elsewhere; `feedback_message` then says why.
 
     Parameters
     ----------

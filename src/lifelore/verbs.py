@@ -51,7 +51,7 @@ def live(
     notify : callable, optional
         Called with a line of text that a person should read.
     **keys
-        Settings by key: those of ``lifelore live --settings`` except ``watch``, and ``map``, ``tasks``, ``goal``,
+        Settings by key: those of ``lifelore live --settings``, and ``map``, ``tasks``, ``goal``,
         ``goals`` (a job list's path), ``agent``, ``robot``, ``memory`` and ``seed``. A point is a pair of metres.
 
     Returns
@@ -89,7 +89,7 @@ def way(
     seed: int = 0,
     **more: Any,
 ) -> "Way":
-    """The way from one place of a building to another, from memory, as a path that is clear of obstacles.
+    """The quickest path from one place of a building to another by what memory knows, clear of obstacles.
 
     Parameters
     ----------
@@ -114,7 +114,7 @@ def way(
     Raises
     ------
     NotFoundError
-        Memory knows no way, or not the name, or not the building.
+        Memory knows not the building, or not the name.
     InputError
         A setting or the map breaks its rule, or a point is no free place.
     StoreError

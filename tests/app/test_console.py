@@ -6,11 +6,10 @@ import json
 import os
 import pty
 import signal
-import time
 
 import pytest
 
-from lifelore.app.console import Pace, print_json, progress_bar, stop_on_interrupt
+from lifelore.app.console import print_json, progress_bar, stop_on_interrupt
 
 
 @pytest.mark.parametrize("number", [float("nan"), float("inf")])
@@ -25,34 +24,10 @@ def test_one_document(capsys):
     assert json.loads(capsys.readouterr().out) == {"γ": [1, None, 0.5]}
 
 
-def test_without_a_terminal_short_work_prints_nothing(capfd):
+def test_without_a_terminal_nothing_is_drawn(capfd):
     with progress_bar("living") as progress:
         progress(1, 2, "task 0")
     assert capfd.readouterr() == ("", "")
-
-
-def test_without_a_terminal_long_work_prints_lines_also_within_a_piece(capfd):
-    with progress_bar("living", every=0.02) as progress:
-        progress(1, 3, "task 7")
-        shown = ""
-        while shown.count("\n") < 2:
-            shown += capfd.readouterr().err
-    assert shown.startswith("living 1/3 (task 7): 0:00:00 elapsed, about 0:00:00 left\n")
-    time.sleep(0.05)
-    assert capfd.readouterr() == ("", "")
-
-
-def test_remaining_time_is_that_of_the_open_pieces(monkeypatch):
-    now = 100.0
-    monkeypatch.setattr("time.monotonic", lambda: now)
-    pace = Pace()
-    now = 103.0
-    assert pace.text() == "0:00:03 elapsed"  # nothing is known before the first piece is finished
-    now = 110.0
-    pace.update(1, 4, "a")  # 10 s a piece
-    assert pace.text() == "0:00:10 elapsed, about 0:00:30 left"
-    pace.update(4, 4, "d")
-    assert pace.text() == "0:00:10 elapsed, about 0:00:00 left"
 
 
 class InterruptedStream(io.RawIOBase):

@@ -45,10 +45,9 @@ def test_after_the_warm_up_verbs_compile_nothing(ask, tmp_path):
     np.savez(tmp_path / "cloud.npz", points=points, labels=np.repeat([1, 2], [4000, 900]))
     log = "user,policy,outcome\n" + "".join(f"u{i % 5},p{i % 3},{random.random()}\n" for i in range(60))
     (tmp_path / "log.csv").write_text(log)
-    q_learning = ("--domain", "noise", "--set", "learner=q", "--set", "episodes=5")
     verbs = (
         ("live", "--seed", "9", "--tasks", "2", "--agent", "all", "--memory", "m.db"),
-        ("live", *q_learning, "--tasks", "1", "--memory", "q.db"),
+        ("live", "--domain", "noise", "--tasks", "1", "--memory", "n.db"),
         ("perceive", "cloud.npz", "--json"),
         ("reuse", "fit", "log.csv", "--memory", "r.db"),
         ("reuse", "choose", "--user", "ann", "--memory", "r.db"),

@@ -29,10 +29,9 @@ ESTIMATE = {"value", "median", "ci95", "n"}
 RATIOS = ("steps_to_80_ratio", "collisions_ratio", "jumpstart")
 MEASURES = ("steps_to_80", "steps_to_goal", "collisions", "episodes_to_80", "first_return")
 TOLD = {
-    "domain", "map", "tasks", "cell", "robot_radius", "destinations", "learner", "prior", "agent", "robot",
+    "domain", "map", "tasks", "cell", "robot_radius", "destinations", "prior", "agent", "robot",
     "start", "memory", "episodes", "max_steps", "seed", "jobs", "density", "discount", "goal_reward",
-    "wall_reward", "alpha0", "weight", "form", "ties", "learning_rate", "epsilon", "epsilon_decay",
-    "epsilon_floor", "annealed", "sensor", "range",
+    "wall_reward", "alpha0", "weight", "sensor", "range",
 }  # fmt: skip
 LATTICE = ("live", "--domain", "lattice", "--json")
 
@@ -93,10 +92,9 @@ def check_summary(summary: dict, names: list[str], n_tasks: int) -> None:
         ((), ["lore", "scratch"]),
         (("--agent", "all"), ["lore", "model", "prior", "scratch", "undirected", "rmax", "frontier"]),
         (("--agent", "scratch"), ["scratch"]),
-        (("--set", "learner=q", "--set", "episodes=30"), ["lore", "scratch"]),
         (("--tasks", "1"), ["lore", "scratch"]),
     ],
-    ids=["default", "all", "scratch", "q", "one task"],
+    ids=["default", "all", "scratch", "one task"],
 )
 def test_the_contract(options, names, ask, tmp_path):
     said = ask(*LATTICE, "--tasks", 6, "--seed", 5, "--memory", tmp_path / "life.db", *options)
@@ -127,12 +125,11 @@ def repeatable(life: dict) -> dict:
     return {k: v for k, v in life.items() if k != "seconds"} | {"settings": settings}
 
 
-@pytest.mark.parametrize("learner", ["model", "q"])
 def test_the_same_seed_is_the_same_life_for_any_number_of_threads_and_in_another_process(
-    learner, ask, start, answer, tmp_path
+    ask, start, answer, tmp_path
 ):
     """Other hash seeds, other addresses: nothing of a process may enter a life."""
-    life = (*LATTICE, "--tasks", 3, *changed(learner=learner, episodes=60))
+    life = (*LATTICE, "--tasks", 3, *changed(episodes=60))
     first = repeatable(ask(*life, "--set", "jobs=1", "--memory", "1.db").document)
     again = answer(start(*life, "--set", "jobs=3", "--memory", "3.db"))
     assert repeatable(again.document) == first
@@ -168,7 +165,7 @@ def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
                   "lore compared with scratch, last third", "wrote out/summary.json"):  # fmt: skip
         assert words in said.out
     written = [Path(line.removeprefix("wrote ")) for line in said.out.splitlines() if line.startswith("wrote ")]
-    assert {path.name for path in written} >= {"summary.json", "life.png", "world.png", "prior.png"}
+    assert {path.name for path in written} >= {"summary.json", "life.png", "world.png"}
     assert all(path.stat().st_size > 0 for path in written)
     assert set(json.loads(Path("out/summary.json").read_text())) == DOCUMENT
 
@@ -210,34 +207,20 @@ def test_the_measures_go_into_a_long_table(ask, tmp_path):
     assert "measures cannot be written to" in refused.refusal
 
 
-def test_every_episode_is_logged_where_it_is_told(ask, tmp_path):
-    said = ask(*LATTICE, "--tasks", 1, "--memory", "life.db", *changed(l2log=tmp_path / "logs"))
-    assert (said.status, said.err) == (0, "")
-    assert set(said.document["settings"]) == TOLD
-    rows = {path.parts[-4].split("-")[0] for path in (tmp_path / "logs").glob("*/*/0-train/data-log.tsv")}
-    assert rows == {"lore", "scratch"}
-    (tmp_path / "file").write_text("")
-    refused = ask(*LATTICE, "--memory", "none.db", *changed(l2log=tmp_path / "file"))
-    assert "folder must name a folder" in refused.refusal
-    assert not (tmp_path / "none.db").exists()
-
-
 SET = {
     "building": {
         "cell": 0.4, "robot_radius": 0.15, "min_free": 0.5, "sensor": "lidar", "range": 4.0, "refresh": True,
-        "compare": False, "watch": True, "building": "home", "start": [1.5, 1.5],
+        "compare": False, "building": "home", "start": [1.5, 1.5],
     },
-    "lattice": {"destinations": 3, "size": 9, "learner": "q", "episodes": 7, "jobs": 1, "max_steps": 30,
+    "lattice": {"destinations": 3, "size": 9, "episodes": 7, "jobs": 1, "max_steps": 30,
         "discount": 0.9, "goal_reward": 7.0, "wall_reward": -3.0, "prior": "state", "alpha0": 0.3, "weight": 2.0,
-        "form": "support", "ties": "prior", "learning_rate": 0.2, "epsilon": 0.5, "epsilon_decay": 0.9,
-        "epsilon_floor": 0.2, "annealed": True,
     },
     "noise": {"density": 0.55},
     "advice": {"loops": 0.3},
 }  # fmt: skip
 """A domain to values, other than the defaults, of settings that it takes."""
-ELSEWHERE = {"again", "busy", "move_names", "l2log", "port"}
-"""Settings that other tests look at: three need known goals, two say where output goes."""
+ELSEWHERE = {"again", "busy", "move_names"}
+"""Settings that other tests look at: they need known goals."""
 
 
 def test_every_setting_is_set_and_stands_in_the_report(ask, tmp_path):
@@ -280,8 +263,6 @@ def test_known_goals_are_driven_to(ask, tmp_path):
     assert "80 %" not in shown.out
     assert "map alone" not in shown.out
     assert "s on the map alone (×" in ask(*options, *changed(busy="true")).out
-    refused = ask(*options, *changed(l2log="logs")).refusal
-    assert "l2log logs episodes of searches" in refused
     assert "busy applies to goals that are driven to" in ask("live", *changed(busy="true")).refusal
 
 
@@ -318,12 +299,12 @@ def test_every_setting_says_what_it_means(ask):
 @pytest.mark.parametrize(
     ("options", "line"),
     [
-        (("--set", "epsilom=1"), "no setting has the key 'epsilom'; near: epsilon, epsilon_floor, epsilon_decay"),
+        (("--set", "episode=1"), "no setting has the key 'episode'; near: episodes"),
         (("--set", "tasks=3"), "tasks is an option: --tasks"),
         (("--set", "spare=1"), "spare applies to jobs with hidden types alone (tabletop, factory-customers"),
         (("--domain", "tabletop", "--set", "cell=1"), "cell does not apply to domain tabletop; leave it out"),
-        (("--set", "epsilon=2"), "epsilon must lie in [0, 1], got 2.0"),
-        (("--set", "l2log"), "--set takes KEY=VALUE, got 'l2log'"),
+        (("--set", "alpha0=0"), "alpha0 must be positive"),
+        (("--set", "cell"), "--set takes KEY=VALUE, got 'cell'"),
     ],
 )
 def test_a_wrong_setting_is_one_line(options, line, ask):
@@ -333,7 +314,7 @@ def test_a_wrong_setting_is_one_line(options, line, ask):
 
 def test_choices_are_those_that_settings_allow(ask):
     rows = [row for row in ask("live", "--settings", "--json").document["settings"] if row["choices"]]
-    assert {row["key"] for row in rows} == {"learner", "prior", "form", "ties", "sensor"}
+    assert {row["key"] for row in rows} == {"prior", "sensor"}
     for row in rows:
         refused = ask("live", "--memory", "none.db", *changed(**{row["key"]: "odd"})).refusal
         assert f"{row['key']} must be one of {', '.join(row['choices'])}, got 'odd'" in refused

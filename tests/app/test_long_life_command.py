@@ -45,7 +45,7 @@ def test_explain_says_why(ask, where):
     ("arguments", "words"),
     [
         (["live", "--domain", "factory-customers", "--map", "a.yaml"], "--map does not apply to domain"),
-        (["live", "--domain", "factory-customers", "--out", "a"], "--serve draws the life at /life"),
+        (["live", "--domain", "factory-customers", "--out", "a"], "lifelore serve draws the life at /life"),
         (["live", "--domain", "factory-customers", "--agent", "lore"], "agent must be one of full"),
         (["live", "--domain", "factory-customers", "--set", "spare=1", "--agent", "scratch"], "must be full"),
         (["live", "--domain", "building", "--set", "spare=1"], "applies to jobs with hidden types alone"),

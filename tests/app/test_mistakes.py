@@ -21,7 +21,6 @@ from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupan
 from lifelore.memory import open_memory
 
 LATTICE = "live --memory {known} --domain lattice --tasks 1"
-Q = f"{LATTICE} --set learner=q"
 BUILDING = "live --memory {known} --tasks 1 --map {map}"
 NOISE = "live --memory {known} --tasks 1 --domain noise"
 LONG = "x" * 300
@@ -47,20 +46,15 @@ NUMBERS = {
     f"{LATTICE} --set destinations=342": "at most the 341 free places",
     f"{LATTICE} --set discount=x": "discount must be a number, got 'x'",
     f"{LATTICE} --set discount=nan": "discount must",
-    f"{Q} --set discount=0 --set start=1,1": "discount",
+    f"{LATTICE} --set discount=0 --set start=1,1": "discount",
     f"{LATTICE} --set goal_reward=inf": "goal_reward must be",
-    f"{Q} --set goal_reward=1e300": "goal_reward must be",
+    f"{LATTICE} --set goal_reward=1e300": "goal_reward must be",
     f"{LATTICE} --set wall_reward=nan": "wall_reward must be",
     f"{LATTICE} --set alpha0=0": "alpha0 must be",
     f"{LATTICE} --set weight=-1": "weight must",
     f"{LATTICE} --set density=0.5": "density",
     f"{NOISE} --set density=1.5": "density must",
     f"{NOISE} --set density=0.999": "obstacles",
-    f"{Q} --set epsilon_decay=2": "epsilon_decay must lie in [0, 1]",
-    f"{Q} --set epsilon_floor=inf": "epsilon_floor must lie in [0, 1]",
-    # The same for settings that this life has no use for: they would stand in its report.
-    f"{LATTICE} --set epsilon=7 --json": "epsilon must lie in [0, 1]",
-    f"{LATTICE} --set learning_rate=inf --json": "learning_rate must lie in [0, 1]",
     f"{LATTICE} --set cell=nan --json": "cell does not apply",
     f"{BUILDING} --set cell=1e-300": "cell must",
     f"{BUILDING} --set cell=100": "only one cell",
@@ -70,11 +64,7 @@ NUMBERS = {
 NAMES = {
     f"{LATTICE} --domain moon": "building-days, got 'moon'",
     f"{LATTICE} --agent bob": "agent must be one of lore",
-    f"{LATTICE} --set learner=sarsa": "learner must be one of model, q",
-    f"{Q} --agent rmax": "learner 'q' has agents",
     f"{LATTICE} --set prior=feelings": "prior must be one of observation, state, none",
-    f"{LATTICE} --set form=triangle": "form must be one of proportion",
-    f"{LATTICE} --set ties=last": "ties must be one of uniform, prior",
     f"{LATTICE} --robot 'two\nlines'": "robot must",
     f"{LATTICE} --set start=0,0": "start must be a free cell ROW,COL of this world (23 rows, 23 columns), got 0,0",
     f"{LATTICE} --set start={10**20},1": "start must be a free cell",

@@ -117,10 +117,9 @@ def buildings() -> str:
 
 
 def lives() -> str:
-    value, ratio = measured("lives")
+    value, _ = measured("lives")
     lore, scratch = (1e3 * value[name] for name in ("a task of lore, which remembers", "a task of scratch"))
-    plain = ratio["as many steps of Q-learning in tuned pure Python"]
-    return f"`lore` {lore:.0f} ms, `scratch` {scratch:.0f} ms; learner q {plain:.1f} × Python"
+    return f"`lore` {lore:.0f} ms, `scratch` {scratch:.0f} ms"
 
 
 def priors() -> str:

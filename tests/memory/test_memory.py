@@ -282,11 +282,17 @@ def test_a_memory_that_must_exist_is_not_created(file, tmp_path: Path):
         assert memory.tasks("a") == 2
 
 
-def test_folders_are_created(tmp_path: Path):
-    with open_memory(tmp_path / "a b" / "c%20?#" / "m.db") as memory:
+def test_only_the_folder_of_the_users_own_memory_is_created(tmp_path: Path, monkeypatch):
+    with pytest.raises(StoreError, match=r"the folder .*/wrong/dir of memory life\.db does not exist"):
+        open_memory(tmp_path / "wrong" / "dir" / "life.db")
+    assert not (tmp_path / "wrong").exists()
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "own"))
+    with open_memory() as memory:
+        assert memory.location == str(tmp_path / "own" / "lifelore" / "lifelore.db")
+    (tmp_path / "c%20?#").mkdir()
+    with open_memory(tmp_path / "c%20?#" / "m.db") as memory:
         give(memory, "a", 0, record({1: 1}))
-    assert (tmp_path / "a b" / "c%20?#" / "m.db").exists()
-    assert [path.name for path in (tmp_path / "a b" / "c%20?#").iterdir()] == ["m.db"]
+    assert [path.name for path in (tmp_path / "c%20?#").iterdir()] == ["m.db"]
 
 
 def test_durable_asks_sqlite_for_a_flush_at_every_commit(file):

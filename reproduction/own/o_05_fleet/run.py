@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
-from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.domains.buildings.occupancy_map import write_occupancy_map
 from lifelore.domains.buildings.office import office_map
@@ -55,7 +54,8 @@ def _task(world: str, memory: Path, robot: int, seed: int, moves: int) -> tuple[
     found: list[tuple[int, int]] = []
     settings = LifeSettings(
         WorldSettings("building", world, seed=seed),
-        learning=QLearning(episodes=1, max_steps=moves),
+        episodes=1,
+        max_steps=moves,
         memory=MemorySettings(str(memory), f"robot {robot}", refresh=True),
         tasks=1,
         jobs=1,

@@ -59,12 +59,12 @@ def _live(folder: Path) -> None:
     from lifelore.agent.live.life_settings import LifeSettings, MemorySettings, SensorSettings
     from lifelore.core.learning.q_learner import QLearning
     from lifelore.domains.buildings.clear_path import clear_path
-    from lifelore.domains.worlds import WorldSettings
+    from lifelore.domains.worlds import make_world
 
-    for learner, domain in (("model", "building"), ("q", "building"), ("q", "noise")):
-        learning = QLearning(episodes=3, max_steps=50)
-        memory = MemorySettings(str(folder / f"{learner} {domain}.db"))
-        live(LifeSettings(WorldSettings(domain), learner, learning, memory=memory, agent="all", tasks=2))
+    memory = MemorySettings(str(folder / "touch.db"))
+    live(LifeSettings(memory=memory, agent="all", tasks=2, episodes=3, max_steps=50))
+    random = np.random.default_rng(0)
+    QLearning(episodes=3).learn(make_world("lattice").task(0).tables(), 0.95, world=random, own=random)
     life = live(
         LifeSettings(memory=MemorySettings(str(folder / "lidar.db")), tasks=1, sensor=SensorSettings("lidar"))
     )

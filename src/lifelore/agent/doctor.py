@@ -33,7 +33,7 @@ PACKAGES = {
 }
 """Packages that every installation has, and what they are for."""
 EXTRAS = {
-    "fastapi": ("web", "serve, live --serve"),
+    "fastapi": ("web", "serve"),
     "psycopg": ("postgres", "--memory postgresql://… of every verb"),
     "rosbags": ("ros", "perceive and learn-from of rosbags, perceive --log *.mcap"),
     "rerun-sdk": ("view", "perceive --log *.rrd"),

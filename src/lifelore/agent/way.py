@@ -1,4 +1,4 @@
-"""`way`: a path in metres between two places of a building, by the moves, times and refusals that memory holds."""
+"""`way`: a path in metres between two places of a building, by the times and refusals that memory holds."""
 
 import csv
 import math
@@ -10,17 +10,22 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.agent.live import transitions
 from lifelore.agent.live.buildings.recognition import recognised_place
-from lifelore.agent.live.buildings.remembered_moves import RememberedMoves
+from lifelore.agent.live.buildings.remembered_moves import contradicted_moves, remembered_record
 from lifelore.agent.live.goals.destinations import Destination, NamedPlaces
 from lifelore.agent.travel import Travel
 from lifelore.core.atomic_write import refused_writes
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import InputError
 from lifelore.domains.buildings.clear_path import clear_path
 from lifelore.domains.buildings.floor import Floor, floor_of
 from lifelore.domains.buildings.footprint import Footprint, footprint_path
 from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
 from lifelore.memory import open_memory
+
+UNDRIVEN = 0.5
+"""Metres that a metre costs beyond its length on ground that memory does not know; more makes longer detours over
+known ground."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,14 +35,16 @@ class Way:
     start, goal : the destinations, with their points
     poses : (n, 3) x and y in metres of the map's frame, and the heading in radians
     places : number of cells that the path passes, those of its ends included
+    undriven : number of these cells that memory does not know
     seconds : expected time of the drive
-    contradicted : (n, 2) points of remembered moves that would make the way shorter, but that the map contradicts
+    contradicted : (n, 2) points of remembered moves that would make the way shorter, but that the map lacks
     """
 
     start: Destination
     goal: Destination
     poses: NDArray[np.float64]
     places: int
+    undriven: int
     seconds: float
     contradicted: NDArray[np.float64]
 
@@ -54,6 +61,7 @@ class Way:
             "length": self.length,
             "seconds": self.seconds,
             "places": self.places,
+            "undriven": self.undriven,
             "contradicted": self.contradicted.tolist(),
         }
 
@@ -68,10 +76,11 @@ def way(
     clock: float | None = None,
     footprint: Footprint | None = None,
 ) -> Way:
-    """The cheapest path over remembered transitions that is clear by the robot's radius.
+    """The cheapest path over the map's free space that is clear by the robot's radius.
 
     The path turns at any angle. It costs its length, and what memory knows about its moves: where they took
     longer or were refused, the path leads around if that is expected to take less time (``MoveCosts.cost``).
+    A metre on ground that memory does not know costs `UNDRIVEN` metres more.
 
     Parameters
     ----------
@@ -93,8 +102,7 @@ def way(
     Raises
     ------
     NotFoundError
-        Memory knows no way, or only ways that the map contradicts, or not the name, or not the building; or the
-        footprint does not pass.
+        Memory knows not the building, or not the name; or the footprint does not pass.
     InputError
         A setting or the map breaks its rule, or a point is no free place.
     StoreError
@@ -107,18 +115,21 @@ def way(
     occupancy = map_from_settings(world)
     with open_memory(memory, read_only=True) as opened:
         place = recognised_place(world, world_from_settings(world, occupancy), occupancy, opened, building)
-        moves, names = RememberedMoves.recalled(place, opened), NamedPlaces.of(place)
+        record, names = remembered_record(place, opened), NamedPlaces.of(place)
         start, goal = names.located("from", start, opened), names.located("to", goal, opened)
         travel = Travel.recalled(place.world, place.grid, opened)
     floor = floor_of(place.occupancy or occupancy, place.world)
-    contradicted = _contradicted(moves, floor, start, goal)
-    costs = travel.costs(travel.newest if clock is None else clock)
-    price = price_of_moves(np.where(moves.open, costs.cost, np.inf), place.world.frame.cell)
     ends = start.located_point, goal.located_point
+    first, last = floor.state_at("from", ends[0]), floor.state_at("to", ends[1])
+    known = transitions.from_record(place.world, record, place.grid.corner).percept >= 0
+    costs, cell = travel.costs(travel.newest if clock is None else clock), place.world.frame.cell
+    price = price_of_moves(costs.cost, cell) + np.where(known[place.world.neighbour], 0.0, UNDRIVEN * cell)
     path = footprint_path(floor, *ends, footprint, price) if footprint else clear_path(floor, *ends, price)
-    assert path is not None, "open moves join the pieces of their cells"
-    states, seconds = _driven(path, floor, costs.seconds / place.world.frame.cell)
-    return Way(start, goal, poses_along(path, spacing), states, seconds, contradicted)
+    assert path is not None, "the places of a floor are joined"
+    passed, seconds = _driven(path, floor, costs.seconds / cell)
+    contradicted = contradicted_moves(place, record, first, last)
+    poses = poses_along(path, spacing)
+    return Way(start, goal, poses, len(passed), int((~known[passed]).sum()), seconds, contradicted)
 
 
 def clock_from_text(text: str) -> float:
@@ -148,8 +159,10 @@ def price_of_moves(cost: NDArray[np.float64], cell: float) -> NDArray[np.float64
     return cell * np.maximum(cost / cheap - 1, 0)
 
 
-def _driven(path: NDArray[np.float64], floor: Floor, slowness: NDArray[np.float64]) -> tuple[int, float]:
-    """Number of places on a path, and its expected seconds; `slowness` (n_states, 4) in seconds a metre."""
+def _driven(
+    path: NDArray[np.float64], floor: Floor, slowness: NDArray[np.float64]
+) -> tuple[NDArray[np.int32], float]:
+    """The states on a path, each once, and its expected seconds; `slowness` (n_states, 4) in seconds a metre."""
     pixels = floor.pixels(poses_along(path, floor.occupancy.resolution / 2)[:, :2])
     step, middle = np.diff(pixels, axis=0), (pixels[1:] + pixels[:-1]) / 2
     states = floor.state[tuple(np.rint(np.vstack([pixels[:1], middle, pixels[-1:]])).astype(int).T)]
@@ -158,54 +171,7 @@ def _driven(path: NDArray[np.float64], floor: Floor, slowness: NDArray[np.float6
     # In time, a step at an angle counts as its share along each axis.
     vertical, horizontal = slowness[at, np.where(down > 0, 1, 0)], slowness[at, np.where(right > 0, 2, 3)]
     seconds = (down**2 * vertical + right**2 * horizontal) / np.where(length > 0, length, 1)
-    return len(np.unique(states)), float(seconds.sum() * floor.occupancy.resolution)
-
-
-def _contradicted(
-    moves: RememberedMoves, floor: Floor, start: Destination, goal: Destination
-) -> NDArray[np.float64]:
-    """Points (n, 2) of the moves that the map contradicts on a shorter remembered way.
-
-    Raises
-    ------
-    NotFoundError
-        Memory knows no way that the map allows.
-    """
-
-    def nearest(cells: NDArray[np.int64], end: Destination) -> str:
-        points = floor.metres(floor.anchors[moves.states[cells]])
-        away = np.hypot(*(points - end.located_point).T)
-        x, y = points[away.argmin()]
-        return f"{x:.3f},{y:.3f}, {away.min():.2f} m"
-
-    def cell(argument: str, end: Destination) -> int:
-        found = np.flatnonzero(moves.states == floor.state_at(argument, end.located_point))
-        if len(found):
-            return int(found[0])
-        raise NotFoundError(
-            f"{argument}: memory knows no move at {end}; the nearest place that it knows is "
-            f"{nearest(np.flatnonzero(moves.states >= 0), end)} away; give that place, or live more tasks there"
-        )
-
-    first, last = cell("from", start), cell("to", goal)
-    chain, remembered = moves.chain(first, last), moves.chain(first, last, true_only=False)
-    if chain and len(remembered) == len(chain):
-        return np.empty((0, 2))
-    contradicted = moves.contradicted(remembered)
-    if chain:
-        return contradicted
-    reached = np.flatnonzero(np.isfinite(moves.reached(first)[0]))
-    so_far = (
-        f"from there it knows the way to {len(reached):,} of its {len(moves.cells):,} places, the nearest "
-        f"{nearest(reached, goal)} from {goal}"
-    )
-    if remembered:
-        at = "; ".join(f"{x:.2f},{y:.2f}" for x, y in contradicted[:3])
-        raise NotFoundError(
-            f"the map contradicts the remembered way from {start} to {goal} in {len(contradicted)} of its "
-            f"{len(remembered) - 1} moves (near {at}), and memory knows no other way; {so_far}"
-        )
-    raise NotFoundError(f"memory knows no way from {start} to {goal}; {so_far}; live more tasks there")
+    return np.unique(states), float(seconds.sum() * floor.occupancy.resolution)
 
 
 def poses_along(path: NDArray[np.float64], spacing: float | None = None) -> NDArray[np.float64]:

@@ -3,7 +3,6 @@
 import os
 import sys
 from dataclasses import replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -70,9 +69,6 @@ def live(
     seed: Annotated[
         int, Option(help="Draws world, tasks and choices; robots of one seed meet the same tasks.")
     ] = 0,
-    serve: Annotated[
-        bool, Option("--serve", help="Serve pages meanwhile; /life draws the life (extra web).")
-    ] = False,
     changes: Annotated[
         list[str] | None, Option("--set", metavar="KEY=VALUE", help="Change another setting; repeat it for more.")
     ] = None,
@@ -101,8 +97,8 @@ def live(
     if domain in FAMILIES:
         from lifelore.app.long_life_command import live_long_life
 
-        return live_long_life(keys, values, serve, as_json)
-    return _live_life(keys, values, serve, as_json)
+        return live_long_life(keys, values, as_json)
+    return _live_life(keys, values, as_json)
 
 
 def setting_keys(domain: str) -> "SettingKeys":
@@ -110,12 +106,10 @@ def setting_keys(domain: str) -> "SettingKeys":
     from lifelore.agent.live.life_settings import LIFE_KEYS, LifeSettings
     from lifelore.agent.long_lived.families.by_name import FAMILIES
     from lifelore.agent.long_lived.long_life import live_long
-    from lifelore.app.setting_keys import Setting, SettingKeys
+    from lifelore.app.setting_keys import SettingKeys
 
-    port = Setting("port", int, "Port of --serve, 8321 by default; 0: any free port.")
-    l2log = Setting("l2log", str, "Folder for a log of every episode in L2Logger's format.")
-    life = SettingKeys((LifeSettings,), LIFE_KEYS, (l2log, port))
-    long_life = SettingKeys((live_long,), {"location": "memory", "family": "domain"}, (port,))
+    life = SettingKeys((LifeSettings,), LIFE_KEYS)
+    long_life = SettingKeys((live_long,), {"location": "memory", "family": "domain"})
     if domain in FAMILIES:
         own, other, where = long_life, life, f"does not apply to domain {domain}; leave it out"
     else:
@@ -125,35 +119,27 @@ def setting_keys(domain: str) -> "SettingKeys":
     return replace(own, elsewhere=foreign | {key: f"is an option: --{key}" for key in OPTIONS})
 
 
-def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json: bool) -> int:
+def _live_life(keys: "SettingKeys", values: dict[str, Any], as_json: bool) -> int:
     """Live in a world with the settings of `values`, by key."""
     from contextlib import nullcontext
 
     from lifelore.agent.live.life import live as live_through
     from lifelore.agent.live.life_settings import LifeSettings
-    from lifelore.agent.live.output.l2_log import LifeLog
     from lifelore.agent.live.output.long_table import LongTable
     from lifelore.agent.live.output.report import check_folder, write_portfolio
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.life_table import print_life
-    from lifelore.app.pages_beside import pages_beside
-    from lifelore.core.errors import InputError
 
-    domain, memory = values["domain"], values.get("memory")
-    out, csv, l2log = (values.get(name) for name in ("out", "csv", "l2log"))
+    domain, out, csv = values["domain"], values.get("out"), values.get("csv")
     places = {name: _place(name, values[name], domain) for name in ("start", "goal") if name in values}
     jobs = {"goals": _jobs(values["goals"], values.get("tasks"))} if "goals" in values else {}
     settings = LifeSettings(**keys.arguments(LifeSettings, values | places | jobs))
-    if l2log is not None and settings.driven:
-        raise InputError(f"l2log logs episodes of searches, got {l2log} with known goals; leave it out")
-    new_folders = _missing_folders(memory, out)
+    new_folder = out is not None and not os.path.exists(out)  # also a name too long for a file
     if out is not None:
         check_folder(out)
     if "log" in values:
         _check_log(values["log"], domain)
-    log = None if l2log is None else LifeLog(l2log, domain)
     with (
-        pages_beside(serve, values.get("port"), memory),
         LongTable(csv, values["seed"]) if csv is not None else nullcontext() as table,
         stop_on_interrupt() as stop,
         progress_bar("living") as progress,
@@ -161,17 +147,12 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json
 
         def show(done: int, total: int, label: str) -> None:
             # Before the first task, when no setting can be refused any more: a mistyped path is seen at once.
-            for folder in new_folders if done == 0 else ():
-                _notify(f"new folder {folder}")
+            if new_folder and done == 0:
+                _notify(f"new folder {out}")
             progress(done, total, label)
 
-        def record(task: dict, results: dict) -> None:
-            if log:
-                log.add(task, results)
-            if table:
-                table.add_results(task, results)
-
-        life = live_through(settings, progress=show, stop=stop, watch=record, notify=_notify)
+        watch = table.add_results if table else None
+        life = live_through(settings, progress=show, stop=stop, watch=watch, notify=_notify)
         written = write_portfolio(life, out) if out is not None else []
         if "log" in values:
             written.append(_write_log(life, values["log"]))
@@ -199,15 +180,6 @@ def _write_log(life: "Life", path: str) -> str:
     with refused_writes(path, "log"):
         write_life_log(path, *logged_life(life))
     return path
-
-
-def _missing_folders(memory: str | None, out: str | None) -> list[Path]:
-    """The folders that a life will create."""
-    from lifelore.memory.location import locate
-
-    place = locate(memory)
-    folders = ([place.parent] if isinstance(place, Path) else []) + ([Path(out)] if out else [])
-    return [folder for folder in folders if not os.path.exists(folder)]  # also a name too long for a file
 
 
 def _notify(line: str) -> None:

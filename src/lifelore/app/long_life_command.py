@@ -15,25 +15,25 @@ FOREIGN = ("map", "goal", "goals", "out", "log", "csv")
 """Options of `lifelore live` that do not apply to these domains."""
 
 
-def live_long_life(keys: "SettingKeys", values: dict[str, Any], serve: bool, as_json: bool) -> int:
+def live_long_life(keys: "SettingKeys", values: dict[str, Any], as_json: bool) -> int:
     """Live through jobs with hidden types, with the settings of `values`, by key."""
     from lifelore.agent.long_lived.families.by_name import family_named
     from lifelore.agent.long_lived.long_life import live_long
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
-    from lifelore.app.pages_beside import pages_beside
     from lifelore.core.errors import InputError
     from lifelore.memory.location import default_path
 
     if foreign := [f"--{name}" for name in FOREIGN if name in values]:
         names = ", ".join(foreign)
-        pictures = "; --json prints all numbers, and --serve draws the life at /life" if "out" in values else ""
+        pictures = (
+            "; --json prints all numbers, and lifelore serve draws the life at /life" if "out" in values else ""
+        )
         raise InputError(f"{names} does not apply to domain {values['domain']}; leave it out{pictures}")
     memory = values.get("memory")
     family = family_named(values["domain"], values["seed"])
     stored = {"memory": default_path() if memory is None else memory}
     arguments: dict[str, Any] = keys.arguments(live_long, values | stored) | {"family": family}
-    beside = pages_beside(serve, values.get("port"), memory)
-    with beside, stop_on_interrupt() as stop, progress_bar("living") as progress:
+    with stop_on_interrupt() as stop, progress_bar("living") as progress:
         report = live_long(**arguments, progress=progress, stop=stop)
     if as_json:
         print_json(report)

@@ -9,8 +9,6 @@ import typer
 from lifelore.app.options import AsJson
 
 Option = typer.Option
-STDIN = 0
-"""Descriptor of standard input."""
 
 
 def serve(
@@ -43,10 +41,6 @@ def serve(
     rate: Annotated[float, Option(help="Requests per second of a client; 0: no limit.")] = 1000.0,
     seconds: Annotated[float, Option(help="Longest time that a request may take.")] = 60.0,
     seed: Annotated[int, Option(help="Draws all random numbers.")] = 0,
-    until_eof: Annotated[
-        bool,
-        Option("--until-eof", help="Stop at the end of standard input too: when the program that opened it dies."),
-    ] = False,
     access_log: Annotated[
         bool, Option("--access-log", help="Log answered requests too, not errors alone.")
     ] = False,
@@ -90,7 +84,7 @@ def serve(
     def ready(url: str) -> None:
         print_json_line({"url": url}) if as_json else print(f"serving at {url} (Ctrl-C stops)", flush=True)
 
-    served(settings, host, port, ready, app_with_pages, until=STDIN if until_eof else None)
+    served(settings, host, port, ready, app_with_pages)
 
 
 def _location_in(file: str) -> str:

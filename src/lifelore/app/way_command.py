@@ -40,9 +40,9 @@ def way(
 ) -> None:
     """Find the quickest clear path between two places.
 
-    Use it after `live` or `learn-from`. The way leads over remembered moves only, and around those that were slow
-    or refused at this time. The path keeps the robot's radius from all that the map does not show as free. The
-    document of --json has the keys of nav_msgs/Path.
+    Use it after `live` or `learn-from`. The way leads over the free space of the map, and around moves that were
+    slow or refused at this time; ground that was never driven costs half as much again. The path keeps the robot's
+    radius from all that the map does not show as free. The document of --json has the keys of nav_msgs/Path.
     """
     from lifelore.agent.live.goals.destinations import destination_from_text
     from lifelore.agent.way import clock_from_text, write_poses
@@ -61,14 +61,15 @@ def way(
     if as_json:
         print_json(found.to_dict())
         return
+    undriven = f" ({found.undriven} never driven)" if found.undriven else ""
     print(
-        f"{found.length:.2f} m from {found.start} to {found.goal} over {found.places} remembered places, "
+        f"{found.length:.2f} m from {found.start} to {found.goal} over {found.places} places{undriven}, "
         f"about {found.seconds:.0f} s, {len(found.poses)} poses"
     )
     if len(found.contradicted):
         x, y = found.contradicted[0]
         print(
-            f"a shorter remembered way is not used: the map contradicts {len(found.contradicted)} of its moves, "
+            f"a shorter remembered way is not used: the map lacks {len(found.contradicted)} of its moves, "
             f"the first near {x:.2f},{y:.2f}"
         )
     if csv is not None:

@@ -32,7 +32,7 @@ def open_memory(
     Parameters
     ----------
     where : str or Path, optional
-        A file (its folders are created), or a ``postgresql://`` URL. Default: ``lifelore.db`` in the user's
+        A file in a folder that exists, or a ``postgresql://`` URL. Default: ``lifelore.db`` in the user's
         data directory.
     durable : bool
         With False (SQLite's ``synchronous=NORMAL``) a power loss may lose the last few contributions, each

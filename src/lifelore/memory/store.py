@@ -11,7 +11,7 @@ from typing import Any, Literal
 from lifelore.core.errors import StoreError
 from lifelore.memory import schema
 from lifelore.memory.connection import Connection, Pool
-from lifelore.memory.location import Server, describe
+from lifelore.memory.location import Server, default_path, describe
 from lifelore.memory.refusal import BUSY_SECONDS, one_line_refusals
 from lifelore.memory.sqlite_file import connect, connect_source, is_writable, refuse_unless_ours
 
@@ -177,10 +177,15 @@ def _rewrite(conn: Connection) -> None:
 
 
 def open_file(path: Path, *, durable: bool = False, journal: Literal["WAL", "DELETE"] = "WAL") -> Store:
-    """Open the memory in a file; create it and its folders if they are missing."""
+    """Open the memory in a file; create it if it is missing, and the folder of the user's own memory."""
     refuse_unless_ours(path)
-    with one_line_refusals(str(path)):
-        path.parent.mkdir(parents=True, exist_ok=True)
+    if path == default_path():
+        with one_line_refusals(str(path)):
+            path.parent.mkdir(parents=True, exist_ok=True)
+    elif not path.parent.exists():
+        raise StoreError(
+            f"the folder {path.parent} of memory {path.name} does not exist; create it, or check the path"
+        )
 
     def writable() -> Connection:
         conn = connect(path, "rwc")

@@ -6,25 +6,20 @@ from lifelore.agent.live import baselines
 from lifelore.agent.live.baselines import AGENTS, agents_for
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import NotFoundError
 from lifelore.domains.worlds import WorldSettings
 
 
 def test_agents_and_their_baselines():
-    assert agents_for("lore", "model") == ["lore", "scratch"]
-    assert agents_for("prior", "model") == ["prior", "scratch"]
-    assert agents_for("scratch", "model") == ["scratch"]
-    assert agents_for("all", "model") == list(AGENTS)
-    assert agents_for("all", "q") == ["lore", "scratch"]
-    assert agents_for("prior", "q") == ["prior", "scratch"]
-    assert agents_for("scratch", "q") == ["scratch"]
+    assert agents_for("lore") == ["lore", "scratch"]
+    assert agents_for("prior") == ["prior", "scratch"]
+    assert agents_for("scratch") == ["scratch"]
+    assert agents_for("all") == list(AGENTS)
 
 
 def test_refusals():
     with pytest.raises(NotFoundError, match="agent must be one of"):
-        agents_for("nobody", "model")
-    with pytest.raises(InputError, match="use learner 'model'"):
-        agents_for("rmax", "q")
+        agents_for("nobody")
 
 
 def test_the_four_are_a_factorial():

@@ -98,18 +98,13 @@ def test_stopping_keeps_what_is_finished(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("learner", "prior"), [("model", "observation"), ("model", "none"), ("q", "state"), ("q", "none")]
-)
-def test_the_life_gets_better(tmp_path, learner, prior):
-    report = live(settings(tmp_path, tasks=9, learner=learner, prior=prior, episodes=150)).report
+@pytest.mark.parametrize("prior", ["observation", "state", "none"])
+def test_the_life_gets_better(tmp_path, prior):
+    report = live(settings(tmp_path, tasks=9, prior=prior, episodes=150)).report
     lore, scratch = ([task["agents"][name] for task in report["tasks"][-3:]] for name in ("lore", "scratch"))
-    if (learner, prior) == ("q", "none"):
-        assert lore == scratch  # no prior and no model: it is Q-learning, bit for bit
-    else:
-        # The claim kept here is the robust one: what was learnt avoids walls. By a factor of 2 at least,
-        # where the prototype of these lives saw 20 and more.
-        assert 2 * sum(t["collisions"] for t in lore) < sum(t["collisions"] for t in scratch)
+    # The claim kept here is the robust one: what was learnt avoids walls. By a factor of 2 at least,
+    # where the prototype of these lives saw 20 and more.
+    assert 2 * sum(t["collisions"] for t in lore) < sum(t["collisions"] for t in scratch)
 
 
 def test_goal_rows_never_count(tmp_path):
@@ -182,7 +177,6 @@ def test_fixed_start_and_destinations(tmp_path):
         ({"destinations": 341}, None),
         ({"destinations": 342}, "at most the 341 free places"),
         ({"map": "x.yaml"}, "map does not apply to domain"),
-        ({"agent": "model", "learner": "q"}, "learner 'q' has agents"),
         ({"alpha0": 0.0}, "alpha0 must be positive"),
     ],
 )
@@ -196,10 +190,10 @@ def test_settings_that_break_a_rule(tmp_path, changes, message):
 
 @pytest.mark.parametrize(
     "changes",
-    [{"tasks": 0}, {"learner": "x"}, {"prior": "x"}, {"form": "x"}, {"ties": "x"}, {"robot": " "}, {"jobs": 0},
+    [{"tasks": 0}, {"prior": "x"}, {"robot": " "}, {"jobs": 0},
      {"episodes": 10**9}, {"tasks": 2.5}, {"wall_reward": 5.0}, {"robot": "a\nb"}, {"robot": "x" * 201},
      {"goal_reward": -1.0}, {"wall_reward": float("nan")},
-     {"wall_reward": -1e7}, {"epsilon": 1.5}, {"learning_rate": float("nan")},
+     {"wall_reward": -1e7},
      {"alpha0": 1e7}],
 )  # fmt: skip
 def test_settings_are_checked_at_once(changes):

@@ -103,7 +103,6 @@ TOUCH = {
         ({"sensor": "lidar", "range": 0.0}, "range must lie in"),
         ({"sensor": "lidar", "range": float("nan")}, "range must lie in"),
         ({"sensor": "lidar", "domain": "lattice"}, "sensor lidar needs a building"),
-        ({"sensor": "lidar", "learner": "q"}, "sensor lidar needs learner model"),
     ],
 )
 def test_settings_without_meaning_are_refused(tmp_path, wrong, message):

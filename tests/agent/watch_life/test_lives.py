@@ -11,7 +11,6 @@ from lifelore.agent.long_lived.long_life import live_long
 from lifelore.agent.watch_life.known_family import TELLING_CAUSES, known_family
 from lifelore.agent.watch_life.lives import lives_in, task_of, tasks_of
 from lifelore.core.errors import NotFoundError
-from lifelore.core.learning.q_learner import QLearning
 from lifelore.domains.worlds import WorldSettings
 from lifelore.memory import open_memory
 
@@ -80,9 +79,7 @@ def test_a_missing_life_or_task_is_named(lived):
 
 def test_without_transitions_the_domain_of_a_map_is_unknown(tmp_path: Path):
     where = str(tmp_path / "m.db")
-    settings = LifeSettings(
-        WorldSettings("lattice", size=7), "q", QLearning(episodes=20), memory=MemorySettings(where), tasks=1
-    )
+    settings = LifeSettings(WorldSettings("lattice", size=7), agent="prior", memory=MemorySettings(where), tasks=1)
     live(settings)
     with open_memory(where) as memory:
         assert lives_in(memory) == [{"robot": "robot", "domain": "grid", "kind": "grid", "tasks": 1}]

@@ -1,12 +1,6 @@
 """The page life as a person uses it: an empty memory, both kinds of lives, keys, and a life that goes on."""
 
 import re
-import signal
-import subprocess
-import sys
-import time
-import urllib.error
-import urllib.request
 from collections.abc import Callable
 from pathlib import Path
 
@@ -24,7 +18,6 @@ from lifelore.agent.long_lived.long_life import live_long
 from lifelore.app.pages.mount import app_with_pages
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.tokens import add_token
-from lifelore.core.learning.q_learner import QLearning
 from lifelore.domains.worlds import WorldSettings
 from lifelore.memory import open_memory
 
@@ -130,9 +123,8 @@ def test_a_life_of_drives_shows_metres_and_seconds(serve_pages, open_page: Opene
 
 
 def test_a_life_that_remembers_no_map_says_so(serve_pages: Callable[..., str], open_page: Opened, where: Path):
-    learning = QLearning(episodes=20)
     memory = MemorySettings(str(where), "ada")
-    live(LifeSettings(WorldSettings("lattice", size=7), "q", learning, memory=memory, tasks=1, jobs=1))
+    live(LifeSettings(WorldSettings("lattice", size=7), agent="prior", memory=memory, tasks=1, jobs=1))
     page = open_page(serve_pages(where) + "/life")
     expect(page.locator("#map")).to_have_text("This agent remembers no map.")
     expect(page.locator("#curve circle")).to_have_count(2)
@@ -208,53 +200,3 @@ def test_the_routes_refuse_what_is_not_there(where: Path):
             answer = client.get(f"/v1/lives/{path}")
             assert answer.status_code == status, answer.text
             assert message in answer.json()["error"]["message"]
-
-
-def nobody_listens_soon(address: str) -> bool:
-    """Whether the service ends: idle it needs less than a second; the machine may be busy."""
-    ends = time.monotonic() + 20
-    while time.monotonic() < ends:
-        try:
-            urllib.request.urlopen(address, timeout=5).close()
-        except urllib.error.URLError:
-            return True
-        except OSError:
-            pass  # it was connected, and then the service ended or was too busy to answer
-        time.sleep(0.1)
-    return False
-
-
-def test_live_serves_the_pages_as_long_as_it_lives(where: Path, open_page: Opened):
-    command = [sys.executable, "-m", "lifelore.app.command_line", "live", "--domain", FACTORY, "--tasks", "200"]
-    options = ["--memory", str(where), "--robot", "bo", "--serve", "--set", "port=0"]
-    with subprocess.Popen([*command, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as life:
-        assert life.stderr is not None
-        line = next(line for line in life.stderr if line.startswith("pages at "))
-        address = line.split()[2]
-        page = open_page(address)
-        expect(page.locator("#summary")).to_contain_text("bo has lived", timeout=30_000)
-        first = page.locator("#summary").inner_text()
-        expect(page.locator("#summary")).not_to_have_text(first, timeout=30_000)
-        page.close()
-        life.terminate()
-        life.communicate()
-    assert nobody_listens_soon(address)
-
-
-def test_the_service_of_a_life_that_is_killed_ends(where: Path):
-    command = [sys.executable, "-m", "lifelore.app.command_line", "live", "--domain", "lattice"]
-    command += ["--tasks", "100000"]
-    options = ["--memory", str(where), "--robot", "bo", "--serve", "--set", "port=0"]
-    with subprocess.Popen([*command, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as life:
-        assert life.stderr is not None
-        address = next(line for line in life.stderr if line.startswith("pages at ")).split()[2]
-        with urllib.request.urlopen(address, timeout=30) as answer:
-            assert answer.status == 200
-        life.kill()
-        assert life.wait() == -signal.SIGKILL
-        assert nobody_listens_soon(address)
-
-
-def test_a_port_needs_serve(where: Path, ask):
-    refused = ask("live", "--tasks", 1, "--set", "port=1", "--memory", where)
-    assert refused.refusal == "lifelore: port belongs to --serve, got 1; add --serve, or leave port out"

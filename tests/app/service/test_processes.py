@@ -7,7 +7,6 @@ import json
 import os
 import random
 import signal
-import subprocess
 import threading
 import time
 from pathlib import Path
@@ -81,22 +80,6 @@ def test_its_status_after_sigint_does_not_depend_on_the_shell(start, tmp_path, i
     child.stdout.readline()
     child.send_signal(signal.SIGINT)
     assert child.wait(60) == 130
-
-
-def test_it_stops_where_its_standard_input_ends(start, study, tmp_path):
-    memory = tmp_path / "lifelore.db"
-    child = start("serve", "--port", 0, "--memory", memory, "--json", "--until-eof", stdin=subprocess.PIPE)
-    with Client(json.loads(child.stdout.readline())["url"]) as client:
-        client.ask("PUT", "/v1/studies/s", study)
-        child.stdin.write("bytes are no end")
-        child.stdin.flush()
-        made = client.ask("POST", "/v1/studies/s/decisions", {"user": "ada"})
-    assert child.poll() is None
-    child.stdin.close()
-    child.stdin = None  # `communicate` of the fixture would write to it
-    assert child.wait(60) == 0
-    with open_memory(memory) as opened:
-        assert list(stored_decisions(opened, [made])) == [parse_identifier(made["decision"])]
 
 
 def test_a_host_that_others_reach_needs_tokens(ask):

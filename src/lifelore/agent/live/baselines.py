@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 
 from lifelore.agent.live.life_settings import LifeSettings
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import NotFoundError
 from lifelore.core.learning.model_learning import ExplorationStrategy
 
 
@@ -34,25 +34,18 @@ AGENTS = {
 move that it has tried least. `rmax` prefers every unknown move to a known goal. `frontier` knows where all moves
 of a cell lead as soon as it has visited the cell."""
 
-Q_AGENTS = ("lore", "prior", "scratch")
-"""A Q-learner has no model: with the prior, `lore` and `prior` are the same agent; without it, it is `scratch`."""
-
 
 def agent_kind(name: str, settings: LifeSettings) -> AgentKind:
-    """What an agent uses with these settings: no prior without a condition, no remembered moves in Q-learning."""
+    """What an agent uses with these settings."""
     kind = AGENTS[name]
-    return replace(
-        kind,
-        uses_prior=kind.uses_prior and settings.prior.condition != "none",
-        remembers=kind.remembers and settings.learner == "model",
-    )
+    return replace(kind, uses_prior=kind.uses_prior and settings.prior != "none")
 
 
 BIG = 100_000
 """Number of places above which an agent lives alone unless the settings ask for the comparison."""
 
 
-def agents_for(agent: str, learner: str, compare: bool = True) -> list[str]:
+def agents_for(agent: str, compare: bool = True) -> list[str]:
     """Names of all agents that live when `agent` is asked for; memory stores the first one's knowledge.
 
     The others live the same tasks for comparison; with `compare` False the agent lives alone. ``all`` stands for
@@ -62,13 +55,9 @@ def agents_for(agent: str, learner: str, compare: bool = True) -> list[str]:
     ------
     NotFoundError
         No agent has this name.
-    InputError
-        This learner has no such agent.
     """
     if agent != "all" and agent not in AGENTS:
         raise NotFoundError(f"agent must be one of {', '.join(AGENTS)}, all; got '{agent}'")
-    if learner == "q" and agent not in (*Q_AGENTS, "all"):
-        raise InputError(f"learner 'q' has agents {', '.join(Q_AGENTS)}, got '{agent}': use learner 'model'")
     if agent == "all":
-        return list(AGENTS) if learner == "model" else ["lore", "scratch"]
+        return list(AGENTS)
     return [agent, "scratch"] if compare and agent != "scratch" else [agent]

@@ -9,12 +9,11 @@ from threading import Event
 from lifelore.agent.life.loop import LivedTask, run_life
 from lifelore.agent.live import baselines
 from lifelore.agent.live.baselines import agent_kind, agents_for
-from lifelore.agent.live.buildings.map_watch import MapWatch
 from lifelore.agent.live.buildings.recognition import Place, own_place, recognised_place
 from lifelore.agent.live.driven.driven_tasks import DrivenTasks
 from lifelore.agent.live.goals.destinations import NamedPlaces
 from lifelore.agent.live.goals.job_progress import JobProgress
-from lifelore.agent.live.goals.own_places import own_places
+from lifelore.agent.live.goals.own_places import OwnPlaces, own_places
 from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.agent.live.lived_tasks import DRIVEN, Result, TasksOfLife
 from lifelore.agent.live.lore import Lore
@@ -51,8 +50,6 @@ class Life:
         Whether the user asked to stop; the report covers the tasks finished before.
     start : int, optional
         State in which every episode started, if it was given.
-    first_here : int
-        Number of tasks that were lived before the map was last replaced (`LifeSettings.watch`).
     building : KnownBuilding, optional
         What is known of the building at the end.
     """
@@ -63,7 +60,6 @@ class Life:
     lore: Lore = field(repr=False)
     stopped: bool = False
     start: int | None = None
-    first_here: int = 0
     building: KnownBuilding | None = field(default=None, repr=False)
 
     @property
@@ -101,8 +97,7 @@ def live(
     watch : callable, optional
         Called as ``watch(task, results)`` after memory has stored a task; see `Watcher`.
     notify : callable, optional
-        Called with a line of text: before the first task if `scratch` is left out of a big world, and when a
-        watched map was replaced or cannot be used.
+        Called with a line of text before the first task, for instance if `scratch` is left out of a big world.
 
     Raises
     ------
@@ -113,8 +108,7 @@ def live(
     """
     stop, notify = stop or Event(), notify or (lambda line: None)
     began = time.perf_counter()
-    first = agents_for(settings.agent, settings.learner)[0]  # a mistake in the name shows before the map is read
-    map_watch = MapWatch(settings.world) if settings.watch else None
+    first = agents_for(settings.agent)[0]  # a mistake in the name shows before the map is read
     occupancy = map_from_settings(settings.world) if settings.world.domain == "building" else None
     world = world_from_settings(settings.world, occupancy)
     with open_memory(settings.memory.location) as memory, ThreadPoolExecutor(settings.jobs) as pool:
@@ -128,13 +122,14 @@ def live(
         if jobs and jobs.finished:
             settings = replace(settings, goals=jobs.unfinished(settings.goals))
             notify(jobs.notice())
+        names = [] if settings.driven else _names(settings, place.world.n_states, notify)
+        places = own_places(settings, place, memory)
         tasks: TasksOfLife
         if settings.driven:
-            tasks = DrivenTasks(settings, memory, jobs)
+            tasks = DrivenTasks(settings, place, places, memory, jobs)
         else:
-            tasks = SearchedTasks(settings, _names(settings, place.world.n_states, notify), memory, pool)
-        life = _GridLife(settings, tasks, memory, map_watch, jobs, watch, notify)
-        life.settle(place, occupancy, 0)
+            tasks = SearchedTasks(settings, place, places, memory, names, pool)
+        life = _GridLife(settings, place, places, tasks, memory, jobs, watch)
         run_life(
             life,
             settings.n_tasks,
@@ -147,25 +142,18 @@ def live(
         )
         report = life.report(time.perf_counter() - began)
         building = None
-        if life.given is not None:
-            building = KnownBuilding.recalled(life.place, life.given, memory, tasks.lore.model)
+        if occupancy is not None:
+            building = KnownBuilding.recalled(place, occupancy, memory, tasks.lore.model)
     return Life(
-        report,
-        life.place.world,
-        life.results,
-        tasks.lore,
-        stop.is_set(),
-        start=life.places.start,
-        first_here=life.first_here,
-        building=building,
+        report, place.world, life.results, tasks.lore, stop.is_set(), start=places.start, building=building
     )
 
 
 def _names(settings: LifeSettings, places: int, notify: Callable[[str], None]) -> list[str]:
     """Names of the agents that live; in a big world, `scratch` lives beside the others only if it is asked for."""
     small = places <= baselines.BIG
-    names = agents_for(settings.agent, settings.learner, small if settings.compare is None else settings.compare)
-    if settings.compare is None and names != agents_for(settings.agent, settings.learner):
+    names = agents_for(settings.agent, small if settings.compare is None else settings.compare)
+    if settings.compare is None and names != agents_for(settings.agent):
         building = settings.world.domain == "building"
         smaller = "a larger cell (--set cell=METRES)" if building else "a smaller size (--set size=CELLS)"
         notify(
@@ -194,55 +182,25 @@ class _GridLife:
     """A life in progress: where it is lived, its tasks, and what memory stores of them; a `RunningLife`."""
 
     settings: LifeSettings
+    place: Place
+    places: OwnPlaces
     tasks: TasksOfLife
     memory: Memory
-    map_watch: MapWatch | None
     jobs: JobProgress | None
     watch: Watcher | None
-    notify: Callable[[str], None]
-    unstored: list[Record] = field(default_factory=list)
     finished: list[dict] = field(default_factory=list)
     results: list[dict[str, Result]] = field(default_factory=list)
-    map_changes: list[dict] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.tasks_before = self.memory.tasks(self.settings.memory.robot)
-
-    def settle(self, place: Place, given: OccupancyMap | None, first: int) -> None:
-        """Live at `place` from task number `first` on; changes nothing if a goal is not free there."""
-        places = own_places(self.settings, place, self.memory, first)
-        self.tasks.settle(place, places)
-        self.place, self.given, self.first_here, self.places = place, given, first, places
-        self.unstored = self.unstored + place.news
+        self.unstored: list[Record] = self.place.news
 
     def recall(self) -> None:
         """The first agent knows what memory holds; at the start all agents do, and then learn by themselves."""
         self.tasks.recall()
 
-    def _look_at_map(self, map_watch: MapWatch, index: int, done: int) -> None:
-        """Replace the world if the watched map has changed; keep it if the new map cannot be used."""
-        change: dict = {"before_task": index}
-        line = f"map {self.settings.world.map} changed before task {index}"
-        try:
-            given = map_watch.changed()
-            if given is None:
-                return
-            world = world_from_settings(self.settings.world, given)
-            self.settle(_place(self.settings, world, given, self.memory, self.tasks.names[0]), given, done)
-            # All agents move to the new map, and still know what agrees with it.
-            agreement, n_states = self.tasks.carry(), self.place.world.n_states
-            change |= {"used": True, "n_states": n_states, "agreement": round(agreement, 4)}
-            line += f": {n_states:,} places, {int(100 * agreement)} % of the remembered ones agree"
-        except InputError as error:
-            change |= {"used": False, "reason": str(error)}
-            line += f", but cannot be used: {error}; the last good map stays"
-        self.map_changes.append(change)
-        self.notify(line)
-
     def live(self, number: int, seq: int, stop: Event) -> LivedTask:
-        """Live a task with each agent; look at the watched map before."""
-        if self.map_watch and seq:
-            self._look_at_map(self.map_watch, number, seq)
+        """Live a task with each agent."""
         own = self.places.goal(seq)
         lived = self.tasks.live(number, seq, own, stop)
         world = self.place.world
@@ -274,7 +232,7 @@ class _GridLife:
         """The JSON document of ``lifelore live``."""
         settings, world, robot = self.settings, self.place.world, self.settings.memory.robot
         document = settings_document(settings, world, self.memory.location)
-        report = {
+        return {
             "domain": settings.world.domain,
             "how": self.tasks.how,
             "map": document["map"],
@@ -287,4 +245,3 @@ class _GridLife:
             "memory": {"tasks_before": self.tasks_before, "tasks_after": self.memory.tasks(robot)},
             "seconds": round(seconds, 3),
         }
-        return report | ({"map_changes": self.map_changes} if settings.watch else {})

@@ -1,4 +1,4 @@
-"""Settings of `live`, with five groups: the world, the learning, the sensor, the action prior and the memory.
+"""Settings of `live`, with three groups: the world, the sensor and the memory; and those of action priors.
 
 The first sentence on a setting stands in ``lifelore live --settings``.
 """
@@ -10,10 +10,8 @@ from lifelore.action.priors.action_prior import FORMS, MOST_WEIGHT
 from lifelore.action.priors.exploration import TIES
 from lifelore.agent.live.goals.job_list import Job
 from lifelore.core.errors import InputError
-from lifelore.core.learning.q_learner import QLearning
 from lifelore.domains.worlds import WorldSettings
 
-LEARNERS = ("model", "q")
 CONDITIONS = ("observation", "state", "none")
 SENSORS = ("touch", "lidar")
 DEFAULT_RANGE = 5.0
@@ -23,7 +21,7 @@ MOST_RANGE = 1e3
 MOST_REWARD = 1e6
 """Largest magnitude of rewards and of α⁰: a larger number hides the others by rounding."""
 LONGEST_NAME = 200
-LIFE_KEYS = {"condition": "prior", "kind": "sensor", "location": "memory"}
+LIFE_KEYS = {"kind": "sensor", "location": "memory"}
 """The key of each setting whose key, flat beside all others, is not its name."""
 
 Place = tuple[float, float] | str
@@ -153,12 +151,16 @@ class LifeSettings:
     ----------
     world : WorldSettings
         The world to live in; `world.seed` draws the tasks and the agents' choices too.
-    learner : {"model", "q"}
-        Whether the agents plan on a learnt model of the moves, or learn by Q-learning as in the thesis.
-    learning : QLearning
-        For learner model, only ``episodes`` and ``max_steps`` apply. Their defaults: `LifeSettings.episode_cap`,
-        `LifeSettings.step_cap`.
-    prior : PriorSettings
+    prior : {"observation", "state", "none"}
+        Whether the action prior is conditioned on what is observed in a cell, on the cell, or there is none.
+    alpha0 : float
+        Pseudo-count α⁰ of every action in the prior, > 0.
+    weight : float
+        Weight w(π) of each finished task in the prior, ≥ 0.
+    episodes : int, optional
+        Maximum number of episodes of a task; by default 100, or as many as give ten steps to each state.
+    max_steps : int, optional
+        Maximum number of steps of an episode; by default 2,000 in buildings, 1,000 in the thesis's worlds.
     memory : MemorySettings
     sensor : SensorSettings
     agent : str
@@ -188,8 +190,6 @@ class LifeSettings:
         times, while goals are driven to; by default in a generated office and not on your own map.
     move_names : bool
         Whether a name of `goals` may move from its remembered place to one that is more than a cell away.
-    watch : bool
-        Whether to read the map again between tasks when its files have changed.
     jobs : int
         Number of threads, on which results do not depend.
 
@@ -200,15 +200,17 @@ class LifeSettings:
 
     Examples
     --------
-    >>> settings = LifeSettings(WorldSettings("lattice", seed=3), "q", tasks=5)
+    >>> settings = LifeSettings(WorldSettings("lattice", seed=3), tasks=5)
     >>> settings.seed, settings.step_cap, settings.episode_cap(n_states=342)
-    (3, 1000, 1000)
+    (3, 1000, 100)
     """
 
     world: WorldSettings = field(default_factory=WorldSettings)
-    learner: str = "model"
-    learning: QLearning = field(default_factory=QLearning)
-    prior: PriorSettings = field(default_factory=PriorSettings)
+    prior: str = "observation"
+    alpha0: float = 0.1
+    weight: float = 1.0
+    episodes: int | None = None
+    max_steps: int | None = None
     memory: MemorySettings = field(default_factory=MemorySettings)
     agent: str = "lore"
     compare: bool | None = None
@@ -218,14 +220,16 @@ class LifeSettings:
     jobs: int = 2
     goal: Place | None = None
     goals: tuple[Job, ...] = ()
-    watch: bool = False
     busy: bool | None = None
     move_names: bool = False
     sensor: SensorSettings = field(default_factory=SensorSettings)
     again: bool = False
 
     def __post_init__(self) -> None:
-        _check_choice("learner", self.learner, LEARNERS)
+        PriorSettings(self.prior, self.alpha0, self.weight)  # checks them
+        for name, value in (("episodes", self.episodes), ("max_steps", self.max_steps)):
+            if value is not None:
+                _check_whole(name, value, 1, 10**8)
         _check_whole("tasks", self.tasks, 1, 10**6)
         _check_whole("destinations", self.destinations, 0, 10**9)
         _check_whole("jobs", self.jobs, 1, 256)
@@ -253,18 +257,10 @@ class LifeSettings:
                 f"sensor lidar needs a building, whose map has lines of sight, got domain '{self.world.domain}'; "
                 "use sensor touch"
             )
-        if self.sensor.kind == "lidar" and self.learner != "model":
-            raise InputError(f"sensor lidar needs learner model, which plans on places seen, got '{self.learner}'")
-        if self.watch and self.world.map is None:
-            raise InputError("watch needs the map of a building, got none; give the YAML file of a ROS map")
 
     def _check_driven(self) -> None:
         """Refuse what chooses how to search."""
-        for name, value, default in (
-            ("agent", self.agent, "lore"),
-            ("learner", self.learner, "model"),
-            ("sensor", self.sensor.kind, "touch"),
-        ):
+        for name, value, default in (("agent", self.agent, "lore"), ("sensor", self.sensor.kind, "touch")):
             if value != default:
                 raise InputError(
                     f"{name} applies to hidden goals, which are searched, got '{value}' with known goals, which "
@@ -292,21 +288,13 @@ class LifeSettings:
         return self.world.seed
 
     def episode_cap(self, n_states: int) -> int:
-        """Maximum number of episodes of a task in a world of `n_states`.
-
-        The default of learner q is 1,000. The default of learner model is 100, or the number of episodes that
-        gives ten steps to each state where that is more.
-        """
-        if self.learner == "model" and self.learning.episodes is None:
-            return max(100, ceil(10 * n_states / self.step_cap))
-        return self.learning.episode_cap
+        """Maximum number of episodes of a task in a world of `n_states`."""
+        return self.episodes or max(100, ceil(10 * n_states / self.step_cap))
 
     @property
     def step_cap(self) -> int:
-        """Maximum number of steps of an episode; by default 2,000 in buildings, 1,000 in the thesis's worlds."""
-        if self.world.domain == "building" and self.learning.max_steps is None:
-            return 2000
-        return self.learning.step_cap
+        """Maximum number of steps of an episode."""
+        return self.max_steps or (2000 if self.world.domain == "building" else 1000)
 
 
 def _check_world(world: WorldSettings) -> None:

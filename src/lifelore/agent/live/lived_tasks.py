@@ -5,9 +5,8 @@ from dataclasses import dataclass, field
 from threading import Event
 from typing import Any, Protocol
 
-from lifelore.agent.live.buildings.recognition import Place
 from lifelore.agent.live.driven.drive_job import DrivenJob
-from lifelore.agent.live.goals.own_places import OwnGoal, OwnPlaces
+from lifelore.agent.live.goals.own_places import OwnGoal
 from lifelore.agent.live.lore import Lore
 from lifelore.agent.live.task_result import TaskResult
 from lifelore.core.protocols import Record
@@ -51,16 +50,8 @@ class TasksOfLife(Protocol):
         """Knowledge of the first agent."""
         ...
 
-    def settle(self, place: Place, places: OwnPlaces) -> None:
-        """Live in this place from now on."""
-        ...
-
     def recall(self) -> None:
         """The first agent knows what memory holds; at the start all agents do, and then learn by themselves."""
-        ...
-
-    def carry(self) -> float:
-        """Take what was known over to a place that replaces the last one; the share of it that agrees."""
         ...
 
     def live(self, number: int, seq: int, own: OwnGoal | None, stop: Event) -> LivedByAll:

@@ -103,24 +103,6 @@ class Lore:
         self.prior.merge(news)
         return news.to_record({"prior": self.scope.kind, "actions": list(MOVE_NAMES)})
 
-    def carry(self, old: "Lore", memory: Memory) -> float:
-        """Know what `old` knew of an earlier map, where it agrees with this one; the share of its cells that do.
-
-        A cell agrees if its percept is the remembered one. Beside them, the moves that memory holds for exactly
-        this map are known. Nothing is carried to another building.
-        """
-        world, corner = self.world, self.grid.corner
-        stored = memory.recall(transitions.KIND, world.fingerprint, transitions.VERSION)
-        self.model = transitions.from_record(world, stored, corner)
-        if old.grid.frame != self.grid.frame:
-            return 0.0
-        record = transitions.to_record(old.world, transitions.model_table(old.world, old.model), UNKNOWN, old.grid)
-        carried = transitions.from_record(world, record, corner)
-        transitions.forget_changed(world, carried)
-        np.copyto(self.model.target, carried.target, where=carried.target != UNKNOWN)
-        np.copyto(self.model.percept, carried.percept, where=carried.percept != UNKNOWN)
-        return transitions.agreement(world, record, corner)
-
     @property
     def known_places(self) -> int:
         """Number of states that the agent knows."""

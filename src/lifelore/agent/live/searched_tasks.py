@@ -31,57 +31,46 @@ class SearchedTasks:
     Parameters
     ----------
     settings : LifeSettings
+    place : Place
+    places : OwnPlaces
+    memory : Memory
     names : list of str
         Agents that live the same tasks.
-    memory : Memory
     pool : Executor
         Runs the agents side by side.
     """
 
     how = SEARCHED
 
-    def __init__(self, settings: LifeSettings, names: list[str], memory: Memory, pool: Executor) -> None:
+    def __init__(
+        self,
+        settings: LifeSettings,
+        place: Place,
+        places: OwnPlaces,
+        memory: Memory,
+        names: list[str],
+        pool: Executor,
+    ) -> None:
         self.names = names
         self._kinds = {name: agent_kind(name, settings) for name in names}
-        self._settings, self._memory, self._pool = settings, memory, pool
+        self._settings, self._place, self._memory, self._pool = settings, place, memory, pool
         self._lores: dict[str, Lore] = {}
+        self._goals = hidden_goals(place.world, settings, place.grid.frame, places.start)
+        self._starts = None if places.start is None else np.array([places.start], np.int32)
+        self._sight = None if settings.sensor.reach is None else _sight_lists(place, settings.sensor.reach)
 
     @property
     def lore(self) -> Lore:
         """Knowledge of the first agent."""
         return self._lores[self.names[0]]
 
-    def settle(self, place: Place, places: OwnPlaces) -> None:
-        """Live in this place from now on."""
-        settings = self._settings
-        self._goals = hidden_goals(place.world, settings, place.grid.frame, places.start)
-        self._starts = None if places.start is None else np.array([places.start], np.int32)
-        self._sight = None if settings.sensor.reach is None else _sight_lists(place, settings.sensor.reach)
-        self._place, self._scope = place, prior_scope(place.world, settings.prior.condition)
-
     def recall(self) -> None:
         """The first agent knows what memory holds; at the start all agents do, and then learn by themselves."""
-        first = self._recalled()
+        settings, place = self._settings, self._place
+        scope = prior_scope(place.world, settings.prior)
+        first = Lore.recalled(place.world, scope, settings.alpha0, self._memory, place.grid)
         self._lores = self._lores or {name: first.copy() for name in self.names}
         self._lores[self.names[0]] = first
-
-    def carry(self) -> float:
-        """Take over what each agent knew, where it agrees with the new place; the share for the first agent."""
-        first, lores, agreement = self._recalled(), {}, 0.0
-        for i, name in enumerate(self.names):
-            lore, old = first.copy() if i else first, self._lores[name]
-            share = lore.carry(old, self._memory)
-            if i and self._scope.key == old.scope.key:
-                lore.prior = old.prior
-            if not i:
-                agreement = share
-            lores[name] = lore
-        self._lores = lores
-        return agreement
-
-    def _recalled(self) -> Lore:
-        alpha0 = self._settings.prior.alpha0
-        return Lore.recalled(self._place.world, self._scope, alpha0, self._memory, self._place.grid)
 
     def live(self, number: int, seq: int, own: OwnGoal | None, stop: Event) -> LivedByAll:
         """Live a task with each agent; they learn on the same random streams."""
@@ -113,7 +102,7 @@ class SearchedTasks:
         """Add a finished task to the knowledge of one agent; return the records that memory is to store."""
         kind, lore, records = self._kinds[name], self._lores[name], []
         if kind.uses_prior:
-            records.append(lore.learn_prior(result.best, goal, self._settings.prior.weight))
+            records.append(lore.learn_prior(result.best, goal, self._settings.weight))
         if kind.remembers:
             records.append(lore.model_news())
             if self._settings.destinations and result.reached:

@@ -25,7 +25,7 @@ def settings_document(settings: LifeSettings, world: GridWorld, location: str) -
         "goals": len(settings.goals) or None,
         "busy": settings.in_busy_building if settings.driven else None,
     }
-    for switch in ("again", "watch", "move_names", "refresh"):
+    for switch in ("again", "move_names", "refresh"):
         values[switch] = values[switch] or None
     return {key: value for key, value in values.items() if value is not None or key in _ALWAYS} | world.about
 

@@ -1,7 +1,7 @@
-"""Searches for the hidden goal of one task, by the model-based learner or by Q-learning (Alg. 2, 4)."""
+"""Searches for the hidden goal of one task by the model-based learner."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from threading import Event
 from typing import Any
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.back_off import posterior_mean
-from lifelore.action.priors.exploration import prior_rows, try_costs
+from lifelore.action.priors.exploration import try_costs
 from lifelore.agent.life.loop import Stopped
 from lifelore.agent.live.baselines import AgentKind
 from lifelore.agent.live.life_settings import LifeSettings
@@ -19,11 +19,9 @@ from lifelore.core.learning.curve import EPISODE, STEP, Curve, first_episodes, n
 from lifelore.core.learning.known_value import KnownValue
 from lifelore.core.learning.known_world import best_known_actions, known_policy, unknown_world
 from lifelore.core.learning.model_learning import StateInfo, check_deterministic, explore, new_model_learner
-from lifelore.core.learning.q_learning import learn, new_learner, uniform_rows
 from lifelore.core.learning.sight_search import FOUND_STEP, explore_by_sight, new_sight_search
 from lifelore.core.learning.tour_search import explore_on_tour
 from lifelore.core.mdp import Tables, Task
-from lifelore.core.planning.planning import greedy_policy, learnt_best_actions, mean_start_value, policy_values
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 
@@ -31,8 +29,6 @@ SightLists = tuple[NDArray[np.int64], NDArray[np.int32]]
 """Begin (n_states + 1,) and states in sight (n_pairs,), as in `SightSearch`."""
 CHECK_EVERY, CHECK_EVERY_BY_SIGHT = 100, 10
 """Steps between two evaluations of the greedy policy, by touch and by sight; the same for every agent."""
-CHUNK = 100_000
-"""Steps of Q-learning between checks of the stop event after the threshold is reached: a few milliseconds."""
 NEAR = 1e-9
 """Share of the optimal return around the threshold within which the exact value decides. It is far larger than the
 rounding error of the value that is updated step by step."""
@@ -62,23 +58,16 @@ class TaskSearch:
     def live(self, kind: AgentKind, lore: Lore) -> TaskResult:
         """Learn the task with an agent of this kind; changes the model in `lore`.
 
-        Raises
-        ------
-        Stopped
-            The stop event is set.
-        """
-        return self._with_q(kind, lore) if self.settings.learner == "q" else self._with_model(kind, lore)
-
-    def _stream(self, name: str) -> np.random.Generator:
-        """A random stream of this task, which all agents share: "world" draws starts, "own" an agent's choices."""
-        return stream(self.settings.seed, "task", self.number, name)
-
-    def _with_model(self, kind: AgentKind, lore: Lore) -> TaskResult:
-        """Explore until the greedy policy has 80 % of the optimal value, or the cap is reached.
+        It explores until the greedy policy has 80 % of the optimal value, or the cap is reached.
 
         With a lidar the learner perceives places at a distance, else by touch. It may then know enough as soon as
         it sees the goal; it still walks to the end of that episode, which counts for the returns and the model
         alone. An agent that remembers visits the places known before the task in the order of a tour.
+
+        Raises
+        ------
+        Stopped
+            The stop event is set.
         """
         tables, discount, n = self.tables, self.task.domain.discount, self.world.n_states
         check_deterministic(tables)
@@ -120,6 +109,10 @@ class TaskSearch:
             complete=episode,
         )
 
+    def _stream(self, name: str) -> np.random.Generator:
+        """A random stream of this task, which all agents share: "world" draws starts, "own" an agent's choices."""
+        return stream(self.settings.seed, "task", self.number, name)
+
     def _perceived(self, kind: AgentKind, lore: Lore) -> StateInfo:
         percepts = self.world.percepts
         if not kind.uses_prior:
@@ -127,45 +120,6 @@ class TaskSearch:
         codes, row = np.unique(lore.scope.contexts, return_inverse=True)
         probs = posterior_mean(lore.prior, codes, lore.scope.coarser)
         return StateInfo(percepts, row.astype(np.int32), try_costs(probs))
-
-    def _with_q(self, kind: AgentKind, lore: Lore) -> TaskResult:
-        """Run all episodes of ε-greedy Q-learning, whose exploration the prior guides."""
-        settings, tables, discount = self.settings, self.tables, self.task.domain.discount
-        rows = uniform_rows(tables)
-        if kind.uses_prior:
-            # A separate stream: a draw of the prior must not change the choices shared with the other agents.
-            drawn = self._stream("prior")
-            rows = prior_rows(
-                tables,
-                lore.scope.contexts,
-                lambda codes: lore.prior.probs(codes, settings.prior.form, generator=drawn),
-                settings.prior.ties,
-            )
-        episodes, max_steps = settings.episode_cap(tables.n_states), settings.step_cap
-        schedule = replace(settings.learning, episodes=episodes, max_steps=max_steps).schedule(discount)
-        learner = new_learner(tables.n_states, tables.n_actions, self._stream("world"), self._stream("own"))
-        curve = new_curve(episodes)
-
-        def run(budget: int) -> int:
-            return learn(tables, rows, schedule, learner, curve, budget)
-
-        def value() -> float:
-            return mean_start_value(tables, policy_values(tables, greedy_policy(learner.q), discount))
-
-        found = self._until_learnt(run, value, learner.cursor, curve)
-        while run(CHUNK):
-            if self.stop.is_set():
-                raise Stopped
-        return TaskResult(
-            **found,
-            first_return=float(curve.returns[0]),
-            steps_to_goal=_first_arrival(curve, max_steps),
-            final_return=value(),
-            policy=greedy_policy(learner.q),
-            best=learnt_best_actions(learner.q),
-            curve=curve,
-            complete=episodes,
-        )
 
     def _until_learnt(
         self, run: Callable[[int], int], value: Callable[[], float], cursor: NDArray[np.int64], curve: Curve

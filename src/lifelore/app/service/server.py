@@ -30,7 +30,6 @@ def serve(
     port: int,
     ready: Callable[[str], None],
     create: Callable[[ServiceSettings], FastAPI] = create_app,
-    until: int | None = None,
 ) -> None:
     """Serve until SIGINT or SIGTERM, with httptools, and with uvloop where it is installed.
 
@@ -43,8 +42,6 @@ def serve(
         Called with the URL once connections are accepted.
     create : callable
         Makes the application; by default without pages.
-    until : int, optional
-        Descriptor of a file at whose end the service stops too: of a pipe that closes when its other process dies.
 
     Raises
     ------
@@ -77,10 +74,7 @@ def serve(
     # The file of tokens is read again by itself; other programs send SIGHUP to have that done.
     signal.signal(signal.SIGHUP, signal.SIG_IGN)
     ready(f"http://{name}:{listening.getsockname()[1]}")
-    server = _Server(config)
-    if until is not None:
-        threading.Thread(target=_stop_at_end, args=(until, server), daemon=True).start()
-    server.run(sockets=[listening])
+    _Server(config).run(sockets=[listening])
 
 
 class _Server(uvicorn.Server):
@@ -103,16 +97,6 @@ def _end(sig: int) -> None:
     for child in multiprocessing.active_children():
         child.kill()
     os._exit(128 + sig if sig == signal.SIGINT else 0)
-
-
-def _stop_at_end(file: int, server: uvicorn.Server) -> None:
-    try:
-        while os.read(file, 1024):
-            pass
-    except OSError:
-        pass  # no open file has ended too
-    server.should_exit = True
-    _end_later(signal.SIGTERM)
 
 
 def _listening(host: str, port: int) -> socket.socket:

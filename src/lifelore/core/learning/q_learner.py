@@ -31,9 +31,9 @@ class QLearning:
     Parameters
     ----------
     episodes : int, optional
-        Maximum number of episodes of a task, from 1 to 10⁸; 1,000, or 100 or more where the learner plans.
+        Maximum number of episodes of a task, from 1 to 10⁸; 1,000.
     max_steps : int, optional
-        Maximum number of steps of an episode, from 1 to 10⁹; 1,000, in a life in a building 2,000.
+        Maximum number of steps of an episode, from 1 to 10⁹; 1,000.
     learning_rate : float
         Learning rate α of Q-learning, in [0, 1].
     epsilon : float

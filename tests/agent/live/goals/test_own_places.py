@@ -79,7 +79,7 @@ def test_a_job_list_is_lived_in_order_and_its_names_are_known_later(room):
 def test_the_folder_of_a_building_has_clear_paths_to_the_point_and_masks(room, tmp_path):
     life = life_in(room, goals=jobs(Destination(LAB, "lab"), Destination(DOCK)))
     written = write_portfolio(life, str(tmp_path / "out"))
-    of_searches = {"learning_curves.png", "prior.png"}
+    of_searches = {"learning_curves.png"}
     assert [Path(path).name for path in written] == [name for name in FILES if name not in of_searches]
     with (tmp_path / "out" / "paths.csv").open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -176,11 +176,9 @@ def test_places_that_break_a_rule_are_found_before_the_first_task(room, changes,
     [
         ({"goal": (1, 1), "destinations": 3, "domain": "lattice"}, "goal and destinations exclude each other"),
         ({"goal": (1.0, 1.0), "agent": "scratch"}, "agent applies to hidden goals"),
-        ({"goal": (1.0, 1.0), "learner": "q"}, "learner applies to hidden goals"),
         ({"busy": True}, "busy applies to goals that are driven to"),
         ({"goal": (1.0, 1.0), "goals": jobs(Destination(LAB))}, "goal and goals exclude each other"),
         ({"goals": jobs(Destination(LAB)), "domain": "lattice"}, "goals needs a building"),
-        ({"watch": True, "domain": "building"}, "watch needs the map"),
     ],
 )
 def test_settings_that_exclude_each_other(changes, words):

@@ -1,12 +1,5 @@
-"""The graph of the moves that memory holds about a building, compared with the building's map.
+"""The moves that memory holds about a building, compared with the building's map."""
 
-Nodes are cells by number (`cells_of`), also cells that the map no longer has, so that a way through a
-door that was closed since can be reported. A robot can drive back the way it came: a remembered move counts in
-both directions, unless memory holds that the move back was refused or led elsewhere.
-"""
-
-from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -18,100 +11,62 @@ from lifelore.agent.live import transitions
 from lifelore.agent.live.buildings.recognition import Place
 from lifelore.agent.live.driven.route import chain_to
 from lifelore.core.errors import NotFoundError
+from lifelore.core.protocols import Record
 from lifelore.domains.grids.cell_numbers import COLUMN_BITS
-from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.memory import Memory
 
-_OPPOSITE = np.array([1, 0, 3, 2])
-"""The action that leads back, for each action in the order of `MOVES`."""
+_MORE = 1e-6
+"""What a contradicted move costs beyond a move of the map: of equally short ways, that of the map is taken."""
 
 
-@dataclass(frozen=True, eq=False)
-class RememberedMoves:
-    """Moves between different cells.
+def remembered_record(place: Place, memory: Memory) -> Record:
+    """What memory holds about the moves of a building, or of an earlier version of it.
 
-    world : the building
-    cells : (n,) numbers of the cells, ascending
-    tail, head : (n_moves,) indices into `cells`
-    true : (n_moves,) whether the map has the move
+    Raises
+    ------
+    NotFoundError
+        Memory holds nothing of this building.
     """
+    world, record = place.world, place.earlier.record if place.earlier else None
+    if record is None or record.key != world.fingerprint:
+        record = memory.recall(transitions.KIND, world.fingerprint, transitions.VERSION) or record
+    if record is None:
+        settings = ", ".join(f"{name} {value:g}" for name, value in sorted(world.about.items()))
+        raise NotFoundError(
+            f"memory {memory.location} knows no moves of this building with {settings}; live there first "
+            "(lifelore live --map), or give the options with which the robot lived there"
+        )
+    return record
 
-    world: GridWorld
-    cells: NDArray[np.int64]
-    tail: NDArray[np.int64]
-    head: NDArray[np.int64]
-    true: NDArray[np.bool_]
 
-    @classmethod
-    def recalled(cls, place: Place, memory: Memory) -> "RememberedMoves":
-        """The moves in memory about a building or an earlier version of it.
+def contradicted_moves(place: Place, record: Record, start: int, goal: int) -> NDArray[np.float64]:
+    """Points (n, 2) in metres, halfway on remembered moves that the map lacks and that would shorten the way.
 
-        Raises
-        ------
-        NotFoundError
-            Memory holds no transitions of this building.
-        """
-        world, corner = place.world, place.grid.corner
-        record = place.earlier.record if place.earlier else None
-        if record is None or record.key != world.fingerprint:
-            record = memory.recall(transitions.KIND, world.fingerprint, transitions.VERSION) or record
-        if record is None:
-            settings = ", ".join(f"{name} {value:g}" for name, value in sorted(world.about.items()))
-            raise NotFoundError(
-                f"memory {memory.location} knows no moves of this building with {settings}; live there first "
-                "(lifelore live --map), or give the options with which the robot lived there"
-            )
-        width = world.neighbour.shape[1] + 1
-        source, column = record.slots // width, record.slots % width
-        moved = (column < width - 1) & (record.values >= 0) & (record.values != source)
-        source, column, target = source[moved], column[moved], record.values[moved]
-        back = _OPPOSITE[column]
-        slots = np.append(record.slots, -1)
-        behind = np.searchsorted(record.slots, target * width + back)
-        untold = (slots[behind] != target * width + back) | (np.append(record.values, -1)[behind] < 0)
-        source, target = np.r_[source, target[untold]], np.r_[target, source[untold]]
-        column = np.r_[column, back[untold]]
-        source, target = (transitions.cells_from(record, cells, corner) for cells in (source, target))
-        cells, ends = np.unique(np.concatenate([source, target]), return_inverse=True)
-        states = transitions.states_in(world, np.concatenate([source, target])).reshape(2, -1)
-        there = (states >= 0).all(axis=0)
-        true = there & (world.neighbour[states[0], column] == states[1])
-        tail, head = ends.reshape(2, -1)
-        return cls(world, cells, tail, head, true)
-
-    @cached_property
-    def states(self) -> NDArray[np.int64]:
-        """(n,) state in each cell, -1 where the map has none."""
-        return transitions.states_in(self.world, self.cells)
-
-    def reached(self, start: int, true_only: bool = True) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-        """Number of moves from cell index `start` to each cell, inf if none lead there; and the cell before it."""
-        used = self.true if true_only else np.ones_like(self.true)
-        edges = np.ones(int(used.sum())), (self.tail[used], self.head[used])
-        graph = sparse.csr_array(edges, shape=(len(self.cells),) * 2)
-        return csgraph.dijkstra(graph, indices=start, unweighted=True, return_predecessors=True)
-
-    def chain(self, start: int, goal: int, true_only: bool = True) -> list[int]:
-        """Cell indices of a shortest way, `start` first; empty if no way is known."""
-        return chain_to(goal, start, self.reached(start, true_only)[1])
-
-    def contradicted(self, chain: list[int]) -> NDArray[np.float64]:
-        """Points (n, 2) in metres, halfway on the moves of a chain that the map does not have."""
-        true = set(zip(self.tail[self.true].tolist(), self.head[self.true].tolist(), strict=True))
-        wrong = [move for move in pairwise(chain) if move not in true]
-        return self.points(np.array(wrong, int).reshape(-1, 2).ravel()).reshape(-1, 2, 2).mean(axis=1)
-
-    @property
-    def open(self) -> NDArray[np.bool_]:
-        """(n_states, 4) bool, the moves of the map that memory holds."""
-        tail, head = self.states[self.tail[self.true]], self.states[self.head[self.true]]
-        joins = self.world.neighbour[tail] == head[:, None]
-        known = np.zeros(self.world.neighbour.shape, np.bool_)
-        np.logical_or.at(known, tail, joins)
-        return known
-
-    def points(self, index: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Centres (n, 2) in metres of the map's frame, of cells by index."""
-        frame, number = self.world.frame, self.cells[index]
-        from_bottom, column = number >> COLUMN_BITS, number & ((1 << COLUMN_BITS) - 1)
-        return frame.metres(column + 0.5, from_bottom + 0.5)
+    `start` and `goal` are states. Cells that the map no longer has count too, so that the points show a door that
+    was closed since.
+    """
+    world, width = place.world, place.world.neighbour.shape[1] + 1
+    source, column = record.slots // width, record.slots % width
+    moved = (column < width - 1) & (record.values >= 0) & (record.values != source)
+    cells = np.column_stack([source, record.values])[moved]
+    cells = transitions.cells_from(record, cells, place.grid.corner)
+    states = transitions.states_in(world, cells)
+    on_map = (states >= 0).all(axis=1) & (world.neighbour[states[:, 0], column[moved]] == states[:, 1])
+    lacking = ~on_map & (cells >= 0).all(axis=1)
+    if not lacking.any():
+        return np.empty((0, 2))
+    cells, states = cells[lacking], states[lacking]
+    # Cells that the map lacks become nodes behind the states.
+    gone, number = np.unique(cells[states < 0], return_inverse=True)
+    states[states < 0] = world.n_states + number
+    tail, action = np.nonzero(world.neighbour >= 0)
+    both_ways = np.unique(np.vstack([states, states[:, ::-1]]), axis=0)
+    edges = np.vstack([both_ways, np.column_stack([tail, world.neighbour[tail, action]])])
+    weight = np.repeat([1 + _MORE, 1.0], [len(both_ways), len(tail)])
+    graph = sparse.csr_array((weight, edges.T), shape=(world.n_states + len(gone),) * 2)
+    chain = chain_to(goal, start, csgraph.dijkstra(graph, indices=start, return_predecessors=True)[1])
+    lost = set(map(tuple, both_ways.tolist()))
+    used = np.array([move for move in pairwise(chain) if move in lost], np.int64).reshape(-1, 2)
+    used_cells = np.r_[transitions.cells_of(world), gone][used]
+    row, column = used_cells >> COLUMN_BITS, used_cells & ((1 << COLUMN_BITS) - 1)
+    return world.frame.metres(column.mean(axis=1) + 0.5, row.mean(axis=1) + 0.5)

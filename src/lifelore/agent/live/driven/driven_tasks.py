@@ -32,6 +32,8 @@ class DrivenTasks:
     Parameters
     ----------
     settings : LifeSettings
+    place : Place
+    places : OwnPlaces
     memory : Memory
     jobs : JobProgress, optional
         Of a job list.
@@ -39,34 +41,26 @@ class DrivenTasks:
 
     how = DRIVEN
 
-    def __init__(self, settings: LifeSettings, memory: Memory, jobs: JobProgress | None) -> None:
+    def __init__(
+        self, settings: LifeSettings, place: Place, places: OwnPlaces, memory: Memory, jobs: JobProgress | None
+    ) -> None:
         compare = settings.in_busy_building if settings.compare is None else settings.compare
         self.names = [MEMORY, MAP_ONLY] if compare else [MEMORY]
-        self._settings, self._memory, self._jobs = settings, memory, jobs
+        self._settings, self._place, self._places, self._memory, self._jobs = settings, place, places, memory, jobs
+        self._busy = BusyBuilding(place.world, settings.seed) if settings.in_busy_building else None
 
     @property
     def lore(self) -> Lore:
         """The moves that memory knows."""
         return self._lore
 
-    def settle(self, place: Place, places: OwnPlaces) -> None:
-        """Live in this place from now on."""
-        self._place, self._places = place, places
-        self._busy = BusyBuilding(place.world, self._settings.seed) if self._settings.in_busy_building else None
-
     def recall(self) -> None:
         """Know what memory holds of the building, and where the robot stands."""
         place, memory = self._place, self._memory
-        scope = prior_scope(place.world, self._settings.prior.condition)
-        self._lore = Lore.recalled(place.world, scope, self._settings.prior.alpha0, memory, place.grid)
+        scope = prior_scope(place.world, self._settings.prior)
+        self._lore = Lore.recalled(place.world, scope, self._settings.alpha0, memory, place.grid)
         self._travel = Travel.recalled(place.world, place.grid, memory)
         self._clock = RobotClock.recalled(place, self._settings.memory.robot, memory)
-
-    def carry(self) -> float:
-        """Take over the remembered moves that agree with the new place; the share that agrees."""
-        old = self._lore
-        self.recall()
-        return self._lore.carry(old, self._memory)
 
     def live(self, number: int, seq: int, own: OwnGoal | None, stop: Event) -> LivedByAll:
         """Drive to the goal with memory, and again on the map alone, from one start at one clock."""

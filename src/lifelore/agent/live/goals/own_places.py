@@ -42,22 +42,21 @@ class OwnPlaces:
     """Start and goals of a life.
 
     start : state in which every episode starts; None: any
-    goals : a goal for each task from task `first` of this life on, or one goal for all; empty: goals are drawn
+    goals : a goal for each task of this life, or one goal for all; empty: goals are drawn
     """
 
     start: int | None = None
     goals: tuple[OwnGoal, ...] = ()
-    first: int = 0
 
     def goal(self, seq: int) -> OwnGoal | None:
         """The goal of task number `seq` of this life; None if it is drawn."""
         if not self.goals:
             return None
-        return self.goals[0] if len(self.goals) == 1 else self.goals[seq - self.first]
+        return self.goals[0] if len(self.goals) == 1 else self.goals[seq]
 
 
-def own_places(settings: LifeSettings, place: Place, memory: Memory, first: int = 0) -> OwnPlaces:
-    """The places that the settings name, from task number `first` of the life on.
+def own_places(settings: LifeSettings, place: Place, memory: Memory) -> OwnPlaces:
+    """The places that the settings name.
 
     Raises
     ------
@@ -73,7 +72,7 @@ def own_places(settings: LifeSettings, place: Place, memory: Memory, first: int 
         goals = () if settings.goal is None else (OwnGoal(grid_state("goal", settings.goal, world)),)
         return _checked(OwnPlaces(start, goals))
     asked = [("goal", Destination.of(settings.goal), None)] if settings.goal is not None else []
-    asked += [(f"goals line {job.line}", job.destination, job.time) for job in settings.goals[first:]]
+    asked += [(f"goals line {job.line}", job.destination, job.time) for job in settings.goals]
     if settings.start is None and not asked:
         return OwnPlaces()
     names, named = NamedPlaces.of(place), named_points(settings.goals)
@@ -90,7 +89,7 @@ def own_places(settings: LifeSettings, place: Place, memory: Memory, first: int 
         return OwnGoal(floor.state_at(argument, end.located_point), end, time, records)
 
     start = None if settings.start is None else located("start", Destination.of(settings.start)).state
-    places = OwnPlaces(start, tuple(for_each(lambda one: located(*one), asked)), first)
+    places = OwnPlaces(start, tuple(for_each(lambda one: located(*one), asked)))
     return places if settings.goals else _checked(places)
 
 

@@ -40,12 +40,11 @@ class GreedyPaths:
 
 
 def last_paths(life: Life) -> list[GreedyPaths]:
-    """Paths of the first agent in the last tasks on the present map: driven, or greedy by its policy."""
+    """Paths of the first agent in the last tasks: driven, or greedy by its policy."""
     if not life.results:
         return []
     world, name = life.world, next(iter(life.results[0]))
-    first = max(life.first_here, len(life.results) - TASKS_WITH_POLICY)
-    last = zip(life.report["tasks"][first:], life.results[first:], strict=True)
+    last = zip(life.report["tasks"][-TASKS_WITH_POLICY:], life.results[-TASKS_WITH_POLICY:], strict=True)
     paths = []
     for task, result in last:
         goal = int(world.state_of[tuple(task["goal"])])

@@ -44,7 +44,7 @@ def logged_life(life: Life) -> LoggedLife:
     building = life.building
     if building is None:
         raise InputError(f"log needs a life in a building, got domain {life.report['domain']}; leave it out")
-    tasks = {task["index"]: task for task in life.report["tasks"][life.first_here :]}
+    tasks = {task["index"]: task for task in life.report["tasks"]}
     ways = [
         (_named(tasks[paths.task]), _seconds(tasks[paths.task]), points)
         for paths in last_paths(life)
