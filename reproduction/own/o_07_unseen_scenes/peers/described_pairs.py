@@ -82,7 +82,7 @@ def default_near_pairs(cloud: LabelledCloud) -> tuple[NearPair, ...]:
     """Near pairs of a scene at the default settings: among objects, then each object with the table."""
     if not cloud.objects:
         return ()
-    objects = split_objects(voxelised(cloud, SETTINGS.voxel).cloud)
+    objects = split_objects(voxelised(cloud, SETTINGS.voxel))
     return tuple(near_pairs(objects, SETTINGS.near, SETTINGS.table_margin))
 
 
