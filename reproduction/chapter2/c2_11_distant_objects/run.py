@@ -49,7 +49,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 def bearing_pairs(cloud: LabelledCloud, truth: Sequence[PairLabel]) -> Iterator[tuple[Points, Points, str]]:
     """Points of a and b, and the relation, of each pair of objects with a relation."""
-    thin = voxelised(without_table(cloud), DEFAULT_CONTACT_SETTINGS.voxel).cloud
+    thin = voxelised(without_table(cloud), DEFAULT_CONTACT_SETTINGS.voxel)
     for label in truth:
         if TABLE not in (label.a, label.b) and label.relation != NONE and label.confidence >= LEAST_CONFIDENCE:
             yield thin.of(label.a), thin.of(label.b), label.relation

@@ -77,7 +77,7 @@ def _trimmed(cloud: LabelledCloud) -> LabelledCloud:
 def _thinned(cloud: LabelledCloud) -> LabelledCloud:
     size = 0.002
     while len(cloud.points) > MOST_POINTS:
-        cloud, size = voxelised(cloud, size).cloud, size * 1.15
+        cloud, size = voxelised(cloud, size), size * 1.15
     return cloud
 
 

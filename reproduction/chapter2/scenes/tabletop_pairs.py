@@ -116,7 +116,7 @@ def pair_rows(name: str, cloud: LabelledCloud, truth: Sequence[PairLabel]) -> li
     """
     bare = without_table(cloud)
     found = [interfaces(bare, loose_settings(*kernel)) for kernel in KERNELS]
-    thin = voxelised(bare, DEFAULT_CONTACT_SETTINGS.voxel).cloud
+    thin = voxelised(bare, DEFAULT_CONTACT_SETTINGS.voxel)
     rows = []
     for label in truth:
         if TABLE in (label.a, label.b) or label.confidence < LEAST_CONFIDENCE:

@@ -39,7 +39,7 @@ def timed_stages(
         return result
 
     settings = model.settings
-    thin = timed(STAGES[0], lambda: voxelised(cloud, settings.voxel).cloud)
+    thin = timed(STAGES[0], lambda: voxelised(cloud, settings.voxel))
     pairs = timed(STAGES[1], lambda: near_pairs(split_objects(thin), settings.near, settings.table_margin))
     found = timed(STAGES[2], lambda: tuple(interface(pair, settings) for pair in pairs))
     seen = timed(STAGES[3], lambda: scene_pairs(cloud, found, settings))

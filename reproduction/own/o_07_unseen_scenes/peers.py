@@ -39,7 +39,7 @@ Points = NDArray[np.float64]
 def pairs_of_objects(cloud: LabelledCloud) -> list[NearPair]:
     """The near pairs of objects of a scene at the default settings."""
     settings = DEFAULT_CONTACT_SETTINGS
-    thin = voxelised(without_table(cloud), settings.voxel).cloud
+    thin = voxelised(without_table(cloud), settings.voxel)
     return list(near_pairs(split_objects(thin), settings.near, settings.table_margin)) if thin.objects else []
 
 
@@ -66,7 +66,7 @@ def boxes(first: Points, second: Points) -> Points:
 def orientation_histogram(first: Points, second: Points) -> Points:
     """Shares of point pairs by elevation and distance, flat ``(ELEVATION_BINS * 8,)``, sums to 1."""
     coarse = [
-        voxelised(LabelledCloud(points, np.ones(len(points), np.int64)), GRAIN).cloud.points
+        voxelised(LabelledCloud(points, np.ones(len(points), np.int64)), GRAIN).points
         for points in (first, second)
     ]
     offset = coarse[0][:, None] - coarse[1][None]

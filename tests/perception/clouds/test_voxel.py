@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.clouds.voxel import thinned, voxelised
+from lifelore.perception.clouds.voxel import thinned, voxelised, voxels_of
 
 
 def by_dictionary(points, labels, size):
@@ -27,33 +27,32 @@ def by_dictionary(points, labels, size):
 def test_the_same_voxels_as_a_dictionary(seed, n, size, top_label):
     rng = np.random.default_rng(seed)
     points, labels = rng.uniform(-0.1, 0.1, (n, 3)), rng.integers(0, top_label + 1, n)
-    thin = voxelised(LabelledCloud(points, labels), size)
+    found, thin = voxels_of(points, size, labels), voxelised(LabelledCloud(points, labels), size)
     groups = by_dictionary(points, labels, size)
-    assert [np.flatnonzero(thin.inverse == v).tolist() for v in range(len(thin.counts))] == groups
-    assert thin.first.tolist() == [group[0] for group in groups]
-    assert thin.counts.tolist() == [len(group) for group in groups]
-    assert thin.cloud.labels.tolist() == [labels[group[0]] for group in groups]
-    np.testing.assert_allclose(thin.cloud.points, [points[group].mean(axis=0) for group in groups], atol=1e-15)
+    assert [np.flatnonzero(found.inverse == v).tolist() for v in range(len(found.counts))] == groups
+    assert found.first.tolist() == [group[0] for group in groups]
+    assert found.counts.tolist() == [len(group) for group in groups]
+    assert thin.labels.tolist() == [labels[group[0]] for group in groups]
+    np.testing.assert_allclose(thin.points, [points[group].mean(axis=0) for group in groups], atol=1e-15)
 
 
 def test_cubes_stand_on_multiples_of_the_size_whatever_else_is_there():
     pair = np.array([[0.0031, 0.001, 0.001], [0.0059, 0.001, 0.001]])
     for extra in (np.empty((0, 3)), np.array([[-0.0004, 0.0, 0.0]])):
-        cloud = LabelledCloud(np.concatenate([pair, extra]), np.ones(2 + len(extra), np.int64))
-        assert voxelised(cloud).inverse[:2].tolist() == [0, 0]
+        assert voxels_of(np.concatenate([pair, extra]), 0.003).inverse[:2].tolist() == [0, 0]
 
 
 def test_colour_and_camera_come_along():
     colours = np.array([[1, 2, 3], [4, 5, 6]], np.uint8)
     cloud = LabelledCloud(np.zeros((2, 3)), np.array([2, 2]), colours, np.ones(3))
-    thin = voxelised(cloud).cloud
+    thin = voxelised(cloud)
     assert thin.colours.tolist() == [[1, 2, 3]]
     assert thin.camera is cloud.camera
 
 
 def test_an_empty_cloud_has_no_voxels():
     thin = voxelised(LabelledCloud(np.empty((0, 3)), np.empty(0, np.int64)))
-    assert len(thin.counts) == len(thin.inverse) == len(thin.cloud.points) == 0
+    assert len(thin.points) == len(thin.labels) == 0
 
 
 @pytest.mark.parametrize("size", [0.0, -1.0, np.nan, np.inf, 1e-12])

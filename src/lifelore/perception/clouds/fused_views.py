@@ -54,7 +54,7 @@ def fused(views: Sequence[PointCloud], poses: NDArray[np.float64], size: float =
     colours = [part.colours for part in parts if part.colours is not None]
     merged = voxelised(
         LabelledCloud(points, labels, np.concatenate(colours) if len(colours) == len(parts) else None), size
-    ).cloud
+    )
     cameras = [
         moved(view.camera[None], pose)[0]
         for view, pose in zip(views, to_first, strict=True)

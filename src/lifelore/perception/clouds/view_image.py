@@ -47,6 +47,13 @@ class ViewImage:
         return np.where(inside, pixels[:, 0] * self.shape[1] + pixels[:, 1], 0), inside
 
 
+def rays_beside(rays: NDArray[np.float64], directions: NDArray[np.float64], margin: float) -> NDArray[np.bool_]:
+    """(n,) bool: which of rays (n, 3) lie in a cone around unit vectors (k, 3), with `margin` radians to spare."""
+    middle = directions.mean(axis=0)
+    middle /= max(float(np.linalg.norm(middle)), 1e-9)
+    return rays @ middle >= ((directions @ middle).min() - margin) * lengths(rays)
+
+
 def lengths(rays: NDArray[np.float64]) -> NDArray[np.float64]:
     """(n,) lengths of rays (n, 3)."""
     return np.sqrt(np.einsum("ij,ij->i", rays, rays))

@@ -3,7 +3,8 @@
 Voxels belong to labels: where two objects share a cube, each keeps a point in it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,34 +22,21 @@ MAX_SCENE_POINTS = 2_000_000
 """Largest number of points of a scene; larger clouds are thinned first. More cost time and memory."""
 
 
-@dataclass(frozen=True, eq=False)
-class VoxelCloud:
-    """A cloud thinned to voxels, and the voxel of each original point.
+class Voxels(NamedTuple):
+    """The m occupied voxels of n points, in the order in which they first occur.
 
-    Parameters
-    ----------
-    cloud : LabelledCloud
-        One point, the mean of its members, for each occupied voxel of each label; m in all, in the order in
-        which the voxels first occur. A colour is that of the first member.
-    inverse : (n,) int64
-        The voxel of each original point, in 0 … m - 1.
-    first : (m,) int64
-        The first original point of each voxel.
-    counts : (m,) int64
-        Original points of each voxel, ≥ 1.
-    size : float
-        Side of a voxel in metres.
+    inverse (n,): voxel of each point; first (m,): first point of each voxel; counts (m,): its number of points,
+    ≥ 1; means (m, 3): the mean of its points, metres.
     """
 
-    cloud: LabelledCloud
     inverse: NDArray[np.int64]
     first: NDArray[np.int64]
     counts: NDArray[np.int64]
-    size: float
+    means: NDArray[np.float64]
 
 
-def voxelised(cloud: LabelledCloud, size: float = VOXEL) -> VoxelCloud:
-    """Thin a cloud to one point a voxel and label.
+def voxelised(cloud: LabelledCloud, size: float = VOXEL) -> LabelledCloud:
+    """The cloud with one point a voxel and label: the mean of its points, with the colour of the first.
 
     Parameters
     ----------
@@ -65,13 +53,12 @@ def voxelised(cloud: LabelledCloud, size: float = VOXEL) -> VoxelCloud:
     --------
     >>> cloud = LabelledCloud(np.array([[0.0, 0, 0], [0.001, 0, 0], [0.001, 0, 0]]), np.array([2, 2, 3]))
     >>> thin = voxelised(cloud)
-    >>> thin.inverse.tolist(), thin.cloud.labels.tolist(), thin.cloud.points[0].tolist()
-    ([0, 0, 1], [2, 3], [0.0005, 0.0, 0.0])
+    >>> thin.labels.tolist(), thin.points[0].tolist()
+    ([2, 3], [0.0005, 0.0, 0.0])
     """
-    inverse, first, counts, means = _voxels(cloud.points, cloud.labels, size)
-    colours = None if cloud.colours is None else cloud.colours[first]
-    thin = LabelledCloud(means, cloud.labels[first], colours, cloud.camera, cloud.other_cameras)
-    return VoxelCloud(thin, inverse, first, counts, size)
+    found = voxels_of(cloud.points, size, cloud.labels)
+    colours = None if cloud.colours is None else cloud.colours[found.first]
+    return LabelledCloud(found.means, cloud.labels[found.first], colours, cloud.camera, cloud.other_cameras)
 
 
 def thinned(cloud: PointCloud, size: float = VOXEL, at_most: int = MAX_SCENE_POINTS) -> PointCloud:
@@ -85,25 +72,23 @@ def thinned(cloud: PointCloud, size: float = VOXEL, at_most: int = MAX_SCENE_POI
         return cloud
     cloud = cloud.only(measured)
     every = cloud.points.astype(np.float64)
-    labels = np.zeros(len(every), np.int64) if cloud.labels is None else cloud.labels
-    _, first, _, means = _voxels(every, labels, size)
-    while len(means) > at_most:
+    found = voxels_of(every, size, cloud.labels)
+    while len(found.means) > at_most:
         size *= 2
-        _, first, _, means = _voxels(every, labels, size)
-    points = means.astype(cloud.points.dtype)
-    return replace(cloud.only(first), points=points, grid=None, source_rows=np.full(len(points), -1))
+        found = voxels_of(every, size, cloud.labels)
+    points = found.means.astype(cloud.points.dtype)
+    return replace(cloud.only(found.first), points=points, grid=None, source_rows=np.full(len(points), -1))
 
 
-def _voxels(
-    points: NDArray[np.float64], labels: NDArray[np.int64], size: float
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
-    """Voxel of each point, first point, count and mean of each voxel."""
+def voxels_of(points: NDArray[np.float64], size: float, labels: NDArray[np.int64] | None = None) -> Voxels:
+    """The voxels of finite points (n, 3), those of different `labels` (n,) apart; raises as `voxelised`."""
     if not (np.isfinite(size) and size > 0):
         raise InputError(f"size must be a positive number of metres, got {size}")
     n = len(points)
     if n == 0:
         none = np.empty(0, np.int64)
-        return none, none, none, np.empty((0, 3))
+        return Voxels(none, none, none, np.empty((0, 3)))
+    labels = np.zeros(n, np.int64) if labels is None else labels
     lowest, highest = points[0].astype(np.float64), points[0].astype(np.float64)
     top_label = _widen(points, labels, lowest, highest)
     # Multiples of the size in the frame, so that the cube of a point does not depend on the other points.
@@ -116,7 +101,7 @@ def _voxels(
             raise InputError(f"size {size} m is too small for a cloud of {span:.3g} m; take a larger one")
     inverse, first = _number_voxels(points, labels, low, 1.0 / size, sides.astype(np.int64))
     counts, means = _average(points, inverse, len(first))
-    return inverse, first, counts, means
+    return Voxels(inverse, first, counts, means)
 
 
 @kernel

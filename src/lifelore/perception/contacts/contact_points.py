@@ -111,17 +111,17 @@ def facing_clusters(
     component = linked(np.concatenate([first, second]), linkage)
     found = []
     for own, alpha in ((component[: len(first)], alpha_first), (component[len(first) :], alpha_second)):
-        found.append(_strongest_first(own, alpha, min_support) or _strongest_first(own, alpha, 1)[:1])
+        found.append(_strongest_first(own, alpha, min_support, at_least=1))
     return found[0], found[1]
 
 
 def _strongest_first(
-    component: NDArray[np.int64], alpha: NDArray[np.float64], min_support: float
+    component: NDArray[np.int64], alpha: NDArray[np.float64], min_support: float, at_least: int = 0
 ) -> list[NDArray[np.int64]]:
-    """Rows of each component, by strength; components of too few rows are dropped."""
-    strength = np.bincount(component, weights=alpha)
-    rows = [np.flatnonzero(component == number) for number in np.argsort(-strength, kind="stable")]
-    return [cluster for cluster in rows if len(cluster) >= max(min_support, 1)]
+    """Rows of each component, by strength, without those of too few rows; but the first `at_least` in any case."""
+    order = np.argsort(-np.bincount(component, weights=alpha), kind="stable")
+    kept = order[np.bincount(component)[order] >= max(min_support, 1)]
+    return [np.flatnonzero(component == number) for number in (kept if len(kept) else order[:at_least])]
 
 
 def contact_point(

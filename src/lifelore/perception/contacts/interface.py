@@ -100,10 +100,26 @@ def interfaces(
     `separator.MOST_WORK`, divided by their numbers of points, with at least `LEAST_SHARE` per point.
     """
     if settings.voxel and len(cloud.points):
-        cloud = voxelised(cloud, settings.voxel).cloud
+        cloud = voxelised(_without_far_table(cloud, 4 * settings.table_margin), settings.voxel)
     pairs = near_pairs(split_objects(cloud), settings.near, settings.table_margin)
     share = _share(pairs, settings)
     return tuple(interface(pair, settings, share) for pair in pairs)
+
+
+def _without_far_table(cloud: LabelledCloud, margin: float) -> LabelledCloud:
+    """Points and labels without what is `margin` metres beside the box of all objects; where that leaves no table,
+    all points."""
+    objects, (x, y, _) = cloud.labels > TABLE, cloud.points.T
+    if not objects.any():
+        return cloud
+    keep = np.ones(len(objects), bool)
+    for along in (x, y):
+        low, high = along[objects].min() - margin, along[objects].max() + margin
+        keep &= (along >= low) & (along <= high)
+    if not (cloud.labels[keep] == TABLE).any():
+        return cloud
+    rows = np.flatnonzero(keep)
+    return LabelledCloud(cloud.points.take(rows, axis=0), cloud.labels[rows])
 
 
 def _share(pairs: Sequence[NearPair], settings: ContactSettings) -> float:

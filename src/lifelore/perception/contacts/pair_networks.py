@@ -52,7 +52,7 @@ def contact_networks(
     a, b = checked_points("points_a", points_a), checked_points("points_b", points_b)
     cloud = LabelledCloud(np.concatenate([a, b]), np.repeat([FIRST, SECOND], [len(a), len(b)]))
     if settings.voxel:
-        cloud = voxelised(cloud, settings.voxel).cloud
+        cloud = voxelised(cloud, settings.voxel)
     pair = NearPair(ObjectCloud(FIRST, cloud.of(FIRST)), ObjectCloud(SECOND, cloud.of(SECOND)), gap=np.nan)
     found = interface(pair, settings)
     return (

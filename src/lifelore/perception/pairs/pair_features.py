@@ -114,6 +114,7 @@ def _both_ways(
 ) -> Array:
     """The rows of (a, b) and of (b, a), ``(2, d)``."""
     first, second = (body.shape for body in _bodies(one))
+    over = first.over(second), second.over(first)
     # With the table there is one scale; its columns are repeated for the others.
     dipoles = (one.dipoles + one.dipoles[-1:] * N_SCALES)[:N_SCALES]
     middles = np.array([(dipole.first + dipole.second) / 2 for dipole in dipoles])
@@ -125,14 +126,14 @@ def _both_ways(
             np.concatenate(
                 [
                     _scale_columns(sign * displacements, sign * normals, middles, a, b).ravel(),
-                    _geometry_columns(a, b, one.gap, middles[0, 2]),
+                    _geometry_columns(a, b, a_over, b_over, one.gap, middles[0, 2]),
                     between,
                     _view_columns(a, b, sign * displacements[0], middles[0], camera),
                 ]
             )
-            for sign, a, b, between in (
-                (1.0, first, second, (way, gap_first, gap_second)),
-                (-1.0, second, first, (way, gap_second, gap_first)),
+            for sign, a, b, (a_over, b_over), between in (
+                (1.0, first, second, over, (way, gap_first, gap_second)),
+                (-1.0, second, first, over[::-1], (way, gap_second, gap_first)),
             )
         ]
     )
@@ -154,10 +155,16 @@ def _scale_columns(displacement: Array, normal: Array, middle: Array, a: ObjectS
     )  # fmt: skip
 
 
-def _geometry_columns(a: ObjectShape, b: ObjectShape, gap: float, contact: float) -> list[Any]:
+def _geometry_columns(
+    a: ObjectShape,
+    b: ObjectShape,
+    a_over: NDArray[np.bool_],
+    b_over: NDArray[np.bool_],
+    gap: float,
+    contact: float,
+) -> list[Any]:
     overlap = min(a.top, b.top) - max(a.foot, b.foot)
     centre = a.centre - b.centre
-    a_over, b_over = a.over(b), b.over(a)
     return [
         gap, a.foot, b.foot, a.top, b.top, a.height, b.height, a.width, b.width,
         a.foot - b.top, b.foot - a.top, overlap / a.height, overlap / b.height, centre[2],

@@ -12,7 +12,7 @@ import numpy as np
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import NONE, ON
-from lifelore.perception.clouds.view_image import ViewImage
+from lifelore.perception.clouds.view_image import ViewImage, lengths, rays_beside
 from lifelore.perception.contacts.object_shape import DIRECTIONS, ObjectShape, shape_of
 from lifelore.perception.relations.relation import PairBelief
 
@@ -63,9 +63,7 @@ def raised_objects(cloud: LabelledCloud, shapes: Mapping[int, ObjectShape] | Non
         shapes = {label: shape_of(cloud.of(label)) for label in cloud.objects}
     high = [label for label, shape in shapes.items() if shape.foot >= RAISED]
     raised = {label for label in high if any(_tops_below(label, shapes))}
-    if cloud.camera is not None and len(raised) < len(high):
-        image = _Image(cloud)
-        raised |= {label for label in high if image.edge_seen(label) >= EDGE_SEEN}
+    raised |= {label for label in high if label not in raised and _edge_seen(label, cloud) >= EDGE_SEEN}
     return frozenset(raised)
 
 
@@ -78,24 +76,25 @@ def _tops_below(label: int, shapes: Mapping[int, ObjectShape]) -> Iterator[bool]
             yield bool(within.all(axis=1).mean() >= UNDER)
 
 
-class _Image:
-    """The nearest point in each pixel of a camera's view: its object and its distance."""
+def _edge_seen(label: int, cloud: LabelledCloud) -> float:
+    """Share of the columns of an object's image in which something farther is seen right below it, 0 to 1.
 
-    def __init__(self, cloud: LabelledCloud) -> None:
-        assert cloud.camera is not None
-        view = ViewImage(cloud.points - cloud.camera, PIXEL)
-        wins = view.depths == view.nearest[view.at]
-        labels = np.full(len(view.nearest), -1)
-        labels[view.at[wins]] = cloud.labels[wins]
-        self._depths, self._labels = view.nearest.reshape(view.shape), labels.reshape(view.shape)
-
-    def edge_seen(self, label: int) -> float:
-        """Share of the columns of an object in which something farther away is seen right below it, 0 to 1."""
-        own = self._labels == label
-        columns = np.flatnonzero(own.any(axis=1))
-        lowest = own[columns].argmax(axis=1)
-        behind = np.zeros(len(columns), bool)
-        for step in (1, 2):
-            depths = self._depths[columns, np.maximum(lowest - step, 0)]
-            behind |= (depths > self._depths[columns, lowest] + BEHIND) & np.isfinite(depths) & (lowest >= step)
-        return float(behind.mean()) if len(columns) else 0.0
+    0 without a camera.
+    """
+    if cloud.camera is None:
+        return 0.0
+    own = cloud.of(label) - cloud.camera
+    rays = cloud.points - cloud.camera
+    beside = rays_beside(rays, own / lengths(own)[:, None], 4 * PIXEL)
+    view = ViewImage(rays[beside], PIXEL)
+    wins = (view.depths == view.nearest[view.at]) & (cloud.labels[beside] == label)
+    seen, depths = np.zeros(len(view.nearest), bool), view.nearest.reshape(view.shape)
+    seen[view.at[wins]] = True
+    seen = seen.reshape(view.shape)
+    columns = np.flatnonzero(seen.any(axis=1))
+    lowest = seen[columns].argmax(axis=1)
+    behind = np.zeros(len(columns), bool)
+    for step in (1, 2):
+        below = depths[columns, np.maximum(lowest - step, 0)]
+        behind |= (below > depths[columns, lowest] + BEHIND) & np.isfinite(below) & (lowest >= step)
+    return float(behind.mean()) if len(columns) else 0.0

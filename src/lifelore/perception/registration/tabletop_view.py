@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from lifelore.core.errors import InputError
-from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.labelled_cloud import TABLE
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.clouds.voxel import thinned, voxelised
+from lifelore.perception.clouds.voxel import thinned, voxels_of
 from lifelore.perception.segmentation.plane import Plane
 from lifelore.perception.segmentation.range_noise import band
 from lifelore.perception.segmentation.region import over_table
@@ -92,8 +92,7 @@ def tabletop_view(cloud: PointCloud, up: Up = "table") -> TabletopView:
         & (standing[:, :2] > low[:2] - BORDER).all(axis=1)
         & (standing[:, :2] < high[:2] + BORDER).all(axis=1)
     )
-    flat = LabelledCloud(points[near] @ rotation.T + shift, np.zeros(np.count_nonzero(near), np.int64))
-    table = voxelised(flat, TABLE_VOXEL).cloud.points
+    table = voxels_of(points[near] @ rotation.T + shift, TABLE_VOXEL).means
     return TabletopView(from_view, objects.points, objects.normals, table)
 
 

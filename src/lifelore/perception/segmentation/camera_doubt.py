@@ -8,6 +8,8 @@ points lie behind others from the true camera, and from most wrong ones 3 to 40 
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.perception.clouds.voxel import voxels_of
+
 CELL = 0.004
 """Unit vectors: side of a cell of directions; twice the angle between neighbouring points of a Kinect."""
 BEHIND = 0.05
@@ -23,8 +25,8 @@ _ONE_IN = 8
 
 def camera_doubt(points: NDArray[np.float64], camera: NDArray[np.float64]) -> str | None:
     """Why the points (n, 3) cannot have been seen from `camera` (3,), both in metres; None without a doubt."""
-    rays = (points - camera).astype(np.float32)
-    ranges = np.sqrt(np.square(rays) @ np.ones(3, np.float32))
+    rays = np.subtract(points, camera, dtype=np.float32, casting="same_kind")
+    ranges = np.sqrt(np.einsum("ij,ij->i", rays, rays))
     near = float(np.mean(ranges < NEAREST))
     # A scene that is near as a whole may be in other units.
     if _MOST_NEAR < near < 0.5:
@@ -41,9 +43,8 @@ def share_behind(rays: NDArray[np.float32], ranges: NDArray[np.float32]) -> floa
     if not len(chosen):
         return 0.0
     depths = ranges[chosen].astype(np.float64)
-    cells = np.floor(rays[chosen] / size[chosen, None]).astype(np.int64) + 256
-    _, cell = np.unique((cells[:, 0] << 20) + (cells[:, 1] << 10) + cells[:, 2], return_inverse=True)
-    nearest = np.full(int(cell.max()) + 1, np.inf)
+    cell, first, *_ = voxels_of(rays[chosen] / np.maximum(depths, 1e-6)[:, None], CELL)
+    nearest = np.full(len(first), np.inf)
     np.minimum.at(nearest, cell, depths)
     nearest = nearest[cell]
     return float(np.mean(depths > nearest + BEHIND * np.maximum(nearest, 1.0) ** 2))

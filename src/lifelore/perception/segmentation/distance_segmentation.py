@@ -6,9 +6,8 @@ Two objects that touch are one cluster; the thesis (§2.5) argues that later ste
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.clouds.connected_parts import connected_parts
-from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.clouds.voxel import voxels_of
 from lifelore.perception.segmentation.cut_confidence import labels_by_size
 
 _MAX_VOXELS = 200_000
@@ -24,11 +23,11 @@ def euclidean_clusters(points: NDArray[np.float64], tolerance: float, min_area: 
 
     if len(points) == 0:
         return np.empty(0, np.int64)
-    thin = voxelised(LabelledCloud(points, np.zeros(len(points), np.int64)), tolerance / 2)
+    thin = voxels_of(points, tolerance / 2)
     while len(thin.counts) > _MAX_VOXELS:
         tolerance *= 2
-        thin = voxelised(LabelledCloud(points, np.zeros(len(points), np.int64)), tolerance / 2)
-    pairs = KDTree(thin.cloud.points).query_pairs(tolerance, output_type="ndarray")
+        thin = voxels_of(points, tolerance / 2)
+    pairs = KDTree(thin.means).query_pairs(tolerance, output_type="ndarray")
     component = connected_parts(pairs, len(thin.counts))
     label = labels_by_size(np.bincount(component) * (tolerance / 2) ** 2, min_area)
     return label[component][thin.inverse]

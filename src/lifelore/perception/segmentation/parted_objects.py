@@ -9,7 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.perception.clouds.view_image import ViewImage, lengths
+from lifelore.perception.clouds.view_image import ViewImage, lengths, rays_beside
 from lifelore.perception.segmentation.supervoxels import Supervoxels
 
 _PIXEL = 0.006
@@ -58,7 +58,8 @@ def parted_pairs(
     steps = _STEPS[:, None, None]
     lines = ((1 - steps) * patches.middles[first] + steps * patches.middles[second] - camera).reshape(-1, 3)
     depths = lengths(lines)
-    beside = _beside(seen[:: max(1, len(seen) // _SEEN)] - camera, lines / depths[:, None])
+    rays = seen[:: max(1, len(seen) // _SEEN)] - camera
+    beside = rays[rays_beside(rays, lines / depths[:, None], 2 * _PIXEL)]
     if len(beside) == 0:
         return
     image = ViewImage(beside, _PIXEL)
@@ -78,12 +79,6 @@ def parted_pairs(
         shares = [patches.counts[members[regions[members] == end]].sum() / sizes[end] for end in (a, b)]
         if min(shares) >= _CONTINUES:
             yield a, b
-
-
-def _beside(rays: NDArray[np.float64], directions: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(m, 3): those of rays (n, 3) in a cone around unit vectors (k, 3); no other ray is in a pixel of theirs."""
-    middle = directions.mean(axis=0)
-    return rays[rays @ middle >= ((directions @ middle).min() - 2 * _PIXEL) * lengths(rays)]
 
 
 def _coplanar(

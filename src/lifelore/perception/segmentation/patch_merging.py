@@ -6,6 +6,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+_Link = tuple[int, float]
+"""Length of a border, and the sum of the evidence along it."""
+_Entry = tuple[float, int, int, _Link]
+"""Mean evidence, negative so that the greatest comes first; two regions, the lower number first; their link."""
+
 
 def merged(
     n: int, pairs: NDArray[np.int64], borders: NDArray[np.int64], evidence: NDArray[np.float64]
@@ -23,41 +28,40 @@ def merged(
     pairs, borders, evidence : (e, 2), (e,) and (e,)
         As of `Supervoxels`, and log odds of one object.
     """
-    beside: list[dict[int, tuple[float, float]]] = [{} for _ in range(n)]
+    beside: list[dict[int, _Link]] = [{} for _ in range(n)]
+    queue: list[_Entry] = []
     for (a, b), border, odds in zip(pairs.tolist(), borders.tolist(), evidence.tolist(), strict=True):
-        beside[a][b] = beside[b][a] = (float(border), border * odds)
-    queue = [_entry(a, b, link) for a in range(n) for b, link in beside[a].items() if a < b and link[1] > 0]
+        link = beside[a][b] = beside[b][a] = (border, border * odds)
+        if odds > 0:
+            queue.append((-link[1] / border, a, b, link))
     heapq.heapify(queue)
     owner = np.arange(n)
     while queue:
-        entry = heapq.heappop(queue)
-        a, b = entry[1:3]
-        if b not in beside[a] or _entry(a, b, beside[a][b]) != entry:
-            continue  # of a border that has grown since
-        _join(a, b, beside, queue)
-        owner[b] = a
+        _, a, b, link = heapq.heappop(queue)
+        if beside[a].get(b) is link:  # else the border has grown since
+            _join(a, b, beside, queue)
+            owner[b] = a
     while (owner[owner] != owner).any():
         owner = owner[owner]
     return np.unique(owner, return_inverse=True)[1].reshape(-1).astype(np.int64)
 
 
-def _entry(a: int, b: int, link: tuple[float, float]) -> tuple[float, int, int, float]:
-    border, total = link
-    return -total / border, min(a, b), max(a, b), border
-
-
-def _join(a: int, b: int, beside: list[dict[int, tuple[float, float]]], queue: list) -> None:
+def _join(a: int, b: int, beside: list[dict[int, _Link]], queue: list[_Entry]) -> None:
     """Give all borders of region `b` to region `a`."""
-    del beside[a][b]
+    ours = beside[a]
+    del ours[b]
     for other, (border, total) in beside[b].items():
         if other == a:
             continue
-        del beside[other][b]
-        known_border, known_total = beside[a].get(other, (0.0, 0.0))
-        link = (known_border + border, known_total + total)
-        beside[a][other] = beside[other][a] = link
-        if link[1] > 0:
-            heapq.heappush(queue, _entry(a, other, link))
+        theirs = beside[other]
+        del theirs[b]
+        if other in ours:
+            known_border, known_total = ours[other]
+            border, total = known_border + border, known_total + total
+        link = ours[other] = theirs[a] = (border, total)
+        if total > 0:
+            first, second = (a, other) if a < other else (other, a)
+            heapq.heappush(queue, (-total / border, first, second, link))
     beside[b] = {}
 
 

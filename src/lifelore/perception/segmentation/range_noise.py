@@ -21,4 +21,7 @@ def band(points: NDArray[np.floating], camera: NDArray[np.float64] | None) -> ND
 
 def noise(points: NDArray[np.floating], camera: NDArray[np.float64]) -> NDArray[np.float64]:
     """(n,) metres: half width of the band that the noise alone fills; it has no least width."""
-    return GROWTH * (np.einsum("ij,ij->i", points, points) - 2 * (points @ camera) + camera @ camera)
+    squares = np.einsum("ij,ij->i", points, points)
+    squares -= 2 * (points @ camera) - camera @ camera
+    squares *= GROWTH
+    return squares

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.segmentation.surface_voxels import SurfaceVoxels
 
 
@@ -54,7 +55,7 @@ def supervoxels(surface: SurfaceVoxels, spacing: float) -> Supervoxels:
 def _grown(surface: SurfaceVoxels, spacing: float) -> NDArray[np.int64]:
     """(m,) int64: number of each voxel's patch; surfaces without a seed are patches of their own voxels."""
     from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components, dijkstra
+    from scipy.sparse.csgraph import dijkstra
 
     a, b = surface.pairs.T
     length = np.linalg.norm(surface.points[a] - surface.points[b], axis=1)
@@ -64,8 +65,7 @@ def _grown(surface: SurfaceVoxels, spacing: float) -> NDArray[np.int64]:
     m = len(surface.points)
     graph = coo_array((np.r_[cost, cost], (np.r_[a, b], np.r_[b, a])), shape=(m, m)).tocsr()
     _, _, source = dijkstra(graph, indices=_seeds(surface, spacing), min_only=True, return_predecessors=True)
-    _, part = connected_components(graph, directed=False)
-    owner = np.where(source >= 0, source, m + part)
+    owner = np.where(source >= 0, source, m + connected_parts(surface.pairs, m))
     return np.unique(owner, return_inverse=True)[1].reshape(-1).astype(np.int64)
 
 

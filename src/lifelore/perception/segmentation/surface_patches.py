@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.clouds.surface_normals import surface_normals
-from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.clouds.voxel import voxels_of
 from lifelore.perception.segmentation.outline import convex_corners, over_outline
 from lifelore.perception.segmentation.plane import Plane
 from lifelore.perception.segmentation.range_noise import band
@@ -104,16 +103,16 @@ def oriented_voxels(
 
     low, high = np.percentile(points[:: max(1, len(points) // 20_000)], (2, 98), axis=0)
     size = float(np.clip(np.max(high - low) / 50, 1e-4, COARSEST))
-    labelled = LabelledCloud(points, np.where(free, 0, 2).astype(np.int64))
-    thin = voxelised(labelled, size)
+    which = free.astype(np.int64)
+    thin = voxels_of(points, size, which)
     while len(thin.counts) > _MOST_VOXELS:
         size *= 1.5
-        thin = voxelised(labelled, size)
-    places = thin.cloud.points
+        thin = voxels_of(points, size, which)
+    places = thin.means
     links = KDTree(places).query_pairs(2.5 * size, output_type="ndarray").astype(np.int64).reshape(-1, 2)
     normals = surface_normals(places, links)
     return OrientedVoxels(
-        places, normals, thin.counts, band(places, camera), thin.cloud.labels == 0, thin.inverse, size, links
+        places, normals, thin.counts, band(places, camera), free[thin.first], thin.inverse, size, links
     )
 
 

@@ -5,10 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.clouds.surface_normals import surface_normals
-from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.clouds.voxel import voxels_of
 
 LINK = 1.9
 """Voxel sizes: greatest distance of neighbours. A diagonal step of the grid is 1.7 long."""
@@ -61,15 +60,14 @@ def surface_voxels(
     """
     from scipy.spatial import KDTree
 
-    unlabelled = LabelledCloud(points, np.zeros(len(points), np.int64))
-    thin, sparse = voxelised(unlabelled, size), COARSEST * size if sparse is None else sparse
+    thin, sparse = voxels_of(points, size), COARSEST * size if sparse is None else sparse
     while len(points) < DENSE * len(thin.counts) and COARSER * size <= sparse:
         size *= COARSER
-        thin = voxelised(unlabelled, size)
+        thin = voxels_of(points, size)
     while len(thin.counts) > most:
         size *= 2
-        thin = voxelised(unlabelled, size)
-    middles = thin.cloud.points
+        thin = voxels_of(points, size)
+    middles = thin.means
     around = KDTree(middles).query_pairs(_SUPPORT * size, output_type="ndarray").astype(np.int64).reshape(-1, 2)
     normals = surface_normals(middles, around)
     apart = middles[around[:, 0]] - middles[around[:, 1]]

@@ -173,7 +173,8 @@ def _upright_scene(
     up_given = not (isinstance(up, str) and up == "table")
     search = _search(points, cloud, up)
     rotation, shift = _pose(points, cloud, up, search.table)
-    scene_points = points @ np.ascontiguousarray(rotation.T) + shift
+    scene_points = points @ np.ascontiguousarray(rotation.T)
+    scene_points += shift
     camera = None if cloud.camera is None else rotation @ cloud.camera + shift
     others = None if cloud.other_cameras is None else cloud.other_cameras @ rotation.T + shift
     origin = _origin(cloud, rotation, shift)

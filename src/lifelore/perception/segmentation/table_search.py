@@ -197,13 +197,13 @@ def _refined(
     member[chosen.patch.voxels] = True
     near = np.flatnonzero(member[voxels.inverse])
     near = near[:: max(1, len(near) // _REFINED)]
-    bands = voxels.bands[voxels.inverse[near]]
+    places, bands = points[near], voxels.bands[voxels.inverse[near]]
     plane = chosen.plane
     for _ in range(3):
-        keep = np.abs(plane.height(points[near])) <= bands
+        keep = np.abs(plane.height(places)) <= bands
         if np.count_nonzero(keep) < 3:
             break
-        plane = plane_of(points[near[keep]], bands[keep] ** -2, plane)
+        plane = plane_of(places[keep], bands[keep] ** -2, plane)
     return plane
 
 

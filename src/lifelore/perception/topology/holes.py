@@ -105,7 +105,7 @@ def find_holes(scene: Scene, *, clearance: float = CLEARANCE) -> tuple[Hole, ...
     loops = contact_loops(scene, clearance=clearance)
     if not loops:
         return ()
-    sight = Sight(voxelised(scene.cloud, clearance / 5).cloud, clearance / 3)
+    sight = Sight(voxelised(scene.cloud, clearance / 5), clearance / 3)
     points_of = cache(sight.cloud.of)
     holes = (_hole(scene, loop, sight, points_of, clearance) for loop in loops)
     return tuple(sorted((hole for hole in holes if hole), key=lambda hole: (hole.size, hole.nodes)))
