@@ -135,7 +135,12 @@ def test_a_table_is_fitted_as_its_file(kind, written, memory, tmp_path):
 def test_missing_outcomes_of_a_table_are_pending_and_bools_are_numbers():
     frame = {"user": [1, 2, 3], "policy": ["p", "p", "q"], "outcome": [True, float("nan"), False]}
     log = read_log(frame)
-    assert (log.users, log.policies, log.outcomes.tolist(), log.pending) == (["1", "3"], ["p", "q"], [1.0, 0.0], 1)
+    assert (log.user.words, log.policy.words, log.outcomes.tolist(), log.counts["pending"]) == (
+        ["1", "3"],
+        ["p", "q"],
+        [1.0, 0.0],
+        1,
+    )
 
 
 @pytest.mark.parametrize(

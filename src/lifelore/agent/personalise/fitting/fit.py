@@ -242,10 +242,7 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
     return {
         "study": study.name,
         "rows": _used(log, typed),
-        "pending": log.pending,
-        "filled_outcomes": log.filled_outcomes,
-        "filled_policies": log.filled_policies,
-        "without_policy": log.without_policy,
+        **log.counts,
         "left_out": len(log) - _used(log, typed),
         "users": len(log.user.names),
         "model": library.performance.kind,  # type: ignore[attr-defined]

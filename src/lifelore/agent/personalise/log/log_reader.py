@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.personalise.log.log_format import (
+    GROUP,
     LEAVE_OUT,
-    LOGGED,
     OPTIONAL,
     REFUSE,
     SEPARATORS,
@@ -26,7 +26,7 @@ from lifelore.memory.record_rules import LONGEST_NAME, check_name
 
 CHUNK = 1 << 16
 """Lines taken in at a time; more need more memory, fewer more time."""
-WORDS = ("user", "policy", *OPTIONAL, *LOGGED)
+WORDS = ("user", "policy", *OPTIONAL, GROUP)
 COUNTED = ("pending", "filled_outcomes", "filled_policies", "without_policy")
 """Reasons for which lines are left out or filled; see `ReuseLog`."""
 HINT = "; leave it empty if it is not known, or say --missing WORD"
@@ -47,7 +47,7 @@ class LogReader:
 
     def __init__(self) -> None:
         self.codes: dict[str, dict[str, int]] = {name: {} for name in WORDS}
-        self.counts = dict.fromkeys(COUNTED, 0)
+        self.counts: dict[str, int] = dict.fromkeys(COUNTED, 0)
         # The code of each word as the file has it, so that it is checked once; -1: a missing policy.
         self._known: dict[str, dict[str, int]] = {name: {} for name in WORDS}
         self._parts: list[tuple[NDArray, ...]] = []
