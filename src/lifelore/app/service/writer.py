@@ -8,6 +8,7 @@ so that many users cost little more than one.
 import asyncio
 import queue
 import threading
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import islice
 from typing import Any, NamedTuple
@@ -126,19 +127,25 @@ class Writer:
 
     def _count(self, jobs: Sequence[_Job], results: Sequence[Any]) -> None:
         """Count new decisions and outcomes, by arm and not by row."""
-        sums: dict[tuple[str, str, str, bool], list[float]] = {}
+        decided = Counter[tuple[str, str, bool]]()
+        observed: dict[tuple[str, str, bool], list[float]] = {}
         for job, answers in zip(jobs, results, strict=True):
             kind, study, _ = job.kind
-            for row, answer in zip(job.rows, answers, strict=True):
-                if not isinstance(answer, LifeloreError) and answer.get("taken", not answer.get("repeated")):
-                    own = sums.setdefault((kind, study, answer["policy"], answer["control"]), [0, 0.0])
-                    own[0] += 1
-                    own[1] += row[1] if kind == "outcomes" else 0.0
-        for (kind, study, policy, control), (n, total) in sums.items():
+            new = [(one, row) for one, row in zip(answers, job.rows, strict=True) if _is_new(one)]
             if kind == "decisions":
-                self._metrics.decided(study, policy, control, n)
+                decided.update([(study, one["policy"], one["control"]) for one, _ in new])
             else:
-                self._metrics.observed(study, policy, control, n, total)
+                for one, (_, outcome) in new:
+                    observed.setdefault((study, one["policy"], one["control"]), []).append(outcome)
+        for arm, n in decided.items():
+            self._metrics.decided(*arm, n)
+        for arm, outcomes in observed.items():
+            self._metrics.observed(*arm, len(outcomes), sum(outcomes))
+
+
+def _is_new(answer: Any) -> bool:
+    """Whether an answer is of a decision or outcome that was stored now."""
+    return not isinstance(answer, LifeloreError) and answer.get("taken", not answer.get("repeated"))
 
 
 def _deliver(jobs: Sequence[_Job], results: Sequence[Any]) -> None:
