@@ -59,21 +59,7 @@ def test_bad_names_of_features_are_refused(features):
         LogFormat(features=features)
 
 
-LINES = ["a,k,x,1", "a,k,x,3", "b,l,x,5", "b,l,y,6", "b,l,z,9", "c,k,y,4"]
 HEAD = "user,type,policy,outcome\n"
-
-
-def test_a_fit_by_hand(written, memory):
-    document = fit([written(HEAD + "\n".join(LINES) + "\n")], memory, FitSettings(model="gaussian"))
-    library = open_study(memory).library
-    assert library.policies == ("x", "y", "z")
-    # z on type k has no outcome and gets that of l.
-    assert library.performance.mean.tolist() == [[2, 4, 9], [5, 6, 9]]
-    assert library.performance.moments.count[0].tolist() == [2, 1, 1]
-    assert document["outcomes"] == [[2, 1, 0], [1, 1, 1]]
-    assert document["borrowed"] == 1
-    # The prior counts users: two of k, one of l, one more in each.
-    assert library.prior == pytest.approx([3 / 5, 2 / 5])
 
 
 def frame_of(lines):
