@@ -223,20 +223,12 @@ def lived(log):
     return path, made, done
 
 
-BAD_LOGS = {
-    "user,outcome\na,1\n": "it has no policy",
-    "user,policy,outcome\na,x,nan\n": "line 2: outcome must be a finite number, got 'nan'",
-    "": "must begin with a header",
-    "user,policy,outcome\n": "must hold at least one line with an outcome",
-}
-
-
-@pytest.mark.parametrize("text", BAD_LOGS)
-def test_bad_logs_keep_what_was_there(text, reuse, lived, tmp_path):
+def test_a_bad_log_keeps_what_was_there(reuse, lived, tmp_path):
     shutil.copy(lived[0], tmp_path / "m.db")
     before = reuse("choose", "--user", "cy", "--json").document
-    (tmp_path / "bad.csv").write_text(text)
-    assert BAD_LOGS[text] in reuse("fit", tmp_path / "bad.csv").refusal
+    (tmp_path / "bad.csv").write_text("user,policy,outcome\na,x,nan\n")
+    refusal = reuse("fit", tmp_path / "bad.csv").refusal
+    assert "line 2: outcome must be a finite number, got 'nan'" in refusal
     assert reuse("choose", "--user", "di", "--json").document["belief"] == before["belief"]
 
 

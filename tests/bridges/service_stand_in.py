@@ -1,6 +1,6 @@
 """A small service with the routes of a study that the client uses; it can be killed and started again.
 
-Everything acknowledged is in its file. ``python service_stand_in.py FILE PORT`` serves it as a process of its own.
+Everything acknowledged is in its file.
 """
 
 import json
@@ -9,7 +9,6 @@ import random
 import socket
 import ssl
 import struct
-import sys
 import threading
 import time
 import uuid
@@ -116,11 +115,10 @@ class Server(ThreadingHTTPServer):
     daemon_threads = True
     request_queue_size = 128
     state: State
-    stand_in: "StandIn | None" = None
+    stand_in: "StandIn"
 
     def process_request(self, request: Any, client_address: Any) -> None:
-        if self.stand_in:
-            self.stand_in.sockets.add(request)
+        self.stand_in.sockets.add(request)
         super().process_request(request, client_address)
 
     def handle_error(self, request: Any, client_address: Any) -> None:
@@ -139,28 +137,27 @@ class Handler(BaseHTTPRequestHandler):
     def answer(self) -> None:
         body = self.rfile.read(int(self.headers.get("Content-Length", 0)))
         stand_in = self.server.stand_in
-        if stand_in:
-            stand_in.asked += 1
-            if stand_in.mode == "hang":
-                stand_in.woken.wait(30)
-            self.asked_here += 1
-            if stand_in.mode == "close second" and self.asked_here > 1:
-                self.close_connection = True
-                return
+        stand_in.asked += 1
+        if stand_in.mode == "hang":
+            stand_in.woken.wait(30)
+        self.asked_here += 1
+        if stand_in.mode == "close second" and self.asked_here > 1:
+            self.close_connection = True
+            return
         try:
             status, document = 200, self.result(json.loads(body) if body else None)
         except Refusal as error:
             status, document = error.status, error.document
-        if stand_in and stand_in.dead:  # stored, but not acknowledged
+        if stand_in.dead:  # stored, but not acknowledged
             self.close_connection = True
             return
-        if stand_in and stand_in.mode == "broken":
+        if stand_in.mode == "broken":
             status, document = 503, {"error": {"kind": "store", "message": "the memory refuses"}}
         content = json.dumps(document).encode()
-        if stand_in and stand_in.mode == "proxy":
+        if stand_in.mode == "proxy":
             status, content = 404, b"<html>no such host</html>"
         head = f"HTTP/1.1 {status} X\r\nContent-Length: {len(content)}\r\n\r\n".encode()
-        if stand_in and stand_in.mode == "drip":
+        if stand_in.mode == "drip":
             for byte in head + content:
                 self.wfile.write(bytes([byte]))
                 time.sleep(0.02)
@@ -173,9 +170,9 @@ class Handler(BaseHTTPRequestHandler):
         parts = urlsplit(self.path)
         *_, study, route = parts.path.removeprefix("/v1/studies/").replace("s/batch", "s-batch").split("/")
         stand_in = self.server.stand_in
-        if stand_in and stand_in.token and self.headers["Authorization"] != f"Bearer {stand_in.token}":
+        if stand_in.token and self.headers["Authorization"] != f"Bearer {stand_in.token}":
             raise Refusal(401, "token", "a token is needed")
-        if unquote(study) != STUDY or (stand_in and stand_in.mode == "no study"):
+        if unquote(study) != STUDY or stand_in.mode == "no study":
             raise Refusal(404, "not found", f"no study has the name {unquote(study)!r}")
         state = self.server.state
         with state.lock:
@@ -196,7 +193,7 @@ class Handler(BaseHTTPRequestHandler):
 
     def each(self, one: Any, item: dict[str, Any]) -> dict[str, Any]:
         try:
-            if self.server.stand_in and self.server.stand_in.mode == "full disk":
+            if self.server.stand_in.mode == "full disk":
                 raise Refusal(503, "store", "the disk is full")
             return one(item)
         except Refusal as error:
@@ -253,11 +250,3 @@ class StandIn:
         self._thread.join()
         with self.state.lock:
             self.state.close()
-
-
-if __name__ == "__main__":
-    file, port = sys.argv[1:]
-    server = Server(("127.0.0.1", int(port)), Handler)
-    server.state = State(Path(file))
-    print(server.server_address[1], flush=True)
-    server.serve_forever()

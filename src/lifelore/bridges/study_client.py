@@ -27,7 +27,6 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, closing, suppress
 from dataclasses import dataclass
-from itertools import islice
 from typing import Any
 from urllib.parse import quote, urlsplit
 
@@ -161,7 +160,7 @@ class StudyClient:
         self.study, self._fallback, self._timeout, self._refresh = study, fallback, timeout, refresh
         self._link = _Link(url, f"/v1/studies/{quote(study, safe='')}", token)
         self._breaker, self._random = _Breaker(), random.Random(seed)
-        self._table: _Table | None = None
+        self._table: dict[str | None, dict[str, float]] = {}
         self._users, self._offline = Recent(REMEMBERED), Recent(REMEMBERED)
         self._counts, self._lock, self._delivering = Counter(), threading.Lock(), threading.Lock()
         self._delivery_wait, self._deliver_at, self._probed_at = 0.0, 0.0, -math.inf
@@ -216,14 +215,23 @@ class StudyClient:
         RuntimeError
             The client is closed, or was made before a fork of the process.
         """
-        item = _item(user, context, features, available, request)
+        if not (isinstance(user, str) and user):
+            raise ValueError(f"user must be a text of at least one character, got {user!r}")
+        if available is not None and not len(available):
+            raise ValueError("available must name a policy, got none")
+        given = {
+            "user": user, "context": context, "request": request,
+            "features": None if features is None else dict(features),
+            "available": None if available is None else list(available),
+        }  # fmt: skip
+        item = {name: value for name, value in given.items() if value is not None}
         made = self._made_by_service(item)
         if made is None:
             return self._offline_choice(item)
         self._count("service")
-        if made.probabilities:
-            self._users.put((user, context), made.probabilities)
-        return _choice(item, made.policy, made.decision, made.probability, "service")
+        if probabilities := made.pop("probabilities"):
+            self._users.put((user, context), probabilities)
+        return _choice(item, source="service", **made)
 
     def observe(self, choice: Choice | str, outcome: float) -> None:
         """Queue the outcome of a decision; it is delivered soon, and counts once however often it is delivered.
@@ -295,7 +303,7 @@ class StudyClient:
             The service gave no answer in ten seconds; ask again later.
         """
         with self._delivering:
-            self._queue.keep(lambda line: line.get("user") != user)
+            self._queue.forget(user)
             self._users.drop(lambda key, _: key[0] == user)
             self._offline.drop(lambda _, choice: choice.user == user)
             self._link.ask("DELETE", f"/user?name={quote(user, safe='')}", None, PATIENCE)
@@ -313,13 +321,13 @@ class StudyClient:
         with self._lock:
             return {name: self._counts[name] for name in names} | {"pending": len(self._queue)}
 
-    def _made_by_service(self, item: dict[str, Any]) -> "_Made | None":
+    def _made_by_service(self, item: dict[str, Any]) -> dict[str, Any] | None:
         """The service's decision; None if it gives none."""
         self._check_usable()
         if not self._breaker.admits():
             return None
         try:
-            made = self._link.ask_within(self._timeout, "/decisions", item, _Made)
+            made = self._link.ask_within(self._timeout, "/decisions", item, _made)
         except ServiceUnavailable as error:
             self._failed(error)
             self._wake.set()
@@ -343,7 +351,7 @@ class StudyClient:
             decision = uuid.UUID(int=draws.getrandbits(128), version=4)
         source = "table"
         drawn = _drawn(self._users.get((user, context)), available, draws)
-        drawn = drawn or _drawn(self._table and self._table.probabilities(context), available, draws)
+        drawn = drawn or _drawn(self._table.get(context, self._table.get(None)), available, draws)
         if drawn is None:
             source, drawn = "fallback", (self._fallback_of(available), 1.0)
         choice = _choice(item, drawn[0], str(decision), drawn[1], source)
@@ -402,7 +410,7 @@ class StudyClient:
             self._delivery_wait = self._deliver_at = 0.0
 
     def _fetch_table(self) -> None:
-        self._table = self._link.ask("GET", "/table", None, PROBE, _Table)
+        self._table = self._link.ask("GET", "/table", None, PROBE, _table)
 
     def _deliver(self) -> None:
         """Deliver the oldest outcomes; if the service cannot take them now, they stay in the queue."""
@@ -445,24 +453,6 @@ class StudyClient:
             refused.append(message)
 
 
-def _item(
-    user: str,
-    context: str | None = None,
-    features: Mapping[str, float] | None = None,
-    available: Sequence[str] | None = None,
-    request: str | None = None,
-) -> dict[str, Any]:
-    """The document of a decision, without what is left out."""
-    if not (isinstance(user, str) and user):
-        raise ValueError(f"user must be a text of at least one character, got {user!r}")
-    item: dict[str, Any] = {"user": user, "context": context, "request": request}
-    item["features"] = None if features is None else dict(features)
-    item["available"] = None if available is None else list(available)
-    if item["available"] == []:
-        raise ValueError("available must name a policy, got none")
-    return {name: value for name, value in item.items() if value is not None}
-
-
 def _choice(item: Mapping[str, Any], policy: str, decision: str, probability: float, source: str) -> Choice:
     return Choice(policy, decision, float(probability), source, item["user"], item.get("context"), time.time())
 
@@ -487,13 +477,19 @@ def _row(document: Mapping[str, Any]) -> dict[str, float]:
     return row
 
 
-class _Made:
-    """A decision that the service made."""
+def _made(document: Mapping[str, Any]) -> dict[str, Any]:
+    """A decision that the service made, with what a client reads of it."""
+    row = document.get("probabilities")
+    return {
+        "policy": str(document["policy"]), "decision": str(document["decision"]),
+        "probability": float(document["probability"]), "probabilities": _row(row) if row else None,
+    }  # fmt: skip
 
-    def __init__(self, document: Mapping[str, Any]) -> None:
-        self.policy, self.decision = str(document["policy"]), str(document["decision"])
-        self.probability = float(document["probability"])
-        self.probabilities = _row(document["probabilities"]) if document.get("probabilities") else None
+
+def _table(document: Mapping[str, Any]) -> dict[str | None, dict[str, float]]:
+    """The probabilities of policies for strangers by context; those of everybody are at None."""
+    contexts = {context: _row(row) for context, row in document.get("contexts", {}).items()}
+    return {None: _row(document["default"]), **contexts}
 
 
 def _errors_of(number: int) -> Callable[[Any], list[tuple[str, str]]]:
@@ -507,18 +503,6 @@ def _errors_of(number: int) -> Callable[[Any], list[tuple[str, str]]]:
         return [(str(error["kind"]), str(error["message"])) for error in errors]
 
     return read
-
-
-class _Table:
-    """The probabilities of policies for strangers, by context."""
-
-    def __init__(self, document: Mapping[str, Any]) -> None:
-        self._default = _row(document["default"])
-        self._contexts = {context: _row(row) for context, row in document.get("contexts", {}).items()}
-
-    def probabilities(self, context: str | None) -> dict[str, float]:
-        """Those of a context; those of everybody if the context is unknown."""
-        return self._default if context is None else self._contexts.get(context, self._default)
 
 
 class Recent:
@@ -575,71 +559,59 @@ class _Breaker:
 
 
 class _Queue:
-    """Outcomes in the order of their arrival; with a path, also in a SQLite file until they are delivered."""
+    """Outcomes in the order of their arrival, until they are delivered: in a SQLite file, without a path in memory."""
 
     def __init__(self, path: str | os.PathLike[str] | None, capacity: int, fsync: bool) -> None:
         self.path = None if path is None else os.fspath(path)
-        self._capacity, self._lock = capacity, threading.Lock()
-        self._file = None if self.path is None else _opened(self.path, fsync)
-        self._lines: deque[tuple[int | None, dict[str, Any]]] = (
-            deque()
-        )  # with the number of the row, if it has one
-        if self._file is not None:
-            rows = self._file.execute("SELECT number, line FROM outcomes ORDER BY number")
-            self._lines.extend((number, json.loads(line)) for number, line in rows)
+        self._capacity, self._lock, self._in_memory = capacity, threading.Lock(), path is None
+        self._file = _opened(":memory:" if self.path is None else self.path, fsync)
+        (self._length,) = self._file.execute("SELECT COUNT(*) FROM outcomes").fetchone()
 
     def __len__(self) -> int:
-        return len(self._lines)
+        return self._length
 
     def put(self, line: dict[str, Any]) -> bool:
         """Add an outcome; False if the queue is full."""
         with self._lock:
-            if len(self._lines) >= self._capacity:
+            if self._length >= self._capacity:
                 return False
-            self._lines.append((self._stored(line), line))
+            self._length += self._change("INSERT INTO outcomes (line) VALUES (?)", json.dumps(line))
             return True
 
     def head(self, most: int) -> list[dict[str, Any]]:
         """The oldest outcomes."""
         with self._lock:
-            return [line for _, line in islice(self._lines, most)]
+            rows = self._file.execute("SELECT line FROM outcomes ORDER BY number LIMIT ?", [most])
+            return [json.loads(line) for (line,) in rows]
 
     def pop(self, number: int) -> None:
         """Remove the oldest outcomes, which are delivered."""
+        oldest = "SELECT number FROM outcomes ORDER BY number LIMIT ?"
         with self._lock:
-            self._erase([self._lines.popleft() for _ in range(number)])
+            self._length -= self._change(f"DELETE FROM outcomes WHERE number IN ({oldest})", number)
 
-    def keep(self, wanted: Callable[[dict[str, Any]], bool]) -> None:
-        """Remove all outcomes but those wanted."""
+    def forget(self, user: str) -> None:
+        """Remove the outcomes of a user whom they name."""
         with self._lock:
-            self._erase([pair for pair in self._lines if not wanted(pair[1])])
-            self._lines = deque(pair for pair in self._lines if wanted(pair[1]))
+            self._length -= self._change("DELETE FROM outcomes WHERE json_extract(line, '$.user') = ?", user)
 
     def close(self) -> None:
         with self._lock:
-            if self._file is not None:
-                self._file.close()
+            self._file.close()
 
-    def _stored(self, line: dict[str, Any]) -> int | None:
-        """The number of a new row; None without a file, and if it cannot be written."""
-        if self._file is None:
-            return None
+    def _change(self, statement: str, value: Any) -> int:
+        """The number of rows that a statement changes. What the file cannot take is in memory from here on."""
         try:
             with self._file:
-                return self._file.execute("INSERT INTO outcomes (line) VALUES (?)", [json.dumps(line)]).lastrowid
+                return self._file.execute(statement, [value]).rowcount
         except sqlite3.Error as error:
-            log.error("an outcome is in memory alone, since its file cannot be written: %s", error)
-            return None
-
-    def _erase(self, lines: list[tuple[int | None, dict[str, Any]]]) -> None:
-        rows = [(number,) for number, _ in lines if number is not None]
-        if self._file is None or not rows:
-            return
-        try:
-            with self._file:
-                self._file.executemany("DELETE FROM outcomes WHERE number = ?", rows)
-        except sqlite3.Error as error:  # delivered again after a restart, they count once
-            log.error("delivered outcomes stay in the queue's file: %s", error)
+            if self._in_memory:
+                raise
+            log.error("outcomes are in memory alone, since their file cannot be written: %s", error)
+            file, self._file, self._in_memory = self._file, _opened(":memory:", fsync=False), True
+            with closing(file):
+                file.backup(self._file)  # those in the file are delivered again after a restart, and count once
+            return self._change(statement, value)
 
 
 def _opened(path: str, fsync: bool) -> sqlite3.Connection:
@@ -653,7 +625,8 @@ def _opened(path: str, fsync: bool) -> sqlite3.Connection:
                 file.execute(f"PRAGMA {pragma}")
             file.execute(f"PRAGMA synchronous = {'FULL' if fsync else 'OFF'}")
             file.execute("CREATE TABLE IF NOT EXISTS outcomes (number INTEGER PRIMARY KEY, line TEXT NOT NULL)")
-            os.chmod(path, 0o600)
+            if path != ":memory:":
+                os.chmod(path, 0o600)
             failed.pop_all()
             return file
     except sqlite3.Error as error:

@@ -322,7 +322,7 @@ class StudyRows:
 
 
 def _user(row: Sequence[Any]) -> UserRow:
-    user = UserRow._make(row)
+    user = UserRow(*row)
     return user if user.features is None else user._replace(features=json.loads(row[3]))
 
 

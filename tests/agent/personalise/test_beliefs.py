@@ -7,13 +7,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.agent.personalise.decisions import Request, choose, decide, forget, observe, update
+from lifelore.agent.personalise.decisions import Request, choose, decide, observe, update
 from lifelore.agent.personalise.explanation import explain
 from lifelore.agent.personalise.past import Line, add_lines
 from lifelore.agent.personalise.study import open_study
 from lifelore.memory import open_memory
 
-from .studies import POLICIES, belief_of, learnt_study, one_more, study_of, twin
+from .studies import POLICIES, learnt_study, one_more, study_of, twin
 
 FAMILIES = ("gaussian", "student-t", "categorical", "joint-normal")
 every_study = pytest.mark.parametrize(
@@ -138,11 +138,3 @@ def test_a_policy_that_the_library_does_not_know_gives_no_evidence(memory):
     study = study_of(change=0.1).keep(memory)
     add_lines(memory, study, [Line("ann", "gone", 8.0, 1), Line("ann", "big", 8.0, 2)])
     same_as_twin(memory, study, "ann", [("gone", 8.0), ("big", 8.0)])
-
-
-def test_a_forgotten_user_leaves_no_belief(memory):
-    study = study_of().keep(memory)
-    for _ in range(3):
-        one_more(memory, study, "ann", 9.0)
-    forget(memory, study, "ann")
-    assert belief_of(memory, study, "ann") == pytest.approx([0.6, 0.4])

@@ -281,18 +281,6 @@ def test_identifiers_are_in_the_order_of_their_times_and_come_back():
 # ---- a study with and without its users ------------------------------------------------------------------------
 
 
-def test_an_archived_study_takes_outcomes_and_no_decisions(memory):
-    study = study_of().keep(memory)
-    made = choose(memory, study, "ann")
-    assert memory.studies.set_state("s", "archived")
-    archived = open_study(memory, "s")
-    with pytest.raises(InputError, match="study 's' is archived; make it active again first"):
-        choose(memory, archived, "ann")
-    assert update(memory, archived, made["decision"], 1.0)["taken"]
-    memory.studies.set_state("s", "active")
-    assert choose(memory, open_study(memory, "s"), "ann")["user"] == "ann"
-
-
 def test_names_of_any_printable_text_are_decided_for_and_forgotten(memory):
     study = study_of(policies=ODD[:3]).keep(memory)
     made = decide(memory, study, [Request(user, request=user, available=ODD[:2]) for user in ODD])

@@ -44,13 +44,15 @@ def through_kills(
     Each thread pauses between calls, so that the outcomes of an outage fit the client's queue.
     """
     memory, url, again = served
-    child, answered, stop = again(), [], threading.Event()
+    child, answered, slowest, stop = again(), [], [0.0], threading.Event()
     register(url, study)
     with StudyClient(url, "s", fallback="slow", queue=tmp_path / "queue.db", timeout=1.0) as client:
 
         def work(number: int) -> None:
             while not stop.is_set():
+                begun = time.perf_counter()
                 choice = client.decide(f"user {number} {len(answered) % 50}")
+                slowest[0] = max(slowest[0], time.perf_counter() - begun)
                 client.observe(choice, 1.0)
                 answered.append(choice.decision)
                 time.sleep(pause)
@@ -73,6 +75,7 @@ def through_kills(
         assert client.flush(120)
         counts = client.counts()
     assert counts["lost"] == 0
+    assert slowest[0] < 5.0, "the timeout is 1 s"
     child.terminate()
     child.wait()
     with open_memory(memory) as opened:

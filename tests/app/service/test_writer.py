@@ -3,7 +3,6 @@
 import asyncio
 import threading
 
-import numpy as np
 import pytest
 
 from lifelore.agent.personalise.decisions import Request, decide
@@ -12,8 +11,7 @@ from lifelore.agent.personalise.registration import register
 from lifelore.app.service import writer as module
 from lifelore.app.service.telemetry import Metrics
 from lifelore.app.service.writer import PART, Writer
-from lifelore.core.errors import InputError, NotFoundError, StoreError
-from lifelore.core.protocols import Record
+from lifelore.core.errors import NotFoundError, StoreError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.memory import open_memory
 
@@ -21,45 +19,20 @@ from lifelore.memory import open_memory
 @pytest.fixture
 def memory(tmp_path):
     with open_memory(tmp_path / "lifelore.db") as opened:
+        register(opened, "s", PolicyLibrary.from_means([[1.0, 0.0], [0.0, 1.0]], 1.0))
         yield opened
 
 
-def a_writer(memory, undone):
-    return Writer(memory, OpenStudies(memory), Metrics(), lambda: undone.append(1), seed=0)
+def a_writer(memory):
+    return Writer(memory, OpenStudies(memory), Metrics(), seed=0)
 
 
-def contribute(memory, number):
-    if number == 3:
-        raise InputError("number must not be 3")
-    record = Record("action_prior", "k", 1, "add", slots=np.array([1]), values=np.array([1]))
-    return memory.contribute(f"robot {number}", [record], process="p", seq=0, task={})
-
-
-def test_requests_that_wait_together_share_a_transaction(memory, monkeypatch):
-    undone, blocks, gate = [], [], threading.Event()
-    together = memory.together
-    monkeypatch.setattr(memory, "together", lambda **rows: blocks.append(1) or together(**rows))
-    writer = a_writer(memory, undone)
-
-    async def ask():
-        first = asyncio.ensure_future(writer.run(gate.wait))
-        await asyncio.sleep(0.05)
-        others = [asyncio.ensure_future(writer.run(contribute, memory, number)) for number in range(5)]
-        await asyncio.sleep(0.05)
-        gate.set()
-        return await asyncio.gather(first, *others, return_exceptions=True)
-
-    answers = asyncio.run(ask())
-    writer.stop()
-    assert answers[:4] == [True, True, True, True]
-    assert isinstance(answers[4], InputError)
-    assert answers[5] is True
-    assert (len(blocks), undone) == (2, [])
-    assert memory.robots() == [f"robot {number}" for number in (0, 1, 2, 4)]
+def n_decisions(memory):
+    with memory.studies.totals(memory.studies.newest("s").number) as totals:
+        return totals.n_decisions()[0]
 
 
 def test_a_refused_transaction_answers_nobody_with_success(memory, monkeypatch):
-    undone = []
     together = memory.together
 
     def refused(**rows):
@@ -75,22 +48,29 @@ def test_a_refused_transaction_answers_nobody_with_success(memory, monkeypatch):
 
         return Refused()
 
+    writer = a_writer(memory)
     monkeypatch.setattr(memory, "together", refused)
-    writer = a_writer(memory, undone)
     with pytest.raises(StoreError, match="no space"):
-        asyncio.run(writer.run(contribute, memory, 0))
+        asyncio.run(writer.decide("s", [Request("ada")]))
+    monkeypatch.undo()
+    assert n_decisions(memory) == 0
+    assert asyncio.run(writer.decide("s", [Request("ada")]))[0]["user"] == "ada"
     writer.stop()
-    assert undone == [1]
-    assert memory.robots() == []
+    assert n_decisions(memory) == 1
 
 
 def test_rows_that_wait_together_are_one_batch_and_parts_of_a_long_one_give_way(memory, monkeypatch):
-    register(memory, "s", PolicyLibrary.from_means([[1.0, 0.0], [0.0, 1.0]], 1.0))
-    batches, undone = [], []
-    monkeypatch.setattr(
-        module, "decide", lambda *given, **how: batches.append(len(given[2])) or decide(*given, **how)
-    )
-    writer, gate = a_writer(memory, undone), threading.Event()
+    batches, blocks, gate = [], [], threading.Event()
+    together = memory.together
+
+    def counted(*given, **how):
+        batches.append(len(given[2]))
+        assert gate.wait(10)
+        return decide(*given, **how)
+
+    monkeypatch.setattr(module, "decide", counted)
+    monkeypatch.setattr(memory, "together", lambda **rows: blocks.append(1) or together(**rows))
+    writer = a_writer(memory)
 
     async def in_parts():
         users = [Request(f"u{n}") for n in range(2 * PART)]
@@ -98,7 +78,7 @@ def test_rows_that_wait_together_are_one_batch_and_parts_of_a_long_one_give_way(
         return parts[0] + parts[1]
 
     async def ask():
-        first = asyncio.ensure_future(writer.run(gate.wait))
+        first = asyncio.ensure_future(writer.decide("s", [Request("ada")]))
         await asyncio.sleep(0.05)
         many = asyncio.ensure_future(in_parts())
         single = [asyncio.ensure_future(writer.decide("s", [Request(f"v{n}")])) for n in range(3)]
@@ -110,8 +90,8 @@ def test_rows_that_wait_together_are_one_batch_and_parts_of_a_long_one_give_way(
     _, many, *single, unknown = asyncio.run(ask())
     writer.stop()
     # The first part, then those who came meanwhile, then the second part.
-    assert batches == [PART, 3, PART]
+    assert batches == [1, PART, 3, PART]
+    assert len(blocks) <= 4
     assert len({answer["decision"] for answer in many}) == 2 * PART
     assert [answer["user"] for (answer,) in single] == ["v0", "v1", "v2"]
     assert isinstance(unknown[0], NotFoundError)
-    assert undone == []

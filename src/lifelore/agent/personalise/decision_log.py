@@ -10,7 +10,7 @@ import json
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, Literal
 
-from lifelore.agent.personalise.identifiers import identifier, parse_identifier
+from lifelore.agent.personalise.identifiers import identifiers, parse_identifier
 from lifelore.agent.personalise.log.log_format import escaped
 from lifelore.agent.personalise.study import Study
 from lifelore.core.errors import InputError
@@ -109,7 +109,7 @@ def _lines(
     own = [json.loads(one or "{}") for one in known[0]] if features else []
     return zip(
         user, policy, outcome, context, [one / 1000 for one in time], probability,
-        [GROUPS[one] for one in control], map(identifier, id_), version, map(rules.get, version),
+        [GROUPS[one] for one in control], identifiers(id_), version, map(rules.get, version),
         [None if one is None else one / 1000 for one in ended], available, request,
         *([one.get(name) for one in own] for name in features), strict=True,
     )  # fmt: skip

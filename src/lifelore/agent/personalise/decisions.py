@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.personalise.beliefs import Beliefs, learn, open_beliefs, probabilities, stored_beliefs
-from lifelore.agent.personalise.identifiers import identifier, new_ids, parse_identifier
+from lifelore.agent.personalise.identifiers import identifier, identifiers, new_ids, parse_identifier
 from lifelore.agent.personalise.policy_states import checked_available
 from lifelore.agent.personalise.study import Study, known_users, shares_of
 from lifelore.core.errors import InputError, LifeloreError, NotFoundError
@@ -184,8 +184,8 @@ def _decided(
         new = [at for at in range(len(own)) if at not in keys or (keys[at] not in made and first[keys[at]] == at)]
         drawn = _drawn(study, [own[at] for at in new], [checked[at] for at in new], probs[new], seed)
         rows.add_decisions(drawn)
-    for at, decision in zip(new, drawn, strict=True):
-        answers[good[at]] = _answer(decision, repeated=False)
+    for at, decision, text in zip(new, drawn, identifiers([one.id for one in drawn]), strict=True):
+        answers[good[at]] = _answer(decision, text, repeated=False)
         if at in keys:
             made[keys[at]] = decision
     for at in keys.keys() - set(new):
@@ -270,11 +270,12 @@ def _drawn(
     study: Study, users: Sequence[UserRow], requests: Sequence[Request], probs: NDArray[np.float64], seed: int
 ) -> list[DecisionRow]:
     """A new decision for each user: the policy that a number in [0, 1) falls on, none of probability 0."""
-    counted, numbers = Counter[int](), []
-    for user in users:
-        numbers.append(user.n_decisions + counted[user.number])
-        counted[user.number] += 1
-    names = [user.name for user in users]
+    names, numbers = [user.name for user in users], [user.n_decisions for user in users]
+    if len(set(names)) < len(names):  # somebody comes more than once
+        counted = Counter[str]()
+        for place, name in enumerate(names):
+            numbers[place] += counted[name]
+            counted[name] += 1
     draws, held_out = shares_of((seed, study.name), names, numbers), study.held_out(names)
     ends = probs.cumsum(axis=1)
     last = probs.shape[1] - 1 - (probs[:, ::-1] > 0).argmax(axis=1)
@@ -339,12 +340,12 @@ def _repeated(request: Request, decision: DecisionRow) -> Answer:
             f"request '{request.request}' of this user was made with other available policies; give this one "
             "another identifier"
         )
-    return _answer(decision, repeated=True)
+    return _answer(decision, identifier(decision.id), repeated=True)
 
 
-def _answer(decision: DecisionRow, *, repeated: bool) -> Answer:
+def _answer(decision: DecisionRow, text: str, *, repeated: bool) -> Answer:
     return {
-        "decision": identifier(decision.id),
+        "decision": text,
         "policy": decision.policy,
         "probability": decision.probability,
         "control": decision.control,

@@ -5,6 +5,7 @@ import os
 import re
 import threading
 import uuid
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -12,6 +13,8 @@ from lifelore.core.errors import InputError
 
 EARLIER_IDENTIFIER = re.compile(r"[0-9a-f]{16}(-\d{1,9}(\.\d{1,9})?|\.\d+/\d+)")
 """Of a decision that an earlier Lifelore stored."""
+_DIGITS = np.delete(np.arange(36), [8, 13, 18, 23])
+"""Places of the digits in the text of a UUID."""
 SET_BACK = 60_000
 """Milliseconds by which a clock may run back without an effect on the order of identifiers."""
 
@@ -40,15 +43,23 @@ def new_ids(now: int, n: int) -> list[bytes]:
     """Version 7 UUIDs of a time in milliseconds: those of a process are in the order in which they were made."""
     milliseconds, number = divmod(_CLOCK.tick(now), 1 << 12)
     head = (milliseconds << 16 | 0x7000 | number).to_bytes(8, "big")
-    drawn = np.frombuffer(os.urandom(8 * n), np.uint8).reshape(n, 8).copy()
-    drawn[:, 0] = 0x80 | drawn[:, 0] & 0x3F
-    return sorted(head + row.tobytes() for row in drawn)
+    drawn = np.frombuffer(os.urandom(8 * n), ">u8") >> np.uint64(2) | np.uint64(1 << 63)
+    tails = np.sort(drawn).astype(">u8").tobytes()
+    return [head + tails[at : at + 8] for at in range(0, 8 * n, 8)]
 
 
 def identifier(id_: bytes) -> str:
     """The text by which an outcome is given later."""
     text = id_.hex()
     return f"{text[:8]}-{text[8:12]}-{text[12:16]}-{text[16:20]}-{text[20:]}"
+
+
+def identifiers(ids: Sequence[bytes]) -> list[str]:
+    """The `identifier` of each of many."""
+    text = np.full((len(ids), 36), ord("-"), np.uint8)
+    text[:, _DIGITS] = np.frombuffer(b"".join(ids).hex().encode(), np.uint8).reshape(-1, 32)
+    whole = text.tobytes().decode()
+    return [whole[at : at + 36] for at in range(0, len(whole), 36)]
 
 
 def parse_identifier(text: str) -> bytes:

@@ -66,9 +66,7 @@ def warm(sources: Any, memory: Memory, study: Study, form: LogFormat | None = No
         A log breaks a rule; memory is as it was.
     """
     log = read_log(sources, form)
-    return add_lines(memory, study, lines_of(log)) | {
-        name: getattr(log, name) for name in ("pending", "filled_outcomes", "filled_policies", "without_policy")
-    }
+    return add_lines(memory, study, lines_of(log)) | log.counts
 
 
 def add_lines(memory: Memory, study: Study, lines: Sequence[Line]) -> dict[str, Any]:

@@ -33,4 +33,4 @@ class Service:
     def __post_init__(self) -> None:
         self.studies = OpenStudies(self.memory)
         self.watch = StudyWatch(self.memory, self.studies, self.metrics)
-        self.writer = Writer(self.memory, self.studies, self.metrics, self.studies.drop_all, self.settings.seed)
+        self.writer = Writer(self.memory, self.studies, self.metrics, self.settings.seed)

@@ -8,7 +8,8 @@ so that many users cost little more than one.
 import asyncio
 import queue
 import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from typing import Any, NamedTuple
 
@@ -28,14 +29,13 @@ which other requests get their turn; more let these wait longer, fewer wait for 
 
 
 class _Job(NamedTuple):
-    """Rows of a study to store, or a function and its arguments to run.
+    """Rows of a study to store.
 
-    kind : "decisions" or "outcomes", the study, and whether answers are brief; None for a function
+    kind : "decisions" or "outcomes", the study, and whether answers are brief
     """
 
-    kind: tuple[str, str, bool] | None
-    rows: tuple[Any, ...]
-    loop: asyncio.AbstractEventLoop
+    kind: tuple[str, str, bool]
+    rows: Sequence[Any]
     future: asyncio.Future[Any]
 
 
@@ -48,38 +48,28 @@ class Writer:
     studies : OpenStudies
     metrics : Metrics
         Counts what was stored.
-    undone : callable
-        Called after a transaction that memory refused: what main memory holds of it must be read again.
     seed : int
         Draws the choices.
     """
 
-    def __init__(
-        self, memory: Memory, studies: OpenStudies, metrics: Metrics, undone: Callable[[], None], seed: int
-    ) -> None:
-        self._memory, self._studies, self._metrics, self._undone = memory, studies, metrics, undone
-        self._seed = seed
+    def __init__(self, memory: Memory, studies: OpenStudies, metrics: Metrics, seed: int) -> None:
+        self._memory, self._studies, self._metrics, self._seed = memory, studies, metrics, seed
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
         self._thread = threading.Thread(target=self._work, name="lifelore writer", daemon=True)
         self._thread.start()
 
-    async def run(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """The result of a function, once all that it stored is committed; its errors as it raised them."""
-        return await self._put(None, (function, *arguments))
-
     async def decide(self, study: str, requests: Sequence[Any], *, brief: bool = False) -> list[Any]:
         """The answers of `decisions.decide`, once the decisions are committed; requests have its fields."""
-        return await self._put(("decisions", study, brief), tuple(requests))
+        return await self._put(("decisions", study, brief), requests)
 
     async def observe(
         self, study: str, outcomes: Sequence[tuple[str, float]], *, brief: bool = False
     ) -> list[Any]:
         """The answers of `decisions.observe`, once the outcomes are committed."""
-        return await self._put(("outcomes", study, brief), tuple(outcomes))
+        return await self._put(("outcomes", study, brief), outcomes)
 
-    def _put(self, kind: tuple[str, str, bool] | None, rows: tuple[Any, ...]) -> asyncio.Future[Any]:
-        loop = asyncio.get_running_loop()
-        job = _Job(kind, rows, loop, loop.create_future())
+    def _put(self, kind: tuple[str, str, bool], rows: Sequence[Any]) -> asyncio.Future[Any]:
+        job = _Job(kind, rows, asyncio.get_running_loop().create_future())
         self._jobs.put(job)
         return job.future
 
@@ -103,28 +93,25 @@ class Writer:
                     jobs.append(following)
                     n_rows += len(following.rows)
             patience = PATIENCE if len(jobs) > 1 else 0.0
-            for rows in (True, False):
-                if group := [job for job in jobs if (job.kind is not None) == rows]:
-                    _deliver(group, self._results(group, rows))
+            _deliver(jobs, self._results(jobs))
             if last:
                 return
 
-    def _results(self, jobs: Sequence[_Job], rows: bool) -> list[Any]:
-        """The result of each job or its error, from one transaction."""
+    def _results(self, jobs: Sequence[_Job]) -> list[Any]:
+        """The answers to each job or its error, from one transaction."""
         try:
-            with self._memory.together(rows=rows):
-                results = self._stored(jobs) if rows else [_result(job) for job in jobs]
+            with self._memory.together(rows=True):
+                results = self._stored(jobs)
         except Exception as error:
-            self._undone()
+            self._studies.drop_all()  # they may hold what was undone
             return [error] * len(jobs)
-        if rows:
-            self._count(jobs, results)
+        self._count(jobs, results)
         return results
 
     def _stored(self, jobs: Sequence[_Job]) -> list[Any]:
         """Store the rows of jobs, those of a study and a kind as one batch."""
         answers: dict[Any, Iterator[Any]] = {}
-        for kind in dict.fromkeys(job.kind for job in jobs if job.kind):
+        for kind in dict.fromkeys(job.kind for job in jobs):
             rows = [row for job in jobs if job.kind == kind for row in job.rows]
             answers[kind] = iter(self._answers(*kind, rows))
         return [list(islice(answers[job.kind], len(job.rows))) for job in jobs]
@@ -140,27 +127,25 @@ class Writer:
 
     def _count(self, jobs: Sequence[_Job], results: Sequence[Any]) -> None:
         """Count new decisions and outcomes, by arm and not by row."""
-        sums: dict[tuple[str, str, str, bool], list[float]] = {}
+        decided = Counter[tuple[str, str, bool]]()
+        observed: dict[tuple[str, str, bool], list[float]] = {}
         for job, answers in zip(jobs, results, strict=True):
-            kind, study, _ = job.kind or ("", "", False)
-            for row, answer in zip(job.rows, answers, strict=True):
-                if not isinstance(answer, LifeloreError) and answer.get("taken", not answer.get("repeated")):
-                    own = sums.setdefault((kind, study, answer["policy"], answer["control"]), [0, 0.0])
-                    own[0] += 1
-                    own[1] += row[1] if kind == "outcomes" else 0.0
-        for (kind, study, policy, control), (n, total) in sums.items():
+            kind, study, _ = job.kind
+            new = [(one, row) for one, row in zip(answers, job.rows, strict=True) if _is_new(one)]
             if kind == "decisions":
-                self._metrics.decided(study, policy, control, n)
+                decided.update([(study, one["policy"], one["control"]) for one, _ in new])
             else:
-                self._metrics.observed(study, policy, control, n, total)
+                for one, (_, outcome) in new:
+                    observed.setdefault((study, one["policy"], one["control"]), []).append(outcome)
+        for arm, n in decided.items():
+            self._metrics.decided(*arm, n)
+        for arm, outcomes in observed.items():
+            self._metrics.observed(*arm, len(outcomes), sum(outcomes))
 
 
-def _result(job: _Job) -> Any:
-    function, *arguments = job.rows
-    try:
-        return function(*arguments)
-    except Exception as error:
-        return error
+def _is_new(answer: Any) -> bool:
+    """Whether an answer is of a decision or outcome that was stored now."""
+    return not isinstance(answer, LifeloreError) and answer.get("taken", not answer.get("repeated"))
 
 
 def _deliver(jobs: Sequence[_Job], results: Sequence[Any]) -> None:
@@ -175,4 +160,4 @@ def _deliver(jobs: Sequence[_Job], results: Sequence[Any]) -> None:
             else:
                 job.future.set_result(result)
 
-    jobs[0].loop.call_soon_threadsafe(answer)
+    jobs[0].future.get_loop().call_soon_threadsafe(answer)

@@ -27,13 +27,22 @@ def named(log, column, of_user):
 
 def test_columns_in_any_order_and_others_passed_over(written):
     log = read_log([written('outcome,shop, policy ,user,note\n1.5,x, dark ,"Ann, of 7",hi\n\n-2e1,y,big,Bo,\n')])
-    assert (log.users, log.policies, log.outcomes.tolist()) == (["Ann, of 7", "Bo"], ["dark", "big"], [1.5, -20])
-    assert (log.type.words, log.context.words, log.pending, log.says_types) == (["", ""], ["", ""], 0, False)
+    assert (log.user.words, log.policy.words, log.outcomes.tolist()) == (
+        ["Ann, of 7", "Bo"],
+        ["dark", "big"],
+        [1.5, -20],
+    )
+    assert (log.type.words, log.context.words, log.counts["pending"], log.says_types) == (
+        ["", ""],
+        ["", ""],
+        0,
+        False,
+    )
 
 
 def test_types_contexts_and_outcomes_not_yet_known(written):
     log = read_log([written("user,policy,outcome,type,context\na,p,1,kind,web\na,p,,,\nb,q,0,,app\n")])
-    assert log.pending == 1
+    assert log.counts["pending"] == 1
     assert named(log, log.type, log.type_of_user) == {"a": "kind"}
     assert named(log, log.context, log.context_of_user) == {"a": "web", "b": "app"}
 
@@ -41,7 +50,7 @@ def test_types_contexts_and_outcomes_not_yet_known(written):
 def test_several_logs_are_one(written):
     first, second = written(HEAD + "a,p,1\n"), written("policy,user,outcome\nq,b,2\n", "more.csv")
     log = read_log([first, second])
-    assert (log.users, log.policies) == (["a", "b"], ["p", "q"])
+    assert (log.user.words, log.policy.words) == (["a", "b"], ["p", "q"])
     assert np.array_equal(log.outcomes, [1.0, 2.0])
 
 
@@ -59,12 +68,17 @@ def test_a_byte_order_mark_is_no_letter(written):
 )
 def test_capitals_and_separators_as_other_programs_write_them(text, written):
     log = read_log([written(text)])
-    assert (log.users, log.policies, log.outcomes.tolist(), log.type.words) == (["a"], ["p"], [1.0], ["k"])
+    assert (log.user.words, log.policy.words, log.outcomes.tolist(), log.type.words) == (
+        ["a"],
+        ["p"],
+        [1.0],
+        ["k"],
+    )
 
 
 def test_a_separator_of_another_log_is_a_letter(written):
     log = read_log([written("user,policy,outcome\na;b,p,1\n"), written("user;policy;outcome\na,b;q;2\n", "b.csv")])
-    assert log.users == ["a;b", "a,b"]
+    assert log.user.words == ["a;b", "a,b"]
 
 
 def test_a_log_given_twice_is_refused(written, tmp_path):
@@ -106,7 +120,7 @@ def test_bad_logs(text, said, written):
 def test_columns_by_their_own_names(written):
     form = LogFormat(parse_columns(["user=Household, policy=brand", "outcome=took it"]))
     log = read_log([written("week;household;took it;brand;policy\n1;a;1;x;other\n2;b;0;y;other\n")], form)
-    assert (log.users, log.policies, log.outcomes.tolist()) == (["a", "b"], ["x", "y"], [1.0, 0.0])
+    assert (log.user.words, log.policy.words, log.outcomes.tolist()) == (["a", "b"], ["x", "y"], [1.0, 0.0])
     with pytest.raises(
         InputError, match=r"must have the columns Household, brand, took it.* it has no brand".lower()
     ):
@@ -125,11 +139,11 @@ def test_decimal_commas_latin_1_and_a_separator_by_option(written):
     text = "user;policy;outcome\nZoë;p;1,5\nBo;p;-0,25\nCy;p;7\n"
     form = LogFormat(decimal_comma=True, encoding="latin-1")
     log = read_log([written(text, encoding="latin-1")], form)
-    assert (log.users, log.outcomes.tolist()) == (["Zoë", "Bo", "Cy"], [1.5, -0.25, 7.0])
+    assert (log.user.words, log.outcomes.tolist()) == (["Zoë", "Bo", "Cy"], [1.5, -0.25, 7.0])
     with pytest.raises(InputError, match=r"line 3: outcome must have a comma before its decimals, got '1\.500'"):
         read_log([written("user;policy;outcome\na;p;1,5\na;p;1.500\n")], LogFormat(decimal_comma=True))
     tabs = LogFormat(separator="tab")
-    assert read_log([written("user\tpolicy\toutcome\na,b\tp\t1\n")], tabs).users == ["a,b"]
+    assert read_log([written("user\tpolicy\toutcome\na,b\tp\t1\n")], tabs).user.words == ["a,b"]
     for settings in ({"separator": "dot"}, {"encoding": "klingon"}):
         with pytest.raises(NotFoundError, match=f"{next(iter(settings))} must be one"):
             LogFormat(**settings)
@@ -164,8 +178,8 @@ GAPS = HEAD + "a,p,1\nb,,0\nc,q,\nd,,\ne,NA,NA\nf,p,2\n"
 )
 def test_what_is_missing_is_counted(settings, rows, counts, written):
     log = read_log([written(GAPS)], LogFormat(missing=("NA",), **settings))
-    assert list(zip(log.users, log.policies, log.outcomes.tolist(), strict=True)) == rows
-    assert (log.pending, log.filled_outcomes, log.filled_policies, log.without_policy) == counts
+    assert list(zip(log.user.words, log.policy.words, log.outcomes.tolist(), strict=True)) == rows
+    assert tuple(log.counts.values()) == counts
 
 
 def test_what_is_missing_is_refused_with_its_line(written):
@@ -219,7 +233,11 @@ def test_chunks_make_no_difference(written, monkeypatch):
     whole = read_log([path])
     monkeypatch.setattr(log_reader, "CHUNK", 7)
     parts = read_log([path])
-    assert (parts.users, parts.policies, parts.pending) == (whole.users, whole.policies, whole.pending)
+    assert (parts.user.words, parts.policy.words, parts.counts["pending"]) == (
+        whole.user.words,
+        whole.policy.words,
+        whole.counts["pending"],
+    )
     assert np.array_equal(parts.outcomes, whole.outcomes)
     assert np.array_equal(parts.line, whole.line)
     assert whole.line.tolist() == [i + 2 for i in range(50) if i % 5]

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.agent.personalise.evaluate.logged_decisions import CERTAIN, LoggedDecisions, read_decisions
+from lifelore.agent.personalise.evaluate.logged_decisions import CERTAIN, read_decisions
 from lifelore.agent.personalise.evaluate.replayed_choices import (
     choices_of_rule,
     expected_by_library,
@@ -26,6 +26,7 @@ from lifelore.agent.personalise.evaluate.target_policies import (
     single_policy,
     table_policy,
 )
+from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.result_folder import write_result
 from lifelore.agent.personalise.study import Study, known_users, open_study
@@ -38,6 +39,8 @@ from lifelore.interaction.selection import rule_named
 from lifelore.memory import Memory
 
 MODELS = ("means", "library")
+LEFT_OUT = ("pending", "without_policy", "other_groups", "known_to_the_study", "later_decisions")
+"""Reasons for which lines of a log do not count."""
 
 
 @dataclass(frozen=True)
@@ -133,38 +136,28 @@ def evaluate(
         The disk refuses.
     """
     settings = settings or EvaluateSettings()
-    decisions = read_decisions(paths, form, settings.group)
-    study, known = None, 0
+    log, group = read_decisions(paths, form, settings.group)
+    study = None
     if settings.study is not None:
         if memory is None:
             raise InputError(f"study '{settings.study}' needs the memory that holds it")
         study = open_study(memory, settings.study)
-        decisions, known = _of_strangers(decisions, memory, study)
-    n_before = len(decisions.log)
+        log = _of_strangers(log, memory, study)
     if settings.first is not None:
-        decisions = decisions.take(np.flatnonzero(decision_numbers(decisions.log.user.codes) < settings.first))
-    log, users = decisions.log, decisions.log.user.codes
-    logged = logged_value(log.outcomes, users)
-    targets, model = _targets(decisions, settings, study)
+        log = log.keeping(decision_numbers(log.user.codes) < settings.first, "later_decisions")
+    logged, certain = logged_value(log.outcomes, log.user.codes), np.asarray(log.probability) >= CERTAIN
+    targets, model = _targets(log, settings, study)
     document = {
         "decisions": len(log),
         "users": len(log.user.names),
-        "group": decisions.group,
-        "left_out": {
-            "pending": log.pending,
-            "without_policy": log.without_policy,
-            "other_groups": decisions.left_out,
-            "known_to_the_study": known,
-            "later_decisions": n_before - len(log),
-        },
-        "certain": float((decisions.probability >= CERTAIN).mean()),
+        "group": group,
+        "left_out": {reason: log.counts.get(reason, 0) for reason in LEFT_OUT},
+        "certain": float(certain.mean()),
         "logged": logged.to_dict(),
         "model": settings.model,
         "first": settings.first,
         "seed": settings.seed,
-        "targets": [
-            target_estimates(target, decisions, model, logged, settings.first is not None) for target in targets
-        ],
+        "targets": [target_estimates(one, log, model, logged, settings.first is not None) for one in targets],
     }
     if out is not None:
         from lifelore.figures.off_policy_estimates import draw_off_policy_estimates
@@ -173,14 +166,14 @@ def evaluate(
     return document
 
 
-def _of_strangers(decisions: LoggedDecisions, memory: Memory, study: Study) -> tuple[LoggedDecisions, int]:
-    """The decisions for users whom the study does not know, and the number of the others.
+def _of_strangers(log: ReuseLog, memory: Memory, study: Study) -> ReuseLog:
+    """The decisions for users whom the study does not know.
 
     The library has learnt from the outcomes of the users of the fit, so they cannot judge it; a user with a past
     does not start as a stranger. Users with a decision before the fit may have been in its logs.
     """
     fitted_at = 1000 * study.fitted.get("time", np.inf)
-    names = list(decisions.log.user.names)
+    names = list(log.user.names)
     with memory.studies.reading(study.number) as rows:
         users = known_users(rows, study, names)
         numbers = [user.number for user in users.values()]
@@ -191,19 +184,17 @@ def _of_strangers(decisions: LoggedDecisions, memory: Memory, study: Study) -> t
         if user.fitted or user.number in past or first.get(user.number, np.inf) < fitted_at
     }
     new = np.array([name not in known for name in names])
-    rows = np.flatnonzero(new[decisions.log.user.codes])
-    if not rows.size:
+    if not new.any():
         raise InputError(
             f"study '{study.name}' was fitted to all users of the log or knows their past, so the log cannot "
             "judge it; give a log of other users, or --rule, which learns without the users that it is judged on"
         )
-    return decisions.take(rows), len(decisions.log) - len(rows)
+    return log.keeping(new[log.user.codes], "known_to_the_study")
 
 
 def _targets(
-    decisions: LoggedDecisions, settings: EvaluateSettings, study: Study | None
+    log: ReuseLog, settings: EvaluateSettings, study: Study | None
 ) -> tuple[list[TargetPolicy], RewardModel]:
-    log = decisions.log
     folds = user_folds(log.user.codes, stream(settings.seed, "reuse evaluate", "folds"))
     model = policy_means(log.outcomes, log.policy.codes, len(log.policy.names), folds)
     studies = []

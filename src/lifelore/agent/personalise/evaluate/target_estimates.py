@@ -5,8 +5,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.evaluate.logged_decisions import CERTAIN, MOST_CERTAIN, LoggedDecisions
+from lifelore.agent.personalise.evaluate.logged_decisions import CERTAIN, MOST_CERTAIN
 from lifelore.agent.personalise.evaluate.target_policies import TargetPolicy
+from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.interaction.evaluation.estimate_by_user import ClusteredEstimate
 from lifelore.interaction.evaluation.estimators import doubly_robust, inverse_propensity, self_normalised
 from lifelore.interaction.evaluation.propensity_weights import (
@@ -30,14 +31,15 @@ MEAN_WEIGHT_ERRORS = 3.3
 
 
 def target_estimates(
-    target: TargetPolicy, decisions: LoggedDecisions, model: RewardModel, logged: ClusteredEstimate, whole: bool
+    target: TargetPolicy, log: ReuseLog, model: RewardModel, logged: ClusteredEstimate, whole: bool
 ) -> dict[str, Any]:
     """The entry of a target in the document of `evaluate`.
 
     Parameters
     ----------
     target : TargetPolicy
-    decisions : LoggedDecisions
+    log : ReuseLog
+        With probabilities.
     model : RewardModel
         Of the doubly robust estimate.
     logged : ClusteredEstimate
@@ -45,17 +47,13 @@ def target_estimates(
     whole : bool
         Whether an adaptive target makes all decisions of a user, and not each one after the logged outcomes.
     """
-    log, users = decisions.log, decisions.log.user.codes
-    weights, before, steps = (
-        importance_weights(target.of_logged, decisions.probability),
-        None,
-        None,
-    )
+    users, probability = log.user.codes, np.asarray(log.probability)
+    weights, before, steps = importance_weights(target.of_logged, probability), None, None
     whole = whole and target.adaptive
     if whole:
         before, weights = trajectory_weights(weights, users)
         steps = decision_numbers(users)
-    alone = (decisions.probability >= CERTAIN) * (1 - target.of_logged)
+    alone = (probability >= CERTAIN) * (1 - target.of_logged)
     support = 1 - max(float(alone.mean()), target.untried)
     summary = weight_summary(weights, users)
     estimates: dict[str, Any] = dict.fromkeys(ESTIMATORS)

@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.personalise.fitting.fit_notes import fit_notes, personalised_by
-from lifelore.agent.personalise.fitting.library_from_log import Fitted, TypedRows, library_of
+from lifelore.agent.personalise.fitting.library_from_log import Fitted, TypedRows, library_of, typed_rows
 from lifelore.agent.personalise.fitting.model_choice import Kind, chosen_model
 from lifelore.agent.personalise.fitting.types_by_context import by_context, contexts_differ, priors_by_context
-from lifelore.agent.personalise.fitting.types_of_users import typed_rows
 from lifelore.agent.personalise.log.log import ReuseLog, read_log
 from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.past import keep_fitted_past
@@ -242,10 +241,7 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
     return {
         "study": study.name,
         "rows": _used(log, typed),
-        "pending": log.pending,
-        "filled_outcomes": log.filled_outcomes,
-        "filled_policies": log.filled_policies,
-        "without_policy": log.without_policy,
+        **log.counts,
         "left_out": len(log) - _used(log, typed),
         "users": len(log.user.names),
         "model": library.performance.kind,  # type: ignore[attr-defined]

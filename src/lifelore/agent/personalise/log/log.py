@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.log.log_format import WEIGHT, LogFormat
+from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.log.log_frame import NAME, frame_content, frame_format
 from lifelore.agent.personalise.log.log_reader import WORDS, LogReader
 from lifelore.core.errors import InputError, NotFoundError, StoreError
@@ -54,10 +54,6 @@ class Column:
         return Column(tuple(self.names[code] for code in used.tolist()), codes.astype(np.int64))
 
 
-NOTHING = Column(("",), np.zeros(0, np.int64))
-"""A column of a log without rows."""
-
-
 @dataclass(frozen=True, eq=False)
 class ReuseLog:
     """Choices whose outcome is known, one a row.
@@ -70,16 +66,13 @@ class ReuseLog:
         Finite.
     file, line : (n,) int64
         Number of each row's source, and of its line there.
-    pending : int
-        Lines left out because their outcome is missing.
-    filled_outcomes, filled_policies : int
-        Lines whose missing outcome or policy got what the format says.
-    without_policy : int
-        Lines left out because their policy is missing.
-    probability, group : Column
-        "" where the log says nothing, and where the format does not read them.
-    weights : (n,) float64, optional
-        At least 0; None where the format names no column of weights.
+    counts : dict of str to int
+        Lines left out because their outcome (``pending``) or policy (``without_policy``) is missing; lines whose
+        missing outcome or policy got what the format says (``filled_outcomes``, ``filled_policies``).
+    group : Column
+        "" where the log says nothing, and where the format does not read it.
+    probability : (n,) float64, optional
+        NaN where missing; None where the format does not read it.
     feature_names : tuple of str
         As the format gives them.
     features : (n, n_features) float64
@@ -95,28 +88,14 @@ class ReuseLog:
     outcomes: NDArray[np.float64]
     file: NDArray[np.int64]
     line: NDArray[np.int64]
-    pending: int
-    filled_outcomes: int = 0
-    filled_policies: int = 0
-    without_policy: int = 0
-    probability: Column = NOTHING
-    group: Column = NOTHING
-    weights: NDArray[np.float64] | None = None
+    counts: dict[str, int]
+    group: Column
+    probability: NDArray[np.float64] | None = None
     feature_names: tuple[str, ...] = ()
     features: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)))
 
     def __len__(self) -> int:
         return len(self.outcomes)
-
-    @property
-    def users(self) -> list[str]:
-        """The user of each row."""
-        return self.user.words
-
-    @property
-    def policies(self) -> list[str]:
-        """The policy of each row."""
-        return self.policy.words
 
     @property
     def says_types(self) -> bool:
@@ -126,9 +105,14 @@ class ReuseLog:
     def take(self, rows: NDArray[np.int64]) -> "ReuseLog":
         """The log with the rows at some places alone, and the names that they have."""
         columns = {name: getattr(self, name).take(rows) for name in WORDS}
-        own = {name: getattr(self, name)[rows] for name in ("outcomes", "file", "line")}
-        weights = None if self.weights is None else self.weights[rows]
-        return replace(self, **columns, **own, weights=weights, features=self.features[rows])
+        names = ("outcomes", "file", "line", "features", "probability")
+        own = {name: values[rows] for name in names if (values := getattr(self, name)) is not None}
+        return replace(self, **columns, **own)
+
+    def keeping(self, rows: NDArray[np.bool_], others: str) -> "ReuseLog":
+        """The log with some rows alone; the number of the others is in `counts` under the name `others`."""
+        counts = self.counts | {others: int((~rows).sum())}
+        return replace(self.take(np.flatnonzero(rows)), counts=counts)
 
     @cached_property
     def type_of_user(self) -> NDArray[np.int64]:
@@ -207,9 +191,9 @@ def _content(path: Path) -> bytes:
 def _log(reader: LogReader, form: LogFormat) -> ReuseLog:
     outcomes, file, line, words, numbers = reader.columns()
     columns = {name: _column(reader.codes[name], codes) for name, codes in zip(WORDS, words, strict=True)}
-    weights = numbers.pop(0) if WEIGHT in form.columns else None
+    probability = numbers.pop(0) if form.probabilities else None
     return ReuseLog(
-        **columns, outcomes=outcomes, file=file, line=line, **reader.counts, weights=weights,
+        **columns, outcomes=outcomes, file=file, line=line, counts=reader.counts, probability=probability,
         feature_names=tuple(name.strip() for name in form.features),
         features=np.stack(numbers, axis=1) if numbers else np.empty((len(outcomes), 0)),
     )  # fmt: skip
@@ -231,7 +215,7 @@ def _check_types(log: ReuseLog, paths: Sequence[str]) -> None:
     for row in np.sort(said[at]).tolist():
         earlier = first.setdefault(int(log.user.codes[row]), row)
         if earlier != row:
-            user, type_, before = log.users[row], log.type.words[row], log.type.words[earlier]
+            user, type_, before = log.user.words[row], log.type.words[row], log.type.words[earlier]
             where = [f"{paths[log.file[one]]} line {log.line[one]}" for one in (row, earlier)]
             raise InputError(
                 f"{where[0]}: a user must have one type, got '{type_}' for '{user}', who is '{before}' in "

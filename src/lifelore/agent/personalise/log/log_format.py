@@ -10,10 +10,8 @@ from lifelore.interaction.outcomes.outcome_model import LARGEST
 
 NEEDED = ("user", "policy", "outcome")
 OPTIONAL = ("type", "context", "decision", "time")
-LOGGED = ("probability", "group")
+PROBABILITY, GROUP = "probability", "group"
 """Columns of the log that `reuse report` writes, read for off-policy evaluation only."""
-WEIGHT = "weight"
-"""Column of weights; read only where `columns` names it, because a log may have a column of that name."""
 SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t"}
 LEAVE_OUT, REFUSE = "leave-out", "refuse"
 FORMULAS = "=+-@\t\r"
@@ -27,9 +25,8 @@ class LogFormat:
     Parameters
     ----------
     columns : dict of str to str
-        The log's own name of a column, by ours (`NEEDED`, `OPTIONAL`, `LOGGED`, `WEIGHT`); others have our
-        names. Capitals
-        do not matter.
+        The log's own name of a column, by ours (`NEEDED`, `OPTIONAL`, `PROBABILITY`, `GROUP`); others have
+        our names. Capitals do not matter.
     separator : {"comma", "semicolon", "tab"}, optional
         Between columns; default: the one that makes the needed columns of the header.
     decimal_comma : bool
@@ -65,7 +62,7 @@ class LogFormat:
     probabilities: bool = False
 
     def __post_init__(self) -> None:
-        known = (*NEEDED, *OPTIONAL, *LOGGED, WEIGHT)
+        known = (*NEEDED, *OPTIONAL, PROBABILITY, GROUP)
         for ours in self.columns:
             if ours not in known:
                 raise InputError(f"columns must name {', '.join(known)}, got '{ours}'")
@@ -81,12 +78,12 @@ class LogFormat:
     @property
     def needed(self) -> tuple[str, ...]:
         """Columns that the log must have, by our names."""
-        return (*NEEDED, "probability") if self.probabilities else NEEDED
+        return (*NEEDED, PROBABILITY) if self.probabilities else NEEDED
 
     @property
     def read(self) -> tuple[str, ...]:
-        """Columns that are read where the log has them, by our names."""
-        return (*NEEDED, *OPTIONAL, *LOGGED) if self.probabilities else (*NEEDED, *OPTIONAL)
+        """Columns of words and outcomes that are read where the log has them, by our names."""
+        return (*NEEDED, *OPTIONAL, GROUP) if self.probabilities else (*NEEDED, *OPTIONAL)
 
     def column(self, ours: str) -> str:
         """The log's name of a column, in small letters."""
@@ -94,9 +91,9 @@ class LogFormat:
 
     @property
     def numbers(self) -> tuple[str, ...]:
-        """The log's names of its columns of numbers beside the outcome, in small letters: weights, features."""
-        weight = [self.column(WEIGHT)] if WEIGHT in self.columns else []
-        return (*weight, *(name.strip().lower() for name in self.features))
+        """The log's names of its columns of numbers beside the outcome: probabilities, features."""
+        probability = [self.column(PROBABILITY)] if self.probabilities else []
+        return (*probability, *(name.strip().lower() for name in self.features))
 
 
 def parse_features(words: Sequence[str]) -> dict[str, float]:

@@ -10,12 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.personalise.log.log_format import (
+    GROUP,
     LEAVE_OUT,
-    LOGGED,
     OPTIONAL,
     REFUSE,
     SEPARATORS,
-    WEIGHT,
     LogFormat,
     read_outcome,
     unescaped,
@@ -26,7 +25,7 @@ from lifelore.memory.record_rules import LONGEST_NAME, check_name
 
 CHUNK = 1 << 16
 """Lines taken in at a time; more need more memory, fewer more time."""
-WORDS = ("user", "policy", *OPTIONAL, *LOGGED)
+WORDS = ("user", "policy", *OPTIONAL, GROUP)
 COUNTED = ("pending", "filled_outcomes", "filled_policies", "without_policy")
 """Reasons for which lines are left out or filled; see `ReuseLog`."""
 HINT = "; leave it empty if it is not known, or say --missing WORD"
@@ -47,7 +46,7 @@ class LogReader:
 
     def __init__(self) -> None:
         self.codes: dict[str, dict[str, int]] = {name: {} for name in WORDS}
-        self.counts = dict.fromkeys(COUNTED, 0)
+        self.counts: dict[str, int] = dict.fromkeys(COUNTED, 0)
         # The code of each word as the file has it, so that it is checked once; -1: a missing policy.
         self._known: dict[str, dict[str, int]] = {name: {} for name in WORDS}
         self._parts: list[tuple[NDArray, ...]] = []
@@ -144,15 +143,12 @@ class LogReader:
         return math.nan
 
     def _numbers(self, name: str, words: Sequence[str], line: Ints) -> NDArray[np.float64]:
-        """A column of numbers; NaN where missing, which a weight may not be."""
-        is_weight = WEIGHT in self._form.columns and name == self._form.numbers[0]
+        """A column of numbers; NaN where missing."""
         values = np.full(len(words), math.nan)
         for place, word in enumerate(map(str.strip, words)):
-            where = f"{self._name} line {line[place]}: "
             if word not in self._missing:
+                where = f"{self._name} line {line[place]}: "
                 values[place] = read_outcome(word, where, decimal_comma=self._form.decimal_comma, name=name)
-            if is_weight and not values[place] >= 0:
-                raise InputError(f"{where}{name} must be a weight of at least 0, got {word[:60]!r}")
         return values
 
     def _words(self, name: str, column: Sequence[str] | None, line: Ints) -> Ints:
