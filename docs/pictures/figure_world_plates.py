@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lifelore.core.errors import InputError
+from lifelore.figures.lives.prior_arrows import draw_prior
 from lifelore.figures.style import VERMILION, house_style, new_figure
-from reproduction.figures.prior_arrows import draw_prior
 
 COLUMNS = 4
 

@@ -165,7 +165,7 @@ def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
                   "lore compared with scratch, last third", "wrote out/summary.json"):  # fmt: skip
         assert words in said.out
     written = [Path(line.removeprefix("wrote ")) for line in said.out.splitlines() if line.startswith("wrote ")]
-    assert {path.name for path in written} >= {"summary.json", "life.png", "world.png"}
+    assert {path.name for path in written} >= {"summary.json", "life.png", "world.png", "prior.png"}
     assert all(path.stat().st_size > 0 for path in written)
     assert set(json.loads(Path("out/summary.json").read_text())) == DOCUMENT
 
@@ -207,6 +207,18 @@ def test_the_measures_go_into_a_long_table(ask, tmp_path):
     assert "measures cannot be written to" in refused.refusal
 
 
+def test_every_episode_is_logged_where_it_is_told(ask, tmp_path):
+    said = ask(*LATTICE, "--tasks", 1, "--memory", "life.db", *changed(l2log=tmp_path / "logs"))
+    assert (said.status, said.err) == (0, "")
+    assert set(said.document["settings"]) == TOLD
+    rows = {path.parts[-4].split("-")[0] for path in (tmp_path / "logs").glob("*/*/0-train/data-log.tsv")}
+    assert {"lore", "scratch"} <= rows
+    (tmp_path / "file").write_text("")
+    refused = ask(*LATTICE, "--memory", "none.db", *changed(l2log=tmp_path / "file"))
+    assert "folder must name a folder" in refused.refusal
+    assert not (tmp_path / "none.db").exists()
+
+
 SET = {
     "building": {
         "cell": 0.4, "robot_radius": 0.15, "min_free": 0.5, "sensor": "lidar", "range": 4.0, "refresh": True,
@@ -219,8 +231,8 @@ SET = {
     "advice": {"loops": 0.3},
 }  # fmt: skip
 """A domain to values, other than the defaults, of settings that it takes."""
-ELSEWHERE = {"again", "busy", "move_names"}
-"""Settings that other tests look at: they need known goals."""
+ELSEWHERE = {"again", "busy", "move_names", "l2log"}
+"""Settings that other tests look at: three need known goals, one says where output goes."""
 
 
 def test_every_setting_is_set_and_stands_in_the_report(ask, tmp_path):
@@ -263,6 +275,8 @@ def test_known_goals_are_driven_to(ask, tmp_path):
     assert "80 %" not in shown.out
     assert "map alone" not in shown.out
     assert "s on the map alone (×" in ask(*options, *changed(busy="true")).out
+    refused = ask(*options, *changed(l2log="logs")).refusal
+    assert "l2log logs episodes of searches" in refused
     assert "busy applies to goals that are driven to" in ask("live", *changed(busy="true")).refusal
 
 
@@ -326,7 +340,7 @@ def test_help_is_one_screen(ask, monkeypatch):
     assert len(lines) <= 40
     assert all(len(line) <= 80 for line in lines)
     options = [line.split()[0] for line in lines if line.startswith("  --")]
-    assert len(options) == 17
+    assert len(options) == 16
     assert options[-1] == "--help"
 
 

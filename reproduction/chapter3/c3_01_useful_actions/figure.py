@@ -4,9 +4,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from lifelore.figures.lives.prior_arrows import draw_prior
 from lifelore.figures.style import BLUE, GREY, SKY, VERMILION, Axes, Figure, new_figure
 from reproduction.chapter3.c3_01_useful_actions.run import PRINTED, PRINTED_OF
-from reproduction.figures.prior_arrows import draw_prior
 
 
 def draw(result: Mapping) -> Figure:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from lifelore.agent.any_tasks.stored_prior import prior_from_memory as prior_from_memory
     from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld as GymnasiumWorld
     from lifelore.agent.live.life_settings import LifeSettings as LifeSettings
+    from lifelore.agent.live.output.l2_log import L2Log as L2Log
     from lifelore.agent.long_lived.check_family import check_family as check_family
     from lifelore.agent.long_lived.long_life import live_long as live_long
     from lifelore.agent.long_lived.task_family import AgentTask as AgentTask
@@ -30,6 +31,7 @@ _HOME = {
     "AgentTask": ".long_lived.task_family",
     "BatchContexts": ".any_tasks.stored_prior",
     "GymnasiumWorld": ".external_world.gymnasium_world",
+    "L2Log": ".live.output.l2_log",
     "LifeSettings": ".live.life_settings",
     "LongLivedAgent": ".any_tasks.long_lived_agent",
     "PerceiveSettings": ".perceive.perceive",

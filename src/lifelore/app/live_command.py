@@ -106,9 +106,10 @@ def setting_keys(domain: str) -> "SettingKeys":
     from lifelore.agent.live.life_settings import LIFE_KEYS, LifeSettings
     from lifelore.agent.long_lived.families.by_name import FAMILIES
     from lifelore.agent.long_lived.long_life import live_long
-    from lifelore.app.setting_keys import SettingKeys
+    from lifelore.app.setting_keys import Setting, SettingKeys
 
-    life = SettingKeys((LifeSettings,), LIFE_KEYS)
+    l2log = Setting("l2log", str, "Folder for a log of every episode in L2Logger's format.")
+    life = SettingKeys((LifeSettings,), LIFE_KEYS, (l2log,))
     long_life = SettingKeys((live_long,), {"location": "memory", "family": "domain"})
     if domain in FAMILIES:
         own, other, where = long_life, life, f"does not apply to domain {domain}; leave it out"
@@ -125,20 +126,26 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], as_json: bool) -> in
 
     from lifelore.agent.live.life import live as live_through
     from lifelore.agent.live.life_settings import LifeSettings
+    from lifelore.agent.live.output.l2_log import LifeLog
     from lifelore.agent.live.output.long_table import LongTable
     from lifelore.agent.live.output.report import check_folder, write_portfolio
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.life_table import print_life
+    from lifelore.core.errors import InputError
 
-    domain, out, csv = values["domain"], values.get("out"), values.get("csv")
+    domain = values["domain"]
+    out, csv, l2log = (values.get(name) for name in ("out", "csv", "l2log"))
     places = {name: _place(name, values[name], domain) for name in ("start", "goal") if name in values}
     jobs = {"goals": _jobs(values["goals"], values.get("tasks"))} if "goals" in values else {}
     settings = LifeSettings(**keys.arguments(LifeSettings, values | places | jobs))
+    if l2log is not None and settings.driven:
+        raise InputError(f"l2log logs episodes of searches, got {l2log} with known goals; leave it out")
     new_folder = out is not None and not os.path.exists(out)  # also a name too long for a file
     if out is not None:
         check_folder(out)
     if "log" in values:
         _check_log(values["log"], domain)
+    log = None if l2log is None else LifeLog(l2log, domain)
     with (
         LongTable(csv, values["seed"]) if csv is not None else nullcontext() as table,
         stop_on_interrupt() as stop,
@@ -151,8 +158,13 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], as_json: bool) -> in
                 _notify(f"new folder {out}")
             progress(done, total, label)
 
-        watch = table.add_results if table else None
-        life = live_through(settings, progress=show, stop=stop, watch=watch, notify=_notify)
+        def record(task: dict, results: dict) -> None:
+            if log:
+                log.add(task, results)
+            if table:
+                table.add_results(task, results)
+
+        life = live_through(settings, progress=show, stop=stop, watch=record, notify=_notify)
         written = write_portfolio(life, out) if out is not None else []
         if "log" in values:
             written.append(_write_log(life, values["log"]))

@@ -93,16 +93,21 @@ def test_every_agent_has_its_colour():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "settings",
+    ("settings", "has_prior"),
     [
-        {"agent": "scratch", "tasks": 1, "start": (1, 1), "episodes": 1, "max_steps": 5},
-        {"domain": "noise", "prior": "state", "tasks": 2},
+        ({"agent": "scratch", "tasks": 1, "start": (1, 1), "episodes": 1, "max_steps": 5}, False),
+        ({"prior": "none", "tasks": 2}, False),
+        ({"domain": "noise", "prior": "state", "tasks": 2}, True),
     ],
-    ids=["one capped task from one start", "noise by state"],
+    ids=["one capped task from one start", "no prior", "noise by state"],
 )
-def test_lives_of_other_kinds_have_the_same_files(tmp_path, settings):
-    written = write_portfolio(_life(tmp_path, **settings), str(tmp_path / "out"))
-    assert written == [str(tmp_path / "out" / name) for name in GRID_FILES]
+def test_other_lives_have_a_prior_or_no_picture_of_one(tmp_path, settings, has_prior):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "prior.png").write_text("of an earlier life")
+    written = write_portfolio(_life(tmp_path, **settings), str(out))
+    assert written == [str(out / name) for name in GRID_FILES if has_prior or name != "prior.png"]
+    assert (out / "prior.png").exists() == has_prior
 
 
 def test_a_folder_is_made_and_left_empty(tmp_path):

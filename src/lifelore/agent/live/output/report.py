@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.agent.live.baselines import AGENTS
 from lifelore.agent.live.goals.destinations import Point
 from lifelore.agent.live.life import Life
 from lifelore.agent.live.lived_tasks import Result
@@ -24,13 +25,14 @@ from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.figures.lives.floor_plan import FloorPlan
 from lifelore.figures.lives.life_curves import draw_life
 from lifelore.figures.lives.map_plan import MapPlan
+from lifelore.figures.lives.prior_map import draw_prior_map
 from lifelore.figures.lives.task_curves import draw_task_curves
 from lifelore.figures.lives.world_map import draw_world_map
 from lifelore.figures.style import save_figure
 
-FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", *NAV2_FILES)
-"""Files of the folder; the curves only if goals were searched, the files of nav2 only in buildings whose moves the
-agent has learnt."""
+FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", "prior.png", *NAV2_FILES)
+"""Files of the folder; the curves only if goals were searched, the prior only if the agent has one, the files of
+nav2 only in buildings whose moves the agent has learnt."""
 
 
 def check_folder(path: str) -> None:
@@ -97,6 +99,8 @@ def _write_all(life: Life, folder: Path) -> None:
         save_figure(_task_figure(life), folder / "learning_curves.png")
     save_figure(_world_figure(life, paths, lines), folder / "world.png")
     write_paths(folder / "paths.csv", lines)
+    if _has_prior(life):
+        save_figure(_prior_figure(life), folder / "prior.png")
     if life.building is not None:
         life.building.write(folder, _goals(life, life.building))
 
@@ -219,3 +223,18 @@ def _named(task: GreedyPaths) -> str:
 def _percent(share: float) -> str:
     """Percent, rounded down, so that 100 % means all."""
     return f"{int(100 * share)} %"
+
+
+def _has_prior(life: Life) -> bool:
+    lore, has_condition = life.lore, life.report["settings"]["prior"] != "none"
+    uses = AGENTS[_agents(life)[0]].uses_prior
+    return has_condition and uses and not lore.prior.unseen(lore.scope.contexts).all()
+
+
+def _prior_figure(life: Life):
+    lore, world = life.lore, life.world
+    probs, counted = lore.prior.probs(lore.scope.contexts), ~lore.prior.unseen(lore.scope.contexts)
+    given = "the surroundings of a cell" if lore.scope.kind == "observation" else "the cell"
+    cell = world.frame.cell if life.report["domain"] == "building" else None
+    title = f"{_place(life)}: the action prior given {given}"
+    return draw_prior_map(world.shape, world.cells, world.neighbour, probs, counted, cell=cell, title=title)

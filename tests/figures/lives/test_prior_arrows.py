@@ -5,8 +5,9 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.quiver import Quiver
 
+from lifelore.core.errors import InputError
+from lifelore.figures.lives.prior_arrows import draw_prior
 from lifelore.figures.style import LIGHT, PAPER, WALL, new_figure
-from reproduction.figures.prior_arrows import draw_prior
 
 SHAPE = (2, 3)
 CELLS = np.array([(0, 0), (0, 1), (1, 1)])
@@ -56,3 +57,16 @@ def test_picture_tells_wall_free_and_uncounted_apart():
     expected = [[PAPER, LIGHT, WALL], [WALL, PAPER, WALL]]
     for cell in np.ndindex(SHAPE):
         assert tuple(picture[cell]) == pytest.approx(to_rgb(expected[cell[0]][cell[1]]))
+
+
+def test_a_building_of_four_thousand_cells_is_one_collection():
+    axes = new_figure(4, 4).subplots()
+    cells = np.argwhere(np.ones((64, 64), bool))
+    draw_prior(axes, (64, 64), cells, np.full((4096, 4), 0.25), np.ones(4096, bool))
+    assert len(axes.collections) == 1
+    assert len(axes.collections[0].U) == 4 * 4096
+
+
+def test_shapes_must_agree():
+    with pytest.raises(InputError, match="cells, probs and counted must have shapes"):
+        draw_prior(new_figure(2, 2).subplots(), SHAPE, CELLS, PROBS[:2], [True, True])

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lifelore.core.errors import InputError
 from lifelore.figures.style import BLUE, LIGHT, PAPER, WALL
 
 if TYPE_CHECKING:
@@ -23,6 +24,8 @@ def draw_prior(
     counted: ArrayLike,
     *,
     negligible: float = 0.05,
+    colour: str = BLUE,
+    wall: str = WALL,
 ) -> None:
     """Draw a prior over four moves.
 
@@ -39,21 +42,30 @@ def draw_prior(
         Cells whose prior rests on counts; the others are shaded, without arrows.
     negligible : float
         No arrow for a probability up to this.
+    colour, wall : str
+        Of the arrows and of the walls.
     """
     cells, probs = np.asarray(cells), np.asarray(probs, float)
     counted = np.asarray(counted, bool)
-    draw_cells(axes, shape, cells, counted)
+    if cells.shape != (len(probs), 2) or probs.shape != (len(cells), 4) or counted.shape != (len(cells),):
+        raise InputError(
+            "cells, probs and counted must have shapes (n, 2), (n, 4) and (n,), "
+            f"got {cells.shape}, {probs.shape} and {counted.shape}"
+        )
+    draw_cells(axes, shape, cells, counted, wall)
     cell, move = np.nonzero((probs > negligible) & counted[:, None])
     if cell.size:
-        _draw_arrows(axes, cells[cell, ::-1], DIRECTIONS[move], probs[cell, move])
+        _draw_arrows(axes, cells[cell, ::-1], DIRECTIONS[move], probs[cell, move], colour)
 
 
-def draw_cells(axes: "Axes", shape: tuple[int, int], cells: NDArray, counted: NDArray[np.bool_]) -> None:
+def draw_cells(
+    axes: "Axes", shape: tuple[int, int], cells: NDArray, counted: NDArray[np.bool_], wall: str = WALL
+) -> None:
     """The grid itself: walls, free cells, and free cells nothing is known of."""
     from matplotlib.colors import to_rgb
 
     picture = np.empty((*shape, 3))
-    picture[:] = to_rgb(WALL)
+    picture[:] = to_rgb(wall)
     picture[tuple(cells.T)] = np.where(counted[:, None], to_rgb(PAPER), to_rgb(LIGHT))
     axes.imshow(picture, interpolation="nearest", zorder=0)
     if max(shape) <= 40:  # thin lines between cells help in a maze and would drown a building
@@ -65,12 +77,12 @@ def draw_cells(axes: "Axes", shape: tuple[int, int], cells: NDArray, counted: ND
         spine.set_visible(False)
 
 
-def _draw_arrows(axes: "Axes", xy: NDArray, direction: NDArray, mass: NDArray) -> None:
+def _draw_arrows(axes: "Axes", xy: NDArray, direction: NDArray, mass: NDArray, colour: str) -> None:
     """Arrows from near the centre of a cell; length and opacity grow with the square root of the mass."""
     from matplotlib.colors import to_rgb
 
     strength = np.sqrt(mass)[:, None]
-    shade = np.column_stack([np.tile(to_rgb(BLUE), (len(mass), 1)), 0.3 + 0.7 * strength])
+    shade = np.column_stack([np.tile(to_rgb(colour), (len(mass), 1)), 0.3 + 0.7 * strength])
     start = xy + _INSIDE * direction
     length = (_REACH - _INSIDE) * (0.72 + 0.28 * strength) * direction
     axes.quiver(
