@@ -5,7 +5,6 @@ from collections.abc import Hashable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate, ratio_estimate
 
 
@@ -16,8 +15,6 @@ def average_precision(scores: ArrayLike, relevant: ArrayLike) -> float:
     the mean over the relevant items of the precision at their place, in (0, 1].
     """
     scores, hit = np.asarray(scores, float), np.asarray(relevant, bool)
-    if not hit.any():
-        raise InputError("relevant must name at least one item, got none")
     total, before, found = 0.0, 0, 0
     for score in np.unique(scores)[::-1]:
         tied = scores == score
