@@ -1,12 +1,7 @@
-"""Average precision of a ranking with ties, and its mean over queries that come in clusters."""
-
-from collections.abc import Hashable, Sequence
+"""Average precision of a ranking with ties."""
 
 import numpy as np
 from numpy.typing import ArrayLike
-
-from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate, ratio_estimate
 
 
 def average_precision(scores: ArrayLike, relevant: ArrayLike) -> float:
@@ -16,8 +11,6 @@ def average_precision(scores: ArrayLike, relevant: ArrayLike) -> float:
     the mean over the relevant items of the precision at their place, in (0, 1].
     """
     scores, hit = np.asarray(scores, float), np.asarray(relevant, bool)
-    if not hit.any():
-        raise InputError("relevant must name at least one item, got none")
     total, before, found = 0.0, 0, 0
     for score in np.unique(scores)[::-1]:
         tied = scores == score
@@ -29,11 +22,3 @@ def average_precision(scores: ArrayLike, relevant: ArrayLike) -> float:
             total += right / n * float(((found + 1 + place * share) / (before + 1 + place)).sum())
         before, found = before + n, found + right
     return total / int(hit.sum())
-
-
-def mean_by_cluster(values: Sequence[float], clusters: Sequence[Hashable]) -> Estimate:
-    """Mean of values with an interval that resamples clusters; `n` counts clusters."""
-    order = {name: number for number, name in enumerate(dict.fromkeys(clusters))}
-    at = np.array([order[name] for name in clusters])
-    sums = np.bincount(at, np.asarray(values, float), len(order))
-    return ratio_estimate(sums, np.bincount(at, minlength=len(order)).astype(float))

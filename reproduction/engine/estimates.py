@@ -1,6 +1,7 @@
-"""Estimates of claims with 95 % intervals: exact shares, quantiles, and shares of a grid's cells."""
+"""Estimates of claims with 95 % intervals: exact shares, means by cluster, quantiles, shares of a grid."""
 
-from collections.abc import Iterable
+from collections.abc import Hashable, Iterable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +22,24 @@ def exact_share(answers: Iterable[bool]) -> Estimate:
     low = float(beta.ppf(0.025, right, n - right + 1)) if right else 0.0
     high = float(beta.ppf(0.975, right + 1, n - right)) if right < n else 1.0
     return Estimate(right / n, float(2 * right > n) if 2 * right != n else 0.5, (low, high), n)
+
+
+def mean_by_cluster(values: Sequence[float], clusters: Sequence[Hashable]) -> Estimate:
+    """Mean of values with an interval that resamples clusters; `n` counts clusters."""
+    order = {name: number for number, name in enumerate(dict.fromkeys(clusters))}
+    at = np.array([order[name] for name in clusters])
+    sums = np.bincount(at, np.asarray(values, float), len(order))
+    return ratio_estimate(sums, np.bincount(at, minlength=len(order)).astype(float))
+
+
+def share_by_cluster(answers: Sequence[bool], clusters: Sequence[Hashable]) -> Estimate:
+    """Share of true answers, clusters resampled; the exact interval where no resample differs."""
+    exact = exact_share(answers)
+    if not exact.n:
+        return UNMEASURED
+    found = mean_by_cluster(answers, clusters)
+    spread = found.ci95 if found.ci95 and found.ci95[0] < found.ci95[1] else exact.ci95
+    return replace(found, ci95=spread, n=exact.n)
 
 
 def mean_or_unmeasured(values: Iterable[float]) -> Estimate:

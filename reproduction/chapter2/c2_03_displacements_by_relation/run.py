@@ -17,13 +17,8 @@ from lifelore.core.relations import ADJACENT, CORE_RELATIONS, ON
 from lifelore.core.streams import stream
 from reproduction.chapter2.scenes import tabletop_pairs
 from reproduction.chapter2.scenes.tabletop_pairs import Row, simulated_sets
-from reproduction.chapter2.scoring.pair_validation import (
-    CONTACT_READINGS,
-    Reading,
-    displacements,
-)
-from reproduction.chapter2.scoring.relation_scoring import share_over_scenes
-from reproduction.engine.estimates import UNMEASURED
+from reproduction.chapter2.scoring.pair_validation import CONTACT_READINGS, Reading, displacements
+from reproduction.engine.estimates import UNMEASURED, share_by_cluster
 
 EDGE = 0.2
 """The printed band begins at y = -0.1, a fifth of the way to the printed cluster at y = -0.5."""
@@ -92,26 +87,22 @@ def measures(rows: Sequence[Row], plot: Plot, resamples: int) -> dict[str, Estim
     on, adjacent = plot.relation == ON, plot.relation == ADJACENT
     return {
         "on_sideways_of_its_rise": sideways_of_rise(plot, resamples),
-        "on_outside_band": _share(plot.scene[on], plot.outside_band[on]),
-        "adjacent_in_band": _share(plot.scene[adjacent], ~plot.outside_band[adjacent]),
-        "sign_of_x_tells_left_right": _share(*sign_answers(rows, plot)),
+        "on_outside_band": share_by_cluster(plot.outside_band[on], plot.scene[on]),
+        "adjacent_in_band": share_by_cluster(~plot.outside_band[adjacent], plot.scene[adjacent]),
+        "sign_of_x_tells_left_right": share_by_cluster(*sign_answers(rows, plot)),
     }
 
 
-def sign_answers(rows: Sequence[Row], plot: Plot) -> tuple[NDArray[np.str_], NDArray[np.bool_]]:
-    """Of every adjacent pair that stands sideways: its scene, and whether its mean x has the sign of its side."""
-    found = []
+def sign_answers(rows: Sequence[Row], plot: Plot) -> tuple[list[bool], list[str]]:
+    """Of every adjacent pair that stands sideways: whether its mean x has the sign of its side, and its scene."""
+    answers, scenes = [], []
     for number, row in enumerate(rows):
         right, behind, _ = row["centres"]
         own = plot.at[plot.row == number, 0]
         if row["relation"] == ADJACENT and abs(right) > abs(behind) and len(own):
-            found.append((row["scene"], bool((own.mean() > 0) == (right > 0))))
-    return np.array([scene for scene, _ in found], dtype=str), np.array([right for _, right in found], dtype=bool)
-
-
-def _share(scene: NDArray[np.str_], right: NDArray[np.bool_]) -> Estimate:
-    at = np.unique(scene, return_inverse=True)[1]
-    return share_over_scenes(np.bincount(at, right), np.bincount(at))
+            answers.append(bool((own.mean() > 0) == (right > 0)))
+            scenes.append(row["scene"])
+    return answers, scenes
 
 
 def sideways_of_rise(plot: Plot, resamples: int) -> Estimate:

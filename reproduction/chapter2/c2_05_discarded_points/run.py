@@ -26,14 +26,8 @@ from lifelore.perception.separation.separator import separate
 from reproduction.chapter2.scenes.perturbation import fewer_points, without_table
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scoring.pair_validation import THRESHOLD
-from reproduction.chapter2.scoring.relation_scoring import (
-    JudgedPair,
-    difference,
-    judged_scene,
-    less_rate,
-    share,
-)
-from reproduction.engine.estimates import UNMEASURED
+from reproduction.chapter2.scoring.relation_scoring import JudgedPair, judged_scene, less_rate
+from reproduction.engine.estimates import UNMEASURED, mean_by_cluster, share_by_cluster
 from reproduction.engine.results_table import computed_once
 
 THINNED, SCALED, FIXED = METHODS = ("thinned, threshold scaled", "raw, threshold scaled", "raw, 7 fixed")
@@ -120,13 +114,24 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
 
 def measures(views: Mapping[float, Sequence[JudgedPair]]) -> dict[str, Estimate]:
     """Exact share lost at each share discarded; and that of the most discarded less the majority's rate."""
-    lost = {f"lost_{100 * level:g}": difference(views[0.0], views[level]) for level in views if level}
+    whole = views[0.0]
+    lost = {
+        f"lost_{100 * level:g}": mean_by_cluster(
+            [float(a.exact) - b.exact for a, b in zip(whole, views[level], strict=True)],
+            [pair.scene for pair in whole],
+        )
+        for level in views
+        if level
+    }
     worst = views[max(views)]
     truths = [pair.truth.relation for pair in worst]
     rate = max(map(truths.count, CORE_RELATIONS)) / max(len(truths), 1)
-    return lost | {
-        "less_majority": less_rate(share(worst, lambda pair: pair.exact), rate) if worst else UNMEASURED
-    }
+    return lost | {"less_majority": less_rate(share(worst), rate) if worst else UNMEASURED}
+
+
+def share(pairs: Sequence[JudgedPair]) -> Estimate:
+    """Share classified exactly; scenes are resampled, whose pairs share a camera, its noise and neighbours."""
+    return share_by_cluster([pair.exact for pair in pairs], [pair.scene for pair in pairs])
 
 
 @computed_once
@@ -168,7 +173,7 @@ def scene_of(pairs: Pairs) -> ScenePairs:
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """The exact share by method and share discarded."""
     return [
-        {"method": method, "discarded": level, **share(pairs, lambda pair: pair.exact).to_dict()}
+        {"method": method, "discarded": level, **share(pairs).to_dict()}
         for method, views in judged(settings, results).items()
         for level, pairs in views.items()
     ]

@@ -24,8 +24,7 @@ from reproduction.chapter2.scenes.real_scenes import real_scenes
 from reproduction.chapter2.scenes.scene_example import scene_row
 from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of, real_lots
 from reproduction.chapter2.scenes.skeletons import perceived, reading
-from reproduction.chapter2.scoring.relation_scoring import share_over_scenes
-from reproduction.engine.estimates import exact_share
+from reproduction.engine.estimates import share_by_cluster
 from reproduction.engine.results_table import ResultsTable
 
 LOT, REAL_LOT = 10, 4
@@ -140,22 +139,13 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     """Share of right relations by kind of cut, of simulated and of real scenes."""
     table = ResultsTable.nested(results, "rows", keys=("kind",), outer=("real",))
     return {
-        f"{true}_right_{name}": share_by_scene(table.select(real=real, kind=kind).records, true)
+        f"{true}_right_{name}": share_by_cluster(
+            [row["said"] == true for row in own], [row["scene"] for row in own]
+        )
         for name, real in (("simulated", False), ("real", True))
         for kind, true in TRUE.items()
+        for own in [table.select(real=real, kind=kind).records]
     }
-
-
-def share_by_scene(rows: Sequence[Mapping], true: str) -> Estimate:
-    """Share of cuts with the true relation, scenes resampled; with the exact interval where all answers agree."""
-    totals: dict[str, list[int]] = {}
-    for row in rows:
-        own = totals.setdefault(row["scene"], [0, 0])
-        own[0] += row["said"] == true
-        own[1] += 1
-    exact = exact_share(row["said"] == true for row in rows)
-    right, asked = zip(*totals.values(), strict=True) if totals else ((), ())
-    return share_over_scenes(right, asked, lambda *_: exact.ci95 or (0.0, 1.0))
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

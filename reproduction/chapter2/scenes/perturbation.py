@@ -10,7 +10,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 
 
@@ -41,9 +40,5 @@ def cut_object(
     """The cloud with an object divided by a plane, and the new label: of the part that `normal` points to."""
     own = (cloud.labels == label) & (cloud.labels > TABLE)
     beyond = own & ((cloud.points - np.asarray(through, float)) @ np.asarray(normal, float) > 0)
-    if not beyond.any() or beyond.sum() == own.sum():
-        raise InputError(
-            f"the plane must divide object {label}, which has {own.sum()} points, {beyond.sum()} of them beyond it"
-        )
     new = int(cloud.labels.max()) + 1
     return replace(cloud, labels=np.where(beyond, new, cloud.labels)), new

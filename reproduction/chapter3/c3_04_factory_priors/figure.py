@@ -3,18 +3,14 @@
 from collections.abc import Mapping
 
 from lifelore.figures.style import BLUE, GREEN, GREY, VERMILION, Figure, new_figure
-from reproduction.chapter3.c3_04_factory_priors.run import METHODS
-from reproduction.chapter3.factory.figure import caption, draw_rewards, looks_of
+from reproduction.chapter3.factory.figure import caption, draw_rewards
 
-LOOKS = looks_of(
-    METHODS,
-    {
-        "uniform": ("uniform prior", GREY),
-        "learnt": ("learnt prior", BLUE),
-        "expert": ("expert prior", GREEN),
-        "incorrect": ("incorrect prior", VERMILION),
-    },
-)
+LOOKS = {
+    "uniform": ("uniform prior", GREY),
+    "learnt": ("learnt prior", BLUE),
+    "expert": ("expert prior", GREEN),
+    "incorrect": ("incorrect prior", VERMILION),
+}
 
 
 def draw(result: Mapping) -> Figure:

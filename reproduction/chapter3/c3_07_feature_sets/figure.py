@@ -3,20 +3,16 @@
 from collections.abc import Mapping
 
 from lifelore.figures.style import GREY, VERMILION, Figure, colour_of
-from reproduction.chapter3.c3_07_feature_sets.run import METHODS
-from reproduction.chapter3.factory.figure import looks_of, one_panel
+from reproduction.chapter3.factory.figure import one_panel
 
-LOOKS = looks_of(
-    METHODS,
-    {
-        "uniform": ("uniform prior", GREY),
-        "state": ("state prior", VERMILION),
-        "phi1": ("φ1: own cell, Items", colour_of("phi1")),
-        "phi2": ("φ2: N, S, E, W", colour_of("phi2")),
-        "phi3": ("φ3: φ1 and φ2", colour_of("phi3")),
-        "phi4": ("φ4: 3×3 cells, Items", colour_of("phi4")),
-    },
-)
+LOOKS = {
+    "uniform": ("uniform prior", GREY),
+    "state": ("state prior", VERMILION),
+    "phi1": ("φ1: own cell, Items", colour_of("phi1")),
+    "phi2": ("φ2: N, S, E, W", colour_of("phi2")),
+    "phi3": ("φ3: φ1 and φ2", colour_of("phi3")),
+    "phi4": ("φ4: 3×3 cells, Items", colour_of("phi4")),
+}
 
 
 def draw(result: Mapping) -> Figure:

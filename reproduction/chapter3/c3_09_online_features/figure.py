@@ -5,19 +5,15 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.figures.style import BLUE, GREY, PURPLE, Axes
-from reproduction.chapter3.c3_09_online_features.run import DRAWN, METHODS
-from reproduction.chapter3.factory.figure import looks_of
+from reproduction.chapter3.c3_09_online_features.run import DRAWN
 from reproduction.figures.curves import draw_curves
 from reproduction.figures.panels import panels
 
-LOOKS = looks_of(
-    METHODS,
-    {
-        "uniform": ("uniform prior", GREY),
-        "full": ("all ten features", PURPLE),
-        "selected": ("selected features", BLUE),
-    },
-)
+LOOKS = {
+    "uniform": ("uniform prior", GREY),
+    "full": ("all ten features", PURPLE),
+    "selected": ("selected features", BLUE),
+}
 DASHES = {"first": "-", "last": (0, (4, 2))}
 
 

@@ -3,17 +3,13 @@
 from collections.abc import Mapping
 
 from lifelore.figures.style import BLUE, GREEN, VERMILION, Figure
-from reproduction.chapter3.c3_11_forms_of_prior.run import FORMS
-from reproduction.chapter3.factory.figure import looks_of, one_panel
+from reproduction.chapter3.factory.figure import one_panel
 
-LOOKS = looks_of(
-    FORMS,
-    {
-        "softmax": ("softmax", VERMILION),
-        "proportion": ("proportions", BLUE),
-        "dirichlet": ("Dirichlet", GREEN),
-    },
-)
+LOOKS = {
+    "softmax": ("softmax", VERMILION),
+    "proportion": ("proportions", BLUE),
+    "dirichlet": ("Dirichlet", GREEN),
+}
 
 
 def draw(result: Mapping) -> Figure:

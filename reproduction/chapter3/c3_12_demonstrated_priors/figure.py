@@ -3,17 +3,13 @@
 from collections.abc import Mapping
 
 from lifelore.figures.style import BLUE, GREEN, GREY, Figure
-from reproduction.chapter3.c3_12_demonstrated_priors.run import METHODS
-from reproduction.chapter3.factory.figure import looks_of, one_panel
+from reproduction.chapter3.factory.figure import one_panel
 
-LOOKS = looks_of(
-    METHODS,
-    {
-        "uniform": ("uniform prior", GREY),
-        "shown": ("prior from demonstrations (simulated person)", GREEN),
-        "self-trained": ("self-trained prior", BLUE),
-    },
-)
+LOOKS = {
+    "uniform": ("uniform prior", GREY),
+    "shown": ("prior from demonstrations (simulated person)", GREEN),
+    "self-trained": ("self-trained prior", BLUE),
+}
 
 
 def draw(result: Mapping) -> Figure:

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.action.demonstrations.demonstrations import Demonstration
-from lifelore.core.errors import InputError
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning.planning import checked_best
 
@@ -17,8 +16,6 @@ from lifelore.core.planning.planning import checked_best
 def person_policy(best: ArrayLike, skill: float) -> NDArray[np.float64]:
     """Action probabilities of a person, (n_states, n_actions), rows sum to 1; uniform without best action."""
     best = checked_best(best)
-    if not 0 <= skill <= 1:
-        raise InputError(f"skill must lie in [0, 1], got {skill}")
     known = best | ~best.any(axis=1, keepdims=True)
     return skill * known / known.sum(axis=1, keepdims=True) + (1 - skill) / best.shape[1]
 
@@ -31,8 +28,7 @@ def simulated_demonstration(
     *,
     task: str,
     agent: str,
-    start: int | None = None,
-    most_steps: int = 1000,
+    most_steps: int,
 ) -> Demonstration | None:
     """One demonstration from a start to the end of the episode; None if it takes more than `most_steps` steps.
 
@@ -46,15 +42,11 @@ def simulated_demonstration(
     generator : numpy generator
     task, agent : str
         Names in the demonstration.
-    start : int, optional
-        Default: drawn from the task's starts.
     most_steps : int
         Number of steps after which the person gives up, at least 1.
     """
-    if most_steps < 1:
-        raise InputError(f"most_steps must be at least 1, got {most_steps}")
     cum, outcome_cum = np.cumsum(person_policy(best, skill), axis=1), tables.by_pair.outcome_cum
-    state = int(generator.choice(tables.starts)) if start is None else int(start)
+    state = int(generator.choice(tables.starts))
     states, actions = [], []
     for _ in range(most_steps):
         choice, outcome = generator.random(2)

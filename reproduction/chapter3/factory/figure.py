@@ -4,20 +4,12 @@ from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
-from lifelore.core.errors import InputError
 from lifelore.figures.style import GREY, Axes, Figure, new_figure
 from reproduction.chapter3.learning.schedules import Epsilon
 from reproduction.figures.curves import draw_curves
 
 Looks = Mapping[str, tuple[str, str]]
 """Method → its label and colour, in the order of drawing."""
-
-
-def looks_of(methods: Collection[str], looks: Looks) -> Looks:
-    """The looks; a method without one is refused when its figure is imported, before its cells have run."""
-    if missing := [method for method in methods if method not in looks]:
-        raise InputError(f"looks must have a label and a colour for each method, missing {', '.join(missing)}")
-    return looks
 
 
 def draw_rewards(

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.streams import stream
-from lifelore.domains.ball_game.ball_game import MAX_STEPS, BallGame, LossScale, draw_sigma
+from lifelore.domains.ball_game.ball_game import BallGame, LossScale, draw_sigma
 from lifelore.interaction.adaptation.move_signal import MoveSignal
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from reproduction.chapter4.ball_game.moves import N_OUTCOMES, N_SIGNALS, read_moves
@@ -122,7 +122,7 @@ def play_all(game: BallGame, players: Players, learner: Learner, scale: LossScal
         speed = np.zeros(n, np.int64)
         while balls.playing.any():
             speed = np.where(balls.playing, learner.select(balls, episode), speed)
-            advance(game.field, balls, speed, 0, MAX_STEPS, heading, before)
+            advance(game.field, balls, speed, heading, before)
             if learner.watches:
                 read_moves(game.field, before, heading, speed, balls.x, balls.y, signal)
                 learner.observe(speed, Moves(np.flatnonzero(heading >= 0), signal))

@@ -1,7 +1,4 @@
-"""Many simulated players of the ball game at once.
-
-A player may need some steps to adapt to a new speed: until then she reckons with the old one.
-"""
+"""Many simulated players of the ball game at once."""
 
 from typing import NamedTuple
 
@@ -10,8 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.compiled.jit import kernel
 from lifelore.core.compiled.random_state import next_uniform
-from lifelore.core.errors import InputError
-from lifelore.domains.ball_game.ball_game import BallGame, step
+from lifelore.domains.ball_game.ball_game import MAX_STEPS, BallGame, step
 from lifelore.domains.ball_game.simulated_player import choose_heading
 
 
@@ -24,8 +20,6 @@ class Balls(NamedTuple):
     random : (n, 2) uint64, state of the random numbers
     steps, hits : (n,) int64, of this episode
     playing : (n,) bool
-    held, held_for, adapted : (n,) int64
-        Number of the speed in force, steps since it changed, number of the speed she reckons with.
     """
 
     kind: NDArray[np.int64]
@@ -36,9 +30,6 @@ class Balls(NamedTuple):
     steps: NDArray[np.int64]
     hits: NDArray[np.int64]
     playing: NDArray[np.bool_]
-    held: NDArray[np.int64]
-    held_for: NDArray[np.int64]
-    adapted: NDArray[np.int64]
 
 
 def new_balls(game: BallGame, kinds: ArrayLike, sigma: ArrayLike, random: NDArray[np.uint64]) -> Balls:
@@ -53,16 +44,10 @@ def new_balls(game: BallGame, kinds: ArrayLike, sigma: ArrayLike, random: NDArra
         As `random_states` draws them; copied.
     """
     kinds = np.asarray(kinds, np.int64)
-    n = len(kinds)
-    if not n or kinds.min() < 0 or kinds.max() >= game.n_types or np.shape(random) != (n, 2):
-        raise InputError(f"kinds must be numbers in [0, {game.n_types}) with random states (n, 2), got {kinds}")
-    zeros = lambda: np.zeros(n, np.int64)  # noqa: E731
-    x, y = game.layout.start
-    return Balls(
-        kinds, np.full(n, x, np.int64), np.full(n, y, np.int64), np.array(np.broadcast_to(sigma, n), np.float64),
-        np.array(random, np.uint64), zeros(), zeros(), np.ones(n, bool), np.full(n, -1, np.int64), zeros(),
-        zeros(),
-    )  # fmt: skip
+    n, (x, y), (steps, hits) = len(kinds), game.layout.start, np.zeros((2, len(kinds)), np.int64)
+    sigmas, states = np.array(np.broadcast_to(sigma, n), np.float64), np.array(random, np.uint64)
+    x, y = np.full(n, x, np.int64), np.full(n, y, np.int64)
+    return Balls(kinds, x, y, sigmas, states, steps, hits, np.ones(n, bool))
 
 
 def random_states(generator: np.random.Generator, shape: int | tuple[int, ...]) -> NDArray[np.uint64]:
@@ -74,19 +59,16 @@ def random_states(generator: np.random.Generator, shape: int | tuple[int, ...]) 
 
 
 @kernel
-def advance(field, balls, speed, lag, max_steps, heading, before):
+def advance(field, balls, speed, heading, before):
     """One step of everybody who is playing.
 
     Parameters
     ----------
     field : Field
     balls : Balls
-        Changed in place; `playing` becomes false at the goal or after `max_steps`.
+        Changed in place; `playing` becomes false at the goal or after `MAX_STEPS`.
     speed : (n,) int64
         Number of the speed in force for each.
-    lag : int
-        Steps until a player reckons with a new speed.
-    max_steps : int
     heading : (n,) int64
         Written: what each commanded; -1 for those who do not play.
     before : (n, 2) int64
@@ -96,19 +78,12 @@ def advance(field, balls, speed, lag, max_steps, heading, before):
         heading[i] = -1
         if not balls.playing[i]:
             continue
-        first = balls.held[i] < 0
-        if speed[i] != balls.held[i]:
-            balls.held[i] = speed[i]
-            balls.held_for[i] = 0
-        if first or balls.held_for[i] >= lag:
-            balls.adapted[i] = speed[i]
-        balls.held_for[i] += 1
         kind, x, y = balls.kind[i], balls.x[i], balls.y[i]
         before[i, 0], before[i, 1] = x, y
-        heading[i] = choose_heading(field, kind, x, y, field.speeds[balls.adapted[i]])
+        heading[i] = choose_heading(field, kind, x, y, field.speeds[speed[i]])
         u, v, w = next_uniform(balls.random[i]), next_uniform(balls.random[i]), next_uniform(balls.random[i])
         x, y, hit, reached = step(field, kind, x, y, heading[i], field.speeds[speed[i]], balls.sigma[i], u, v, w)
         balls.x[i], balls.y[i] = x, y
         balls.steps[i] += 1
         balls.hits[i] += hit
-        balls.playing[i] = not (reached or balls.steps[i] >= max_steps)
+        balls.playing[i] = not (reached or balls.steps[i] >= MAX_STEPS)

@@ -29,20 +29,20 @@ EDGES = {
 """Probability and reward of each edge in reading A of the figure."""
 
 
-def draw_call_graph(axes: Axes, fontsize: float = 7) -> None:
+def draw_call_graph(axes: Axes) -> None:
     """Draw states as circles, those that end the call with a thick rim."""
     from matplotlib.patches import Circle
 
     for (start, end), (probability, reward) in EDGES.items():
-        _draw_edge(axes, start, end, probability, f"[{reward:g}]", fontsize)
+        _draw_edge(axes, start, end, probability, f"[{reward:g}]")
     for name, place in PLACES.items():
         axes.add_patch(Circle(place, _RADIUS, fc=PAPER, ec=INK, lw=3 if name in _ENDS else 1.2, zorder=3))
-        axes.text(*place, name, ha="center", va="center", fontsize=fontsize - 1, zorder=4)
+        axes.text(*place, name, ha="center", va="center", fontsize=6, zorder=4)
     axes.set(xlim=(-0.9, 11.3), ylim=(-3.25, 3.25), aspect="equal")
     axes.axis("off")
 
 
-def _draw_edge(axes: Axes, start: str, end: str, probability: str, reward: str, fontsize: float) -> None:
+def _draw_edge(axes: Axes, start: str, end: str, probability: str, reward: str) -> None:
     place, way = np.array(PLACES[start]), np.subtract(PLACES[end], PLACES[start])
     step = way / np.hypot(*way)
     tail, head = place + _RADIUS * step, place + way - (_RADIUS + 0.04) * step
@@ -53,6 +53,6 @@ def _draw_edge(axes: Axes, start: str, end: str, probability: str, reward: str, 
     x, y = tail + (0.5 if level else _SHARE[start]) * (head - tail)
     label = f"{probability}\n{reward}" if level else f"{probability} {reward}"
     axes.text(
-        x, y, label, color=BLUE, ha="center", va="center", fontsize=fontsize, zorder=2.5, linespacing=1.6,
+        x, y, label, color=BLUE, ha="center", va="center", fontsize=7, zorder=2.5, linespacing=1.6,
         bbox={"boxstyle": "round,pad=0.12", "fc": "none" if level else PAPER, "ec": "none"},
     )  # fmt: skip

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
-from lifelore.domains.ball_game.ball_game import MAX_STEPS, BallGame, LossScale, draw_sigma
+from lifelore.domains.ball_game.ball_game import BallGame, LossScale, draw_sigma
 from lifelore.interaction.adaptation.beat import rule_at
 from lifelore.interaction.adaptation.move_signal import PRIOR_MOVES
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
@@ -104,7 +104,7 @@ def _session(
             mine = beat.probabilities(reuse.rule.epsilon)
             alike += bool(np.abs(reuse.probabilities() - mine).max() < 1e-9)
             speed = int(world.choice(len(mine), p=mine))
-            advance(game.field, balls, np.array([speed]), 0, MAX_STEPS, heading, before)
+            advance(game.field, balls, np.array([speed]), heading, before)
             read_moves(game.field, before, heading, np.array([speed]), balls.x, balls.y, signal)
             beat.update(speed, *divmod(int(signal[0]), N_OUTCOMES))
             reuse.update(speed, transition_of(signal[0]))

@@ -3,9 +3,7 @@
 from collections.abc import Mapping
 from typing import Any
 
-from lifelore.core.errors import NotFoundError
 from lifelore.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, YELLOW, Axes
-from reproduction.chapter4.reuse.rules import RULES
 
 PRINTED = (0, (2, 1.2))
 """Forms as printed, and tuned peers, are dashed in the colour of their standard form."""
@@ -18,18 +16,8 @@ _COLOURS = {
 
 
 def look_of(name: str) -> dict[str, Any]:
-    """Line properties of a rule, peer, signal or learner.
-
-    Raises
-    ------
-    NotFoundError
-        It has none yet.
-    """
+    """Line properties of a rule, peer, signal or learner."""
     plain, _, form = name.partition(", ") if name not in _COLOURS else (name, "", "")
-    if plain not in _COLOURS:
-        raise NotFoundError(
-            f"no look for '{name}'; add it to chapter4/reuse/looks.py, beside {', '.join(_COLOURS)}"
-        )
     return {"color": _COLOURS[plain], "ls": PRINTED if form else "-"}
 
 
@@ -39,7 +27,3 @@ def draw_linear(axes: Axes, curves: Mapping[str, list[float]], first: int, **pro
         axes.plot(range(first, first + len(values)), values, label=name, lw=1.5, **look_of(name))
     axes.set(ylim=(0, None), xlim=(0, None), **properties)
     axes.grid(axis="y")
-
-
-for _name in RULES:
-    look_of(_name)  # a rule without a look is refused before its cells run

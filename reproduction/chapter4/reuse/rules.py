@@ -1,7 +1,4 @@
-"""The six rules of Figure 4.10, in their standard form and as printed, by the names that figures show.
-
-A new rule is named here and given a look in `looks`, which refuses to be imported without it.
-"""
+"""The six rules of Figure 4.10, in their standard form and as printed, by the names that figures show."""
 
 from lifelore.interaction.selection import (
     BeliefEntropy,

@@ -18,7 +18,6 @@ from collections import Counter
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.perception.contacts.contact_points import ContactPoint
 from lifelore.perception.scene import Scene
@@ -36,16 +35,8 @@ def overlap(first: Counter, second: Counter) -> float:
 
 
 def role(scene: Scene, label: int) -> Counter:
-    """The tokens that describe how an object is used; see the head of this module.
-
-    Raises
-    ------
-    InputError
-        The scene has no such object; the table is one where something bears on it.
-    """
+    """The tokens that describe how an object is used; see the head of this module."""
     scene = scene.without_unrelated_contacts
-    if label not in scene.networks:
-        raise InputError(f"object must be one of {sorted(scene.networks)}, got {label}")
     network = scene.networks[label]
     facing = [_facing(node) for node in network.nodes]
     tokens: Counter = Counter({("points", len(facing)): 1})
@@ -59,17 +50,9 @@ def role(scene: Scene, label: int) -> Counter:
 
 
 def shape_distribution(points: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.float64]:
-    """Distances of random pairs in units of their mean, a histogram ``(BINS,)``, sums to 1 (Osada et al. 2002).
-
-    Raises
-    ------
-    InputError
-        All points are one.
-    """
-    pairs = rng.integers(0, max(len(points), 1), (2, DISTANCES)) if len(points) else np.zeros((2, 0), int)
+    """Distances of random pairs in units of their mean, a histogram ``(BINS,)``, sums to 1 (Osada et al. 2002)."""
+    pairs = rng.integers(0, len(points), (2, DISTANCES))
     apart = np.linalg.norm(points[pairs[0]] - points[pairs[1]], axis=1)
-    if not apart.any():
-        raise InputError(f"points must be at least two different ones, got {len(points)}")
     counts = np.histogram(np.minimum(apart / apart.mean(), FARTHEST), BINS, (0, FARTHEST))[0]
     return counts / counts.sum()
 

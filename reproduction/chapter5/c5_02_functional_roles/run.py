@@ -19,8 +19,9 @@ from reproduction.chapter2.scenes.scene_example import scene_row
 from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of
 from reproduction.chapter2.scenes.skeletons import perceived, reading
 from reproduction.chapter5.c5_02_functional_roles.functional_similarity import overlap, role, shape_distribution
-from reproduction.chapter5.ranking import average_precision, mean_by_cluster
+from reproduction.chapter5.ranking import average_precision
 from reproduction.chapter5.role_scenes import PARTS, POOLS, role_scene
+from reproduction.engine.estimates import mean_by_cluster
 
 LOT = 10
 ROLES = tuple(dict.fromkeys(role for part in PARTS.values() for role in part.roles))

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.perception.segmentation.supervoxels import supervoxels
 from lifelore.perception.segmentation.surface_voxels import SurfaceVoxels, surface_voxels
@@ -29,8 +28,6 @@ LEAST_EVIDENCE = 25.0
 """Voxels (0.25 cm² each) of evidence that a further motion must explain."""
 DECIDED, LEAST_DECIDED = 0.04, 8.0
 """Share of a part's voxels, and number of voxels, by which two motions must differ to be told apart."""
-APART = 0.06
-"""Share of a segment's voxels that a further motion within it must explain, besides `LEAST_EVIDENCE`."""
 FARTHEST = 2.0
 """Largest step of a followed patch, in lengths of the push: what rolls or falls over is lost."""
 DOUBTFUL, LOST = 0.2, 0.35
@@ -69,18 +66,12 @@ class PokedPatches:
     Parameters
     ----------
     cloud : LabelledCloud
-        Before the first push, with its camera and the labels of a segmentation: 1 the table, from 2 segments.
-        Other points take no part.
-
-    Raises
-    ------
-    InputError
-        The cloud has no camera.
+        Before the first push, with its camera (emptiness is seen along its lines of sight) and the labels of a
+        segmentation: 1 the table, from 2 segments. Other points take no part.
     """
 
     def __init__(self, cloud: LabelledCloud) -> None:
-        if cloud.camera is None:
-            raise InputError("cloud must have a camera: emptiness is seen along its lines of sight; give camera")
+        assert cloud.camera is not None
         self.first = cloud
         self._rows = np.flatnonzero(cloud.labels > TABLE)
         self._motions: list[NDArray[np.int64]] = []
@@ -153,15 +144,7 @@ class PokedPatches:
         return Poke(places[place], length * way / np.linalg.norm(way))
 
     def observe(self, poke: Poke, after: LabelledCloud) -> NDArray[np.int64]:
-        """Take in the cloud after a push; returns the motion of each patch: 0 at rest, −1 lost.
-
-        Raises
-        ------
-        InputError
-            The cloud has no camera.
-        """
-        if after.camera is None:
-            raise InputError("after must have a camera: emptiness is seen along its lines of sight; give camera")
+        """Take in the cloud after a push; returns the motion of each patch: 0 at rest, −1 lost."""
         if self._surface is None:
             return np.empty(0, np.int64)
         view = ViewAfter(after)
@@ -180,12 +163,7 @@ class PokedPatches:
             motions.append(fitted)
             costs.append(added)
             labels = tried
-            motions, costs = self._refitted(view, places, labels, motions, costs)
-            labels = motion_labels(np.stack(costs, 1) * self._seen[:, None], self._pairs, self._weights)
-        labels = self._joined_motions(view, places, labels, motions, costs)
-        every = np.stack(costs, 1)
-        labels = self._simplified(labels, every)
-        seen = self._seen.copy()
+        every, seen = np.stack(costs, 1), self._seen.copy()
         labels = self._carried(places, labels, motions, every)
         if (self._seen != seen).any():
             # Something fell or rolled away, perhaps over the others: this push tells nothing.
@@ -237,69 +215,6 @@ class PokedPatches:
         after = np.bincount(self._patch[own], view.costs(motion.apply(places[own])), len(self._counts))
         gain = float(np.maximum(before - after, 0).sum())
         return gain if gain >= LEAST_EVIDENCE else 0.0
-
-    def _refitted(self, view, places, labels, motions, costs):
-        """The motions fitted again to the patches that they explain."""
-        for _ in range(2):
-            for number in range(1, len(motions)):
-                own = np.flatnonzero((labels == number)[self._patch])
-                if len(own) < 30:
-                    continue
-                sample = places[own[:: max(1, len(own) // _SAMPLE)]]
-                motion = registered(sample, view.points, view.normals, view.tree, motions[number], 2 * NEAR)
-                refit = self._patch_costs(view.costs(motion.apply(places)))
-                if refit[labels == number].sum() < costs[number][labels == number].sum():
-                    motions[number], costs[number] = motion, refit
-            labels = motion_labels(np.stack(costs, 1) * self._seen[:, None], self._pairs, self._weights)
-        return motions, costs
-
-    def _joined_motions(
-        self, view: ViewAfter, places: NDArray, labels: NDArray, motions: list[RigidMotion], costs: list[NDArray]
-    ) -> NDArray[np.int64]:
-        """Replace two motions by a motion fitted to the patches of both, where it explains them nearly as well."""
-        labels = labels.copy()
-        for a in range(1, len(motions)):
-            for b in range(a + 1, len(motions)):
-                both, own = np.isin(labels, (a, b)), [np.flatnonzero(labels == n) for n in (a, b)]
-                if not all(map(len, own)):
-                    continue
-                now = sum(float(costs[n][rows].sum()) for n, rows in zip((a, b), own, strict=True))
-                rows = np.flatnonzero(both[self._patch])
-                sample = places[rows[:: max(1, len(rows) // _SAMPLE)]]
-                tried = [
-                    registered(sample, view.points, view.normals, view.tree, start, 3 * NEAR)
-                    for start in (motions[a], motions[b])
-                ]
-                found = [self._patch_costs(view.costs(motion.apply(places))) for motion in tried]
-                best = int(np.argmin([cost[both].sum() for cost in found]))
-                allowed = max(LEAST_EVIDENCE, DECIDED * float(self._counts[both].sum()))
-                if found[best][both].sum() - now <= allowed:
-                    labels[labels == b] = a
-                    motions[a], costs[a] = tried[best], found[best]
-        return labels
-
-    def _simplified(self, labels: NDArray[np.int64], costs: NDArray[np.float64]) -> NDArray[np.int64]:
-        """Give up motions within a segment that explain too little beyond another motion of the segment."""
-        labels = labels.copy()
-        for segment in self.segments:
-            rows = np.flatnonzero((self._segment == segment) & self._seen)
-            need = max(LEAST_EVIDENCE, APART * float(self._counts[rows].sum()))
-            used = np.unique(labels[rows]).tolist()
-            while len(used) > 1:
-                # What it costs to give up a motion for another.
-                lost = {
-                    (a, b): float((costs[own, b] - costs[own, a]).sum())
-                    for a in used
-                    for own in [rows[labels[rows] == a]]
-                    for b in used
-                    if a != b
-                }
-                (a, b), least = min(lost.items(), key=lambda item: item[1])
-                if least >= need:
-                    break
-                labels[rows[labels[rows] == a]] = b
-                used.remove(a)
-        return labels
 
     def _carried(self, places: NDArray, labels: NDArray, motions: list[RigidMotion], costs: NDArray) -> NDArray:
         """Carry the patches along; patches that no motion explains are lost from now on."""

@@ -28,9 +28,8 @@ from reproduction.chapter5.c5_08_grasps.searches import (
     from_above,
     from_seeds,
 )
-from reproduction.chapter5.ranking import mean_by_cluster
 from reproduction.chapter5.role_scenes import POOLS, role_scene
-from reproduction.engine.estimates import UNMEASURED
+from reproduction.engine.estimates import UNMEASURED, mean_by_cluster
 
 LOT = 5
 HOLES = ("hole-other", "hole-hinged")

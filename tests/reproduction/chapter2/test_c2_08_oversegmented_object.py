@@ -6,12 +6,7 @@ import pytest
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import PairLabel
 from lifelore.perception.relations.relation import Relation
-from reproduction.chapter2.c2_08_oversegmented_object.run import (
-    free_standing,
-    measure,
-    relation_in_words,
-    share_by_scene,
-)
+from reproduction.chapter2.c2_08_oversegmented_object.run import free_standing, measure, relation_in_words
 
 pytest.importorskip("mujoco")
 
@@ -61,10 +56,3 @@ def test_measures_by_hand():
     assert found["on_right_simulated"].value == pytest.approx(2 / 3)
     assert found["adjacent_right_simulated"].value == 0.5
     assert np.isnan(found["on_right_real"].value)
-
-
-def test_shares_by_scene_count_cuts_and_resample_scenes():
-    found = share_by_scene([*ROWS, row("c", "level", "on")], "on")
-    assert (found.value, found.n) == (pytest.approx(4 / 6), 6)
-    alike = share_by_scene([row(scene, "level", "on") for scene in "aabbc"], "on")
-    assert alike.ci95 == pytest.approx((0.025 ** (1 / 5), 1.0))

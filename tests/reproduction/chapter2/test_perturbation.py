@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from reproduction.chapter2.scenes.perturbation import cut_object, fewer_points
 
@@ -46,9 +45,3 @@ def test_the_part_beyond_gets_a_new_label():
     assert part == 6
     assert cloud.labels.tolist() == [TABLE, 2, 6, 6, 5]
     assert (cloud.points == STACKED.points).all()
-
-
-@pytest.mark.parametrize(("label", "height"), [(2, 0.5), (2, -0.5), (3, 0.1), (TABLE, 0.1)])
-def test_planes_that_divide_nothing_are_refused(label, height):
-    with pytest.raises(InputError, match="must divide"):
-        cut_object(STACKED, label, (0, 0, 1), (0, 0, height))

@@ -1,20 +1,11 @@
-"""Scores of relations: components, directions, classes and intervals, worked by hand."""
+"""Scores of relations: directions and pairs at the border, worked by hand."""
 
 import pytest
-from scipy.stats import binomtest
 
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import PairLabel
 from lifelore.perception.relations.relation import Relation
-from reproduction.chapter2.scoring.relation_scoring import (
-    JudgedPair,
-    difference,
-    judged_scene,
-    less_rate,
-    share,
-    share_over_scenes,
-    wilson,
-)
+from reproduction.chapter2.scoring.relation_scoring import JudgedPair, judged_scene, less_rate
 
 
 def judged(truth: str, said: str | None, *, way=(2, 3), gap=0.001, scene="a", truth_way=(2, 3)) -> JudgedPair:
@@ -56,42 +47,6 @@ def test_a_scene_is_judged_pair_by_pair_without_the_doubtful():
     assert (second.exact, second.predicted, second.gap) == (True, None, 0.07)
     # A gap that is known better than by looking counts.
     assert judged_scene("s", truth, said, {frozenset((2, 3)): 0.001})[0].gap == 0.001
-
-
-@pytest.mark.parametrize(("right", "n"), [(0, 5), (3, 10), (10, 10), (47, 52)])
-def test_wilsons_interval_is_scipys(right, n):
-    expected = binomtest(right, n).proportion_ci(0.95, method="wilson")
-    assert wilson(right, n) == pytest.approx((expected.low, expected.high), abs=1e-6)
-
-
-def test_intervals_resample_scenes():
-    # Ten scenes of ten pairs that are right or wrong together carry no more than ten answers do.
-    together = [judged("on", "on" if s % 2 else "none", scene=str(s)) for s in range(10) for _ in range(10)]
-    apart = [judged("on", "on" if p % 2 else "none", scene=str(10 * s + p)) for s in range(10) for p in range(10)]
-    wide, narrow = share(together, lambda p: p.exact), share(apart, lambda p: p.exact)
-    assert wide.value == narrow.value == 0.5
-    assert wide.n == narrow.n == 100
-    assert wide.ci95 is not None
-    assert narrow.ci95 is not None
-    # Standard errors of 10 and of 100 fair answers are 0.158 and 0.05.
-    assert wide.ci95[1] - wide.ci95[0] > 2 * (narrow.ci95[1] - narrow.ci95[0])
-
-
-def test_difference_by_hand():
-    first = [judged("on", "on", scene=str(s)) for s in range(8)]
-    second = [judged("on", "none" if s < 2 else "on", scene=str(s)) for s in range(8)]
-    lost = difference(first, second)
-    assert lost.value == pytest.approx(0.25)
-    assert lost.ci95 is not None
-    assert lost.ci95[0] <= 0.25 <= lost.ci95[1]
-    assert difference(first, first).value == 0
-    assert difference(first, first).ci95 == (0.0, 0.0)
-
-
-def test_a_share_without_spread_has_wilsons_interval_and_of_nothing_none():
-    assert share_over_scenes([1, 1, 1], [1, 1, 1]).ci95 == (pytest.approx(0.4385, abs=1e-4), 1.0)
-    assert share_over_scenes([1, 1], [1, 1], lambda right, n: (right / 4, n / 2)).ci95 == (0.5, 1.0)
-    assert share_over_scenes([], []).n == 0
 
 
 def test_a_share_less_a_rate_moves_its_interval():

@@ -22,24 +22,13 @@ def test_many_players_move_as_one_would():
     speed = np.array([0, 2, 4, 1])
     heading, before = np.empty(4, np.int64), np.empty((4, 2), np.int64)
     for _ in range(30):
-        advance(FIELD, together, speed, 0, 400, heading, before)
+        advance(FIELD, together, speed, heading, before)
     for i in range(4):
         alone = new_balls(GAME, kinds[i : i + 1], together.sigma[i], random[i : i + 1])
         for _ in range(30):
-            advance(FIELD, alone, speed[i : i + 1], 0, 400, heading, before)
+            advance(FIELD, alone, speed[i : i + 1], heading, before)
         assert (alone.x[0], alone.y[0]) == (together.x[i], together.y[i])
         assert alone.hits[0] == together.hits[i]
-
-
-def test_she_adapts_to_a_new_speed_after_the_lag():
-    balls = new_balls(GAME, [0], 0.3, random_states(np.random.default_rng(0), 1))
-    heading, before = np.empty(1, np.int64), np.empty((1, 2), np.int64)
-    adapted = []
-    for speed in (2, 2, 4, 4, 4, 1, 4):
-        advance(FIELD, balls, np.array([speed]), 2, 400, heading, before)
-        adapted.append(int(balls.adapted[0]))
-    # The first speed is known at once; 4 is reckoned with from its third step; 1 comes and goes unnoticed.
-    assert adapted == [2, 2, 2, 2, 4, 4, 4]
 
 
 PLAIN = """
@@ -54,7 +43,7 @@ for blocked in ("slides", "stays"):
     heading, before, signal = np.empty(6, np.int64), np.empty((6, 2), np.int64), np.empty(6, np.int64)
     for _ in range(60):
         speed = np.array([0, 1, 2, 3, 4, 4])
-        advance(field, balls, speed, 2, 400, heading, before)
+        advance(field, balls, speed, heading, before)
         read_moves(field, before, heading, speed, balls.x, balls.y, signal)
         print(heading.tolist(), balls.x.tolist(), balls.y.tolist(), balls.hits.tolist(), signal.tolist())
 """

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
 from reproduction.chapter5.c5_02_functional_roles.functional_similarity import overlap, role, shape_distribution
 
@@ -83,14 +82,3 @@ def test_shape_does_not_see_size_and_tells_a_ball_from_a_rod():
     edges = np.linspace(0, 3, len(histogram) + 1)[1:]
     expected = np.minimum((edges * 4 / 3) ** 2 / 4, 1)
     assert np.abs(np.cumsum(histogram) - expected).max() < 0.02
-    with pytest.raises(InputError, match="two different"):
-        shape_distribution(np.zeros((9, 3)), rng)
-
-
-def test_a_table_on_which_nothing_bears_is_no_object(make_scene, meet):
-    near = make_scene({2: POINT}, [meet(2, 1, [[0, 0, 0]])], [(2, 1, "none")])
-    assert 1 in near.networks
-    with pytest.raises(InputError, match="object must be one of"):
-        role(near, 1)
-    borne = make_scene({2: POINT}, [meet(2, 1, [[0, 0, 0]])], [(2, 1, "on")])
-    assert role(borne, 1)[("points", 1)] == 1

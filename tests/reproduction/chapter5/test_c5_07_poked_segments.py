@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from reproduction.chapter5.c5_07_poking.poked_patches import Poke
 from reproduction.chapter5.c5_07_poking.poked_segments import PokedSegments
@@ -99,11 +98,6 @@ def test_a_push_goes_against_a_steep_side():
     assert known.poke_at(9, np.random.default_rng(0), 0.025) is None
 
 
-def test_clouds_need_a_camera_and_may_be_empty():
-    bare = LabelledCloud(np.zeros((1, 3)), np.array([TABLE]))
-    with pytest.raises(InputError, match="camera"):
-        PokedSegments(bare)
+def test_a_cloud_may_be_empty():
     empty = PokedSegments(LabelledCloud(np.zeros((1, 3)), np.array([TABLE]), None, CAMERA))
     assert empty.corrected().tolist() == [TABLE]
-    with pytest.raises(InputError, match="camera"):
-        empty.observe(Poke(LEFT, PUSH), bare)

@@ -8,8 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sklearn.metrics import average_precision_score
 
-from lifelore.core.errors import InputError
-from reproduction.chapter5.ranking import average_precision, mean_by_cluster
+from reproduction.chapter5.ranking import average_precision
 
 
 def test_by_hand():
@@ -34,17 +33,3 @@ def test_ties_are_the_mean_over_all_orders(things):
     kept = [relevant[o] for o in orders if (np.diff(scores[o]) <= 0).all()]
     naive = np.mean([np.mean([(hit[: k + 1]).mean() for k in np.flatnonzero(hit)]) for hit in kept])
     assert average_precision(scores, relevant) == pytest.approx(naive)
-
-
-def test_nothing_relevant_is_refused():
-    with pytest.raises(InputError, match="at least one"):
-        average_precision([1.0], [False])
-
-
-def test_mean_weighs_queries_and_counts_clusters():
-    found = mean_by_cluster([1.0, 0.0, 0.5, 0.5, 0.2], ["a", "a", "b", "c", "c"])
-    assert found.value == pytest.approx(2.2 / 5)
-    assert found.n == 3
-    assert found.ci95 is not None
-    low, high = found.ci95
-    assert low < found.value < high
