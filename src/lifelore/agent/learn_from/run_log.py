@@ -97,8 +97,10 @@ def read_runs(path: str | Path) -> list[Run]:
     named, ended = (name[1:] != "") | (name[:-1] != ""), np.isin(outcome[:-1], (GOAL, FAILED))
     ends = np.where(named, name[1:] != name[:-1], ended | (np.diff(time) > GAP))
     for at in np.flatnonzero(~ends & (np.diff(time) < 0))[:1].tolist():
-        raise InputError(f"{path} line {lines[at + 1]}: time must ascend within a run, got {time[at + 1]:g} after "
-                         f"{time[at]:g}")  # fmt: skip
+        raise InputError(
+            f"{path} line {lines[at + 1]}: time must ascend within a run, got {time[at + 1]:.15g} after "
+            f"{time[at]:.15g}; where the clock was set back, begin another run (column run)"
+        )
     parts = _parts(ends)
     return [whole.part(names[part.start] or str(number), part) for number, part in enumerate(parts)]
 
@@ -141,20 +143,21 @@ def _pose(row: list[str], columns: list[str], where: str) -> tuple[str, str, tup
         raise InputError(f"{where}: must have {len(columns)} values, got {len(row)}")
     value = {column: text.strip() for column, text in zip(columns, row, strict=True)}
 
-    def number(column: str, most: float) -> float:
+    def number(column: str, most: float, unit: str) -> float:
         try:
             found = float(value[column])
         except ValueError:
             found = math.nan
         if not abs(found) <= most:
             raise InputError(
-                f"{where}: {column} must be a number of magnitude {most:g} at most, got {value[column][:40]!r}"
+                f"{where}: {column} must be a number of {unit}, of magnitude {most:g} at most, got "
+                f"{value[column][:40]!r}"
             )
         return found
 
     outcome = value.get("outcome", "").lower()
     if outcome not in (NOTHING, *OUTCOMES):
         raise InputError(f"{where}: outcome must be empty or one of {', '.join(OUTCOMES)}, got {outcome[:40]!r}")
-    heading = number("heading", 1e4) if value.get("heading") else math.nan
-    pose = number("time", _LATEST), number("x", _FARTHEST), number("y", _FARTHEST), heading
+    heading = number("heading", 1e4, "radians") if value.get("heading") else math.nan
+    pose = number("time", _LATEST, "seconds"), *(number(axis, _FARTHEST, "metres") for axis in "xy"), heading
     return value.get("run", ""), outcome, pose
