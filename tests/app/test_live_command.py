@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 
-from lifelore.agent.long_lived.long_life import live_long
 from lifelore.app.live_command import setting_keys
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.domains.buildings.office import office_map
@@ -281,7 +280,7 @@ def test_the_settings_of_hidden_types_reach_the_life():
     assert set(told) == set(keys.settings) - ELSEWHERE
     values = keys.read([f"{key}={str(value).lower()}" for key, value in told.items()])
     assert values == told
-    assert keys.arguments(live_long, {"tasks": 5, "robot": "bo", "csv": "x"} | values) == told | {
+    assert keys.arguments({"tasks": 5, "robot": "bo", "csv": "x"} | values) == told | {
         "tasks": 5,
         "robot": "bo",
     }
@@ -326,7 +325,7 @@ def test_help_is_one_screen(ask, monkeypatch):
     assert len(lines) <= 40
     assert all(len(line) <= 80 for line in lines)
     options = [line.split()[0] for line in lines if line.startswith("  --")]
-    assert len(options) == 17
+    assert len(options) == 16
     assert options[-1] == "--help"
 
 

@@ -108,8 +108,8 @@ def setting_keys(domain: str) -> "SettingKeys":
     from lifelore.agent.long_lived.long_life import live_long
     from lifelore.app.setting_keys import SettingKeys
 
-    life = SettingKeys((LifeSettings,), LIFE_KEYS)
-    long_life = SettingKeys((live_long,), {"location": "memory", "family": "domain"})
+    life = SettingKeys(LifeSettings, LIFE_KEYS)
+    long_life = SettingKeys(live_long, {"location": "memory", "family": "domain"})
     if domain in FAMILIES:
         own, other, where = long_life, life, f"does not apply to domain {domain}; leave it out"
     else:
@@ -133,7 +133,7 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], as_json: bool) -> in
     domain, out, csv = values["domain"], values.get("out"), values.get("csv")
     places = {name: _place(name, values[name], domain) for name in ("start", "goal") if name in values}
     jobs = {"goals": _jobs(values["goals"], values.get("tasks"))} if "goals" in values else {}
-    settings = LifeSettings(**keys.arguments(LifeSettings, values | places | jobs))
+    settings = LifeSettings(**keys.arguments(values | places | jobs))
     new_folder = out is not None and not os.path.exists(out)  # also a name too long for a file
     if out is not None:
         check_folder(out)
