@@ -19,7 +19,7 @@ QUICK = (
     "reproduction/test_statement.py",
     "benchmarks/test_rounds.py",
     "app/test_console.py",
-    "figures/test_heat_grid.py",
+    "figures/test_label_placement.py",
 )
 """Quick files of these folders, a file a room."""
 

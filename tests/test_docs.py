@@ -72,4 +72,3 @@ def test_transfer_over_lifetimes_is_what_the_page_says(tmp_path):
         # Compiled returns may differ in their last bits from machine to machine, what is rounded by one digit.
         near = 0.015 if "." in numbers[0] and len(numbers[0].split(".")[1]) == 2 else 0.15
         assert [float(number.replace("−", "-")) for number in numbers] == pytest.approx(ours, abs=near)
-    assert len(list((tmp_path / "logs").glob("life*/worker-0/*/data-log.tsv"))) == 10 * 11

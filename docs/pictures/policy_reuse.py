@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from docs.pictures.ball_game_picture import draw_ball_game
 from docs.pictures.figure_category_bars import draw_category_bars
 from docs.pictures.figure_graph_models import draw_interaction_model, draw_type_model
 from docs.pictures.figure_performance_curves import draw_performance_curves
@@ -21,12 +22,11 @@ from docs.pictures.figure_response_surface import draw_response_surface
 from docs.pictures.figure_world_plates import draw_world_plates
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import SIZES, SPEEDS, ball_game
-from lifelore.domains.ball_game.picture import draw_ball_game
 from lifelore.domains.golf.golf import CLUBS, EDGES, HOLES, Golf
 from lifelore.domains.pacman.pacman import PacmanMaze, PacmanTask
-from lifelore.domains.pacman.picture import draw_pacman
 from lifelore.domains.surveillance.surveillance import BASE, LAYOUTS, SIDE, Surveillance
 from lifelore.figures.style import save_figure
+from reproduction.chapter4.c4_04_pacman.picture import draw_pacman
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from docs.pictures.factory_picture import draw_factory
 from docs.pictures.figure_world_plates import draw_world_plates
 from lifelore.action.advice.goal_model import GoalModel, Trajectory
 from lifelore.core.streams import stream
 from lifelore.domains.advice.advice_maze import advice_maze, maze_goals
 from lifelore.domains.factory.layout import factory
 from lifelore.domains.factory.modified_factory import modified_factory
-from lifelore.domains.factory.picture import draw_factory
 from lifelore.domains.grids.grid_picture import GOAL_COLOUR, draw_grid
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.lattice import lattice

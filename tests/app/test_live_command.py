@@ -5,7 +5,6 @@ from pathlib import Path
 
 import pytest
 
-from lifelore.agent.long_lived.long_life import live_long
 from lifelore.app.live_command import setting_keys
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.domains.buildings.office import office_map
@@ -208,13 +207,12 @@ def test_the_measures_go_into_a_long_table(ask, tmp_path):
 
 
 def test_every_episode_is_logged_where_it_is_told(ask, tmp_path):
-    said = ask(*LATTICE, "--tasks", 1, "--memory", "life.db", *changed(l2log=tmp_path / "logs"))
+    said = ask(*LATTICE, "--tasks", 1, "--memory", "life.db", "--log", tmp_path / "logs")
     assert (said.status, said.err) == (0, "")
-    assert set(said.document["settings"]) == TOLD
     rows = {path.parts[-4].split("-")[0] for path in (tmp_path / "logs").glob("*/*/0-train/data-log.tsv")}
     assert {"lore", "scratch"} <= rows
     (tmp_path / "file").write_text("")
-    refused = ask(*LATTICE, "--memory", "none.db", *changed(l2log=tmp_path / "file"))
+    refused = ask(*LATTICE, "--memory", "none.db", "--log", tmp_path / "file")
     assert "folder must name a folder" in refused.refusal
     assert not (tmp_path / "none.db").exists()
 
@@ -231,8 +229,8 @@ SET = {
     "advice": {"loops": 0.3},
 }  # fmt: skip
 """A domain to values, other than the defaults, of settings that it takes."""
-ELSEWHERE = {"again", "busy", "move_names", "l2log"}
-"""Settings that other tests look at: three need known goals, one says where output goes."""
+ELSEWHERE = {"again", "busy", "move_names"}
+"""Settings that other tests look at: they need known goals."""
 
 
 def test_every_setting_is_set_and_stands_in_the_report(ask, tmp_path):
@@ -275,8 +273,7 @@ def test_known_goals_are_driven_to(ask, tmp_path):
     assert "80 %" not in shown.out
     assert "map alone" not in shown.out
     assert "s on the map alone (×" in ask(*options, *changed(busy="true")).out
-    refused = ask(*options, *changed(l2log="logs")).refusal
-    assert "l2log logs episodes of searches" in refused
+    assert "log as a folder holds episodes of searches" in ask(*options, "--log", "logs").refusal
     assert "busy applies to goals that are driven to" in ask("live", *changed(busy="true")).refusal
 
 
@@ -295,7 +292,7 @@ def test_the_settings_of_hidden_types_reach_the_life():
     assert set(told) == set(keys.settings) - ELSEWHERE
     values = keys.read([f"{key}={str(value).lower()}" for key, value in told.items()])
     assert values == told
-    assert keys.arguments(live_long, {"tasks": 5, "robot": "bo", "csv": "x"} | values) == told | {
+    assert keys.arguments({"tasks": 5, "robot": "bo", "csv": "x"} | values) == told | {
         "tasks": 5,
         "robot": "bo",
     }

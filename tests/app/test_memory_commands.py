@@ -143,7 +143,7 @@ def test_doctor(ask, known):
     assert extras <= set(tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["optional-dependencies"])
     assert all(set(entry) == {"what", "ok", "finding", "advice"} for entry in report["checks"])
     checks = {entry["what"]: entry for entry in report["checks"]}
-    assert set(checks) == {"kernels", "kernel cache", "memory", "C compiler"}
+    assert set(checks) == {"kernels", "kernel cache", "memory"}
     assert checks["memory"] == {
         "what": "memory", "ok": True, "finding": f"{known}, 1 robots", "advice": None,
     }  # fmt: skip

@@ -53,8 +53,7 @@ class Cart:
     open: bool = True
 
 
-LAMP = Setting("lamp", str, "Kind of lamp.")
-KEYS = SettingKeys((Cart,), {"kind": "drawn_by"}, (LAMP,), {"owner": "is an option: --owner"})
+KEYS = SettingKeys(Cart, {"kind": "drawn_by"}, {"owner": "is an option: --owner"})
 
 
 def test_classes_name_keys_types_defaults_and_meanings():
@@ -63,17 +62,16 @@ def test_classes_name_keys_types_defaults_and_meanings():
         Setting("number", int, "Number of wheels.", 4),
         Setting("radius", float, "Radius in metres; 0.5 where there are three."),
         Setting("open", bool, "Whether it has no roof.", True),
-        LAMP,
     ]
 
 
 def test_values_become_an_object_with_its_groups():
-    texts = ["radius=0.25", "open=false", "drawn_by=a = b", "number=3", "number=2", "lamp="]
+    texts = ["radius=0.25", "open=false", "drawn_by=a = b", "number=3", "number=2"]
     values = KEYS.read(texts)
-    assert values == {"radius": 0.25, "open": False, "drawn_by": "a = b", "number": 2, "lamp": ""}
-    built = Cart(**KEYS.arguments(Cart, {"owner": "eve"} | values))
+    assert values == {"radius": 0.25, "open": False, "drawn_by": "a = b", "number": 2}
+    built = Cart(**KEYS.arguments({"owner": "eve"} | values))
     assert built == Cart("eve", "a = b", Wheels(2, 0.25), False)
-    assert Cart(**KEYS.arguments(Cart, {"owner": "eve"})) == Cart("eve")
+    assert Cart(**KEYS.arguments({"owner": "eve"})) == Cart("eve")
 
 
 def test_a_function_has_settings_too():
@@ -90,7 +88,7 @@ def test_a_function_has_settings_too():
             Called after each mile.
         """
 
-    keys = SettingKeys((drive,), {"cart": "name"})
+    keys = SettingKeys(drive, {"cart": "name"})
     assert list(keys.settings.values()) == [
         Setting("name", str, "The cart, or a name."),
         Setting("miles", float, "Way in miles.", 1),
@@ -98,7 +96,7 @@ def test_a_function_has_settings_too():
         Setting("radius", float, "Radius in metres; 0.5 where there are three."),
     ]
     values = keys.read(["name=red", "number=3"])
-    assert keys.arguments(drive, values) == {"cart": "red", "wheels": Wheels(3)}
+    assert keys.arguments(values) == {"cart": "red", "wheels": Wheels(3)}
 
 
 @pytest.mark.parametrize(
@@ -129,5 +127,4 @@ def test_they_are_listed_for_a_person(capsys):
         "number         whole number 4            Number of wheels.",
         "radius         number                    Radius in metres; 0.5 where there are three.",
         "open           true/false   true         Whether it has no roof.",
-        "lamp           text                      Kind of lamp.",
     ]

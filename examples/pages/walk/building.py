@@ -17,9 +17,10 @@ from lifelore.agent.advise.step_lines import NO_ACTION, StepLine
 from lifelore.core.errors import InputError
 from lifelore.core.learning.known_world import GOAL, goal_distances
 from lifelore.core.streams import stream
-from lifelore.domains.buildings.floor import floor_of, floor_of_cells
+from lifelore.domains.buildings.floor import Floor, floor_of
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap
 from lifelore.domains.buildings.visibility import visible_places
-from lifelore.domains.grids.grid_world import MOVE_NAMES
+from lifelore.domains.grids.grid_world import MOVE_NAMES, GridWorld
 from lifelore.domains.worlds import map_from_settings, world_from_settings
 
 PLACE_NAMES = ("kitchen", "printer", "library", "workshop", "post room", "studio", "archive", "reception")
@@ -67,7 +68,7 @@ class Building:
                 "give a map of a part of it"
             )
         self.name = name
-        floor = floor_of_cells(world) if occupancy is None else floor_of(occupancy, world)
+        floor = _floor_of_cells(world) if occupancy is None else floor_of(occupancy, world)
         self._sight = visible_places(floor, world, REACH)
         self.places, self.distance = self._spread_places()
         steps = self._expert_steps()
@@ -189,3 +190,10 @@ class Walk:
             "theta": advice.theta.tolist() if advice.theta.any() else None,
             "p_normal": advice.p_normal, "gain": advice.gain, "kappa": SETTINGS.kappa,
         }  # fmt: skip
+
+
+def _floor_of_cells(world: GridWorld) -> Floor:
+    """The floor of a maze: a pixel for each cell, solid where there is no state."""
+    free = world.state_of >= 0
+    occupancy = OccupancyMap(np.where(free, FREE, OCCUPIED).astype(np.uint8), world.frame.cell, world.frame.origin)
+    return Floor(occupancy, world.state_of, ~free, 0.0, world.neighbour)

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.domains.pacman.pacman import PacmanMaze, PacmanTask
-from lifelore.domains.pacman.picture import draw_pacman
 from lifelore.figures.style import INK, Axes
+from reproduction.chapter4.c4_04_pacman.picture import draw_pacman
 from reproduction.chapter4.reuse.looks import look_of
 from reproduction.figures.panels import panels
 

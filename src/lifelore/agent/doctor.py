@@ -1,7 +1,6 @@
 """Examines the installation for `lifelore doctor`: packages, speed of the kernels, kernel cache and memory."""
 
 import platform
-import shutil
 import tempfile
 import time
 from importlib.metadata import PackageNotFoundError, version
@@ -69,7 +68,7 @@ def examine(memory: str | None = None) -> dict:
             {"name": name, "version": _version(name), "for": use, "extra": extra}
             for name, (extra, use) in ({name: (None, use) for name, use in PACKAGES.items()} | EXTRAS).items()
         ],
-        "checks": [_kernels(), _kernel_cache(), _memory(memory), _compiler()],
+        "checks": [_kernels(), _kernel_cache(), _memory(memory)],
     }
 
 
@@ -123,11 +122,6 @@ def _memory(where: str | None) -> dict:
             "memory", False, f"{opened.location}: {len(problems)} problems, first: {problems[0]}", RESTORE
         )
     return _check("memory", True, f"{opened.location}, {robots} robots")
-
-
-def _compiler() -> dict:
-    found = shutil.which("gcc")
-    return _check("C compiler", True, found or "none; only `make bench NAME=kernels` uses it")
 
 
 def _check(what: str, ok: bool, finding: str, advice: str | None = None) -> dict:

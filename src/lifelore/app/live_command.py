@@ -3,6 +3,7 @@
 import os
 import sys
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -12,7 +13,8 @@ from lifelore.app.options import AsJson, MapFile, Where
 if TYPE_CHECKING:
     from lifelore.agent.live.goals.job_list import Job
     from lifelore.agent.live.life import Life
-    from lifelore.agent.live.life_settings import Place
+    from lifelore.agent.live.life_settings import LifeSettings, Place
+    from lifelore.agent.live.output.l2_log import LifeLog
     from lifelore.app.setting_keys import SettingKeys
 
 Option = typer.Option
@@ -60,7 +62,9 @@ def live(
     log: Annotated[
         str | None,
         Option(
-            metavar="FILE", help="building: NAME.mcap or .rrd for map, ways, costs, events; extra ros or view."
+            metavar="FILE|DIR",
+            help="building: NAME.mcap or .rrd for map, ways, costs, events; extra ros or view. A folder: episodes, "
+            "for L2Logger.",
         ),
     ] = None,
     csv: Annotated[
@@ -106,11 +110,10 @@ def setting_keys(domain: str) -> "SettingKeys":
     from lifelore.agent.live.life_settings import LIFE_KEYS, LifeSettings
     from lifelore.agent.long_lived.families.by_name import FAMILIES
     from lifelore.agent.long_lived.long_life import live_long
-    from lifelore.app.setting_keys import Setting, SettingKeys
+    from lifelore.app.setting_keys import SettingKeys
 
-    l2log = Setting("l2log", str, "Folder for a log of every episode in L2Logger's format.")
-    life = SettingKeys((LifeSettings,), LIFE_KEYS, (l2log,))
-    long_life = SettingKeys((live_long,), {"location": "memory", "family": "domain"})
+    life = SettingKeys(LifeSettings, LIFE_KEYS)
+    long_life = SettingKeys(live_long, {"location": "memory", "family": "domain"})
     if domain in FAMILIES:
         own, other, where = long_life, life, f"does not apply to domain {domain}; leave it out"
     else:
@@ -126,26 +129,19 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], as_json: bool) -> in
 
     from lifelore.agent.live.life import live as live_through
     from lifelore.agent.live.life_settings import LifeSettings
-    from lifelore.agent.live.output.l2_log import LifeLog
     from lifelore.agent.live.output.long_table import LongTable
     from lifelore.agent.live.output.report import check_folder, write_portfolio
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.life_table import print_life
-    from lifelore.core.errors import InputError
 
-    domain = values["domain"]
-    out, csv, l2log = (values.get(name) for name in ("out", "csv", "l2log"))
+    domain, out, csv = values["domain"], values.get("out"), values.get("csv")
     places = {name: _place(name, values[name], domain) for name in ("start", "goal") if name in values}
     jobs = {"goals": _jobs(values["goals"], values.get("tasks"))} if "goals" in values else {}
-    settings = LifeSettings(**keys.arguments(LifeSettings, values | places | jobs))
-    if l2log is not None and settings.driven:
-        raise InputError(f"l2log logs episodes of searches, got {l2log} with known goals; leave it out")
+    settings = LifeSettings(**keys.arguments(values | places | jobs))
     new_folder = out is not None and not os.path.exists(out)  # also a name too long for a file
     if out is not None:
         check_folder(out)
-    if "log" in values:
-        _check_log(values["log"], domain)
-    log = None if l2log is None else LifeLog(l2log, domain)
+    log = _opened_log(values["log"], settings) if "log" in values else None
     with (
         LongTable(csv, values["seed"]) if csv is not None else nullcontext() as table,
         stop_on_interrupt() as stop,
@@ -159,14 +155,13 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], as_json: bool) -> in
             progress(done, total, label)
 
         def record(task: dict, results: dict) -> None:
-            if log:
-                log.add(task, results)
-            if table:
-                table.add_results(task, results)
+            for one in (table, log):
+                if one:
+                    one.add_results(task, results)
 
         life = live_through(settings, progress=show, stop=stop, watch=record, notify=_notify)
         written = write_portfolio(life, out) if out is not None else []
-        if "log" in values:
+        if "log" in values and log is None:
             written.append(_write_log(life, values["log"]))
     if as_json:
         print_json(life.report)
@@ -175,13 +170,19 @@ def _live_life(keys: "SettingKeys", values: dict[str, Any], as_json: bool) -> in
     return INTERRUPTED if life.stopped else 0
 
 
-def _check_log(path: str, domain: str) -> None:
+def _opened_log(path: str, settings: "LifeSettings") -> "LifeLog | None":
+    """The log of a folder, which grows with the life; None for a file, which is written at its end."""
+    from lifelore.agent.live.output.l2_log import LifeLog
     from lifelore.bridges.viewer_log import check_log
     from lifelore.core.errors import InputError
 
-    if domain != "building":
-        raise InputError(f"log applies to domain building, got {domain}; leave it out")
-    check_log(path)
+    if Path(path).suffix:
+        if settings.world.domain != "building":
+            raise InputError(f"log applies to domain building, got {settings.world.domain}; leave it out")
+        return check_log(path)
+    if settings.driven:
+        raise InputError(f"log as a folder holds episodes of searches, got {path} with known goals; leave it out")
+    return LifeLog(path, settings.world.domain)
 
 
 def _write_log(life: "Life", path: str) -> str:

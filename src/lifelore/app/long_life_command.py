@@ -32,7 +32,7 @@ def live_long_life(keys: "SettingKeys", values: dict[str, Any], as_json: bool) -
     memory = values.get("memory")
     family = family_named(values["domain"], values["seed"])
     stored = {"memory": default_path() if memory is None else memory}
-    arguments: dict[str, Any] = keys.arguments(live_long, values | stored) | {"family": family}
+    arguments: dict[str, Any] = keys.arguments(values | stored) | {"family": family}
     with stop_on_interrupt() as stop, progress_bar("living") as progress:
         report = live_long(**arguments, progress=progress, stop=stop)
     if as_json:

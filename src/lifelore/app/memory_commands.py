@@ -67,29 +67,31 @@ def nav2(
     say({"out": out, "files": written}, f"{len(written)} files written to {out}", as_json)
 
 
-@memory.command("import")
-def import_(
-    paths: Annotated[list[str], typer.Argument(metavar="FILE…")], where: Where = None, as_json: AsJson = False
-) -> None:
-    """Add exported files, all or none.
-
-    Contributions that are stored already or were forgotten are skipped.
-    """
-    _merge(paths, where, as_json)
-
-
+@memory.command("import", help="Add exported files, all or none, as `merge` does.")
 @memory.command()
 def merge(
     others: Annotated[list[str], typer.Argument(metavar="FILE|URL…")],
     where: Where = None,
     as_json: AsJson = False,
 ) -> None:
-    """Add the content of other memories, all or none.
+    """Add the content of other memories or exported files, all or none.
 
-    Use it to share the knowledge of several robots. The other memories are not changed. The result does not depend
-    on order and grouping.
+    Use it to share the knowledge of several robots. The others are not changed. Contributions that are stored
+    already or were forgotten are skipped. The result does not depend on order and grouping.
     """
-    _merge(others, where, as_json)
+    from lifelore.memory import open_memory
+    from lifelore.memory.location import describe, locate
+
+    with open_memory(where) as opened:
+        each = opened.merge_many(others)
+    totals = {name: sum(counts[name] for counts in each) for name in each[0]}
+    counts_text = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in totals.items())
+    document: dict[str, Any] = dict(totals)
+    if len(others) > 1:
+        counts_text += f", from {len(others)} memories"
+        named = zip(others, each, strict=True)
+        document["sources"] = [{"source": describe(locate(other))} | counts for other, counts in named]
+    say(document, f"contributions: {counts_text}", as_json)
 
 
 @memory.command()
@@ -136,19 +138,3 @@ def _buildings(opened: "Memory") -> list[dict]:
     from lifelore.agent.live.buildings.building_memory import buildings_in
 
     return buildings_in(opened)
-
-
-def _merge(others: list[str], where: str | None, as_json: bool) -> None:
-    from lifelore.memory import open_memory
-    from lifelore.memory.location import describe, locate
-
-    with open_memory(where) as opened:
-        each = opened.merge_many(others)
-    totals = {name: sum(counts[name] for counts in each) for name in each[0]}
-    counts_text = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in totals.items())
-    document: dict[str, Any] = dict(totals)
-    if len(others) > 1:
-        counts_text += f", from {len(others)} memories"
-        named = zip(others, each, strict=True)
-        document["sources"] = [{"source": describe(locate(other))} | counts for other, counts in named]
-    say(document, f"contributions: {counts_text}", as_json)

@@ -59,26 +59,22 @@ class SettingKeys:
 
     Parameters
     ----------
-    sources : sequence of callable
-        Frozen dataclasses, or functions.
+    source : callable
+        A frozen dataclass, or a function.
     names : mapping
         Name of a parameter to its key, where they differ.
-    extra : sequence of Setting
-        Settings of no source.
     elsewhere : mapping
         Key to the words that follow it in a refusal: settings that the verb does not take by ``--set``.
     """
 
-    sources: Sequence[Callable]
+    source: Callable
     names: Mapping[str, str] = field(default_factory=dict)
-    extra: Sequence[Setting] = ()
     elsewhere: Mapping[str, str] = field(default_factory=dict)
 
     @cached_property
     def settings(self) -> dict[str, Setting]:
         """The settings that ``--set`` takes, by key."""
-        found = [setting for source in self.sources for setting in self._settings_of(source)]
-        return {one.key: one for one in (*found, *self.extra) if one.key not in self.elsewhere}
+        return {one.key: one for one in self._settings_of(self.source) if one.key not in self.elsewhere}
 
     def read(self, texts: Sequence[str]) -> dict[str, Any]:
         """The values of texts ``KEY=VALUE`` by key; of one key, the last.
@@ -90,9 +86,9 @@ class SettingKeys:
         """
         return dict(self._pair(text) for text in texts)
 
-    def arguments(self, source: Callable, values: Mapping[str, Any]) -> dict[str, Any]:
-        """The arguments of a source, with its groups, that values by key give; other keys are left out."""
-        return arguments_by_key(source, values, self.names)
+    def arguments(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        """The arguments of the source, with its groups, that values by key give; other keys are left out."""
+        return arguments_by_key(self.source, values, self.names)
 
     def show(self, as_json: bool) -> None:
         """Print each setting with its type, default and meaning."""

@@ -1,4 +1,4 @@
-"""Plain data in, matplotlib out: primitives such as `heat_grid`, and the pictures of `lives` and `scenes`."""
+"""Plain data in, matplotlib out: the pictures of `lives`, `scenes` and policy reuse."""
 
 from typing import TYPE_CHECKING
 

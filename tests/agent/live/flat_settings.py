@@ -10,4 +10,4 @@ def flat_settings(**flat: Any) -> LifeSettings:
     """Settings of a life in the lattice unless `flat` names another domain."""
     keys = setting_keys("lattice")
     assert flat.keys() <= {*OPTIONS, *keys.settings}
-    return LifeSettings(**keys.arguments(LifeSettings, {"domain": "lattice"} | flat))
+    return LifeSettings(**keys.arguments({"domain": "lattice"} | flat))

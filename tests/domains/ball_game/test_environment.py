@@ -7,7 +7,6 @@ from gymnasium.utils import seeding
 from lifelore.core.errors import InputError
 from lifelore.domains.ball_game.ball_game import HEADINGS, SPEEDS, LossScale, ball_game, step
 from lifelore.domains.ball_game.environment import BallGameEnvironment
-from lifelore.domains.ball_game.picture import BALL_COLOUR, GOAL_COLOUR, OBSTACLE_COLOUR, draw_ball_game
 from lifelore.domains.ball_game.simulated_player import choose_heading
 
 
@@ -65,16 +64,3 @@ def test_arguments_that_cannot_be():
         env.reset(options={"place": (5, 5)})
     with pytest.raises(InputError, match="sigma"):
         env.reset(options={"sigma": -1.0})
-
-
-def test_the_picture_shows_obstacles_goal_ball_and_trail():
-    game = ball_game()
-    picture = draw_ball_game(game, 5, (500, 80), [(80, 80), (500, 80)])
-    assert picture.shape == (501, 501, 3)
-    assert tuple(picture[40, 250]) == tuple(picture[40, 264]) == BALL_COLOUR
-    assert tuple(picture[150, 100]) == OBSTACLE_COLOUR
-    assert tuple(picture[450, 450]) == GOAL_COLOUR
-    assert tuple(picture[20, 20]) == (255, 255, 255)
-    assert (picture[40, 60:200] != 255).any(axis=1).all()  # the trail
-    with pytest.raises(InputError, match="kind must lie"):
-        draw_ball_game(game, 6)

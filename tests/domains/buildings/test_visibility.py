@@ -8,11 +8,10 @@ import pytest
 from lifelore.core.errors import InputError
 from lifelore.domains.buildings import visibility
 from lifelore.domains.buildings.building import building_from_map
-from lifelore.domains.buildings.floor import floor_of, floor_of_cells
+from lifelore.domains.buildings.floor import floor_of
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.visibility import visible_places
-from lifelore.domains.grids.grid_world import GridWorld
 
 
 def drawn(picture: str):
@@ -101,15 +100,3 @@ def test_blocks_do_not_matter_and_too_many_pairs_are_refused(monkeypatch):
     monkeypatch.setattr(visibility, "MOST_PAIRS", 1000)
     with pytest.raises(InputError, match="use a shorter range or a larger cell"):
         visible_places(floor, world, 3.0)
-
-
-def test_a_world_without_a_map_has_the_sight_of_a_map_with_a_pixel_for_each_cell():
-    state = np.where(np.random.default_rng(2).random((12, 15)) < 0.3, OCCUPIED, FREE).astype(np.uint8)
-    occupancy = OccupancyMap(state, 1.0, (0.0, 0.0, 0.0))
-    world = building_from_map(occupancy, 1.0, 0.0)
-    alone = GridWorld("cells", world.shape, world.cells, world.neighbour)
-    # Free cells that no way leads to are no states; without a map, they stop the sight.
-    closed = OccupancyMap(np.where(world.state_of >= 0, FREE, OCCUPIED).astype(np.uint8), 1.0)
-    expected = visible_places(floor_of(closed, world), world, 5.0)
-    assert (visible_places(floor_of_cells(alone), alone, 5.0) != expected).nnz == 0
-    assert expected.nnz > (world.neighbour >= 0).sum() + world.n_states

@@ -24,7 +24,6 @@ class TaskResult:
     final_return : exact value of the greedy policy at the end
     policy : (n_states,) greedy action, -1 where none is known
     best : (n_states, n_actions) best or tied-best actions of the learnt policy; False in states without a policy
-    trace : (n_checks, 2) steps and share of the optimum at each check
     curve : the episodes that began
     complete : number of episodes that ended; one less if the last was interrupted
     """
@@ -38,7 +37,6 @@ class TaskResult:
     final_return: float
     policy: NDArray[np.int32] = field(repr=False)
     best: NDArray[np.bool_] = field(repr=False)
-    trace: NDArray[np.float64] = field(repr=False)
     curve: Curve = field(repr=False)
     complete: int = field(repr=False)
 

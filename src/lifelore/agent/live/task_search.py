@@ -129,23 +129,21 @@ class TaskSearch:
         `run` learns for a number of steps at most, and returns the number of steps that it made.
         """
         every = CHECK_EVERY if self.sight is None else CHECK_EVERY_BY_SIGHT
-        total, reached, trace = 0, False, []
+        total, reached = 0, False
         while not reached:
             if self.stop.is_set():
                 raise Stopped
             steps = run(every)
             if steps == 0:
                 break
-            total, now = total + steps, value()
-            reached = bool(now >= THRESHOLD * self.optimal)
-            trace.append((total, now / self.optimal))
+            total += steps
+            reached = bool(value() >= THRESHOLD * self.optimal)
         episodes = len(curve.returns)
         return {
             "reached": reached,
             "steps_to_80": total if reached else episodes * self.settings.step_cap,
             "episodes_to_80": int(cursor[EPISODE] + (cursor[STEP] > 0)) if reached else episodes,
             "collisions": int(curve.collisions.sum()),
-            "trace": np.array(trace, float).reshape(-1, 2),
         }
 
 

@@ -16,7 +16,6 @@ from lifelore.domains.ball_game.ball_game import (
     check_place,
     step,
 )
-from lifelore.domains.ball_game.picture import draw_ball_game
 from lifelore.domains.ball_game.simulated_player import choose_heading
 from lifelore.domains.checked_environment import CheckedEnvironment
 
@@ -47,13 +46,10 @@ class BallGameEnvironment(CheckedEnvironment):
     `layout`: a name, ``"s-maze 160"``. `size`: of the ball, one of 2, 5, 10, 20, 40, 60. `speed`: in force at the
     start, one of 30, 40, 50, 60, 70; `set_speed` changes it. `role`: ``"player"`` or ``"interface"``.
     `radius_share`: radius of the ball as a share of its size, 0.5. `blocked`: a ball whose move would touch an
-    obstacle ``"slides"`` up to it, or ``"stays"`` where it is. `scale`: a `LossScale`. `render_mode`: None or
-    ``"rgb_array"``.
+    obstacle ``"slides"`` up to it, or ``"stays"`` where it is. `scale`: a `LossScale`.
 
     ``info`` has ``"collision"``, ``"speed"`` in force, the ``"heading"`` commanded last, or None, and ``"sigma"``.
     """
-
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012
 
     def __init__(
         self,
@@ -64,9 +60,8 @@ class BallGameEnvironment(CheckedEnvironment):
         radius_share: float = 0.5,
         blocked: str = "slides",
         scale: LossScale | None = None,
-        render_mode: str | None = None,
     ) -> None:
-        super().__init__(render_mode)
+        super().__init__()
         if role not in ROLES:
             raise InputError(f"role must be one of {', '.join(ROLES)}, got {role!r}")
         self.role = role
@@ -78,7 +73,6 @@ class BallGameEnvironment(CheckedEnvironment):
         self.action_space = spaces.Discrete(n_actions)
         self.observation_space = spaces.Box(0, SIDE, (2,), np.int64)
         self._place: tuple[int, int] = self.game.layout.start
-        self._trail: list[tuple[int, int]] = []
 
     def set_speed(self, speed: int) -> None:
         """Put another speed in force, from the next step on."""
@@ -92,7 +86,6 @@ class BallGameEnvironment(CheckedEnvironment):
         x, y = options.get("place", self.game.layout.start)
         check_place(self.game, self.kind, int(x), int(y))
         self._place = (int(x), int(y))
-        self._trail = [self._place]
         self._steps = self._hits = 0
         return self._observation(), self._info(False, None)
 
@@ -111,15 +104,10 @@ class BallGameEnvironment(CheckedEnvironment):
             *self.np_random.random(3),
         )
         self._place = (int(x), int(y))
-        self._trail.append(self._place)
         self._steps += 1
         self._hits += bool(hit)
         reward = -float(self.scale.loss(self._steps, self._hits)) if reached else 0.0
         return self._observation(), reward, bool(reached), self._info(bool(hit), HEADINGS[heading])
-
-    def _picture(self) -> NDArray[np.uint8]:
-        """The field, the ball and where it has been, (501, 501, 3) uint8."""
-        return draw_ball_game(self.game, self.kind, self._place, self._trail)
 
     def _observation(self) -> NDArray[np.int64]:
         return np.array(self._place, np.int64)

@@ -4,14 +4,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.core.streams import stream
 from lifelore.domains.factory.contexts import features
 from lifelore.domains.factory.factory import ASSEMBLED, RAW, Factory
 from lifelore.domains.factory.layout import factory
 from lifelore.domains.factory.modified_factory import modified_factory
-from lifelore.domains.factory.picture import draw_factory
 from lifelore.domains.task_environment import TaskEnvironment
 
 
@@ -35,28 +33,19 @@ class AnyFactoryEnvironment(TaskEnvironment):
     Everything on the list is assembled.
 
     ## Arguments
-    `factory`: a `Factory`. `components`: numbers of the list, or how many to draw from `seed`. `render_mode`:
-    None or ``"rgb_array"``.
+    `factory`: a `Factory`. `components`: numbers of the list, or how many to draw from `seed`.
 
     ``info`` has ``"collision"``, the components ``"to_procure"`` and ``"to_assemble"`` (what is to be procured is
     also still to be assembled), and ``"features"``, the ten of φ4.
     """
 
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012
-
-    def __init__(
-        self, factory: Factory, components: int | Sequence[int] = 4, seed: int = 0, render_mode: str | None = None
-    ) -> None:
+    def __init__(self, factory: Factory, components: int | Sequence[int] = 4, seed: int = 0) -> None:
         self.factory = factory
         if isinstance(components, (int, np.integer)):
             components = factory.draw_components(stream(seed, "components"), int(components))
         self.factory_task = factory.task(components)
         self._features = features(self.factory_task)
-        super().__init__(self.factory_task, render_mode)
-
-    def _picture(self) -> NDArray[np.uint8]:
-        """The picture of the factory, (height, width, 3) uint8."""
-        return draw_factory(self.factory, self.factory_task, self._state)
+        super().__init__(self.factory_task)
 
     def _info(self, event: int) -> dict[str, Any]:
         assert self._state is not None
@@ -89,12 +78,11 @@ class FactoryEnvironment(AnyFactoryEnvironment):
     Everything on the list is assembled; truncated after 2,000 steps.
 
     ## Arguments
-    `components`: numbers of the list, 0 to 8, or how many to draw from `seed`, 4. `render_mode`: None or
-    ``"rgb_array"``.
+    `components`: numbers of the list, 0 to 8, or how many to draw from `seed`, 4.
     """
 
-    def __init__(self, components: int | Sequence[int] = 4, seed: int = 0, render_mode: str | None = None) -> None:
-        super().__init__(factory(), components, seed, render_mode)
+    def __init__(self, components: int | Sequence[int] = 4, seed: int = 0) -> None:
+        super().__init__(factory(), components, seed)
 
 
 class ModifiedFactoryEnvironment(AnyFactoryEnvironment):
@@ -118,8 +106,8 @@ class ModifiedFactoryEnvironment(AnyFactoryEnvironment):
 
     ## Arguments
     `components`: numbers of the list, 0 to 8, or how many to draw from `seed`, 4. `seed`: of the layout and the
-    list. `render_mode`: None or ``"rgb_array"``.
+    list.
     """
 
-    def __init__(self, components: int | Sequence[int] = 4, seed: int = 0, render_mode: str | None = None) -> None:
-        super().__init__(modified_factory(stream(seed, "modified factory")), components, seed, render_mode)
+    def __init__(self, components: int | Sequence[int] = 4, seed: int = 0) -> None:
+        super().__init__(modified_factory(stream(seed, "modified factory")), components, seed)

@@ -5,14 +5,12 @@ from typing import Any
 
 import numpy as np
 from gymnasium import spaces
-from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION
 from lifelore.core.streams import stream
 from lifelore.domains.checked_environment import CheckedEnvironment
 from lifelore.domains.pacman.pacman import N_ACTIONS, STRATEGIES, PacmanMaze, PacmanTask, step
-from lifelore.domains.pacman.picture import draw_pacman
 from lifelore.domains.task_environment import TaskEnvironment
 
 
@@ -41,13 +39,11 @@ class PacmanEnvironment(TaskEnvironment):
     ## Arguments
     `strategy`: of the ghost, ``"top row"``, ``"clockwise"``, ``"anticlockwise"`` or ``"random"``; None draws one
     from `seed`. `rows`, `columns`: of the maze, odd, 7. `foods`: four cells' numbers; None draws them from `seed`.
-    `seed`: of the task. `render_mode`: None or ``"rgb_array"``.
+    `seed`: of the task.
 
     ``info`` has ``"state"``, the hidden state, which a player must not look at, and ``"collision"``, whether the
     last move was into a wall.
     """
-
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 6}  # noqa: RUF012
 
     def __init__(
         self,
@@ -56,9 +52,8 @@ class PacmanEnvironment(TaskEnvironment):
         columns: int = 7,
         foods: Sequence[int] | None = None,
         seed: int = 0,
-        render_mode: str | None = None,
     ) -> None:
-        CheckedEnvironment.__init__(self, render_mode)
+        CheckedEnvironment.__init__(self)
         maze = PacmanMaze(rows, columns)
         foods = maze.draw_foods(stream(seed, "foods")) if foods is None else tuple(foods)
         strategy = str(stream(seed, "strategy").choice(STRATEGIES)) if strategy is None else strategy
@@ -68,12 +63,6 @@ class PacmanEnvironment(TaskEnvironment):
         # The plain function: one call from Python costs less than entering compiled code.
         self._step = getattr(step, "py_func", step)
         self._state: int | None = None
-
-    def _picture(self) -> NDArray[np.uint8]:
-        """The picture of the maze, (height, width, 3) uint8."""
-        if self._state is None:
-            raise InputError("reset() must be called before render(), got no episode in progress")
-        return draw_pacman(self.task, self._state)
 
     def _observed(self) -> int:
         return int(self.task.observation_of[self._state])

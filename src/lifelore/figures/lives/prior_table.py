@@ -4,13 +4,14 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
-from lifelore.figures.heat_grid import draw_heat_grid
-from lifelore.figures.style import house_style, new_figure
+from lifelore.figures.style import BLUE, INK, PAPER, VERMILION, house_style, new_figure
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 LONGEST_LABEL = 40
@@ -66,25 +67,35 @@ def plot_prior(
     order = np.argsort(-counted, kind="stable")[:most]
     codes, counted = prior.contexts[order], counted[order]
     rows = [_row_name(code, n, named) for code, n in zip(codes.tolist(), counted.tolist(), strict=True)]
-    probs, uniform = prior.probs(codes), 1 / prior.n_actions
     with house_style():
         figure = new_figure(2.6 + 0.07 * max(map(len, rows)) + 0.55 * len(names), 1.0 + 0.24 * len(rows))
         axes = figure.subplots()
-        draw_heat_grid(
-            axes,
-            probs,
-            np.zeros(probs.shape, bool),
-            rows,
-            names,
-            neutral=uniform,
-            spread=max(1 - uniform, 1e-9),
-            words="{:.2f}".format,
-        )
+        _draw_table(axes, prior.probs(codes), rows, names)
         axes.set_title(
             title or f"Action prior: {len(codes)} of {len(prior)} contexts, most counts first", loc="left"
         )
         axes.set_xlabel("action")
     return figure
+
+
+def _draw_table(axes: "Axes", probs: NDArray[np.float64], rows: Sequence[str], columns: Sequence[str]) -> None:
+    from matplotlib.colors import LinearSegmentedColormap
+
+    uniform = 1 / len(columns)
+    scaled = np.clip((probs - uniform) / max(1 - uniform, 1e-9), -1, 1)
+    colours = LinearSegmentedColormap.from_list("about", [VERMILION, PAPER, BLUE])
+    axes.imshow(scaled, cmap=colours, vmin=-1, vmax=1, aspect="auto")
+    for (row, column), value in np.ndenumerate(probs):
+        ink = PAPER if abs(scaled[row, column]) > 0.75 else INK
+        axes.text(column, row, f"{value:.2f}", ha="center", va="center", fontsize=7.5, color=ink)
+    axes.set_xticks(range(len(columns)), columns)
+    axes.set_yticks(range(len(rows)), rows)
+    axes.set_xticks(np.arange(len(columns) + 1) - 0.5, minor=True)
+    axes.set_yticks(np.arange(len(rows) + 1) - 0.5, minor=True)
+    axes.grid(which="minor", color=PAPER, linewidth=1.5)
+    axes.tick_params(which="both", length=0)
+    for spine in axes.spines.values():
+        spine.set_visible(False)
 
 
 def _row_name(code: int, counts: float, labels: Mapping[int, Any]) -> str:

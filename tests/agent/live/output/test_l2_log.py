@@ -86,7 +86,7 @@ def test_a_life_is_logged_episode_by_episode(tmp_path):
     log = LifeLog(tmp_path / "logs", settings.world.domain)
 
     def watch(task, results):
-        log.add(task, results)
+        log.add_results(task, results)
         kept.append((task, dict(results)))
 
     life = live(settings, watch=watch)

@@ -163,7 +163,7 @@ class LifeLog:
 
     Examples
     --------
-    ``live(settings, watch=LifeLog("logs", settings.world.domain).add)``
+    ``live(settings, watch=LifeLog("logs", settings.world.domain).add_results)``
     """
 
     def __init__(self, folder: str | Path, domain: str) -> None:
@@ -173,7 +173,7 @@ class LifeLog:
         with folder_to_write(folder, "folder"):
             pass
 
-    def add(self, task: Mapping, results: Mapping[str, Result]) -> None:
+    def add_results(self, task: Mapping, results: Mapping[str, Result]) -> None:
         """Log one finished task; pass it to `live` as ``watch``. Driven tasks have no episodes."""
         row, column = task["goal"]
         for name, result in results.items():

@@ -12,27 +12,23 @@ from numpy.typing import NDArray
 from lifelore.agent.live.baselines import AGENTS
 from lifelore.agent.live.goals.destinations import Point
 from lifelore.agent.live.life import Life
-from lifelore.agent.live.lived_tasks import Result
 from lifelore.agent.live.output.drive_figure import drives_figure
 from lifelore.agent.live.output.folder import folder_to_write
 from lifelore.agent.live.output.greedy_paths import GreedyPaths, last_paths, path_points, write_paths
 from lifelore.agent.live.output.known_building import NAV2_FILES, KnownBuilding
 from lifelore.agent.live.output.logged_life import goal_points
-from lifelore.agent.live.summary import third
-from lifelore.agent.live.task_result import THRESHOLD, TaskResult
 from lifelore.core.errors import InputError
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.figures.lives.floor_plan import FloorPlan
 from lifelore.figures.lives.life_curves import draw_life
 from lifelore.figures.lives.map_plan import MapPlan
 from lifelore.figures.lives.prior_map import draw_prior_map
-from lifelore.figures.lives.task_curves import draw_task_curves
 from lifelore.figures.lives.world_map import draw_world_map
 from lifelore.figures.style import save_figure
 
-FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", "prior.png", *NAV2_FILES)
-"""Files of the folder; the curves only if goals were searched, the prior only if the agent has one, the files of
-nav2 only in buildings whose moves the agent has learnt."""
+FILES = ("summary.json", "life.png", "world.png", "paths.csv", "prior.png", *NAV2_FILES)
+"""Files of the folder; the prior only if the agent has one, those of nav2 only in buildings whose moves it has
+learnt."""
 
 
 def check_folder(path: str) -> None:
@@ -92,11 +88,7 @@ def _write_all(life: Life, folder: Path) -> None:
         return
     paths = last_paths(life)
     lines = {task.task: path_points(life.world, task, life.floor) for task in paths}
-    if life.driven:
-        save_figure(drives_figure(life, _place(life)), folder / "life.png")
-    else:
-        save_figure(_life_figure(life), folder / "life.png")
-        save_figure(_task_figure(life), folder / "learning_curves.png")
+    save_figure(drives_figure(life, _place(life)) if life.driven else _life_figure(life), folder / "life.png")
     save_figure(_world_figure(life, paths, lines), folder / "world.png")
     write_paths(folder / "paths.csv", lines)
     if _has_prior(life):
@@ -162,23 +154,6 @@ def _headline(life: Life) -> str:
 def _factor(value: float) -> str:
     """Two decimals; one significant digit for values that two decimals would show as zero."""
     return f"{value:.2f}" if value >= 0.005 or value == 0 else f"{value:.1g}"
-
-
-def _task_figure(life: Life):
-    parts = {"Last third of the life": third(life.results, "last")}
-    if len(life.results) > 1:
-        parts = {"First third of the life": third(life.results, "first"), **parts}
-    else:
-        parts = {"The only task": life.results}
-    panels = {f"{words} ({_count(len(part), 'task')})": _traces(life, part) for words, part in parts.items()}
-    title = f"Learning within a task, in {_place(life)}: mean, and band of the middle 50 % of the tasks"
-    return draw_task_curves(panels, threshold=THRESHOLD, title=title)
-
-
-def _traces(life: Life, results: list[dict[str, Result]]) -> dict:
-    return {
-        name: [found.trace for r in results if isinstance(found := r[name], TaskResult)] for name in _agents(life)
-    }
 
 
 def _world_figure(life: Life, last: Sequence[GreedyPaths], lines: Mapping[int, Sequence[NDArray[np.float64]]]):
