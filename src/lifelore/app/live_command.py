@@ -63,7 +63,7 @@ def live(
         str | None,
         Option(
             metavar="FILE|DIR",
-            help="building: NAME.mcap or .rrd for map, ways, costs, events; extra ros or view. A folder: episodes, "
+            help="building: NAME.mcap or .rrd for map, ways, costs, events; extra ros or view. Folder: episodes, "
             "for L2Logger.",
         ),
     ] = None,
