@@ -39,11 +39,11 @@ class BoundingBoxRule:
 
     describe = staticmethod(boxes)
 
-    def fit_pairs(self, scenes: Sequence[Sequence[DescribedPair]], truths: Sequence[Sequence[PairLabel]]) -> Self:
+    def fit(self, scenes: Sequence[Sequence[DescribedPair]], truths: Sequence[Sequence[PairLabel]]) -> Self:
         """Nothing is learnt."""
         return self
 
-    def predict_pairs(self, scene: Sequence[DescribedPair]) -> tuple[Relation, ...]:
+    def predict(self, scene: Sequence[DescribedPair]) -> tuple[Relation, ...]:
         """The relation of every near pair, each with confidence 1."""
         return tuple(pair.relation(_name(pair), 1.0) for pair in scene)
 

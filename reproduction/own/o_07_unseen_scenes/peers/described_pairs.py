@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import SYMMETRIC, PairLabel
-from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.clouds.voxel import voxelised, voxels_of
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.contacts.near_pairs import NearPair, near_pairs, split_objects
 from lifelore.perception.pairs.directed_label import LEAST_CONFIDENCE, REVERSED, pair_class
@@ -88,4 +88,4 @@ def default_near_pairs(cloud: LabelledCloud) -> tuple[NearPair, ...]:
 
 def mean_of_voxels(points: NDArray[np.float64], grain: float) -> NDArray[np.float64]:
     """The mean of the points in each cube of side `grain` metres, shape ``(k, 3)``."""
-    return voxelised(LabelledCloud(points, np.ones(len(points), np.int64)), grain).cloud.points
+    return voxels_of(points, grain).means

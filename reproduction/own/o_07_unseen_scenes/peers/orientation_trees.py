@@ -51,7 +51,7 @@ class OrientationTrees:
     def __init__(self) -> None:
         self._trees: dict[bool, Any] = {}
 
-    def fit_pairs(self, scenes: Sequence[Sequence[DescribedPair]], truths: Sequence[Sequence[PairLabel]]) -> Self:
+    def fit(self, scenes: Sequence[Sequence[DescribedPair]], truths: Sequence[Sequence[PairLabel]]) -> Self:
         """Learn from described scenes and the labels of their pairs."""
         from sklearn.ensemble import ExtraTreesClassifier
 
@@ -67,7 +67,7 @@ class OrientationTrees:
         }
         return self
 
-    def predict_pairs(self, scene: Sequence[DescribedPair]) -> tuple[Relation, ...]:
+    def predict(self, scene: Sequence[DescribedPair]) -> tuple[Relation, ...]:
         """The relation of every near pair of a kind (among objects, with the table) that was learnt."""
         judged: dict[int, Relation] = {}
         for kind, model in self._trees.items():

@@ -54,8 +54,8 @@ def label_image(cloud: LabelledCloud) -> NDArray[np.uint16]:
     origin = cloud.origin
     if origin.grid is None or origin.rows is None:
         raise InputError(
-            "a label image (--set masks_out=FILE) needs an organised cloud, and this one is not organised: ask for the"
-            " numbers of the points instead (--set with_masks=true --json)"
+            "a label image (--set masks_out=FILE) needs an organised cloud, and this one is not organised: ask for"
+            " the numbers of the points instead (--set with_masks=true --json)"
         )
     if cloud.labels.max(initial=0) > _MOST:
         raise InputError(

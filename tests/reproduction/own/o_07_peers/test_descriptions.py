@@ -50,5 +50,5 @@ def seen(*rows: list[float], gap: float = 0.001, b: int = 3) -> tuple[DescribedP
     ],
 )
 def test_the_rule_of_boxes(row, gap, b, expected):
-    (said,) = BoundingBoxRule().predict_pairs(seen(row, gap=gap, b=b))
+    (said,) = BoundingBoxRule().predict(seen(row, gap=gap, b=b))
     assert (said.a, said.b, said.relation) == expected

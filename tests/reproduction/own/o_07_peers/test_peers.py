@@ -18,7 +18,7 @@ def peer(request, lesson):
     clouds, truths = lesson
     new = PEERS[request.param]
     seen = [described_pairs(cloud, new.describe) for cloud in clouds]
-    return request.param, new().fit_pairs(seen[:27], truths[:27]), seen[27:]
+    return request.param, new().fit(seen[:27], truths[:27]), seen[27:]
 
 
 def of_pair(relations, a, b) -> Relation:
@@ -35,7 +35,7 @@ def same(label: PairLabel, relation: Relation) -> bool:
 def test_what_it_learns_holds_on_scenes_it_has_not_seen(peer, lesson):
     name, model, others = peer
     right = [
-        same(truth[0], of_pair(model.predict_pairs(scene), 2, 3))
+        same(truth[0], of_pair(model.predict(scene), 2, 3))
         for scene, truth in zip(others, lesson[1][27:], strict=True)
     ]
     assert np.mean(right) >= LEAST_RIGHT[name]
@@ -46,7 +46,7 @@ def test_names_of_the_objects_carry_nothing(peer, lesson):
     _, model, _ = peer
 
     def answers(cloud):
-        return model.predict_pairs(described_pairs(cloud, model.describe))
+        return model.predict(described_pairs(cloud, model.describe))
 
     for cloud in lesson[0][:6]:
         turned = np.where(cloud.labels > TABLE, 5 - cloud.labels, cloud.labels)
