@@ -28,6 +28,13 @@ def cloud(tmp_path):
     return write
 
 
+def test_help_fits_one_screen_and_rare_settings_are_listed(ask, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    assert len(ask("perceive", "--help").out.splitlines()) <= 45
+    keys = [row["key"] for row in ask("perceive", "--settings", "--json").document["settings"]]
+    assert keys == ["segment", "colours", "index", "depth_scale", "table_mask", "masks_out", "with_masks"]
+
+
 def two_cubes(shift):
     return np.concatenate([CUBE, CUBE + shift]), np.repeat([2, 3], len(CUBE))
 
@@ -51,9 +58,8 @@ def test_objects_have_their_pixels_in_a_label_image_and_in_json(ask, tmp_path):
     points[0, :5] = np.nan
     np.savez(tmp_path / "wall.npz", points=points, labels=labels, camera=[0.1, -0.1, 1.0])
     image = tmp_path / "numbers.png"
-    answer = ask(
-        "perceive", tmp_path / "wall.npz", "--up", "z", "--masks-out", image, "--with-masks", "--json"
-    )  # fmt: skip
+    rare = ("--set", f"masks_out={image}", "--set", "with_masks=true")
+    answer = ask("perceive", tmp_path / "wall.npz", "--up", "z", *rare, "--json")
     assert answer.status == 0
     with Image.open(image) as opened:
         assert opened.mode.startswith("I;16")
@@ -73,12 +79,12 @@ def test_a_scene_is_logged_for_each_cloud(ask, cloud, tmp_path):
 
 def test_a_cloud_without_an_image_has_no_label_image(ask, cloud, tmp_path):
     options = ("perceive", cloud(*two_cubes([0, 0, 0.06])), "--up", "z")
-    refused = ask(*options, "--masks-out", tmp_path / "numbers.png", "--dot", tmp_path / "s.dot")
+    refused = ask(*options, "--set", f"masks_out={tmp_path / 'numbers.png'}", "--dot", tmp_path / "s.dot")
     assert refused.status == 2
     assert "is not organised" in refused.err
-    assert "--with-masks" in refused.err
+    assert "with_masks=true" in refused.err
     assert not (tmp_path / "s.dot").exists()
-    answer = ask(*options, "--with-masks", "--json")
+    answer = ask(*options, "--set", "with_masks=true", "--json")
     assert answer.document["objects"][1]["points"] == list(range(len(CUBE), 2 * len(CUBE)))
 
 
@@ -220,18 +226,18 @@ def test_bad_clouds_are_one_line(ask, cloud, case):
         (["--up", "sideways"], "up must be"),
         (["--units", "feet"], "units must be m, cm, mm or inch"),
         (["--labels", "odd"], "labels"),
-        (["--segment", "magic"], "method must be"),
-        (["--segment", "clusters"], "needs a cloud without labels"),
-        (["--segment", "colour", "--colours", "1"], "colours must be at least 2"),
-        (["--colours", "3"], "colours belongs to --segment colour"),
+        (["--set", "segment=magic"], "method must be"),
+        (["--set", "segment=clusters"], "needs a cloud without labels"),
+        (["--set", "segment=colour", "--set", "colours=1"], "colours must be at least 2"),
+        (["--set", "colours=3"], "colours belongs to segment=colour"),
         (["--topic", "/camera"], "is no rosbag: leave them out"),
-        (["--index", "0"], "is no rosbag: leave them out"),
+        (["--set", "index=0"], "is no rosbag: leave them out"),
         (["--memory", "m.db"], "no model is named: leave memory out"),
         (["--model", "mine.npz", "--memory", "m.db"], "mine.npz is a file: leave memory out"),
         (["--model", "nobody"], "no relation model 'nobody': there is no memory at"),
         (["--plot", "scene.svg"], "plot must name a PNG file"),
         (["--log", "scene.bag"], "log must name a file that ends with .mcap or .rrd"),
-        (["--masks-out", "numbers.jpg"], "masks_out must name a PNG file"),
+        (["--set", "masks_out=numbers.jpg"], "masks_out must name a PNG file"),
         (["--dot", "cloud.npz"], "'cloud.npz' would be overwritten"),
         (["--pddl", ""], "must be a file"),
         (["--goal", "clear(o2)"], "goal needs a plan (--plan), or a planning problem"),
@@ -356,7 +362,7 @@ def test_several_clouds_for_a_person_and_their_files(ask, three, tmp_path):
         ([], "give one or more clouds"),
         (["pair.npz", "--watch", "."], "leave the clouds out"),
         (["--watch", "no"], "watch must name a folder"),
-        (["--watch", ".", "--index", "0"], "is no rosbag: leave them out"),
+        (["--watch", ".", "--set", "index=0"], "is no rosbag: leave them out"),
         (["--watch", ".", "--plot", "a.png"], "plot names one file for many clouds"),
         (["--watch", ".", "--register"], "leave --poses and --register out"),
         (["pair.npz", "alone.npz", "--register", "--poses", "p.json"], "leave one of them out"),

@@ -113,7 +113,7 @@ def test_the_command_line_looks_into_a_bag(tmp_path, capsys):
     from lifelore.app.command_line import run
 
     path = recorded(tmp_path, "mcap")
-    assert run(["perceive", str(path), "--index", "1", "--up", "z", "--json"]) == 0
+    assert run(["perceive", str(path), "--set", "index=1", "--up", "z", "--json"]) == 0
     assert [entry["id"] for entry in json.loads(capsys.readouterr().out)["objects"]] == [2, 3]
     assert run(["perceive", str(path), "--topic", "/nothing"]) == 2
     assert "/points" in capsys.readouterr().err

@@ -147,11 +147,11 @@ def judged(settings: Mapping, results: Sequence[Mapping]) -> dict[str, dict[floa
     found: dict[str, dict[float, list[JudgedPair]]] = {method: {} for method in METHODS}
     for method, of_level in found.items():
         model = RelationClassifier("displacement", symmetric=SYMMETRIC)
-        model.fit_pairs([scene_of(own["views"][0][method]) for own in lessons], list(map(labels_of, lessons)))
+        model.fit([scene_of(own["views"][0][method]) for own in lessons], list(map(labels_of, lessons)))
         for scene in scenes:
             gaps = {frozenset((a, b)): gap for a, b, gap in scene["gaps"]}
             for level, views in zip(levels_of(settings), scene["views"], strict=True):
-                predicted = model.predict_pairs(scene_of(views[method])) if views[method] else ()
+                predicted = model.predict(scene_of(views[method])) if views[method] else ()
                 own = judged_scene(scene["name"], labels_of(scene), predicted, gaps)
                 of_level.setdefault(level, []).extend(pair for pair in own if not pair.border)
     return found

@@ -43,7 +43,7 @@ def timed_stages(
     pairs = timed(STAGES[1], lambda: near_pairs(split_objects(thin), settings.near, settings.table_margin))
     found = timed(STAGES[2], lambda: tuple(interface(pair, settings) for pair in pairs))
     seen = timed(STAGES[3], lambda: scene_pairs(cloud, found, settings))
-    beliefs = timed(STAGES[4], lambda: model.beliefs_of(seen))
+    beliefs = timed(STAGES[4], lambda: model.beliefs(seen))
     logic = timed(
         STAGES[5], lambda: most_likely_scene(alternatives(beliefs), cloud.objects, beside=pairs_beside(seen))
     )

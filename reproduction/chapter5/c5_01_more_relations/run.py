@@ -85,7 +85,8 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
             [seen(_drawn(seed, shapes, number)) for number in range(settings[name])]
             for name, shapes in (("lessons", "training"), ("scenes", HELD_OUT))
         )
-        model = RelationClassifier(multi_label=True).fit_pairs(*map(list, zip(*lessons, strict=True)))
+        scenes, truths = map(list, zip(*lessons, strict=True))
+        model = RelationClassifier(multi_label=True).fit(scenes, truths)
         return {
             "kind": "lesson",
             "counts": [word_counts(words, predicted(model, pairs)) for pairs, words in tests],
@@ -124,7 +125,7 @@ def true_words(scene: TabletopScene) -> list[PairLabel]:
 
 def predicted(model: RelationClassifier, pairs: ScenePairs) -> set[tuple[int, int, str]]:
     """The words that the model predicts for a scene; symmetric words in both orders."""
-    relations = model.predict_pairs(pairs) if len(pairs.features.pairs) else ()
+    relations = model.predict(pairs) if len(pairs.features.pairs) else ()
     found = {(r.a, r.b, r.relation) for r in relations}
     return found | {(r.b, r.a, r.relation) for r in relations if r.relation in model.symmetric_}
 

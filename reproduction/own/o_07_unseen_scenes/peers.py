@@ -89,11 +89,11 @@ class BoundingBoxRule:
 
     describe = staticmethod(boxes)
 
-    def fit_pairs(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> Self:
+    def fit(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> Self:
         """Nothing is learnt."""
         return self
 
-    def predict_pairs(self, scene: ScenePairs) -> tuple[Relation, ...]:
+    def predict(self, scene: ScenePairs) -> tuple[Relation, ...]:
         """The relation of every near pair, each with confidence 1."""
         rows, gaps = scene.features.matrix[::2].tolist(), scene.features.gaps[::2].tolist()
         return _likeliest(scene, [{_by_boxes(row, gap): 1.0} for row, gap in zip(rows, gaps, strict=True)])
@@ -108,7 +108,7 @@ class OrientationTrees:
 
     describe = staticmethod(orientation_histogram)
 
-    def fit_pairs(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> Self:
+    def fit(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> Self:
         """Learn from described scenes and the labels of their pairs."""
         from sklearn.ensemble import ExtraTreesClassifier
 
@@ -122,7 +122,7 @@ class OrientationTrees:
         self._trees: Any = ExtraTreesClassifier(TREES, random_state=0).fit(np.array(rows), np.array(names))
         return self
 
-    def predict_pairs(self, scene: ScenePairs) -> tuple[Relation, ...]:
+    def predict(self, scene: ScenePairs) -> tuple[Relation, ...]:
         """The relation of every near pair."""
         if not len(scene.features.pairs):
             return ()

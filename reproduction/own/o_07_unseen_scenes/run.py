@@ -49,7 +49,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     )
     models: dict[str, Any] = {name: new() for name, new in MODELS.items()}
     for name, model in models.items():
-        model.fit_pairs([views[name] for _, views in lessons], [scene.truth for scene, _ in lessons])
+        model.fit([views[name] for _, views in lessons], [scene.truth for scene, _ in lessons])
     models[SHIPPED] = shipped_model()
     counts = {
         name: [counts_of(scene, answers(models[name], views[name], scene)) for scene, views in tests]
@@ -74,8 +74,8 @@ def seen(scene: TabletopScene) -> tuple[TabletopScene, dict[str, Any]]:
 def answers(model: Any, view: Any, scene: TabletopScene) -> Sequence[Relation]:
     """The relations that a model names; those of our own classifier by contacts are reconciled by scene logic."""
     if not isinstance(model, RelationClassifier) or model.method == "displacement":
-        return model.predict_pairs(view)
-    beliefs = alternatives(model.beliefs_of(view))
+        return model.predict(view)
+    beliefs = alternatives(model.beliefs(view))
     return most_likely_scene(beliefs, scene.cloud.objects, beside=pairs_beside(view)).relations
 
 

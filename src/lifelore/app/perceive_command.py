@@ -3,12 +3,14 @@
 import os
 from collections.abc import Callable, Mapping
 from contextlib import nullcontext
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from lifelore.app.options import Labels, Units
 from lifelore.bridges.rosbag import is_bag
+
+if TYPE_CHECKING:
+    from lifelore.app.setting_keys import SettingKeys
 
 Option = typer.Option
 Files = dict[str, Any]
@@ -17,121 +19,91 @@ Files = dict[str, Any]
 
 def perceive(
     clouds: Annotated[
-        list[str] | None,
-        typer.Argument(metavar="CLOUD...", help="PCD, PLY, npz, npy, depth image or rosbag; one or more."),
+        list[str] | None, typer.Argument(metavar="CLOUD...", help="PCD, PLY, npz, npy, depth images or rosbags.")
     ] = None,
     up: Annotated[
-        str, Option(metavar="table|z|X,Y,Z", help="Upward direction: the table's normal, +z, or a vector.")
+        str,
+        Option(
+            metavar="table|z|X,Y,Z",
+            show_default=False,
+            help="Upwards: the table's normal, +z or a vector [table].",
+        ),
     ] = "table",
-    units: Units = "m",
-    labels: Labels = "auto",
-    topic: Annotated[str | None, Option(help="Topic of a rosbag's clouds; needed if it has several.")] = None,
-    index: Annotated[int | None, Option(help="Number of a rosbag's cloud, from 0 [0].")] = None,
-    segment: Annotated[
-        str | None,
+    units: Annotated[
+        str, Option(metavar="UNIT", show_default=False, help="Unit of the coordinates: m, cm, mm or inch [m].")
+    ] = "m",
+    labels: Annotated[
+        str,
         Option(
-            help="Segmentation of a cloud without labels: convexity, clusters, curvature or colour [convexity]."
+            metavar="KIND", show_default=False, help="Label field: plain, parts (20–29: one object), auto [auto]."
         ),
-    ] = None,
-    colours: Annotated[
-        int | None, Option(help="--segment colour: number of colour clusters; the smallest is background [3].")
-    ] = None,
+    ] = "auto",
+    topic: Annotated[str | None, Option(metavar="NAME", help="Topic of a rosbag with several.")] = None,
     intrinsics: Annotated[
-        str | None,
-        Option(
-            metavar="FILE", help="Read a depth image with this camera: camera_info YAML, or JSON of fx fy cx cy."
-        ),
+        str | None, Option(metavar="FILE", help="Camera of a depth image: camera_info YAML, or JSON.")
     ] = None,
     colour: Annotated[
-        str | None, Option(metavar="IMAGE", help="Colour image aligned with the depth image, PNG or JPEG.")
-    ] = None,
-    depth_scale: Annotated[
-        float | None, Option(help="Metres for each unit of depth [0.001 for whole numbers, 1 for floats].")
+        str | None, Option(metavar="IMAGE", help="Colour image aligned with the depth image.")
     ] = None,
     masks: Annotated[
-        str | None,
-        Option(
-            metavar="FILE", help="Masks of the objects: a label image (PNG), or labels or masks in npz or npy."
-        ),
-    ] = None,
-    table_mask: Annotated[
-        int | None, Option(help="Number of the table's mask [the plane without a mask is the table].")
+        str | None, Option(metavar="FILE", help="Masks of the objects: a label image (PNG), npz or npy.")
     ] = None,
     poses: Annotated[
-        str | None,
-        Option(metavar="FILE", help="The clouds are views of one scene with these camera-to-world poses."),
+        str | None, Option(metavar="FILE", help="Camera-to-world poses of clouds, views of one scene.")
     ] = None,
     register: Annotated[
-        bool,
-        Option("--register", help="The clouds are views of one scene; their poses are found from its objects."),
+        bool, Option("--register", help="Find the poses of the clouds, views of one scene.")
     ] = False,
     roi: Annotated[
-        str | None,
-        Option(
-            metavar="XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX", help="Use only points in this box: metres, cloud's frame."
-        ),
+        str | None, Option(metavar="BOX", help="Only points in XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX, metres.")
     ] = None,
     max_range: Annotated[
-        float | None, Option(metavar="M", help="Use only points within this many metres of the camera.")
+        float | None, Option(metavar="M", help="Only points within M metres of the camera.")
     ] = None,
     model: Annotated[
-        str | None,
-        Option(metavar="NAME|FILE", help="Relation model of learn-relations; default: the shipped model."),
+        str | None, Option(metavar="NAME|FILE", help="Relation model of learn-relations; default: shipped.")
     ] = None,
     memory: Annotated[str | None, Option(metavar="FILE|URL", help="Memory that holds the model NAME.")] = None,
     pddl: Annotated[
-        str | None, Option(metavar="FILE", help="File for a planning problem; its domain is written beside it.")
+        str | None, Option(metavar="FILE", help="File for a planning problem; its domain beside it.")
     ] = None,
     goal: Annotated[
-        str | None,
-        Option(metavar="GOAL", help='Goal to plan for, such as "on(o2, o3) and not clear(o4)".'),
+        str | None, Option(metavar="GOAL", help='Goal, such as "on(o2, o3) and not clear(o4)".')
     ] = None,
     plan: Annotated[
         bool, Option("--plan", help="Find a plan for the goal, with places (extra planning).")
     ] = False,
     min_confidence: Annotated[
-        float | None,
-        Option(
-            metavar="P",
-            help="Least probability, 0 to 1, of facts in JSON, graph and planning problem [0; for planning 0.6].",
-        ),
+        float | None, Option(metavar="P", help="Least probability of facts, 0 to 1 [0; planning 0.6].")
     ] = None,
     dot: Annotated[str | None, Option(metavar="FILE", help="File for the relations as a Graphviz graph.")] = None,
     plot: Annotated[
-        str | None, Option(metavar="FILE", help="File NAME.png for a picture of the scene from the camera.")
-    ] = None,
-    masks_out: Annotated[
-        str | None, Option(metavar="FILE", help="File NAME.png for a 16-bit image of the objects' numbers.")
+        str | None, Option(metavar="FILE", help="File NAME.png for a picture from the camera.")
     ] = None,
     log: Annotated[
-        str | None,
-        Option(
-            metavar="FILE",
-            help="File NAME.mcap or NAME.rrd for cloud, boxes, contacts and relations; extra ros or view.",
-        ),
+        str | None, Option(metavar="FILE", help="File NAME.mcap or .rrd for a viewer (extra ros or view).")
     ] = None,
-    with_masks: Annotated[
-        bool, Option("--with-masks", help="JSON also holds each object's pixels, or its points' numbers.")
-    ] = False,
     watch: Annotated[
-        str | None,
-        Option(metavar="FOLDER", help="Perceive each new cloud of a folder until Ctrl-C."),
+        str | None, Option(metavar="FOLDER", help="Perceive each new cloud of a folder until Ctrl-C.")
     ] = None,
-    as_json: Annotated[
-        bool,
-        Option("--json", help="One JSON document on stdout and nothing else; with --watch one line a cloud."),
-    ] = False,
+    changes: Annotated[
+        list[str] | None, Option("--set", metavar="KEY=VALUE", help="Change a rare setting; repeat it for more.")
+    ] = None,
+    settings: Annotated[bool, Option("--settings", help="List what --set takes, and perceive nothing.")] = False,
+    as_json: Annotated[bool, Option("--json", help="One JSON document; with --watch one line a cloud.")] = False,
 ) -> int:
     """Find objects, contacts and relations in point clouds.
 
-    Use it to turn a cloud into facts for a planner, a graph or a picture. Several clouds in one call are much
-    faster than a call for each; --json then gives {"scenes": [{"source", ...}], "failed": [{"source", "error"}]}.
-    With --poses or --register, the clouds are views of one scene and give one document.
-    A goal without a plan is a result: --plan then says why, and the exit status stays 0.
-    A cloud that cannot be perceived gives one line on stderr and exit status 2; the other clouds are still
-    perceived. In each FILE that is written, {name} stands for the name of the cloud without its suffix; several
-    clouds, and --watch, need it.
+    Use it to turn a cloud into facts for a planner, a graph or a picture. Several clouds in one call are faster
+    than a call for each; {name} in a FILE that is written stands for the name of the cloud without its suffix.
+    A cloud that cannot be perceived gives one line on stderr and exit status 2; the others are still perceived.
+    A goal without a plan is a result: --plan says why.
     """
+    keys = setting_keys()
+    if settings:
+        keys.show(as_json)
+        return 0
+    rare = keys.read(changes or ())
     if (watch is None) == (not clouds):
         raise typer.BadParameter(
             "--watch perceives the new clouds of a folder: leave the clouds out" if clouds else
@@ -142,22 +114,22 @@ def perceive(
     from lifelore.agent.perceive.perceive import PerceiveSettings, read_region, read_up
     from lifelore.agent.perceive.source_files import SourceFiles
 
-    beside = SourceFiles(intrinsics, colour, depth_scale, masks, table_mask)
-    settings = PerceiveSettings(
+    beside = SourceFiles(intrinsics, colour, rare.get("depth_scale"), masks, rare.get("table_mask"))
+    chosen = PerceiveSettings(
         read_up(up),
         units,
         labels,
-        _cut(segment, colours),
+        _cut(rare.get("segment"), rare.get("colours")),
         model,
         memory,
         min_confidence,
         goal,
         beside,
         read_region(roi, max_range),
-        with_masks,
+        rare.get("with_masks", False),
         _planner() if plan else None,
     )
-    files: Files = {"pddl": pddl, "dot": dot, "plot": plot, "masks_out": masks_out}
+    files: Files = {"pddl": pddl, "dot": dot, "plot": plot, "masks_out": rare.get("masks_out")}
     if log is not None:
         from lifelore.bridges.viewer_log import check_log, write_scene_log
 
@@ -168,16 +140,16 @@ def perceive(
     if poses is not None and register:
         raise typer.BadParameter("--register finds the poses that --poses gives: leave one of them out")
     for cloud in clouds or [str(watch)]:
-        _check_bag_options(cloud, topic, index)
+        _check_bag_options(cloud, topic, rare.get("index"))
     if clouds is None or not clouds:
-        return _watched(str(watch), settings, files, as_json)
+        return _watched(str(watch), chosen, files, as_json)
 
     def source(cloud: str) -> Any:
-        return _out_of_bag(cloud, topic, index or 0, units, labels) if is_bag(cloud) else cloud
+        return _out_of_bag(cloud, topic, rare.get("index", 0), units, labels) if is_bag(cloud) else cloud
 
     views = poses is not None or register
     if len(clouds) > 1 and not views:
-        return _several(clouds, source, settings, files, as_json)
+        return _several(clouds, source, chosen, files, as_json)
     from lifelore.agent.perceive.perceive import perceive as look
     from lifelore.agent.perceive.scene_files import SceneFiles
     from lifelore.app.console import print_json, progress_bar, to_stderr
@@ -188,11 +160,30 @@ def perceive(
         if views:
             from lifelore.agent.perceive.views import perceive_views
 
-            document = perceive_views(clouds, settings, poses=poses, read=source, **further)
+            document = perceive_views(clouds, chosen, poses=poses, read=source, **further)
         else:
-            document = look(source(clouds[0]), settings, **further)
+            document = look(source(clouds[0]), chosen, **further)
     print_json(document) if as_json else _print_scene(clouds[0], document, files)
     return 0
+
+
+def setting_keys() -> "SettingKeys":
+    """The rare settings of `perceive`, by key."""
+    from lifelore.app.setting_keys import Setting, SettingKeys
+
+    methods = ("convexity", "clusters", "curvature", "colour")
+    rare = (
+        Setting("segment", str, "Segmentation of a cloud without labels.", methods[0], methods),
+        Setting("colours", int, "With segment=colour: clusters of colour; the smallest is background.", 3),
+        Setting("index", int, "Number of a rosbag's cloud, from 0.", 0),
+        Setting("depth_scale", float, "Metres for each unit of depth; 0.001 for whole numbers, 1 for floats."),
+        Setting(
+            "table_mask", int, "Number of the table's mask; without it, the plane without a mask is the table."
+        ),
+        Setting("masks_out", str, "File NAME.png for a 16-bit image of the objects' numbers."),
+        Setting("with_masks", bool, "Whether JSON holds each object's pixels, or its points' numbers.", False),
+    )
+    return SettingKeys((), extra=rare)
 
 
 def _several(clouds: list[str], source: Callable[[str], Any], settings: Any, files: Files, as_json: bool) -> int:
@@ -247,7 +238,7 @@ def _cut(segment: str | None, colours: int | None):
     if colours is not None and segment != "colour":
         from lifelore.core.errors import InputError
 
-        raise InputError("colours belongs to --segment colour: add it, or leave --colours out")
+        raise InputError("colours belongs to segment=colour: set both, or leave colours out")
     if segment is None:
         return None
     from lifelore.perception.segmentation.object_segmentation import SegmentationSettings

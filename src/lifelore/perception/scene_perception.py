@@ -72,7 +72,7 @@ def _core_scene(
     if not consistent or model.multi_label:
         return Scene(cloud, found, model.predict(cloud, found))
     pairs = scene_pairs(cloud, found, model.settings)
-    beliefs = model.beliefs_of(pairs)
+    beliefs = model.beliefs(pairs)
     if cloud.has_table:
         beliefs = off_the_table(beliefs, cloud, _shapes(found))
     decided = most_likely_scene(alternatives(beliefs), cloud.objects, beside=pairs_beside(pairs))

@@ -116,7 +116,7 @@ def test_a_plane_that_is_not_level_is_no_table(scene: TabletopScene) -> None:
 def test_mistakes_before_anything_is_read(folder: Path) -> None:
     for wrong, said in [
         ({"colour": "rgb.png"}, "colour.*belongs to a depth image"),
-        ({"depth_scale": 0.001}, "--depth-scale.*belongs to a depth image"),
+        ({"depth_scale": 0.001}, "depth_scale=S.*belongs to a depth image"),
         ({"table_mask": 1}, "give --masks FILE"),
         ({"masks": "m.png", "table_mask": 0}, "from 1, got 0"),
     ]:
@@ -125,7 +125,7 @@ def test_mistakes_before_anything_is_read(folder: Path) -> None:
     depth = str(folder / "depth.png")
     with pytest.raises(InputError, match="is a cloud: leave them out"):
         perceive("table.pcd", settings(folder))
-    with pytest.raises(InputError, match="--depth-scale instead"):
+    with pytest.raises(InputError, match="depth_scale=S instead"):
         perceive(depth, replace(settings(folder), units="mm"))
     with pytest.raises(InputError, match="would be overwritten"):
         perceive(depth, settings(folder, masks="all.png"), plot=str(folder / "all.png"))

@@ -121,7 +121,7 @@ def test_depth_of_another_shape_or_scale_is_refused(values: np.ndarray, scale: f
 
 def test_millimetres_as_floats_are_refused_with_the_scale(tmp_path: Path) -> None:
     np.save(tmp_path / "depth.npy", np.linspace(500.0, 1100.0, 6).reshape(2, 3))
-    with pytest.raises(InputError, match=r"median depth of 800\.0 m.*--depth-scale 0\.001"):
+    with pytest.raises(InputError, match=r"median depth of 800\.0 m.*depth_scale=0\.001"):
         read_depth_image(tmp_path / "depth.npy", CAMERA)
 
 

@@ -41,7 +41,7 @@ def test_without_an_image_it_has_the_numbers_of_its_points():
     loose = cloud(np.array([10, 11, 40, 7]), None)
     assert object_mask(loose, 2) == {"points": [11, 7]}
     assert object_mask(cloud(None, None), 2) == {"points": None}
-    with pytest.raises(InputError, match=r"not organised.*--with-masks"):
+    with pytest.raises(InputError, match=r"not organised.*with_masks"):
         label_image(loose)
 
 

@@ -76,7 +76,7 @@ def lessons() -> Lessons:
 
 @pytest.fixture(scope="module")
 def fitted(lessons: Lessons) -> RelationClassifier:
-    return RelationClassifier(trees=SMALL).fit_pairs(lessons[0][:24], lessons[1][:24])
+    return RelationClassifier(trees=SMALL).fit(lessons[0][:24], lessons[1][:24])
 
 
 def said(relations) -> set[tuple[int, int, str]]:
@@ -90,13 +90,13 @@ def wanted(truth) -> set[tuple[int, int, str]]:
 @pytest.mark.slow
 def test_blocks_never_seen_are_told_right_with_their_direction(lessons, fitted):
     for scene, truth in zip(lessons[0][24:32], lessons[1][24:32], strict=True):
-        assert said(fitted.predict_pairs(scene)) == wanted(truth)
+        assert said(fitted.predict(scene)) == wanted(truth)
 
 
 def test_beliefs_are_probabilities_and_the_best_is_what_is_said(lessons, fitted):
     for scene in lessons[0][24:32]:
-        beliefs = fitted.beliefs_of(scene)
-        for belief, one in zip(beliefs, fitted.predict_pairs(scene), strict=True):
+        beliefs = fitted.beliefs(scene)
+        for belief, one in zip(beliefs, fitted.predict(scene), strict=True):
             assert np.isclose(sum(belief.shares.values()), 1.0)
             assert one.confidence == max(belief.shares.values())
             assert belief.best() == one
@@ -115,23 +115,23 @@ def test_adjacent_means_the_gap_that_is_asked_for(lessons, fitted):
     near, far = lessons[0][26], lessons[0][27]
     try:
         fitted.adjacent_gap = 0.06
-        assert (2, 3, ADJACENT) in said(fitted.predict_pairs(far))
+        assert (2, 3, ADJACENT) in said(fitted.predict(far))
         fitted.adjacent_gap = 0.002
-        assert (2, 3, NONE) in said(fitted.predict_pairs(near))
+        assert (2, 3, NONE) in said(fitted.predict(near))
     finally:
         fitted.adjacent_gap = 0.0225
-    assert (2, 3, ADJACENT) in said(fitted.predict_pairs(near))
+    assert (2, 3, ADJACENT) in said(fitted.predict(near))
 
 
 def test_the_same_scenes_give_the_same_model(lessons, fitted):
-    again = RelationClassifier(trees=SMALL).fit_pairs(lessons[0][:24], lessons[1][:24])
-    assert again.beliefs_of(lessons[0][25]) == fitted.beliefs_of(lessons[0][25])
+    again = RelationClassifier(trees=SMALL).fit(lessons[0][:24], lessons[1][:24])
+    assert again.beliefs(lessons[0][25]) == fitted.beliefs(lessons[0][25])
 
 
 def test_the_thesiss_method_tells_on_from_beside(lessons):
-    model = RelationClassifier("displacement").fit_pairs(lessons[0][:24], lessons[1][:24])
+    model = RelationClassifier("displacement").fit(lessons[0][:24], lessons[1][:24])
     hits = [
-        len(said(model.predict_pairs(scene)) & wanted(truth)) / len(truth)
+        len(said(model.predict(scene)) & wanted(truth)) / len(truth)
         for scene, truth in zip(lessons[0][24:32], lessons[1][24:32], strict=True)
     ]
     assert np.mean(hits) >= 0.75
@@ -149,10 +149,10 @@ def test_any_words_do_and_symmetry_is_found(lessons):
     for number, truth in enumerate(truths):
         if truth[0].relation == "next to" and stream(number, "order").random() < 0.5:
             truth[0] = PairLabel(truth[0].b, truth[0].a, "next to")
-    model = RelationClassifier(trees=SMALL).fit_pairs(lessons[0][:24], truths[:24])
+    model = RelationClassifier(trees=SMALL).fit(lessons[0][:24], truths[:24])
     assert model.symmetric_ == {"next to"}
     for scene, truth in zip(lessons[0][24:32], truths[24:], strict=True):
-        (one,) = model.predict_pairs(scene)
+        (one,) = model.predict(scene)
         assert one.relation == truth[0].relation
         if one.relation == "rests upon":
             assert (one.a, one.b) == (truth[0].a, truth[0].b)
@@ -176,11 +176,11 @@ def views(cloud: LabelledCloud) -> list[PairLabel]:
 def test_several_words_may_hold_of_one_pair(lessons):
     clouds = [blocks(number)[0] for number in range(44)]
     truths = [views(cloud) for cloud in clouds]
-    model = RelationClassifier(multi_label=True, trees=SMALL).fit_pairs(lessons[0][:36], truths[:36])
+    model = RelationClassifier(multi_label=True, trees=SMALL).fit(lessons[0][:36], truths[:36])
     assert model.symmetric_ == {"near"}
     right, total = 0, 0
     for scene, truth in zip(lessons[0][36:], truths[36:], strict=True):
-        found = said(model.predict_pairs(scene))
+        found = said(model.predict(scene))
         assert (2, 3, "near") in found
         total += len(wanted(truth) | found)
         right += len(wanted(truth) & found)
@@ -190,18 +190,18 @@ def test_several_words_may_hold_of_one_pair(lessons):
 def test_what_cannot_be_learnt_is_refused(lessons):
     scenes, truths = lessons
     with pytest.raises(InputError, match="one for each cloud"):
-        RelationClassifier().fit_pairs(scenes, truths[:2])
+        RelationClassifier().fit(scenes, truths[:2])
     with pytest.raises(InputError, match="near pair"):
-        RelationClassifier().fit_pairs(scenes[:1], [[PairLabel(8, 9, ON)]])
+        RelationClassifier().fit(scenes[:1], [[PairLabel(8, 9, ON)]])
     with pytest.raises(InputError, match="near pair"):
-        RelationClassifier().fit_pairs(scenes[:1], [[PairLabel(3, 2, ON, 1)]])
+        RelationClassifier().fit(scenes[:1], [[PairLabel(3, 2, ON, 1)]])
     with pytest.raises(InputError, match="multi_label"):
-        RelationClassifier().fit_pairs(scenes[:1], [[PairLabel(3, 2, ON), PairLabel(3, 2, ADJACENT)]])
+        RelationClassifier().fit(scenes[:1], [[PairLabel(3, 2, ON), PairLabel(3, 2, ADJACENT)]])
     for name in ("~on", "beside="):
         with pytest.raises(InputError, match="start with ~"):
-            RelationClassifier().fit_pairs(scenes[:1], [[PairLabel(2, 3, name)]])
+            RelationClassifier().fit(scenes[:1], [[PairLabel(2, 3, name)]])
     with pytest.raises(InputError, match="fit"):
-        RelationClassifier().predict_pairs(scenes[0])
+        RelationClassifier().predict(scenes[0])
     with pytest.raises(InputError, match="method"):
         RelationClassifier("magic")
     for wrong in (0.0, 22.5):
@@ -212,8 +212,8 @@ def test_what_cannot_be_learnt_is_refused(lessons):
 
 
 def test_one_scene_is_enough_to_learn_from(lessons):
-    model = RelationClassifier(trees=SMALL).fit_pairs(lessons[0][:1], lessons[1][:1])
-    assert said(model.predict_pairs(lessons[0][0])) == wanted(lessons[1][0])
+    model = RelationClassifier(trees=SMALL).fit(lessons[0][:1], lessons[1][:1])
+    assert said(model.predict(lessons[0][0])) == wanted(lessons[1][0])
     empty = LabelledCloud(np.empty((0, 3)), np.empty(0, np.int64))
     assert model.predict(empty) == ()
 
@@ -224,14 +224,14 @@ def test_a_symmetric_word_may_be_written_both_ways(lessons, method):
     truths = [renamed(truth, names) for truth in lessons[1][:12]]
     for truth in truths:
         truth += [PairLabel(one.b, one.a, "touches") for one in truth if one.relation == "touches"]
-    model = RelationClassifier(method, trees=SMALL).fit_pairs(lessons[0][:12], truths)
+    model = RelationClassifier(method, trees=SMALL).fit(lessons[0][:12], truths)
     assert "touches" in model.symmetric_
     assert "rests upon" not in model.symmetric_
     # Each written pair is two labels.
     assert model.learnt_from_ == {"apart": 3, "rests upon": 6, "touches": 6}
-    assert (2, 3, "touches") in said(model.predict_pairs(lessons[0][2]))
+    assert (2, 3, "touches") in said(model.predict(lessons[0][2]))
     with pytest.raises(InputError, match=r"touches\(2, 3\) and touches\(3, 2\)"):
-        RelationClassifier(method, trees=SMALL, symmetric=[]).fit_pairs(lessons[0][:12], truths)
+        RelationClassifier(method, trees=SMALL, symmetric=[]).fit(lessons[0][:12], truths)
 
 
 @pytest.mark.slow
@@ -239,17 +239,15 @@ def test_a_symmetric_word_may_be_written_both_ways(lessons, method):
 @pytest.mark.parametrize("other", [PairLabel(3, 2, ADJACENT), PairLabel(2, 3, ON)])
 def test_a_pair_with_two_relations_is_refused_by_either_method(lessons, method, other):
     with pytest.raises(InputError, match="one relation"):
-        RelationClassifier(method).fit_pairs(lessons[0][:1], [[PairLabel(3, 2, ON), other]])
+        RelationClassifier(method).fit(lessons[0][:1], [[PairLabel(3, 2, ON), other]])
     with pytest.raises(InputError, match="one relation"):
-        RelationClassifier(method).fit_pairs(
-            lessons[0][:1], [[PairLabel(2, TABLE, ON), PairLabel(2, TABLE, NONE)]]
-        )
+        RelationClassifier(method).fit(lessons[0][:1], [[PairLabel(2, TABLE, ON), PairLabel(2, TABLE, NONE)]])
 
 
 def test_a_doubted_label_is_no_evidence_of_symmetry(lessons):
     truths = [renamed(truth, {ON: "upon", ADJACENT: "by", NONE: "far"}) for truth in lessons[1][:4]]
     truths[0].append(PairLabel(truths[0][0].b, truths[0][0].a, "upon", 1))
-    assert RelationClassifier(trees=SMALL).fit_pairs(lessons[0][:4], truths).symmetric_ == frozenset()
+    assert RelationClassifier(trees=SMALL).fit(lessons[0][:4], truths).symmetric_ == frozenset()
 
 
 def test_words_said_with_the_table_first_are_learnt_in_that_direction(lessons):
@@ -258,18 +256,18 @@ def test_words_said_with_the_table_first_are_learnt_in_that_direction(lessons):
         [PairLabel(TABLE, one.a, "under") if one.relation == ON else one for one in truth if one.b == TABLE]
         for truth in lessons[1]
     ]
-    model = RelationClassifier(multi_label=True, trees=SMALL).fit_pairs(lessons[0][:24], truths[:24])
+    model = RelationClassifier(multi_label=True, trees=SMALL).fit(lessons[0][:24], truths[:24])
     for scene, truth in zip(lessons[0][24:32], truths[24:32], strict=True):
         under = {(one.a, one.b, one.relation) for one in truth if one.relation == "under"}
-        assert said(model.predict_pairs(scene)) == under
-        assert all(belief.shares["under"] == 0 for belief in model.beliefs_of(scene))
+        assert said(model.predict(scene)) == under
+        assert all(belief.shares["under"] == 0 for belief in model.beliefs(scene))
 
 
 def test_labels_of_near_pairs_are_counted(lessons):
     truths = [[*lessons[1][0], PairLabel(8, 9, ON), PairLabel(2, 9, NONE)], [*lessons[1][2]], []]
     model = RelationClassifier(trees=SMALL)
     assert model.learnt_from_ == {}
-    model.fit_pairs(lessons[0][:3], truths)
+    model.fit(lessons[0][:3], truths)
     # Scene 0: on twice, none once; scene 2: adjacent once, on twice.
     assert model.learnt_from_ == {ADJACENT: 1, NONE: 1, ON: 4}
 
@@ -298,32 +296,28 @@ def test_wrong_settings_are_refused_at_once(wrong, named):
 
 def test_opposite_directions_of_a_word_never_both_hold(lessons, monkeypatch):
     truths = [views(blocks(number)[0]) for number in range(12)]
-    model = RelationClassifier(multi_label=True, trees=SMALL, symmetric={"near"}).fit_pairs(
-        lessons[0][:12], truths
-    )
+    model = RelationClassifier(multi_label=True, trees=SMALL, symmetric={"near"}).fit(lessons[0][:12], truths)
     assert model.symmetric_ == {"near"}
     shares = {"near": 0.8, "under": 0.6, "~under": 0.9, "left_of": 0.7, "~left_of": 0.7, "in_front_of": 0.4}
     monkeypatch.setattr(
         "lifelore.perception.relations.relation_classifier.label_shares", lambda *_: [shares, {}, {}]
     )
-    assert said(model.predict_pairs(lessons[0][0])) == {(2, 3, "near"), (3, 2, "under"), (2, 3, "left_of")}
+    assert said(model.predict(lessons[0][0])) == {(2, 3, "near"), (3, 2, "under"), (2, 3, "left_of")}
 
 
 def test_a_word_declared_to_have_a_direction_is_not_labelled_both_ways(lessons):
     truths = [[PairLabel(2, 3, "touches"), PairLabel(3, 2, "touches")]]
     with pytest.raises(InputError, match=r"must not state touches\(2, 3\) and touches\(3, 2\)"):
-        RelationClassifier(multi_label=True, trees=SMALL, symmetric=()).fit_pairs(lessons[0][:1], truths)
+        RelationClassifier(multi_label=True, trees=SMALL, symmetric=()).fit(lessons[0][:1], truths)
     truths = [[truths[0][0], PairLabel(3, 2, "touches", 1)]]
     assert (
-        RelationClassifier(multi_label=True, trees=SMALL, symmetric=())
-        .fit_pairs(lessons[0][:1], truths)
-        .symmetric_
+        RelationClassifier(multi_label=True, trees=SMALL, symmetric=()).fit(lessons[0][:1], truths).symmetric_
         == frozenset()
     )
 
 
 def test_adjacent_and_none_stay_symmetric_whatever_is_declared(lessons):
-    model = RelationClassifier(trees=SMALL, symmetric=()).fit_pairs(lessons[0][:4], lessons[1][:4])
+    model = RelationClassifier(trees=SMALL, symmetric=()).fit(lessons[0][:4], lessons[1][:4])
     assert model.symmetric_ == {ADJACENT, NONE}
 
 
@@ -335,7 +329,7 @@ def test_scikit_learn_clones_it_and_searches_over_its_settings(lessons):
     copied = cast(RelationClassifier, clone(model))
     assert copied is not model
     assert copied.get_params() == model.get_params()
-    fitted_copy = clone(model.fit_pairs(lessons[0][:4], lessons[1][:4]))
+    fitted_copy = clone(model.fit(lessons[0][:4], lessons[1][:4]))
     assert cast(RelationClassifier, fitted_copy).names_ == ()
     assert not is_classifier(model)  # a sample is a scene, so folds are not stratified by labels
     search = GridSearchCV(RelationClassifier(trees=SMALL), {"method": ["trees", "displacement"]}, cv=2)
@@ -374,6 +368,6 @@ def test_the_limit_of_adjacent_may_be_changed_but_not_taken_away(lessons, fitted
     fitted.adjacent_gap = None
     try:
         with pytest.raises(InputError, match="adjacent_gap"):
-            fitted.predict_pairs(lessons[0][0])
+            fitted.predict(lessons[0][0])
     finally:
         fitted.adjacent_gap = 0.0225

@@ -277,9 +277,9 @@ def test_spoilt_files_are_refused_or_answer(learnt, clouds, kind):
             assert str(error).startswith("spoilt.npz ")  # noqa: PT017
             refused += 1
             continue
-        for belief in model.beliefs_of(scene):
+        for belief in model.beliefs(scene):
             assert all(0 <= share <= 1 + 1e-6 for share in belief.shares.values())
-        model.predict_pairs(scene)
+        model.predict(scene)
     assert 20 <= refused < 40
 
 

@@ -95,3 +95,12 @@ def test_what_hardly_rises_may_be_the_floor_s_own_noise():
     low, high = (sheet((0, 0, height), (0.1, 0.1, height), 0.005) for height in (0.014, 0.022))
     assert judged(np.concatenate([FLOOR, low])).standing == 0
     assert judged(np.concatenate([FLOOR, high])).standing == len(high)
+
+
+def test_a_box_that_hides_most_of_the_pillar_below_it_stands_on_the_floor():
+    pillar = sheet((-0.02, -0.02, 0), (0.02, 0.02, 0.12), 0.008)
+    top = sheet((-0.12, -0.12, 0.24), (0.12, 0.12, 0.24), 0.004)
+    one = judged(np.concatenate([FLOOR, pillar, top]))
+    assert one.standing > len(top) > 5 * len(pillar)
+    assert (one.hanging, one.floating) == (0, 0)
+    assert judged(np.concatenate([FLOOR, top])).hanging == len(top)

@@ -61,7 +61,7 @@ def seen(*rows, a=2, b=3, gap=0.001) -> ScenePairs:
     ],
 )
 def test_the_rule_of_boxes(row, gap, expected):
-    (said,) = BoundingBoxRule().predict_pairs(seen(row, row, gap=gap))
+    (said,) = BoundingBoxRule().predict(seen(row, row, gap=gap))
     assert (said.a, said.b, said.relation) == expected
 
 
@@ -70,18 +70,18 @@ def test_trees_learn_relations_and_the_order_of_names_carries_nothing():
     scenes = [seen([1, 0], [-1, 0]), seen([-1, 0], [1, 0]), seen([0, 0], [0, 0])] * 3
     labels = [PairLabel(2, 3, "on"), PairLabel(3, 2, "on"), PairLabel(3, 2, "adjacent")] * 3
     doubtful = PairLabel(2, 3, "adjacent", 1)
-    model = OrientationTrees().fit_pairs(
+    model = OrientationTrees().fit(
         [*scenes, seen([1, 0], [-1, 0])], [*([one] for one in labels), [doubtful]]
     )
     for rows, expected in zip(
         ([[1, 0], [-1, 0]], [[0, 0], [0, 0]]), ((5, 4, "on"), (4, 5, "adjacent")), strict=True
     ):
         for a, b, own in ((5, 4, rows), (4, 5, rows[::-1])):
-            (said,) = model.predict_pairs(seen(*own, a=a, b=b))
+            (said,) = model.predict(seen(*own, a=a, b=b))
             assert said.relation == expected[2]
             assert said.confidence == pytest.approx(1.0)
             assert (said.a, said.b) == expected[:2] or said.relation == "adjacent"
-    assert model.predict_pairs(described([], boxes)) == ()
+    assert model.predict(described([], boxes)) == ()
 
 
 def test_pairs_of_objects_are_described_in_both_orders_without_the_table():

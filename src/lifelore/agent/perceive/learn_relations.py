@@ -145,7 +145,7 @@ def learn_relations(
     if not scenes:
         raise InputError(f"memory has no scenes of '{settings.name}' to learn from; give a folder of scenes")
     _check_symmetric(settings.symmetric or (), [scene.truth for scene in scenes])
-    model.fit_pairs([scene.pairs for scene in scenes], [scene.truth for scene in scenes])
+    model.fit([scene.pairs for scene in scenes], [scene.truth for scene in scenes])
     report = _report(settings, model, scenes, len({scene.digest for scene in latest}))
     about = {key: report[key] for key in ("name", "scenes", "pairs", "method", "relations")}
     about["lifelore"] = version("lifelore")

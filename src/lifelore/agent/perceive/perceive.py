@@ -326,7 +326,7 @@ def read_scene(source: Source, settings: PerceiveSettings) -> PointCloud:
     cloud = read_source(source, settings.units, settings.labels, settings.up, settings.beside)
     if settings.segmentation is not None and cloud.is_labelled:
         raise InputError(
-            "segmentation (--segment) needs a cloud without labels, but this cloud has labels: leave it out"
+            "segmentation (--set segment=METHOD) needs a cloud without labels: leave it out"
         )
     return cloud
 

@@ -48,15 +48,15 @@ class SourceFiles:
     table_mask: int | None = None
 
     def __post_init__(self) -> None:
-        for option in ("colour", "depth_scale"):
+        for option, flag in (("colour", "--colour"), ("depth_scale", "--set depth_scale=S")):
             if getattr(self, option) is not None and self.intrinsics is None:
                 raise InputError(
-                    f"{option} (--{option.replace('_', '-')}) belongs to a depth image: give its intrinsics"
+                    f"{option} ({flag}) belongs to a depth image: give its intrinsics"
                     " (--intrinsics FILE), or leave it out"
                 )
         if self.table_mask is not None and self.masks is None:
             raise InputError(
-                "table_mask (--table-mask) is the number of a mask: give --masks FILE, or leave it out"
+                "table_mask (--set table_mask=N) is the number of a mask: give --masks FILE, or leave it out"
             )
         if self.table_mask is not None and self.table_mask < 1:
             raise InputError(f"table_mask must be the number of a mask, from 1, got {self.table_mask}")
@@ -136,7 +136,7 @@ def _depth_image(source: object, units: str, files: SourceFiles) -> PointCloud:
             " cloud: leave them out"
         )
     if units != "m":
-        raise InputError(f"units (--units {units}) are for clouds: give a depth image --depth-scale instead")
+        raise InputError(f"units (--units {units}) are for clouds: give a depth image --set depth_scale=S instead")
     from lifelore.perception.clouds.depth_file import read_depth_image
 
     return read_depth_image(source, str(files.intrinsics), colour=files.colour, depth_scale=files.depth_scale)

@@ -77,7 +77,7 @@ def perceive_views(
     settings.beside.check_for_many()
     asked = SceneFiles(**files)
     if asked.masks_out is not None:
-        raise InputError("masks_out (--masks-out) is of one image, and views have several: leave it out")
+        raise InputError("masks_out (--set masks_out=FILE) is of one image, and views have several: leave it out")
     check_settings(settings, asked.pddl)
     check_scene_files(asked, [*files_read(sources, settings), *([] if poses is None else [poses])])
     given = None if poses is None else read_poses(poses, len(sources))

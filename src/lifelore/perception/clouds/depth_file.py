@@ -65,7 +65,7 @@ def read_depth_image(
             median = float(np.nanmedian(found.points[:, 2]))
             raise InputError(
                 f"spans more than {MAX_SPAN:.0f} m at a median depth of {median:,.1f} m: crop the image, or give"
-                " another scale (--depth-scale 0.001 for millimetres)"
+                " another scale (--set depth_scale=0.001 for millimetres)"
             ) from None
 
     return one_line_errors(str(depth), "a depth image", cloud)

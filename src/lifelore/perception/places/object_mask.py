@@ -54,11 +54,13 @@ def label_image(cloud: LabelledCloud) -> NDArray[np.uint16]:
     origin = cloud.origin
     if origin.grid is None or origin.rows is None:
         raise InputError(
-            "a label image (--masks-out) needs a cloud with an image, and this one is not organised: ask for the"
-            " numbers of the points instead (--with-masks --json)"
+            "a label image (--set masks_out=FILE) needs an organised cloud, and this one is not organised: ask for"
+            " the numbers of the points instead (--set with_masks=true --json)"
         )
     if cloud.labels.max(initial=0) > _MOST:
-        raise InputError(f"a label image (--masks-out) holds numbers up to {_MOST}, got {cloud.labels.max()}")
+        raise InputError(
+            f"a label image (--set masks_out=FILE) holds numbers up to {_MOST}, got {cloud.labels.max()}"
+        )
     image = np.zeros(origin.grid, np.uint16)
     image.flat[origin.rows] = cloud.labels
     return image

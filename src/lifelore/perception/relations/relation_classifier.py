@@ -152,21 +152,14 @@ class RelationClassifier(Estimator):
             two relations; a pair has a relation in both directions that is not symmetric; a name starts with ``~``
             or ends with ``=``; a setting breaks its rule.
         """
+        if len(clouds) != len(truths):
+            raise InputError(f"truths must be one for each cloud, got {len(truths)} for {len(clouds)} clouds")
+        self._check_settings()
         scenes = []
         for number, cloud in enumerate(clouds):
             scenes.append(self._pairs(cloud))
             if progress is not None:
                 progress(number + 1, len(clouds), "scenes")
-        return self.fit_pairs(scenes, truths)
-
-    def _pairs(self, scene: LabelledCloud | ScenePairs) -> ScenePairs:
-        return scene if isinstance(scene, ScenePairs) else scene_pairs(scene, settings=self.settings)
-
-    def fit_pairs(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> Self:
-        """As `fit`, from the result of `scene_pairs` for each scene."""
-        if len(scenes) != len(truths):
-            raise InputError(f"truths must be one for each cloud, got {len(truths)} for {len(scenes)} clouds")
-        self._check_settings()
         near = [
             label
             for scene, truth in zip(scenes, truths, strict=True)
@@ -190,6 +183,9 @@ class RelationClassifier(Estimator):
         self.models_ = self._fitted(scenes, truths)
         self.learnt_from_ = dict(sorted(learnt_from.items()))
         return self
+
+    def _pairs(self, scene: LabelledCloud | ScenePairs, found: Sequence[Interface] | None = None) -> ScenePairs:
+        return scene if isinstance(scene, ScenePairs) else scene_pairs(scene, found, self.settings)
 
     def _check_one_class(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> None:
         # Before training, so that a contradiction is reported at once and not after minutes.
@@ -226,7 +222,9 @@ class RelationClassifier(Estimator):
         """The learned relations outside the core vocabulary."""
         return Words.outside_core(self.names_, self.symmetric_)
 
-    def predict(self, cloud: LabelledCloud, found: Sequence[Interface] | None = None) -> tuple[Relation, ...]:
+    def predict(
+        self, cloud: LabelledCloud | ScenePairs, found: Sequence[Interface] | None = None
+    ) -> tuple[Relation, ...]:
         """The relation of every near pair, *none* included; then of every object with the table.
 
         With `multi_label` every relation with a probability of at least 0.5; of the two directions of a relation
@@ -234,15 +232,12 @@ class RelationClassifier(Estimator):
 
         Parameters
         ----------
-        cloud : LabelledCloud
+        cloud : LabelledCloud or ScenePairs
+            A cloud, or the result of `scene_pairs` for it.
         found : sequence of Interface, optional
-            Its interfaces, if already computed.
+            The interfaces of the cloud, if already computed.
         """
-        return self.predict_pairs(scene_pairs(cloud, found, self.settings))
-
-    def predict_pairs(self, scene: ScenePairs) -> tuple[Relation, ...]:
-        """As `predict`, from the result of `scene_pairs`."""
-        beliefs = self.beliefs_of(scene)
+        beliefs = self.beliefs(cloud, found)
         if not self.multi_label:
             return tuple(belief.best() for belief in beliefs)
         return tuple(
@@ -261,7 +256,7 @@ class RelationClassifier(Estimator):
         for cloud, truth in zip(clouds, truths, strict=True):
             scene = self._pairs(cloud)
             predicted: dict[frozenset[int], list[PairLabel]] = {}
-            for r in self.predict_pairs(scene):
+            for r in self.predict(scene):
                 predicted.setdefault(frozenset((r.a, r.b)), []).append(PairLabel(r.a, r.b, r.relation))
             for labels in filter(None, scene.labels(truth, LEAST_CONFIDENCE)):
                 answers = predicted.get(frozenset((labels[0].a, labels[0].b)), [])
@@ -275,14 +270,13 @@ class RelationClassifier(Estimator):
         names = {as_directed(label, first, self.symmetric_) for label in labels}
         return names - {NONE} if self.multi_label else names
 
-    def beliefs(self, cloud: LabelledCloud, found: Sequence[Interface] | None = None) -> tuple[PairBelief, ...]:
-        """Probability of each relation for every near pair, in the order of `predict`."""
-        return self.beliefs_of(scene_pairs(cloud, found, self.settings))
-
-    def beliefs_of(self, scene: ScenePairs) -> tuple[PairBelief, ...]:
-        """As `beliefs`, from the result of `scene_pairs`."""
+    def beliefs(
+        self, cloud: LabelledCloud | ScenePairs, found: Sequence[Interface] | None = None
+    ) -> tuple[PairBelief, ...]:
+        """Probability of each relation for every near pair; arguments and order are those of `predict`."""
         if not self.models_:
             raise InputError("a classifier must be fitted before it predicts; call fit or load a model")
+        scene = self._pairs(cloud, found)
         shares = self._shares(scene)
         return tuple(
             PairBelief(int(a), int(b), float(gap), mine)

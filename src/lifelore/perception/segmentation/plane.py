@@ -1,4 +1,4 @@
-"""The table's plane in a cloud: RANSAC finds it, least squares refines it."""
+"""The plane of a table's points: least squares, again and again of the points near it."""
 
 from dataclasses import dataclass
 
@@ -9,9 +9,9 @@ from lifelore.core.errors import InputError
 
 NEAR = 0.01
 """Metres from a plane within which a point supports it: about three sigma of a depth camera at 1.2 m."""
-_HYPOTHESES = 400
-_SAMPLE = 4000
-_BATCH = 50
+_WIDER, _ROUNDS = 1.5, 25
+_LINE = 1e-9
+"""Least share of the second largest of the largest spread; less is a line of points."""
 _LEAST_SHARE = 0.05
 """Least share of the points on a plane; unordered points have at most a few hundredths in any such slab."""
 
@@ -40,67 +40,33 @@ class Plane:
         return Plane(-self.normal, -self.offset)
 
 
-def dominant_plane(points: NDArray[np.float64], rng: np.random.Generator) -> Plane:
-    """The plane that most points lie on.
+def fitted_plane(points: NDArray[np.float64]) -> Plane:
+    """The plane that most of a table's points (n, 3) lie on, in finite metres; its normal has either sign.
 
-    Parameters
-    ----------
-    points : (n, 3) metres, finite
-    rng : Generator
-        Draws the hypotheses.
+    Least squares of all points, then again of those near the plane before: within `NEAR`, or within `_WIDER` times
+    the median distance where that is more. Up to two fifths of the points may lie elsewhere.
 
     Raises
     ------
     InputError
-        No three points span a plane (fewer than three, or all on one line), or the best holds less than 5 % of
-        the points.
+        No three points span a plane (fewer than three, or all on one line), or it holds less than 5 % of them.
     """
-    sample = points if len(points) <= _SAMPLE else points[rng.choice(len(points), _SAMPLE, replace=False)]
-    normals, offsets = _hypotheses(sample, rng)
-    if len(normals) == 0:
-        raise InputError("no plane can be found in the cloud; pass --up X,Y,Z (or z)")
-    votes = np.concatenate(
-        [
-            (np.abs(sample @ normals[i : i + _BATCH].T + offsets[i : i + _BATCH]) <= NEAR).sum(axis=0)
-            for i in range(0, len(normals), _BATCH)
-        ]
-    )
-    best = int(votes.argmax())
-    if votes[best] < _LEAST_SHARE * len(sample):
-        raise InputError("no plane stands out in the cloud; pass --up X,Y,Z (or z)")
-    return refined(points, Plane(normals[best], float(offsets[best])))
-
-
-def refined(points: NDArray[np.float64], plane: Plane) -> Plane:
-    """The least-squares plane of the points near `plane`, repeated up to five times with the new plane."""
-    near_plane = None
-    for _ in range(5):
-        before, near_plane = near_plane, np.abs(plane.height(points)) <= NEAR
-        if before is not None and np.array_equal(before, near_plane):
-            return plane  # the same points give the same plane
-        close = points[near_plane]
+    close, before = points, None
+    for _ in range(_ROUNDS):
         if len(close) < 3:
-            return plane
+            raise InputError("no plane can be found in the cloud; pass --up X,Y,Z (or z)")
         centre = close.mean(axis=0)
-        close -= centre
+        close = close - centre
         # A copy: for an array and its own transpose NumPy uses another sum, with other last bits.
-        spread = close.T @ close.copy()
-        normal = np.linalg.eigh(spread)[1][:, 0]
-        if normal @ plane.normal < 0:
-            normal = -normal
-        plane = Plane(normal, float(-normal @ centre))
+        spread, axes = np.linalg.eigh(close.T @ close.copy())
+        if not spread[1] > _LINE * max(float(spread[2]), 1e-12):
+            raise InputError("no plane can be found in the cloud; pass --up X,Y,Z (or z)")
+        plane = Plane(axes[:, 0], float(-axes[:, 0] @ centre))
+        away = np.abs(plane.height(points))
+        near = away <= max(NEAR, _WIDER * float(np.median(away)))
+        if before is not None and np.array_equal(near, before):
+            break  # the same points give the same plane
+        close, before = points[near], near
+    if np.mean(away <= NEAR) < _LEAST_SHARE:
+        raise InputError("no plane stands out in the cloud; pass --up X,Y,Z (or z)")
     return plane
-
-
-def _hypotheses(
-    sample: NDArray[np.float64], rng: np.random.Generator
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    if len(sample) < 3:
-        return np.empty((0, 3)), np.empty(0)
-    a, b, c = sample[rng.integers(0, len(sample), (3, _HYPOTHESES))]
-    normals = np.cross(b - a, c - a)
-    lengths = np.linalg.norm(normals, axis=1)
-    # Thin triangles give wild normals: the area must be more than a square of two millimetres.
-    good = lengths > 8e-6
-    normals, a = normals[good] / lengths[good, None], a[good]
-    return normals, -np.einsum("ij,ij->i", normals, a)

@@ -133,7 +133,8 @@ def _judged(voxels: OrientedVoxels, patch: Patch, plane: Plane, around: _Surroun
     """The evidence for a patch with this upper side.
 
     Clusters of voxels over it that touch it stand on it, unless they touch another large patch parallel to it: a
-    table's legs. Clusters that touch neither it nor a large patch, and begin `HANGING` above it, hang in the air.
+    table's legs. Clusters that touch neither it nor a large patch, and begin `HANGING` above it, hang in the air,
+    unless what stands below them may carry them.
     The noise of other large patches is left out.
     """
     owner, n = around.owner, len(voxels.points)
@@ -148,11 +149,11 @@ def _judged(voxels: OrientedVoxels, patch: Patch, plane: Plane, around: _Surroun
     # A camera above sees the tops of objects alone: what is low over the patch may stand on it.
     low = (heights > 0) & (heights < HANGING)
     low[low] = patch.covers(voxels.points[low])
-    floating = _floating(voxels, around, foot | low | (np.abs(heights) <= voxels.bands))
+    near = foot | low | (np.abs(heights) <= voxels.bands)
     on_it = int(voxels.counts[patch.voxels].sum())
     above = np.flatnonzero(over & (heights > 0))
     if len(above) == 0:
-        return Candidate(patch, plane, 0, 0, 0, floating, below, on_it)
+        return Candidate(patch, plane, 0, 0, 0, _floating(voxels, around, near), below, on_it)
     cluster = np.full(n, -1)
     cluster[above] = _clusters(above, voxels.links, n)
     k = int(cluster.max()) + 1
@@ -170,13 +171,16 @@ def _judged(voxels: OrientedVoxels, patch: Patch, plane: Plane, around: _Surroun
     of_size = (size >= _SPECK) & (rise > _RISE)
     standing = on_foot & ~on_level & of_size & (top <= REACH)
     tall = on_foot & of_size & (top > REACH)
+    carried = np.zeros(k, bool)
     hanging = ~on_foot & ~on_large & (size >= _SPECK) & (bottom >= HANGING)
-    if hanging.any():
-        flat = voxels.points @ patch.flat.T
-        for number in np.flatnonzero(hanging):
-            near = standing & (top >= bottom[number] - HIDDEN_FOOT)
-            pillar = flat[(cluster >= 0) & near[cluster]]
-            hanging[number] = not over_outline(pillar, flat[cluster == number]).any()
+    flat = voxels.points @ patch.flat.T
+    for number in np.flatnonzero(hanging):
+        pillars = standing & (top >= bottom[number] - HIDDEN_FOOT)
+        if over_outline(flat[above[pillars[cluster[above]]]], flat[cluster == number]).any():
+            hanging[number], carried[number] = False, True
+    near[above] |= carried[cluster[above]]
+    floating = _floating(voxels, around, near)
+    standing |= carried
     stand, rise_high, hang = (int(points[which].sum()) for which in (standing, tall, hanging))
     return Candidate(patch, plane, stand, rise_high, hang, floating, below, on_it)
 

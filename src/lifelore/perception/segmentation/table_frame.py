@@ -10,7 +10,6 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.cloud_origin import CloudOrigin
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED, LabelledCloud
-from lifelore.core.streams import stream
 from lifelore.perception.clouds.cloud_scale import FAR, unit_hint
 from lifelore.perception.clouds.pixel_camera import camera_from_pixels
 from lifelore.perception.clouds.point_cloud import PointCloud
@@ -20,7 +19,7 @@ from lifelore.perception.segmentation.cut_confidence import CutCloud
 from lifelore.perception.segmentation.object_feet import with_feet
 from lifelore.perception.segmentation.object_segmentation import TABLE_BAND, SegmentationSettings, cut_cloud
 from lifelore.perception.segmentation.outline import over_outline
-from lifelore.perception.segmentation.plane import NEAR, Plane, dominant_plane
+from lifelore.perception.segmentation.plane import NEAR, Plane, fitted_plane
 from lifelore.perception.segmentation.range_noise import band
 from lifelore.perception.segmentation.region import Region, inside, over_table, reaching_out
 from lifelore.perception.segmentation.table_evidence import REACH
@@ -285,7 +284,7 @@ def _size_hint(points: NDArray[np.float64]) -> str:
 def _labelled_plane(points: NDArray[np.float64], cloud: PointCloud) -> Plane:
     """The plane of the points labelled as table; up is the side of the objects, without objects the camera's."""
     assert cloud.labels is not None
-    plane = dominant_plane(points[cloud.labels == TABLE], stream(0, "perception", "table plane"))
+    plane = fitted_plane(points[cloud.labels == TABLE])
     objects = points[cloud.labels > TABLE]
     if len(objects):
         side = float(np.median(plane.height(objects)))
