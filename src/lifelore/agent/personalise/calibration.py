@@ -20,42 +20,32 @@ Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 
-def calibration(study: Study, histories: Sequence[History]) -> dict[str, Any]:
-    """Calibration on the decisions of users.
+def lived_again(study: Study, histories: Sequence[History]) -> tuple[ReuseAlgorithm, dict[str, Any] | None]:
+    """The beliefs about users after their last outcomes, a row each, and the calibration of the outcomes.
 
     Returns
     -------
-    dict
-        ``outcomes`` and ``types``, each as `Calibration.to_dict` with users as groups; None without an outcome, or
-        without a user whose type is known and who has an outcome.
+    algorithm : ReuseAlgorithm
+    calibration : dict
+        `Calibration.to_dict` with users as groups; None without an outcome of a policy that the library knows.
     """
-    return {"outcomes": _of_outcomes(study, histories), "types": _of_types(study, histories)}
-
-
-def after_past(study: Study, histories: Sequence[History]) -> ReuseAlgorithm:
-    """A row for each user with the belief after the past."""
-    algorithm = study.algorithm.new_rows(len(histories))
+    algorithm, levels, users = study.algorithm.new_rows(len(histories)), [], []
     start_at_priors(algorithm, study, [one.user for one in histories])
     learn(algorithm, study, [(row, *pair) for row, one in enumerate(histories) for pair in one.past])
-    return algorithm
-
-
-def outcomes_of(histories: Sequence[History]) -> list[tuple[int, str, float]]:
-    """(row, policy, outcome) of the decisions of users in the order in which outcomes came."""
-    return [(row, one.policy, one.outcome or 0.0) for row, own in enumerate(histories) for one in own.ended]
-
-
-def _of_outcomes(study: Study, histories: Sequence[History]) -> dict[str, Any] | None:
-    if not histories:
-        return None
-    algorithm, levels, users = after_past(study, histories), [], []
-    for rows, policies, outcomes in turns(study, outcomes_of(histories)):
+    for rows, policies, outcomes in turns(study, _outcomes_of(histories)):
         known = policies >= 0
         if known.any():
             levels.append(_levels(algorithm, rows[known], policies[known], outcomes[known]))
             users.append(rows[known])
         learn_turn(algorithm, rows, policies, outcomes)
-    return outcome_calibration(np.concatenate(levels), np.concatenate(users)).to_dict() if users else None
+    if not users:
+        return algorithm, None
+    return algorithm, outcome_calibration(np.concatenate(levels), np.concatenate(users)).to_dict()
+
+
+def _outcomes_of(histories: Sequence[History]) -> list[tuple[int, str, float]]:
+    """(row, policy, outcome) of the decisions of users in the order in which outcomes came."""
+    return [(row, one.policy, one.outcome or 0.0) for row, own in enumerate(histories) for one in own.ended]
 
 
 def _levels(algorithm: ReuseAlgorithm, rows: Numbers, policies: Numbers, values: Array) -> Array:
@@ -69,7 +59,8 @@ def _levels(algorithm: ReuseAlgorithm, rows: Numbers, policies: Numbers, values:
     return np.clip(levels, 0.0, 1.0)
 
 
-def _of_types(study: Study, histories: Sequence[History]) -> dict[str, Any] | None:
+def type_probabilities(study: Study, histories: Sequence[History]) -> dict[str, Any] | None:
+    """The calibration of beliefs over types, as for `lived_again`; None where no user's type is known."""
     known = [one for one in histories if one.user.type in study.library.types and one.ended]
     if not known:
         return None
@@ -77,7 +68,7 @@ def _of_types(study: Study, histories: Sequence[History]) -> dict[str, Any] | No
     start_at_priors(algorithm, study, [one.user._replace(type=None) for one in known])
     of_user = np.array([study.library.index_of_type(one.user.type or "") for one in known])
     beliefs, users = [], []
-    for rows, policies, outcomes in turns(study, outcomes_of(known)):
+    for rows, policies, outcomes in turns(study, _outcomes_of(known)):
         learn_turn(algorithm, rows, policies, outcomes)
         beliefs.append(algorithm.belief(rows))
         users.append(rows)
