@@ -3,7 +3,7 @@
 The unit is the user: outcomes of one user hang together, so each user counts once, by the mean of their outcomes.
 Intervals are 95 %: Welch's for the difference of the two groups, bias-corrected bootstrap for means (Student's
 from more than `MANY` users on). Means and uplifts are of all users; the curve by decision, regret and calibration
-are of a random sample of at most `histories.SAMPLE` users.
+are of a random sample of at most `calibration.SAMPLE` users.
 """
 
 import math
@@ -14,9 +14,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.calibration import lived_again, type_probabilities
+from lifelore.agent.personalise.calibration import (
+    History,
+    difference,
+    lived_again,
+    sampled_histories,
+    type_probabilities,
+)
 from lifelore.agent.personalise.decision_log import log_parts
-from lifelore.agent.personalise.histories import History, difference, sampled_histories
 from lifelore.agent.personalise.result_folder import write_picture, write_result
 from lifelore.agent.personalise.study import Study
 from lifelore.core.atomic_write import atomic_write
