@@ -61,14 +61,6 @@ def test_as_json(ask, log, tmp_path):
     assert mix["estimates"]["ips"]["value"] == pytest.approx(document["logged"]["value"])
 
 
-def test_what_cannot_be_evaluated_is_said(ask, tmp_path):
-    path = tmp_path / "log.csv"
-    path.write_text("user,policy,outcome,probability\n" + "".join(f"u{n},{'xy'[n % 2]},1,1\n" for n in range(9)))
-    said = ask("reuse", "evaluate", path).out
-    assert re.search(r"^  x +– +– ", said, flags=re.M)
-    assert "  x: in 44.4 % of the decisions the log had no alternative to another policy" in said
-
-
 @pytest.mark.parametrize(
     ("options", "words"),
     [
@@ -86,10 +78,6 @@ def test_a_mistake_is_one_line(ask, log, options, words):
     assert refusal.count("\n") <= 1
 
 
-def test_a_bad_line_is_named(ask, log):
-    log.write_text(log.read_text() + "v2,big,1,0\n")
-    refusal = ask("reuse", "evaluate", log, *COLUMNS).refusal
-    assert "log.csv line 243: probability must be a number above 0 and at most 1" in refusal
-    assert refusal.rstrip().endswith("got 0")
+def test_a_study_needs_its_memory(ask, log):
     refusal = ask("reuse", "evaluate", log, *COLUMNS, "--study", "default", "--memory", "none.db").refusal
     assert "none.db does not exist" in refusal

@@ -202,7 +202,7 @@ def choose(
     """Choose a policy for a user, and store the decision."""
     from lifelore.agent.personalise.decisions import choose as chosen
     from lifelore.agent.personalise.log.log_format import parse_features
-    from lifelore.agent.personalise.policy_states import listed_policies
+    from lifelore.agent.personalise.registration import listed_policies
 
     numbers = parse_features(features) if features else None
     with _opened(name, where) as (memory, study):
@@ -297,7 +297,7 @@ def retire(
     as_json: AsJson = False,
 ) -> None:
     """Stop choosing a policy."""
-    from lifelore.agent.personalise.policy_states import retire as retired
+    from lifelore.agent.personalise.registration import retire as retired
 
     with _opened(name, where) as (memory, study):
         study = retired(memory, study, policy)
@@ -315,7 +315,7 @@ def add(
 
     A new policy is first given to the control group only.
     """
-    from lifelore.agent.personalise.policy_states import add as added
+    from lifelore.agent.personalise.registration import add as added
 
     with _opened(name, where) as (memory, study):
         study = added(memory, study, policy)

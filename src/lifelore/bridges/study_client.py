@@ -559,7 +559,7 @@ class _Breaker:
 
 
 class _Queue:
-    """Outcomes in the order of arrival, until they are delivered: in a SQLite file, or in memory."""
+    """Outcomes in the order of their arrival, until they are delivered; in a SQLite file, else in memory."""
 
     def __init__(self, path: str | os.PathLike[str] | None, capacity: int, fsync: bool) -> None:
         self.path = None if path is None else os.fspath(path)

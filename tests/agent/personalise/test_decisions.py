@@ -16,7 +16,7 @@ from lifelore.agent.personalise.decisions import (
 from lifelore.agent.personalise.explanation import explain
 from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.identifiers import identifier, new_ids, parse_identifier
-from lifelore.agent.personalise.policy_states import add
+from lifelore.agent.personalise.registration import add
 from lifelore.agent.personalise.study import open_study
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from lifelore.agent.personalise.decisions import choose
-from lifelore.agent.personalise.open_studies import OpenStudies
 from lifelore.agent.personalise.study import open_study, study_states
+from lifelore.app.service.study_watch import OpenStudies
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.memory import open_memory

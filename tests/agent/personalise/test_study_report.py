@@ -248,7 +248,7 @@ def test_splits_leave_out_what_the_fit_has_seen(memory, tmp_path, monkeypatch):
 
 def test_a_large_study_is_reported_by_a_sample(memory, study, monkeypatch):
     """Sums are of all users; curve, regret and calibration of the users drawn."""
-    monkeypatch.setattr("lifelore.agent.personalise.histories.SAMPLE", 10)
+    monkeypatch.setattr("lifelore.agent.personalise.calibration.SAMPLE", 10)
     said = lived(memory, study, 40)
     document = report(memory, study)
     assert document["personal"]["n"] + document["control"]["n"] == len(said) == 40

@@ -11,8 +11,8 @@ pytest.importorskip("uvicorn", reason="needs the extra web")
 
 import uvicorn
 
-from lifelore.app.service import connections
-from lifelore.app.service.connections import PatientProtocol
+from lifelore.app.service import server
+from lifelore.app.service.server import PatientProtocol
 
 REQUEST = b"POST / HTTP/1.1\r\nHost: here\r\nContent-Length: 3\r\n\r\n"
 
@@ -63,7 +63,7 @@ async def trickle(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, da
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch):
-    monkeypatch.setattr(connections, "HEADERS", 0.3)
+    monkeypatch.setattr(server, "HEADERS", 0.3)
 
 
 @pytest.mark.parametrize("before", [b"", REQUEST + b"abc"], ids=["first", "second"])

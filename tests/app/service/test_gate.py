@@ -7,7 +7,7 @@ import logging
 import pytest
 from fastapi.responses import StreamingResponse
 
-from lifelore.app.service.limits import WINDOW, RateLimit
+from lifelore.app.service.admission import WINDOW, RateLimit
 from lifelore.app.service.tokens import add_token
 
 JSON = {"Content-Type": "application/json"}

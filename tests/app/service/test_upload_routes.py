@@ -245,7 +245,7 @@ def test_uploads_that_are_no_exports_change_nothing(serve, tmp_path):
 @settings(max_examples=30)
 @given(content=st.binary(max_size=400))
 def test_a_library_file_of_any_bytes_is_refused(content):
-    from lifelore.agent.personalise.library_document import library_of
+    from lifelore.agent.personalise.registration import library_of
 
     with pytest.raises(InputError, match="library"):
         library_of({"file": base64.b64encode(content).decode()})

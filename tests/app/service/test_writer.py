@@ -6,9 +6,9 @@ import threading
 import pytest
 
 from lifelore.agent.personalise.decisions import Request, decide
-from lifelore.agent.personalise.open_studies import OpenStudies
 from lifelore.agent.personalise.registration import register
 from lifelore.app.service import writer as module
+from lifelore.app.service.study_watch import OpenStudies
 from lifelore.app.service.telemetry import Metrics
 from lifelore.app.service.writer import PART, Writer
 from lifelore.core.errors import NotFoundError, StoreError

@@ -1,8 +1,8 @@
 """Personalisation of an interactive system: a study chooses the best of N policies for each of its users.
 
-Read in this order: `library_document` (a policy library as plain data), `registration` (a library becomes a
-study), `study`, `decisions` (choices and outcomes), `study_report`, `fitting` (a library from a log), `evaluate`
-(policies that were not in place), `explanation` (the evidence behind a user's belief), `adaptation` (BEAT).
+Read in this order: `registration` (a policy library becomes a study), `study`, `decisions` (choices and outcomes),
+`study_report`, `fitting` (a library from a log), `evaluate` (policies that were not in place), `explanation` (the
+evidence behind a user's belief), `adaptation` (BEAT).
 """
 
 from typing import TYPE_CHECKING

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.agent.personalise.library_document import library_of
+from lifelore.agent.personalise.registration import library_of
 from lifelore.agent.personalise.study import ADAPTATION, check_study_name
 from lifelore.core.atomic_write import read_file
 from lifelore.core.errors import InputError, NotFoundError, StoreError

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from lifelore.agent.personalise.beliefs import Beliefs, learn, open_beliefs, probabilities, stored_beliefs
 from lifelore.agent.personalise.identifiers import identifier, identifiers, new_ids, parse_identifier
-from lifelore.agent.personalise.policy_states import checked_available
+from lifelore.agent.personalise.registration import checked_available
 from lifelore.agent.personalise.study import Study, known_users, shares_of
 from lifelore.core.errors import InputError, LifeloreError, NotFoundError
 from lifelore.interaction.outcomes.outcome_model import LARGEST

@@ -3,7 +3,7 @@
 The unit is the user: outcomes of one user hang together, so each user counts once, by the mean of their outcomes.
 Intervals are 95 %: Welch's for the difference of the two groups, bias-corrected bootstrap for means (Student's
 from more than `MANY` users on). Means and uplifts are of all users; the curve by decision, regret and calibration
-are of a random sample of at most `histories.SAMPLE` users.
+are of a random sample of at most `calibration.SAMPLE` users.
 """
 
 import math
@@ -14,16 +14,21 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.beliefs import learn
-from lifelore.agent.personalise.calibration import after_past, calibration, outcomes_of
+from lifelore.agent.personalise.calibration import (
+    History,
+    difference,
+    lived_again,
+    sampled_histories,
+    type_probabilities,
+)
 from lifelore.agent.personalise.decision_log import log_parts
-from lifelore.agent.personalise.histories import History, difference, sampled_histories
 from lifelore.agent.personalise.result_folder import write_picture, write_result
 from lifelore.agent.personalise.study import Study
 from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.intervals import LEAST_VALUES, t_interval, welch_ends
 from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.memory import Memory
 from lifelore.memory.study_totals import StudyTotals
 
@@ -81,7 +86,7 @@ def report(
         brought more, for each group, by the library and not measured; ``by_decision``: both groups' mean outcome
         at each decision; ``by_time``: for each period with a decision its start, ``time`` in seconds since 1970,
         ``users``, ``decisions``, and ``personal``, ``control`` and ``uplift`` by the users' mean outcomes in the
-        period (None without `by`); ``calibration``, see `calibration.calibration`.
+        period (None without `by`); ``calibration`` of ``outcomes`` and of ``types``, see `calibration`.
 
     Raises
     ------
@@ -145,6 +150,7 @@ def _document(
         personal, control = _means(users.personal, users.personal_sum), _means(users.control, users.control_sum)
         by_time = None if by is None else _by_time(totals, by, np.concatenate([personal, control]), counting)
     histories = sampled_histories(memory, study, users.person, since=counting["since"])
+    algorithm, of_outcomes = lived_again(study, histories)
     return {
         "study": study.name,
         "decisions": decisions,
@@ -159,10 +165,10 @@ def _document(
             {"name": policy, "state": state, "outcome": _estimate(by_policy[policy])}
             for policy, state in sorted(study.states.items())
         ],
-        "regret": _regret(study, histories),
+        "regret": _regret(study, histories, algorithm),
         "by_decision": _by_decision(histories),
         "by_time": by_time,
-        "calibration": calibration(study, histories),
+        "calibration": {"outcomes": of_outcomes, "types": type_probabilities(study, histories)},
         "sample": len(histories),
         "split": split,
     }
@@ -241,12 +247,10 @@ def _beside(policy: str, personal: Array, by_policy: dict[str, Array]) -> dict[s
     return {"name": policy, "outcome": _estimate(means), "uplift": difference(personal, means)}
 
 
-def _regret(study: Study, histories: Sequence[History]) -> dict[str, Any]:
+def _regret(study: Study, histories: Sequence[History], algorithm: ReuseAlgorithm) -> dict[str, Any]:
     """Of each group the mean over decisions of what the best policy under the last belief is expected to add."""
     lost: dict[str, list[float]] = {"personal": [], "control": []}
     if histories:
-        algorithm = after_past(study, histories)
-        learn(algorithm, study, outcomes_of(histories))
         every = np.arange(len(histories))
         expected = algorithm.known(every).performance.expected(algorithm.belief(every))
         best = expected[:, study.active_numbers].max(axis=1)

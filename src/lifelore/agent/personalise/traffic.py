@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from lifelore.agent.personalise.beliefs import open_beliefs, unknown_log_odds
-from lifelore.agent.personalise.histories import difference
+from lifelore.agent.personalise.calibration import difference
 from lifelore.agent.personalise.study import Study
 from lifelore.core.errors import InputError
 from lifelore.interaction.reuse.novelty.novelty_detector import MASS

@@ -12,7 +12,7 @@ from lifelore.agent.personalise.adaptation import (
     register_adaptation,
     select,
 )
-from lifelore.agent.personalise.library_document import described, library_of
+from lifelore.agent.personalise.registration import described, library_of
 from lifelore.app.service.bodies import JsonRoute
 from lifelore.app.service.service_state import Service
 from lifelore.app.service.study_routes import LibraryDocument

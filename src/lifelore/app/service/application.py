@@ -54,7 +54,6 @@ def create_app(settings: ServiceSettings, open_paths: Collection[str] = ()) -> F
         memory_routes,
         perceive_routes,
         study_routes,
-        user_routes,
     )
 
     tokens: TokenFile | None = None if settings.token_file is None else TokenFile(settings.token_file)
@@ -76,9 +75,8 @@ def create_app(settings: ServiceSettings, open_paths: Collection[str] = ()) -> F
     _answer_errors(app, service)
     # A request is compared with the routes in this order; those that are asked most come first.
     for group, routes in (
-        ("personalise", user_routes),
-        (None, health_routes),
         ("personalise", study_routes),
+        (None, health_routes),
         ("personalise", adaptation_routes),
         ("personalise", log_routes),
         ("perceive", perceive_routes),

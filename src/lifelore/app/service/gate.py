@@ -11,9 +11,8 @@ import time
 from collections.abc import Collection
 from typing import Any
 
-from lifelore.app.service.admission import Admission, Refused
+from lifelore.app.service.admission import Admission, Refused, limited_body
 from lifelore.app.service.error_documents import error_body, send_json
-from lifelore.app.service.limits import limited_body
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.telemetry import Metrics, log_request
 from lifelore.app.service.tokens import TokenFile

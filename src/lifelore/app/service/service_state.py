@@ -2,9 +2,8 @@
 
 from dataclasses import dataclass, field
 
-from lifelore.agent.personalise.open_studies import OpenStudies
 from lifelore.app.service.settings import ServiceSettings
-from lifelore.app.service.study_watch import StudyWatch
+from lifelore.app.service.study_watch import OpenStudies, StudyWatch
 from lifelore.app.service.telemetry import Metrics
 from lifelore.app.service.worker_process import WorkerProcess
 from lifelore.app.service.writer import Writer

@@ -1,21 +1,24 @@
-"""Routes of studies: register a library, learn one from a log, evaluate, retire and add policies."""
+"""Routes of studies and their users: register, archive, delete, policies; explain, forget, and past outcomes."""
 
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Path
+from fastapi import APIRouter, Path, Query
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
-from lifelore.agent.personalise.explanation import stranger_table
-from lifelore.agent.personalise.library_document import library_of
-from lifelore.agent.personalise.policy_states import add, retire
-from lifelore.agent.personalise.registration import register, study_document
+from lifelore.agent.personalise.decisions import forget
+from lifelore.agent.personalise.explanation import explain, stranger_table
+from lifelore.agent.personalise.past import Line, add_lines
+from lifelore.agent.personalise.registration import add, library_of, register, retire, study_document
 from lifelore.agent.personalise.study import study_states
 from lifelore.app.service.bodies import JsonRoute
+from lifelore.app.service.decision_routes import LARGEST_BATCH
 from lifelore.app.service.service_state import Service
 from lifelore.memory.studies import ACTIVE, ARCHIVED
 
 Name = Annotated[str, Path(description="Name of the study.", min_length=1, max_length=60, examples=["playlists"])]
 Rows = list[list[FiniteFloat]]
+Word = Annotated[str, Field(min_length=1, max_length=200)]
+User = Annotated[str, Query(alias="name", description="Name of the user.", min_length=1, max_length=200)]
 
 
 class LibraryDocument(BaseModel):
@@ -70,6 +73,37 @@ class StudyRequest(StudyFields):
     library: LibraryDocument
 
 
+class PastLine(BaseModel):
+    """An outcome that a user had in another system."""
+
+    model_config = ConfigDict(extra="forbid")
+    id: Word | None = Field(None, description="Identifier of the line; left out: its user, policy and time.")
+    user: Word
+    policy: Word
+    outcome: FiniteFloat
+    time: FiniteFloat | None = Field(None, description="Seconds since 1970.", ge=0, le=2**36)
+    context: Word | None = None
+
+
+class Past(BaseModel):
+    """Outcomes of another system, each counted once."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "example": {"items": [{"user": "ada", "policy": "slow", "outcome": 7.5, "time": 1.7e9}]}
+        },
+    )
+    items: list[PastLine] = Field(min_length=1, max_length=LARGEST_BATCH)
+
+
+class Forgotten(BaseModel):
+    """A user of whom nothing is stored any more."""
+
+    user: str
+    forgotten: int = Field(description="Number of decisions and lines of the past that were deleted.")
+
+
 class PolicyState(BaseModel):
     """Whether a policy is in use."""
 
@@ -109,9 +143,26 @@ class StudyList(BaseModel):
 
 
 def router(service: Service) -> APIRouter:
-    """The routes of studies."""
+    """The routes of studies and users; names of users travel in query or body."""
     routes = APIRouter(prefix="/v1/studies", tags=["personalise"], route_class=JsonRoute)
     memory, studies = service.memory, service.studies
+
+    # Requests are compared with the routes in this order; those that are asked most come first.
+    @routes.get("/{study}/user", summary="Belief about a user, and the evidence behind it")
+    def show_user(study: Name, name: User) -> dict[str, Any]:
+        return explain(memory, studies.get(study), name)
+
+    @routes.delete("/{study}/user", summary="Forget all that is stored of a user, for ever")
+    def forget_user(study: Name, name: User) -> Forgotten:
+        return Forgotten(user=name, forgotten=forget(memory, studies.get(study), name))
+
+    @routes.post("/{study}/past", summary="Store outcomes that users had in another system, each line once")
+    def past(study: Name, document: Past) -> dict[str, Any]:
+        lines = [
+            Line(one.user, one.policy, one.outcome, int(1000 * (one.time or 0)), one.id or "", one.context)
+            for one in document.items
+        ]
+        return add_lines(memory, studies.get(study), lines)
 
     @routes.get("", summary="The studies in memory")
     def listed() -> StudyList:

@@ -1,4 +1,4 @@
-"""Traffic of studies, computed at most once a minute, for the page /study and for metrics."""
+"""Studies that stay open between requests, and their traffic, at most a minute old, for /study and for metrics."""
 
 import threading
 import time
@@ -6,12 +6,60 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, NamedTuple
 
-from lifelore.agent.personalise.open_studies import OpenStudies
-from lifelore.agent.personalise.study import Study
+from lifelore.agent.personalise.study import Study, open_study
 from lifelore.agent.personalise.traffic import traffic
 from lifelore.app.service.telemetry import Metrics
 from lifelore.core.errors import LifeloreError
 from lifelore.memory import Memory
+
+UNSEEN = 1.0
+"""Seconds for which an open study is used without a look at memory; fewer cost a statement for each decision."""
+
+
+class _Open(NamedTuple):
+    study: Study
+    revision: int | None
+    looked: float
+
+
+class OpenStudies:
+    """The studies of a memory by name.
+
+    Parameters
+    ----------
+    memory : Memory
+    clock : callable, optional
+        Seconds, for tests.
+    """
+
+    def __init__(self, memory: Memory, clock: Callable[[], float] = time.monotonic) -> None:
+        self._memory, self._clock = memory, clock
+        self._open: dict[str, _Open] = {}
+
+    def get(self, name: str) -> Study:
+        """The study of that name, at most `UNSEEN` seconds old; errors as for `open_study`."""
+        known, now = self._open.get(name), self._clock()
+        if known is not None and now - known.looked < UNSEEN:
+            return known.study
+        revision = self._memory.studies.revision(name)
+        if known is None or revision != known.revision:
+            self._open.pop(name, None)
+            known = _Open(open_study(self._memory, name), revision, now)
+        self._open[name] = known._replace(looked=now)
+        return known.study
+
+    def names(self) -> list[str]:
+        """Names of the studies that are open."""
+        return list(self._open)
+
+    def drop_all(self) -> None:
+        """Read every study again at its next use."""
+        self._open.clear()
+
+    def drop(self, name: str) -> None:
+        """Read the study again at its next use."""
+        self._open.pop(name, None)
+
 
 FRESH = 60.0
 """Seconds for which an answer holds; fewer read the newest decisions more often."""

@@ -14,7 +14,7 @@ from itertools import islice
 from typing import Any, NamedTuple
 
 from lifelore.agent.personalise.decisions import decide, observe
-from lifelore.agent.personalise.open_studies import OpenStudies
+from lifelore.app.service.study_watch import OpenStudies
 from lifelore.app.service.telemetry import Metrics
 from lifelore.core.errors import LifeloreError
 from lifelore.memory import Memory

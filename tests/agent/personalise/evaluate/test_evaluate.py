@@ -11,7 +11,7 @@ import pytest
 from lifelore.agent.personalise.decisions import choose, update
 from lifelore.agent.personalise.evaluate.evaluate import EvaluateSettings, evaluate
 from lifelore.agent.personalise.evaluate.logged_decisions import read_decisions
-from lifelore.agent.personalise.evaluate.replayed_choices import studies_of_others
+from lifelore.agent.personalise.evaluate.target_policies import studies_of_others
 from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.study import open_study

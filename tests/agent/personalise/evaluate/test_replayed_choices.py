@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from lifelore.agent.personalise.evaluate import replayed_choices as module
-from lifelore.agent.personalise.evaluate.replayed_choices import replayed_choices
+from lifelore.agent.personalise.evaluate import target_policies as module
+from lifelore.agent.personalise.evaluate.target_policies import replayed_choices
 from lifelore.agent.personalise.fitting.fit import FitSettings, study_of_log
 from lifelore.agent.personalise.log.log import read_log
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse

@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.agent.personalise.decisions import choose, update
 from lifelore.agent.personalise.fitting.fit import FitSettings, fit
-from lifelore.agent.personalise.policy_states import add, retire
+from lifelore.agent.personalise.registration import add, retire
 from lifelore.agent.personalise.study import open_study
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import open_memory

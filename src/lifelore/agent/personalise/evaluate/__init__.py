@@ -1,4 +1,4 @@
 """The verb `lifelore reuse evaluate`: what other policies would have achieved, from a log with probabilities.
 
-Read in this order: `logged_decisions`, `target_policies`, `replayed_choices`, `target_estimates`, `evaluate`.
+Read in this order: `logged_decisions`, `target_policies`, `target_estimates`, `evaluate`.
 """

@@ -13,17 +13,15 @@ from typing import Any
 import numpy as np
 
 from lifelore.agent.personalise.evaluate.logged_decisions import CERTAIN, read_decisions
-from lifelore.agent.personalise.evaluate.replayed_choices import (
-    choices_of_rule,
-    expected_by_library,
-    replayed_choices,
-    studies_of_others,
-)
 from lifelore.agent.personalise.evaluate.target_estimates import target_estimates
 from lifelore.agent.personalise.evaluate.target_policies import (
     TargetPolicy,
+    choices_of_rule,
+    expected_by_library,
+    replayed_choices,
     replayed_policy,
     single_policy,
+    studies_of_others,
     table_policy,
 )
 from lifelore.agent.personalise.log.log import ReuseLog

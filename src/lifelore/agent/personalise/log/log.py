@@ -12,6 +12,8 @@ Commas, semicolons or tabs lie between columns, as the header has them; capitals
 Other columns are ignored. Several logs are read as one. `LogFormat` reads logs that are written otherwise.
 """
 
+import csv
+import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -23,10 +25,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.personalise.log.log_format import LogFormat
-from lifelore.agent.personalise.log.log_frame import NAME, frame_content, frame_format
 from lifelore.agent.personalise.log.log_reader import WORDS, LogReader
 from lifelore.core.errors import InputError, NotFoundError, StoreError
-from lifelore.interaction.outcomes.frame_columns import is_frame
+from lifelore.interaction.outcomes.frame_columns import FrameColumns, is_frame
 
 MANY_POLICIES = 20
 """Number of policies up to which a log may have few lines of each; beyond, it looks like the wrong column."""
@@ -230,3 +231,42 @@ def _check_policies(log: ReuseLog, paths: Sequence[str]) -> None:
             f"{', '.join(paths)}: policy must name a configuration that recurs; {n_policies:,} policies "
             f"in {n_lines:,} lines looks like the wrong column, give the right one with --columns policy=NAME"
         )
+
+
+NAME = "frame (its first row is line 2)"
+"""Name of a table in messages, which count lines as in a file."""
+
+
+def frame_content(frame: Any, form: LogFormat) -> bytes:
+    """The columns of a table that a log has, as CSV in UTF-8; equal tables give equal bytes.
+
+    Raises
+    ------
+    InputError
+        `frame` is no table, or its columns have different lengths.
+    NotFoundError
+        `frame` is an Arrow stream, and no library that reads it is installed.
+    """
+    columns = FrameColumns(frame)
+    known = {form.column(name) for name in (*form.read, *form.columns)} | set(form.numbers)
+    names = [name for name in columns.names if name.strip().lower() in known]
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(names)
+    words = [list(map(_word, columns.column(name))) for name in names]
+    if len(set(map(len, words))) > 1:
+        lengths = ", ".join(f"{name} {len(own)}" for name, own in zip(names, words, strict=True))
+        raise InputError(f"frame must have columns of one length, got {lengths}")
+    writer.writerows(zip(*words, strict=True))
+    return text.getvalue().encode()
+
+
+def frame_format(form: LogFormat) -> LogFormat:
+    """The format of `frame_content`."""
+    return replace(form, separator="comma", decimal_comma=False, encoding="utf-8")
+
+
+def _word(value: Any) -> str:
+    if value is None:
+        return ""
+    return str(int(value)) if isinstance(value, bool) else str(value)

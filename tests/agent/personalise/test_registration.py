@@ -3,7 +3,7 @@
 import pytest
 
 from lifelore.agent.personalise.decisions import Request, choose, decide
-from lifelore.agent.personalise.policy_states import add, listed_policies, retire
+from lifelore.agent.personalise.registration import add, listed_policies, retire
 from lifelore.agent.personalise.study import open_study
 from lifelore.core.errors import InputError, NotFoundError
 
