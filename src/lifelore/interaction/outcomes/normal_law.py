@@ -22,8 +22,8 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.interaction.finite_signals.signal_bins import normal_probs, normal_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.law import Law, Numbers, filled, of_users
-from lifelore.interaction.outcomes.outcome_model import finite_outcomes
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
+from lifelore.interaction.outcomes.outcome_rows import finite_outcomes
 from lifelore.interaction.outcomes.prediction import NormalPrediction, over_pairs
 from lifelore.interaction.outcomes.special_functions import gammaln, stdtr
 from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest

@@ -7,7 +7,7 @@ from lifelore.agent.personalise.fitting.library_from_log import TypedRows
 from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.user_types import user_types
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows
+from lifelore.interaction.outcomes.outcome_rows import OutcomeRows
 
 
 def typed_rows(log: ReuseLog, model: str, n_types: int | None, generator: np.random.Generator) -> TypedRows:
