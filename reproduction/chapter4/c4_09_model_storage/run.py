@@ -13,7 +13,7 @@ import numpy as np
 from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
-from lifelore.interaction.outcomes.outcome_model import rows_of_samples
+from lifelore.interaction.outcomes.outcome_rows import rows_of_samples
 from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
 from lifelore.interaction.signals.transition_signal import TransitionSignal
 from reproduction.engine.estimates import UNMEASURED, share_of

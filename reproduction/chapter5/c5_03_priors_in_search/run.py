@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.action.search import bandit
 from lifelore.action.search.depth_first import depth_first, preferences
 from lifelore.action.search.tree_search import SearchSettings, play, search_guidance
 from lifelore.core.mdp import Tables
@@ -23,6 +22,7 @@ from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.noise_maze import noise_maze
+from reproduction.chapter5.c5_03_priors_in_search import bandit
 from reproduction.engine.results_table import BAND, ResultsTable
 
 PLACE, PERCEPT = KINDS = ("place", "percept")

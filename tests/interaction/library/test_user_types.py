@@ -7,7 +7,7 @@ from scipy.stats import norm
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.user_types import user_types
 from lifelore.interaction.outcomes.outcome_families import PSEUDO, CategoricalFamily, GaussianFamily
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows
+from lifelore.interaction.outcomes.outcome_rows import OutcomeRows
 
 MEANS = np.array([[0.9, 0.1, 0.5], [0.1, 0.9, 0.5], [0.5, 0.5, 0.05]])
 

@@ -11,7 +11,7 @@ from lifelore.interaction.outcomes.joint_normal_fit import (
     joint_normal_fit,
     step,
 )
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows
+from lifelore.interaction.outcomes.outcome_rows import OutcomeRows
 
 FACTORS = np.array([[0.9, 0.0], [0.8, 0.1], [0.0, 0.9], [0.2, -0.8], [0.5, 0.5]])
 COVARIANCE = FACTORS @ FACTORS.T + 0.1 * np.eye(5)

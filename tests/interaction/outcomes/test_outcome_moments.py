@@ -6,8 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.outcome_model import rows_of_samples
 from lifelore.interaction.outcomes.outcome_moments import moments
+from lifelore.interaction.outcomes.outcome_rows import rows_of_samples
 
 
 def naive(samples, shrinkage):

@@ -22,7 +22,7 @@ from lifelore.agent.personalise.identifiers import identifier, identifiers, new_
 from lifelore.agent.personalise.registration import checked_available
 from lifelore.agent.personalise.study import Study, known_users, shares_of
 from lifelore.core.errors import InputError, LifeloreError, NotFoundError
-from lifelore.interaction.outcomes.outcome_model import LARGEST
+from lifelore.interaction.outcomes.outcome_rows import LARGEST
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.memory import Memory
 from lifelore.memory.record_rules import check_name

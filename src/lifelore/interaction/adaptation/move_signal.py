@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.law import FixedLaw, Numbers
-from lifelore.interaction.outcomes.outcome_model import check_known
+from lifelore.interaction.outcomes.outcome_rows import check_known
 
 Array = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.outcomes.outcome_model import LARGEST
+from lifelore.interaction.outcomes.outcome_rows import LARGEST
 from lifelore.interaction.selection.choice import choose
 
 LEAST = 1e-9

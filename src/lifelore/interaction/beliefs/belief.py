@@ -17,6 +17,8 @@ Array = NDArray[Any]
 
 FAR = 100.0
 """Largest log likelihood in size that a log belief is added to: beside larger numbers it would be rounded."""
+NEAR = 30.0
+"""Largest log of a sum in size that is taken of the terms as they are: float32 holds all of them that count."""
 SUM_TOLERANCE = 1e-9
 """Largest distance from 1 of the sum of a caller's belief."""
 
@@ -81,7 +83,7 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
     log_belief, log_likelihood, best = np.asarray(log_belief), np.asarray(log_likelihood), None
     if log_likelihood.dtype != log_belief.dtype:
         # Of likelihoods in float64, rows in float32 take what is left beside the best.
-        best = np.maximum.reduce(log_likelihood, axis=-1, keepdims=True)
+        best = largest(log_likelihood)
         best = np.where(np.isfinite(best), best, 0.0)
         log_likelihood = (log_likelihood - best).astype(log_belief.dtype)
     joint = log_belief + log_likelihood
@@ -111,7 +113,17 @@ def log_sum(terms: Array) -> Array:
     if terms.ndim == 1:
         # A single row in one call of NumPy, which is slow for many rows.
         return np.logaddexp.reduce(terms)
-    top = np.maximum.reduce(terms, axis=-1, keepdims=True)
-    top = np.where(top > -np.inf, top, 0.0)
-    with np.errstate(divide="ignore"):
-        return np.log(np.add.reduce(np.exp(terms - top), axis=-1)) + top[..., 0]
+    ones = np.ones(terms.shape[-1], terms.dtype)  # Products with ones: sums over short axes are slow.
+    with np.errstate(divide="ignore", over="ignore"):
+        found = np.log(np.exp(terms) @ ones)
+        if np.abs(found).max(initial=0.0) < NEAR:
+            return found
+        top = largest(terms)
+        top = np.where(top > -np.inf, top, 0.0)
+        return np.log(np.exp(terms - top) @ ones) + top[..., 0]
+
+
+def largest(rows: Array) -> Array:
+    """The largest number of each row (..., n), (..., 1); NaN where one is."""
+    # Its place first: NumPy's maximum over a short axis takes three times as long.
+    return np.take_along_axis(rows, rows.argmax(axis=-1)[..., None], axis=-1)

@@ -20,9 +20,9 @@ from lifelore.interaction.library.library_names import checked_prior, distinct_n
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.outcome_columns import rows_of_columns
-from lifelore.interaction.outcomes.outcome_kinds import OutcomeModel, outcome_kind
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows, rows_of_samples
-from lifelore.interaction.outcomes.outcome_moments import chosen_of
+from lifelore.interaction.outcomes.outcome_kinds import outcome_kind
+from lifelore.interaction.outcomes.outcome_model import OutcomeModel
+from lifelore.interaction.outcomes.outcome_rows import OutcomeRows, chosen_of, rows_of_samples
 from lifelore.interaction.signals.return_signal import ReturnSignal
 
 Array = NDArray[np.float64]

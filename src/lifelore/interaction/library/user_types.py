@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.log_probability import normalised
 from lifelore.interaction.outcomes.outcome_families import FAMILIES, OutcomeFamily
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows
+from lifelore.interaction.outcomes.outcome_rows import OutcomeRows
 
 Array = NDArray[np.float64]
 

@@ -12,7 +12,7 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.cells import ValueCells, distinct_values
 from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 from lifelore.interaction.outcomes.log_probability import checked_counts, checked_distributions
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows, rows_of_samples
+from lifelore.interaction.outcomes.outcome_rows import OutcomeRows, rows_of_samples
 from lifelore.interaction.outcomes.pseudo_counts import PseudoCount
 
 Array = NDArray[np.float64]

@@ -4,17 +4,17 @@ from collections.abc import Mapping, Sequence
 from typing import Any, ClassVar, Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import joined_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.cells import Cells
 from lifelore.interaction.outcomes.counted_law import CountedLaw, CountedRows, spread_of_counts
-from lifelore.interaction.outcomes.law import FixedLaw, Models, Numbers
+from lifelore.interaction.outcomes.law import Numbers
 from lifelore.interaction.outcomes.log_probability import log_of
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows, check_known, check_outcome, finite_outcomes
-from lifelore.interaction.outcomes.outcome_moments import chosen_of, rows_of_more
+from lifelore.interaction.outcomes.outcome_model import OutcomeModel, stored_spread
+from lifelore.interaction.outcomes.outcome_rows import OutcomeRows, chosen_of, finite_outcomes
 from lifelore.interaction.outcomes.prediction import CountedPrediction
 from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
 from lifelore.interaction.outcomes.spread import Spread
@@ -22,7 +22,7 @@ from lifelore.interaction.outcomes.spread import Spread
 Array = NDArray[np.float64]
 
 
-class CountedOutcomes(CountedPrediction):
+class CountedOutcomes(OutcomeModel, CountedPrediction):
     """Base of `HistogramOutcomes` and `CategoricalOutcomes`.
 
     Attributes
@@ -36,7 +36,6 @@ class CountedOutcomes(CountedPrediction):
         Whether the counts are exact probabilities, which cannot learn.
     """
 
-    kind: ClassVar[str]
     cells_of_places: ClassVar[Any]
     """The class of the cells, called with their places."""
 
@@ -52,45 +51,8 @@ class CountedOutcomes(CountedPrediction):
             raise InputError("counts must be at least 0 and finite, with a positive one for every type and policy")
         self._prepare()
 
-    @property
-    def spread(self) -> Spread:
-        """How much the tasks of a type differ; estimated at the first call where it is not given."""
-        if self._spread is None:
-            self._spread = Spread.known(0.0) if self.exact else spread_of_counts(self.counts, self.pseudo_count)
-        return self._spread
-
-    @spread.setter
-    def spread(self, spread: Spread) -> None:
-        self._spread = spread
-
-    def law(self, models: Models = "uncertain", *, spread: Spread | None = None, dtype: str = "f8") -> Any:
-        """The law of outcomes given what users have shown; a fixed law where all is exact, or taken for the truth.
-
-        Parameters
-        ----------
-        spread : Spread, optional
-            By default the model's own.
-        dtype : {"f8", "f4"}
-        """
-        if models == "plug-in" or self.exact:
-            return FixedLaw(self, self.n_types, self.log_densities, finite_outcomes)
-        return CountedOutcomeLaw(self.cells, self.counts, spread or self.spread, dtype)
-
-    def log_density(self, policy: int, value: float) -> Array:
-        """Log density of `value` per type, (n_types,); -inf where a cell has no weight.
-
-        Raises
-        ------
-        InputError
-            `value` is no finite number.
-        NotFoundError
-            There is no such policy.
-        """
-        check_outcome(policy, value, self.n_policies)
-        return self.log_densities(policy, value)
-
     def log_densities(self, policies: Any, values: Any) -> Array:
-        """`log_density` of many outcomes, (...) and (...) to (..., n_types); without checks."""
+        """Log densities of many outcomes, (...) and (...) to (..., n_types); without checks."""
         cells = self.cells.of(values)
         found = self._log_by_cell[policies, np.maximum(cells, 0)]
         return np.where(cells[..., None] < 0, -np.inf, found)
@@ -108,66 +70,20 @@ class CountedOutcomes(CountedPrediction):
         """(U^min, U^max): the least and the greatest place."""
         return float(self.cells.places[0]), float(self.cells.places[-1])
 
-    def observe(self, type_: int, policy: int, value: float) -> None:
-        """Learn from another outcome of a known type, in place.
-
-        Raises
-        ------
-        InputError
-            `value` is no finite number or in no cell, or the probabilities are exact.
-        NotFoundError
-            There is no such type or policy.
-        """
-        check_known("type", type_, self.n_types)
-        check_outcome(policy, value, self.n_policies)
-        if self.exact:
-            raise InputError("exact probabilities cannot learn; build the model from samples, or give count=")
-        self.counts[type_, policy, known_cells(self.cells, np.array([value]))[0]] += 1
-        self._prepare()
-
-    def absorb(self, type_: int, state: Mapping[str, Any]) -> None:
-        """Learn from all outcomes of a task whose type has become known, in place.
-
-        `state` is what its law gives of them, see `Law.state`.
-        """
-        check_known("type", type_, self.n_types)
-        self.counts[type_, state["places"][:, 0]] += state["shown"]
-        self._prepare()
-
-    def with_type(self, samples: ArrayLike) -> Self:
-        """A new model with an additional type, from `samples` (n_policies, n), NaN where missing."""
-        return self._with(rows_of_more(samples, self.n_policies, 0), axis=0)
-
-    def with_policy(self, samples: ArrayLike) -> Self:
-        """A new model with an additional policy, from `samples` (n_types, n), NaN where missing."""
-        return self._with(rows_of_more(samples, self.n_types, 1), axis=1)
-
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
         """A new model of some types and policies, in the order given; None means all."""
         chosen = np.ix_(chosen_of(types, self.n_types), chosen_of(policies, self.n_policies))
         return self._like(self.counts[chosen])
 
-    def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """Counts (policies first), cells and settings by name."""
-        settings = {"pseudo_count": np.array(self.pseudo_count), "exact": np.array(self.exact)}
-        if self._spread is not None:
-            settings["spread"] = np.array(self._spread)
-        counts = np.ascontiguousarray(self.counts.transpose(1, 0, 2))
-        return {"counts": counts, "cells": self.cells.places, **settings}
-
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self:
         """The model of `to_arrays`, bit for bit."""
-        try:
-            counts, places = np.array(arrays["counts"], np.float64), np.array(arrays["cells"], np.float64)
-            pseudo_count, exact = float(arrays["pseudo_count"]), bool(arrays["exact"])
-        except KeyError as error:
-            raise InputError(f"an outcome model needs the array {error}") from None
+        counts, places = np.array(arrays["counts"], np.float64), np.array(arrays["cells"], np.float64)
+        pseudo_count, exact = float(arrays["pseudo_count"]), bool(arrays["exact"])
         if counts.ndim != 3:
             raise InputError(f"counts must be (n_policies, n_types, n_cells), got {counts.shape}")
-        spread = Spread.of_array(arrays["spread"]) if "spread" in arrays else None
         counts = np.ascontiguousarray(counts.transpose(1, 0, 2))
-        return cls.of(cls.cells_of_places(places), counts, pseudo_count, exact, spread)
+        return cls.of(cls.cells_of_places(places), counts, pseudo_count, exact, stored_spread(arrays))
 
     @classmethod
     def of(
@@ -185,7 +101,27 @@ class CountedOutcomes(CountedPrediction):
         number = checked_pseudo_count(pseudo_count, counts)
         return cls.of(cells, counts + number, number)
 
-    def _with(self, rows: OutcomeRows, axis: int) -> Self:
+    def _estimated_spread(self) -> Spread:
+        return Spread.known(0.0) if self.exact else spread_of_counts(self.counts, self.pseudo_count)
+
+    def _uncertain_law(self, spread: Spread, dtype: str) -> Any:
+        return None if self.exact else CountedOutcomeLaw(self.cells, self.counts, spread, dtype)
+
+    def _count(self, type_: int, policy: int, value: float) -> None:
+        if self.exact:
+            raise InputError("exact probabilities cannot learn; build the model from samples, or give count=")
+        self.counts[type_, policy, known_cells(self.cells, np.array([value]))[0]] += 1
+
+    def _count_all(self, type_: int, state: Mapping[str, Any]) -> None:
+        self.counts[type_, state["places"][:, 0]] += state["shown"]
+
+    def _parameters(self) -> dict[str, NDArray[Any]]:
+        """Counts (policies first), cells and settings."""
+        settings = {"pseudo_count": np.array(self.pseudo_count), "exact": np.array(self.exact)}
+        counts = np.ascontiguousarray(self.counts.transpose(1, 0, 2))
+        return {"counts": counts, "cells": self.cells.places, **settings}
+
+    def _more(self, rows: OutcomeRows, axis: int) -> Self:
         new = _counted(self.cells, rows) + self.pseudo_count
         return self._like(np.concatenate([self.counts, new], axis=axis))
 
@@ -193,7 +129,6 @@ class CountedOutcomes(CountedPrediction):
         return self.of(self.cells, counts, self.pseudo_count, self.exact, self._spread)
 
     def _prepare(self) -> None:
-        """Compute all arrays that follow from the counts."""
         for name in ("mean", "deviation"):
             self.__dict__.pop(name, None)
         self.probs = self.counts / self.counts.sum(axis=2, keepdims=True)

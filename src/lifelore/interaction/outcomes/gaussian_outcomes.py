@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lifelore.interaction.outcomes.law import of_users
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.outcome_moments import known_moments
 from lifelore.interaction.outcomes.prediction import over_types
@@ -48,8 +49,10 @@ class GaussianOutcomes(MomentOutcomes):
 
     def log_densities(self, policies: Any, values: Any) -> Array:
         """Log densities of many outcomes, (...) and (...) to (..., n_types); without checks."""
-        z = (over_types(values) - self._centre[policies]) * self._narrow[policies]
-        return self._log_height[policies] - z * z
+        z = over_types(values) - of_users(self._centre, policies)
+        z *= of_users(self._narrow, policies)
+        z *= z
+        return np.subtract(of_users(self._log_height, policies), z, out=z)
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
         """Random outcomes of a pair: a number, or an array of shape `size`."""

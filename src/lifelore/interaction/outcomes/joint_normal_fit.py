@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 from lifelore.interaction.outcomes.joint_normal_law import LOG_2_PI, Tried
 from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes
 from lifelore.interaction.outcomes.log_probability import normalised
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 from lifelore.interaction.outcomes.outcome_moments import least_variance
+from lifelore.interaction.outcomes.outcome_rows import OutcomeRows
 
 Array = NDArray[Any]
 

@@ -22,7 +22,7 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import informative_cuts, normal_probs
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.law import Law, Numbers
-from lifelore.interaction.outcomes.outcome_model import finite_outcomes
+from lifelore.interaction.outcomes.outcome_rows import finite_outcomes
 from lifelore.interaction.outcomes.prediction import NormalPrediction
 from lifelore.interaction.outcomes.spread import Spread
 

@@ -13,9 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.joint_normal_law import JointNormalLaw
-from lifelore.interaction.outcomes.law import Models
-from lifelore.interaction.outcomes.outcome_model import numbers, of_shape
-from lifelore.interaction.outcomes.outcome_moments import chosen_of, rows_of_more
+from lifelore.interaction.outcomes.outcome_rows import chosen_of, numbers, of_shape, rows_of_more
 from lifelore.interaction.outcomes.spread import Spread
 
 Array = NDArray[np.float64]
@@ -77,10 +75,8 @@ class JointNormalOutcomes(GaussianOutcomes):
         marginal = np.sqrt(self.noise**2 + np.diag(covariance))
         super().__init__(mean, np.broadcast_to(marginal, mean.shape))
 
-    def law(self, models: Models = "uncertain", *, spread: Spread | None = None, dtype: str = "f8") -> Any:
+    def _uncertain_law(self, spread: Spread, dtype: str) -> Any:
         """The law of outcomes given what users have shown; the covariance takes the place of a spread."""
-        if models == "plug-in":
-            return super().law(models, dtype=dtype)
         return JointNormalLaw(self.mean, self.covariance, self.noise, dtype)
 
     def with_type(self, samples: ArrayLike, gaps: bool = False) -> Self:
@@ -103,10 +99,7 @@ class JointNormalOutcomes(GaussianOutcomes):
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self:
         """The model of `to_arrays`, bit for bit."""
-        try:
-            return cls(arrays["mean"], arrays["covariance"], arrays["deviation"])
-        except KeyError as error:
-            raise InputError(f"an outcome model needs the array {error}") from None
+        return cls(arrays["mean"], arrays["covariance"], arrays["deviation"])
 
     @classmethod
     def from_rows(cls, *_: Any, **__: Any) -> NoReturn:

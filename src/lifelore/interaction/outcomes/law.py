@@ -97,6 +97,12 @@ class Law:
         shown[user][tuple(places.T)] = rows
 
 
+def of_users(rows: Array, users: Numbers) -> Array:
+    """The rows of users (...); of a single user not a copy."""
+    # Rows that lie far apart in memory are read twice as fast by `take` as by an index.
+    return rows.take(users, axis=0) if isinstance(users, np.ndarray) else rows[users]
+
+
 def filled(
     shape: tuple[int, ...], at: tuple[Array, Array], untried: Array, tried: Array, n_policies: int
 ) -> Array:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.outcome_model import numbers, of_shape
+from lifelore.interaction.outcomes.outcome_rows import numbers, of_shape
 
 Array = NDArray[np.float64]
 

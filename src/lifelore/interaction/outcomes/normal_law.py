@@ -21,9 +21,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.interaction.finite_signals.signal_bins import normal_probs, normal_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.outcomes.law import Law, Numbers, filled
-from lifelore.interaction.outcomes.outcome_model import finite_outcomes
+from lifelore.interaction.outcomes.law import Law, Numbers, filled, of_users
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
+from lifelore.interaction.outcomes.outcome_rows import finite_outcomes
 from lifelore.interaction.outcomes.prediction import NormalPrediction, over_pairs
 from lifelore.interaction.outcomes.special_functions import gammaln, stdtr
 from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest
@@ -47,13 +47,13 @@ class Posterior(NamedTuple):
 
     location : m
     doubt : 1/κ
-    variance : v
+    squares : ν v
     freedom : ν
     """
 
     location: Array
     doubt: Array
-    variance: Array
+    squares: Array
     freedom: Array
 
 
@@ -97,7 +97,8 @@ class NormalLaw(Law):
         factor = variance_factor(moments.freedom)
         self.mean, self.noise = moments.mean.copy(), moments.variance * factor
         self.of_runs, self.of_spread = self.noise / moments.count, self.noise
-        self.natural_mean = np.ascontiguousarray(self._stored(self.mean.T))
+        self.natural_mean_of_types = self._stored(self.mean)
+        self.natural_mean = np.ascontiguousarray(self.natural_mean_of_types.T)
         self._bins: dict[int, tuple[Array, SignalTable]] = {}
 
     # ---- the law of signals --------------------------------------------------------------------------------
@@ -114,25 +115,44 @@ class NormalLaw(Law):
         if shown is None:
             gap = value - self._location[policies]
             return self._top[policies] - self._power[policies] * np.log1p(gap * gap * self._narrow[policies])
-        location, doubt, variance, freedom = self.posterior(policies, shown, users)
-        square, gap = variance * (1 + doubt), value - location
+        location, doubt, squares, freedom = self.posterior(policies, shown, users)
         height = self._stored(log_t_height(freedom)) - over_pairs(self._log_unit[policies])
-        return height - 0.5 * np.log(square) - 0.5 * (freedom + 1) * np.log1p(gap * gap / (square * freedom))
+        # In place: temporary arrays of many users would leave the processor's cache.
+        gap, scale = value - location, squares
+        gap *= gap
+        scale *= 1 + doubt
+        gap /= scale
+        np.log1p(gap, out=gap)
+        gap *= 0.5 * (freedom + 1)
+        scale /= freedom
+        found = np.log(scale, out=scale)
+        found *= -0.5
+        found += height
+        found -= gap
+        return found
 
     def posterior(self, policies: Numbers, shown: Array, users: Numbers) -> Posterior:
         """The law of the pairs of `policies` (...) given what `users` (...) have shown."""
-        n, mean, squares = _parts(shown[users, policies][..., None, None, :])
-        location, doubt = self._location[policies], self._doubt[policies]
+        n, mean, squares = _parts(self._shown_of(shown, users, policies)[..., None, None, :])
+        location, doubt = of_users(self._location, policies), self._doubt[policies]
         grown, apart, freedom = 1 + n * doubt, mean - location, self._freedom[policies] + n
         doubt = doubt / grown
-        variance = (self._weight[policies] + squares + n / grown * (apart * apart)) / freedom
-        return Posterior(location + n * doubt * apart, doubt, variance, freedom)
+        around = n / grown * (apart * apart)
+        around += squares
+        around += of_users(self._weight, policies)
+        moved = n * doubt * apart
+        moved += location
+        return Posterior(moved, doubt, around, freedom)
 
     def location(self, policies: Numbers, shown: Array, users: Numbers) -> Array:
         """The location of `posterior` alone."""
-        n, mean, _ = _parts(shown[users, policies][..., None, None, :])
+        n, mean, _ = _parts(self._shown_of(shown, users, policies)[..., None, None, :])
         pull, location = n * self._doubt[policies], self._location[policies]
         return location + pull / (1 + pull) * (mean - location)
+
+    def _shown_of(self, shown: Array, users: Numbers, policies: Numbers) -> Array:
+        """The statistics of pairs of a user and a policy, (..., 3)."""
+        return of_users(shown.reshape(-1, 3), users * self.n_policies + policies)
 
     def natural(self, values: Array, policies: Any = None) -> Array:
         """Means (..., n_policies), or (m, n_types) of `policies` (m,), in units of outcomes."""
@@ -145,7 +165,7 @@ class NormalLaw(Law):
 
     def learn(self, shown: Array, users: Numbers, policies: Numbers, signals: Any) -> None:
         """Add outcomes of distinct users (Welford's update)."""
-        n, mean, squares = _parts(shown[users, policies])
+        n, mean, squares = _parts(self._shown_of(shown, users, policies))
         before = self._scaled(policies, signals) - mean
         after = n + 1
         # The mean and the squares first: of a single user `n` is a view.
@@ -227,14 +247,18 @@ class NormalRows(NormalPrediction):
     def mean_on(self, types: NDArray[np.int64]) -> Array:
         """Mean outcomes on a type for each user, (...) to (..., n_policies), without those on other types."""
         law, types = self._law, np.atleast_1d(types)
-        location = law._location[:, 0].T[types]
-        n, mean, _ = _parts(self._shown[self._users])
+        untried = of_users(law.natural_mean_of_types, types)
+        n, mean, _ = _parts(of_users(self._shown, self._users))
         # (n_types, n_spreads, n_policies), or (1, ...) where types are alike.
         doubt = law._doubt.T if law._doubt.shape[2] == 1 else law._doubt.T[types]
         pull = n[:, None] * doubt
         pull /= 1 + pull
         pull = pull[:, 0] if pull.shape[1] == 1 else (self._weights[:, :, None] * pull).sum(axis=1)
-        return law.natural(location + pull * (mean - location)).reshape(*self._shape, -1)
+        found = law.natural(mean)
+        found -= untried
+        found *= pull
+        found += untried
+        return found.reshape(*self._shape, -1)
 
     def expected(self, belief: Array) -> Array:
         """Ũ(π) of beliefs (..., n_types), (..., n_policies)."""
@@ -247,9 +271,9 @@ class NormalRows(NormalPrediction):
 
     def cumulative(self, policy: int, values: Array) -> Array:
         """P(U ≤ value | type, policy) of `values` (n,), (n_types, n), as for `Prediction`: t, mixed by spread."""
-        location, doubt, variance, freedom = self._law.posterior(policy, self._shown, self._users)
+        location, doubt, squares, freedom = self._law.posterior(policy, self._shown, self._users)
         gap = over_pairs(self._law._scaled(policy, values)) - location
-        below = stdtr(np.minimum(freedom, LARGEST_FREEDOM), gap / np.sqrt(variance * (1 + doubt)))
+        below = stdtr(np.minimum(freedom, LARGEST_FREEDOM), gap / np.sqrt(squares / freedom * (1 + doubt)))
         return (self._weights[:, :, None] * below).sum(axis=1).T
 
     def tried_pairs(self) -> tuple[tuple[Array, Array], Array, Array]:
@@ -272,10 +296,10 @@ class NormalRows(NormalPrediction):
     def _tried_variances(self) -> tuple[Array, Array]:
         """Variance of the mean outcome of tried pairs, and of outcomes around it, (m, n_types) each."""
         rows, policies = self._at
-        location, doubt, variance, freedom = self._law.posterior(policies, self._shown, self._users[rows])
+        location, doubt, squares, freedom = self._law.posterior(policies, self._shown, self._users[rows])
         weights, square = self._weights[rows][:, :, None], self._law.unit[policies][:, None] ** 2
         gap = location - (weights * location).sum(axis=1, keepdims=True)
-        noise = variance_factor(freedom) * variance
+        noise = variance_factor(freedom) * squares / freedom
         unknown = (weights * (doubt * noise + gap * gap)).sum(axis=1)
         return square * unknown, square * (weights * noise).sum(axis=1)
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.frame_columns import FrameColumns
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows, numbers
+from lifelore.interaction.outcomes.outcome_rows import OutcomeRows, numbers
 
 
 def rows_of_columns(

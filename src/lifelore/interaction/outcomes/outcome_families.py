@@ -14,7 +14,7 @@ so that ``stats @ fit(shares).T`` are log likelihoods (n_users, n_types).
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows
+from lifelore.interaction.outcomes.outcome_rows import OutcomeRows
 
 Array = NDArray[np.float64]
 

@@ -14,8 +14,6 @@ from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes
 from lifelore.interaction.outcomes.student_t_outcomes import StudentTOutcomes
 
-OutcomeModel = GaussianOutcomes | StudentTOutcomes | HistogramOutcomes | CategoricalOutcomes | JointNormalOutcomes
-"""An outcome model; a caller's own class serves that has their arrays and methods."""
 KINDS: dict[str, Any] = {
     kind.kind: kind for kind in (GaussianOutcomes, StudentTOutcomes, HistogramOutcomes, CategoricalOutcomes)
 }

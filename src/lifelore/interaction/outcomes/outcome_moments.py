@@ -14,16 +14,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.outcome_model import (
+from lifelore.interaction.outcomes.outcome_rows import (
     LARGEST,
     LEAST_DEVIATION,
     OutcomeRows,
     checked_rows,
-    numbers,
+    chosen_of,
     of_shape,
-    rows_of_samples,
 )
-from lifelore.interaction.outcomes.spread import Spread
 
 Array = NDArray[np.float64]
 
@@ -42,7 +40,6 @@ class OutcomeMoments:
     freedom : degrees of freedom behind the variance, shrinkage included
     pooled : variance from which a new pair starts
     shrinkage : samples that the pooled variance counts as
-    spread : spread of the tasks of a type; None until `MomentOutcomes.spread` estimates it
     """
 
     mean: Array
@@ -51,7 +48,6 @@ class OutcomeMoments:
     freedom: Array
     pooled: float
     shrinkage: float
-    spread: Spread | None = None
 
     def absorb(self, type_: int, policy: int, count: float, mean: float, squares: float) -> None:
         """Learn from `count` outcomes at once, by their mean and sum of squares around it, in place."""
@@ -68,12 +64,8 @@ class OutcomeMoments:
         self.mean[pair] += count / total * apart
         self.count[pair], self.freedom[pair] = total, self.freedom[pair] + count
 
-    def more(self, samples: ArrayLike, axis: int, gaps: bool = False) -> "OutcomeMoments":
-        """With an additional type (axis 0) or policy (axis 1), from `samples` (size of the other axis, n).
-
-        With `gaps`, pairs without a sample are guessed (`guess_gaps`).
-        """
-        rows = rows_of_more(samples, self.mean.shape[1 - axis], axis, gaps)
+    def more(self, rows: OutcomeRows, axis: int) -> "OutcomeMoments":
+        """With the additional type (axis 0) or policy (axis 1) of `rows`; pairs without a row are guessed."""
         new = _moments(rows, self.shrinkage, self.pooled)
         both = {name: (getattr(self, name), getattr(new, name)) for name in OF_PAIRS}
         found = replace(self, **{name: np.concatenate(pair, axis=axis) for name, pair in both.items()})
@@ -104,17 +96,15 @@ class OutcomeMoments:
         return replace(self, **{name: getattr(self, name)[chosen] for name in OF_PAIRS})
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """All fields by name; the spread only where it is known."""
-        arrays = {name: np.array(value) for name, value in vars(self).items() if name != "spread"}
-        return arrays if self.spread is None else arrays | {"spread": np.array(self.spread)}
+        """All fields by name."""
+        return {name: np.array(value) for name, value in vars(self).items()}
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> "OutcomeMoments":
         """The moments of `to_arrays`; InputError where the arrays are no moments."""
         fields = [np.array(arrays[name], np.float64) for name in OF_PAIRS]
         mean, variance, count, freedom = fields
-        spread = Spread.of_array(arrays["spread"]) if "spread" in arrays else None
-        found = cls(mean, variance, count, freedom, float(arrays["pooled"]), float(arrays["shrinkage"]), spread)
+        found = cls(mean, variance, count, freedom, float(arrays["pooled"]), float(arrays["shrinkage"]))
         if found.mean.ndim != 2 or not found.mean.size or any(field.shape != found.mean.shape for field in fields):
             raise InputError(f"mean, variance, count and freedom must share one shape, got {found.mean.shape}")
         good = (np.abs(mean) <= LARGEST) & (variance >= LEAST_DEVIATION**2) & (variance <= LARGEST**2)
@@ -178,25 +168,6 @@ def _moments(rows: OutcomeRows, shrinkage: float, pooled: float | None = None) -
     if not shrinkage and not ((count > 1) & (squares > LEAST_DEVIATION**2 * freedom)).all():
         raise InputError("shrinkage must be positive where a pair's own samples do not differ, got 0")
     return OutcomeMoments(mean, (shrinkage * pooled + squares) / freedom, count, freedom, pooled, shrinkage)
-
-
-def rows_of_more(samples: ArrayLike, n_others: int, axis: int, gaps: bool = False) -> OutcomeRows:
-    """`samples` (n_others, n) of an additional type (axis 0) or policy (axis 1); see `rows_of_samples`."""
-    samples = numbers(samples, "samples must be numbers in rows of one length, NaN where missing")
-    if samples.ndim != 2 or len(samples) != n_others:
-        others = "policies" if axis == 0 else "types"
-        raise InputError(f"samples must be ({n_others}, n), one row for each of the {others}, got {samples.shape}")
-    return rows_of_samples(np.expand_dims(samples, axis), gaps=gaps)
-
-
-def chosen_of(chosen: Sequence[int] | None, n: int) -> NDArray[np.int64]:
-    """The chosen numbers below n, all where None; InputError where none is chosen or a number is not below n."""
-    if chosen is None:
-        return np.arange(n)
-    index = np.asarray(chosen, np.int64)
-    if index.ndim != 1 or not index.size or index.min() < 0 or index.max() >= n:
-        raise InputError(f"the chosen numbers must be one or more of 0 to {n - 1}, got {chosen}")
-    return index
 
 
 def _pooled(squares: Array, count: Array, mean: Array) -> float:

@@ -24,7 +24,7 @@ from lifelore.interaction.beliefs.belief import log_prior, update
 from lifelore.interaction.beliefs.learnt_dynamics import LearntDynamics
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.outcomes.law import Models, Numbers, law_of
+from lifelore.interaction.outcomes.law import Models, Numbers, law_of, of_users
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.unknown_users import UnknownUsers, unknown_law
 from lifelore.interaction.reuse.user_library import UserLibrary
@@ -158,7 +158,7 @@ class ReuseAlgorithm:
 
     def belief(self, users: Numbers) -> Array:
         """β of `users` (...), (..., n_types), rows sum to 1 up to rounding."""
-        return np.exp(self.log_belief[users])
+        return np.exp(of_users(self.log_belief, users))
 
     def known(self, users: Numbers) -> Any:
         """The library as rules read it for `users`, given what they have shown."""
@@ -247,7 +247,7 @@ class ReuseAlgorithm:
         InputError
             The model cannot have made a signal, or gave NaN or infinity. All stays as it was.
         """
-        law, before = self.signals.law, self.log_belief[users]
+        law, before = self.signals.law, of_users(self.log_belief, users)
         signals = law.checked(signals)
         outcomes = None if outcomes is None else self.outcomes.law.checked(outcomes)
         if law.single and not isinstance(signals, float) and np.shape(signals) != np.shape(users):

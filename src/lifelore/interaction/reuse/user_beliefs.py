@@ -27,7 +27,7 @@ Numbers = NDArray[np.int64]
 Users = ArrayLike | Sequence[str]
 """Numbers of users, or their names where the users have names."""
 
-BLOCK = 1 << 15
+BLOCK = 1 << 17
 """Numbers of a block's beliefs: they stay in the processor's cache."""
 LARGEST_BLOCK = 1 << 21
 """Numbers of the largest temporary arrays, which have a row for each user, type, policy and signal."""
@@ -165,7 +165,7 @@ class UserBeliefs:
         rows, rule = self._checked_users(users), rule_of(rule, self.library)
         mask, chosen = self._mask(available, len(rows)), np.empty(len(rows), np.int64)
         for at in blocks(len(rows), self.library, rule):
-            chosen[at] = self.algorithm.select(rows[at], rule, self.generator, mask[at], episodes_left)[0]
+            chosen[at] = self.algorithm.select(rows[at], rule, self.generator, _part(mask, at), episodes_left)[0]
         return chosen
 
     def select_top(
@@ -188,12 +188,13 @@ class UserBeliefs:
         """
         rows, rule = self._checked_users(users), rule_of(rule, self.library)
         mask = self._mask(available, len(rows))
-        most = int(mask.sum(axis=1).min(initial=self.library.n_policies))
+        n_policies = self.library.n_policies
+        most = n_policies if mask is None else int(mask.sum(axis=1).min(initial=n_policies))
         if not 1 <= k <= most:
             raise InputError(f"k must be 1 to {most}, the number of policies available to every user, got {k}")
         best = np.empty((len(rows), k), np.int64)
         for at in blocks(len(rows), self.library, rule):
-            scores = self.algorithm.scores(rows[at], rule, self.generator, mask[at], episodes_left)
+            scores = self.algorithm.scores(rows[at], rule, self.generator, _part(mask, at), episodes_left)
             best[at] = best_policies(scores, k, self.generator)
         return best
 
@@ -240,7 +241,7 @@ class UserBeliefs:
         mask, chosen = self._mask(available, len(rows)), np.empty(len(rows), np.int64)
         for at in self._distinct_blocks(rows, rule):
             self.algorithm.update(rows[at], policies[at], signals[at])
-            chosen[at] = self.algorithm.select(rows[at], rule, self.generator, mask[at], episodes_left)[0]
+            chosen[at] = self.algorithm.select(rows[at], rule, self.generator, _part(mask, at), episodes_left)[0]
         return chosen
 
     def belief(self, users: Users) -> Array:
@@ -260,7 +261,7 @@ class UserBeliefs:
         rows, rule = self._checked_users(users), rule_of(rule, self.library)
         mask, found = self._mask(available, len(rows)), np.empty((len(rows), self.library.n_policies))
         for at in blocks(len(rows), self.library, rule):
-            found[at] = self.algorithm.propensities(rows[at], rule, mask[at], episodes_left)
+            found[at] = self.algorithm.propensities(rows[at], rule, _part(mask, at), episodes_left)
         return found
 
     def reset(self, users: Users) -> None:
@@ -270,21 +271,22 @@ class UserBeliefs:
     def _distinct_blocks(self, rows: Numbers, rule: SelectionRule | None = None) -> Iterator[slice]:
         """`blocks` in none of which a user comes twice: a second signal needs what the first has changed."""
         for at in blocks(len(rows), self.library, rule):
-            own, start = rows[at].tolist(), at.start
-            if len(set(own)) == len(own):
+            start, inside, ordered = at.start, set[int](), np.sort(rows[at])
+            if (ordered[1:] != ordered[:-1]).all():
                 yield at
                 continue
-            inside = set[int]()
-            for place, user in enumerate(own, at.start):
+            for place, user in enumerate(rows[at].tolist(), start):
                 if user in inside:
                     yield slice(start, place)
                     start, inside = place, set()
                 inside.add(user)
             yield slice(start, at.stop)
 
-    def _mask(self, available: ArrayLike | None, n_rows: int) -> NDArray[np.bool_]:
-        """`available` as (n_rows, n_policies); all policies where it is None."""
-        mask = np.True_ if available is None else available_mask(available, self.library.policies, n_rows)  # pyright: ignore
+    def _mask(self, available: ArrayLike | None, n_rows: int) -> NDArray[np.bool_] | None:
+        """`available` as (n_rows, n_policies); None where all policies are."""
+        if available is None:
+            return None
+        mask = available_mask(available, self.library.policies, n_rows)  # pyright: ignore[reportArgumentType]
         return np.broadcast_to(mask, (n_rows, self.library.n_policies))
 
     def _checked_signals(self, users: Users, policies: ArrayLike, signals: Any) -> tuple[Numbers, Numbers, Any]:
@@ -317,6 +319,10 @@ def blocks(n_users: int, library: PolicyLibrary, rule: SelectionRule | None = No
     size = max(size, 1)
     for start in range(0, n_users, size):
         yield slice(start, min(start + size, n_users))
+
+
+def _part(mask: NDArray[np.bool_] | None, at: slice) -> NDArray[np.bool_] | None:
+    return None if mask is None else mask[at]
 
 
 def _checked(numbers: ArrayLike, n: int, what: str) -> Numbers:

@@ -1,6 +1,7 @@
 """Belief sampling: draw a type from the belief, select its best response. Thesis: §4.5 ("sampling the belief")."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, ClassVar
 
 import numpy as np
@@ -44,7 +45,12 @@ def drawn_types(belief: Array, generator: np.random.Generator) -> Any:
     if belief.ndim == 1:
         held = np.add.accumulate(belief)
         return held.searchsorted(generator.random() * held[-1], side="right")
-    # A product with ones above the diagonal is twice as fast as a running sum, up to some hundred types.
     n = belief.shape[1]
-    held = belief @ np.triu(np.ones((n, n), belief.dtype)) if n <= MOST_TYPES else np.cumsum(belief, axis=1)
-    return (held <= generator.random((len(belief), 1)) * held[:, -1:]).sum(axis=1)
+    held = belief @ _running(n, belief.dtype.char) if n <= MOST_TYPES else np.cumsum(belief, axis=1)
+    return (held > generator.random((len(belief), 1)) * held[:, -1:]).argmax(axis=1)
+
+
+@lru_cache(maxsize=4)
+def _running(n: int, dtype: str) -> Array:
+    """The matrix (n, n) by which rows become their running sums, twice as fast as `cumsum` up to some hundred."""
+    return np.triu(np.ones((n, n), dtype))

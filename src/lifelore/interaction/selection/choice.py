@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.beliefs.belief import largest as largest_of
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.library_names import index_of
 
@@ -113,16 +114,14 @@ def _best(scores: ArrayLike) -> Mask:
         largest, least = max(listed), min(listed)
         if isfinite(sum(listed)):
             return scores >= _bar(largest, max(abs(largest), abs(least)), tolerance)
-    largest = scores.max(axis=-1, keepdims=True, initial=-np.inf)
-    least = scores.min(axis=-1, keepdims=True, initial=np.inf)
-    if np.isfinite(largest).all() and (least > -np.inf).all():
-        return scores >= _bar(largest, np.maximum(np.abs(largest), np.abs(least)), tolerance)
-    if not (largest > -np.inf).all():
+    if not scores.shape[-1] or not ((largest := largest_of(scores)) > -np.inf).all():
         raise InputError("scores must be numbers, at least one of them above minus infinity, got NaN or nothing")
-    least = scores.min(axis=-1, keepdims=True, where=scores > -np.inf, initial=np.inf)
+    least = -largest_of(-scores)
+    if not (least > -np.inf).all():
+        least = scores.min(axis=-1, keepdims=True, where=scores > -np.inf, initial=np.inf)
     with np.errstate(invalid="ignore"):
         bar = _bar(largest, np.maximum(np.abs(largest), np.abs(least)), tolerance)
-    return (scores >= bar) | (scores == largest)
+    return scores >= np.where(largest < np.inf, bar, largest)
 
 
 def _bar(largest: Any, size: Any, tolerance: float) -> Any:

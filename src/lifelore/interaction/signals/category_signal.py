@@ -16,8 +16,7 @@ from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.counted_law import CountedLaw, spread_of_counts
 from lifelore.interaction.outcomes.law import FixedLaw, Models
 from lifelore.interaction.outcomes.log_probability import checked_counts, checked_distributions, log_of
-from lifelore.interaction.outcomes.outcome_model import check_known, rows_of_samples
-from lifelore.interaction.outcomes.outcome_moments import chosen_of
+from lifelore.interaction.outcomes.outcome_rows import check_known, chosen_of, rows_of_samples
 from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
 from lifelore.interaction.outcomes.spread import Spread
 

@@ -9,8 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.simulated_table import Sample
-from lifelore.interaction.outcomes.outcome_model import check_known
-from lifelore.interaction.outcomes.outcome_moments import chosen_of
+from lifelore.interaction.outcomes.outcome_rows import check_known, chosen_of
 
 Array = NDArray[np.float64]
 

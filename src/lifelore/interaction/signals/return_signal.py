@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.law import FixedLaw, Models, law_of
-from lifelore.interaction.outcomes.outcome_kinds import OutcomeModel
+from lifelore.interaction.outcomes.outcome_model import OutcomeModel
 
 Array = NDArray[np.float64]
 

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.outcome_kinds import OutcomeModel, outcome_kind
-from lifelore.interaction.outcomes.outcome_model import LARGEST, OutcomeRows, check_known, checked_rows, numbers
+from lifelore.interaction.outcomes.outcome_kinds import outcome_kind
+from lifelore.interaction.outcomes.outcome_model import OutcomeModel
+from lifelore.interaction.outcomes.outcome_rows import LARGEST, OutcomeRows, check_known, checked_rows, numbers
 
 Array = NDArray[np.float64]
 

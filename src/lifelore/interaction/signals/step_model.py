@@ -14,8 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.law import FixedLaw, Models
 from lifelore.interaction.outcomes.log_probability import checked_counts, checked_distributions, log_of
-from lifelore.interaction.outcomes.outcome_model import check_known
-from lifelore.interaction.outcomes.outcome_moments import chosen_of
+from lifelore.interaction.outcomes.outcome_rows import check_known, chosen_of
 from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
 from lifelore.interaction.signals.step_law import StepLaw
 

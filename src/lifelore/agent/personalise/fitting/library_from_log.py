@@ -11,7 +11,7 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.library.user_types import user_types
 from lifelore.interaction.outcomes.joint_normal_fit import joint_normal_fit
 from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows
+from lifelore.interaction.outcomes.outcome_rows import OutcomeRows
 from lifelore.interaction.outcomes.spread import spread_between
 
 FITTED_NUMBERS = 4_000_000

@@ -24,7 +24,7 @@ from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows
+from lifelore.interaction.outcomes.outcome_rows import OutcomeRows
 from lifelore.interaction.outcomes.spread import VarianceAnalysis, spread_between, variance_analysis
 
 Array = NDArray[np.float64]

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.outcomes.outcome_model import LARGEST
+from lifelore.interaction.outcomes.outcome_rows import LARGEST
 
 NEEDED = ("user", "policy", "outcome")
 OPTIONAL = ("type", "context", "decision", "time")

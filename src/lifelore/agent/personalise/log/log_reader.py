@@ -20,7 +20,7 @@ from lifelore.agent.personalise.log.log_format import (
     unescaped,
 )
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.outcome_model import LARGEST
+from lifelore.interaction.outcomes.outcome_rows import LARGEST
 from lifelore.memory.record_rules import LONGEST_NAME, check_name
 
 CHUNK = 1 << 16

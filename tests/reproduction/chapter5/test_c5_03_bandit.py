@@ -5,8 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from lifelore.action.search.bandit import Arms, beta_thompson, flat_arms, play, prior_arms, regret, ucb1
 from lifelore.core.errors import InputError
+from reproduction.chapter5.c5_03_priors_in_search.bandit import (
+    Arms,
+    beta_thompson,
+    flat_arms,
+    play,
+    prior_arms,
+    regret,
+    ucb1,
+)
 
 
 def random():
