@@ -5,9 +5,11 @@ import pytest
 from scipy.stats import t
 
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
-from lifelore.interaction.reuse.unknown_users import DEVIATIONS, MASS
+from lifelore.interaction.reuse.unknown_users import DEVIATIONS, GAIN, MASS
+from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 from lifelore.interaction.selection import InformationDirected
 from lifelore.interaction.signals.return_signal import ReturnSignal
 
@@ -70,6 +72,11 @@ class Twin:
         location, weight, variance, freedom = self.law(policy)
         return location + DEVIATIONS * np.sqrt(variance * freedom / (freedom - 2) / weight)
 
+    def gain(self, odds, known, available):
+        """Possible gain of trying policies over `known`, in deviations of a mean pay of which nothing is shown."""
+        unit = np.sqrt(np.mean(self.variance * FREEDOM / (FREEDOM - 2) / self.weight))
+        return (max(self.bound(policy) for policy in available) - known) / (1 + np.exp(-odds)) / unit
+
 
 @pytest.mark.parametrize("dtype", ["f8", "f4"])
 def test_odds_and_bounds_are_those_of_the_twin(library, dtype):
@@ -83,6 +90,23 @@ def test_odds_and_bounds_are_those_of_the_twin(library, dtype):
         assert rows.unknown.log_odds[0] == pytest.approx(odds, abs=digits * 30)
         bounds = [twin.bound(each) for each in range(3)]
         assert rows.unknown.bounds(0) == pytest.approx(bounds, abs=digits)
+
+
+@pytest.mark.parametrize("available", [(0, 1, 2), (1, 2)])
+def test_policies_are_tried_where_the_possible_gain_is_large_enough(library, available):
+    mask, user, found = np.isin(range(3), available), 0, set()
+    for odds in np.linspace(-4, 1, 11):
+        rows, twin = ReuseAlgorithm(library, 1), Twin(library)
+        for policy, value in ((0, 0.2), (1, 0.3), (0, 0.4)):
+            rows.update(user, policy, value)
+            twin.seen[policy].append(value)
+        rows.unknown.log_odds[user] = odds
+        best = rows.known(user).performance.mean[:, mask].max(axis=1) @ rows.belief(user)
+        tried = bool(odds > 0 or twin.gain(odds, best, available) > GAIN)
+        expected = [twin.bound(policy) for policy in available]
+        assert (rows.scores(user, RULE, available=mask)[mask] == pytest.approx(expected)) == tried
+        found.add((bool(odds > 0), tried))
+    assert found == {(False, False), (False, True), (True, True)}
 
 
 def test_a_user_whom_no_type_fits_is_found_out(library):
@@ -138,6 +162,21 @@ def test_strangers_among_known_users_are_served_as_they_would_be_alone(library):
             assert found[row] == pytest.approx(agent.probabilities(mask[row]))
             assert found[row, chosen[row]] > 0
     assert (rows.select(every, RULE, generator)[0] == [1, 2, 1]).all()
+
+
+def test_a_stranger_among_many_is_served_as_alone(library):
+    library.performance.spread = Spread.known(0.1)
+    users, agents = UserBeliefs(library, 2, "f8"), [BayesianPolicyReuse(library) for _ in range(2)]
+    random = np.random.default_rng(2)
+    for _ in range(40):
+        chosen = users.select([0, 1])
+        assert users.probabilities([0, 1]) == pytest.approx(np.array([one.probabilities() for one in agents]))
+        pays = random.normal(np.array([MEANS[1], STRANGER])[[0, 1], chosen], 0.5)
+        users.update([0, 1], chosen, pays)
+        for agent, policy, pay in zip(agents, chosen, pays, strict=True):
+            agent.update(policy, pay)
+    assert chosen.tolist() == [1, 2]
+    assert [one.explain().novelty > 0.5 for one in agents] == [False, True]
 
 
 def test_a_stored_state_goes_on_and_a_reset_user_is_new(library):

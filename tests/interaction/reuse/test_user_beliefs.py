@@ -82,7 +82,7 @@ def test_the_spread_is_the_mean_of_the_librarys_or_the_callers():
             UserBeliefs(model, 1, spread=bad)
 
 
-def test_users_take_four_bytes_a_type_and_twelve_a_policy_of_learnt_models():
+def test_users_take_four_bytes_a_type_and_twice_twelve_a_policy_of_learnt_models():
     mean, n = np.zeros((68, 50)), 1000
     static = TypeDynamics.static()
     beliefs = UserBeliefs(PolicyLibrary.from_means(mean, 1.0), n, dynamics=static)
@@ -90,7 +90,8 @@ def test_users_take_four_bytes_a_type_and_twelve_a_policy_of_learnt_models():
     # Beside it, whether an episode has begun, and the probability of the only spread: 9 bytes.
     assert beliefs.algorithm.nbytes / n <= 4 * 68 + 9
     learnt = UserBeliefs(PolicyLibrary.from_means(mean, 1.0, count=5), n, dynamics=static)
-    assert learnt.algorithm.nbytes / n <= 4 * 68 + 12 * 50 + 9
+    # Of the unknown type what was shown, the probability of its only spread, and the odds.
+    assert learnt.algorithm.nbytes / n <= 4 * 68 + 12 * 50 + 9 + 12 * 50 + 16
     # By default the belief over five hazards given the type.
     moving = UserBeliefs(PolicyLibrary.from_means(mean, 1.0), n)
     assert moving.algorithm.nbytes / n <= 4 * 68 * (1 + 5) + 9

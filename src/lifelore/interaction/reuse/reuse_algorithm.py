@@ -198,15 +198,13 @@ class ReuseAlgorithm:
     ) -> Array:
         """The rule's scores for `users` (...), (..., n_policies); arguments as for `select`.
 
-        Those of users whom no type fits are `UnknownUsers.bounds`, where the rule tries policies on them.
+        Those of users whom perhaps no type fits are `UnknownUsers.bounds`, where the rule tries policies on them.
         """
-        scores = scored(
-            rule, self.known(users), self.belief(users), available,
-            episodes_left=episodes_left, generator=generator,
-        )  # fmt: skip
-        likely, bounds = self._of_unknown(users, rule, available)
-        if bounds is not None:
-            scores[likely] = bounds
+        known, belief = self.known(users), self.belief(users)
+        scores = scored(rule, known, belief, available, episodes_left=episodes_left, generator=generator)
+        tried, bounds = self._of_unknown(users, rule, known, belief, available)
+        if np.any(tried):
+            scores[tried] = bounds
         return scores
 
     def propensities(
@@ -219,10 +217,11 @@ class ReuseAlgorithm:
         """Probability that `select` takes each policy for `users` (...), (..., n_policies); rows sum to 1."""
         belief = self.belief(users).astype(np.float64, copy=False)
         belief = belief / belief.sum(axis=-1, keepdims=True)
-        shares = propensities(rule, self.known(users), belief, available, episodes_left=episodes_left)
-        likely, bounds = self._of_unknown(users, rule, available)
-        if bounds is not None:
-            shares[likely] = tied_shares(bounds)
+        known = self.known(users)
+        shares = propensities(rule, known, belief, available, episodes_left=episodes_left)
+        tried, bounds = self._of_unknown(users, rule, known, belief, available)
+        if np.any(tried):
+            shares[tried] = tied_shares(bounds)
         return shares
 
     def unknown_probability(self, user: int) -> float | None:
@@ -378,17 +377,19 @@ class ReuseAlgorithm:
         share = self.changes.changed_share(log_belief, users) if begun.any() else None
         return None if share is None else share * begun[..., None]
 
-    def _of_unknown(self, users: Numbers, rule: SelectionRule, available: Mask | None) -> tuple[Any, Array | None]:
-        """Which `users` (...) no type is likely to fit, and the scores of policies on these; None: no user."""
+    def _of_unknown(
+        self, users: Numbers, rule: SelectionRule, known: Any, belief: Array, available: Mask | None
+    ) -> tuple[Any, Any]:
+        """Which `users` (...) policies are tried on, and the scores of policies on these, (m, n_policies)."""
         if self.unknown is None or not getattr(rule, "tries_unknown", False):
-            return False, None
-        likely = np.asarray(self.unknown.log_odds[users] > 0)
-        if not likely.any():
-            return likely, None
-        bounds = self.unknown.bounds(users[likely] if likely.ndim else users)
+            return False, 0.0
+        bounds, means = self.unknown.bounds(users), known.performance.mean
         if available is not None:
-            bounds = np.where(available[likely] if available.ndim > 1 else available, bounds, -np.inf)
-        return likely, bounds
+            bounds = np.where(available, bounds, -np.inf)
+            means = np.where(np.expand_dims(available, -2), means, -np.inf)
+        best = (belief * means.max(axis=-1)).sum(axis=-1)
+        tried = np.asarray(self.unknown.tried(users, bounds, best))
+        return tried, bounds[tried]
 
     def _learn_outcomes(self, users: Numbers, policies: Numbers, outcomes: Any, log_belief: Array) -> None:
         found = self.outcomes.evidence(users, policies, outcomes, log_belief, None)

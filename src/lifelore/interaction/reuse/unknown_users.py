@@ -6,8 +6,13 @@ q is a type as broad as all types of the library together (`broad_moments`), m t
 given the user's earlier signals. The unknown type never changes, so what a user has shown of it never fades: only
 evidence leads to it or away from it. Known types may change (`beliefs`), and what was shown of them then fades.
 
-Where the odds exceed 1, each policy scores the mean pay that it may well have on this user, m + 2 s, with mean m
-and deviation s of the policy's mean pay in the unknown type. So a policy is tried until it is probably worse.
+Each policy may well have the mean pay m + 2 s on this user, with mean m and deviation s of the policy's mean pay
+in the unknown type. These bounds are the scores where the odds exceed 1, or where policies could gain enough:
+
+    P(unknown type) (max_π (m + 2 s) − Σ β(τ) max_π E[U | τ, π]) > 0.25 deviations of mean pays in the unknown type
+
+So policies are also tried on users who fit a known type by the few policies that were tried, where that type pays
+little. A policy is tried until it is probably worse.
 """
 
 from collections.abc import Mapping
@@ -31,6 +36,8 @@ MASS = 0.15
 """Prior probability of the unknown type; more finds such users sooner, and takes more known users for such."""
 DEVIATIONS = 2.0
 """Deviations of a mean pay that count in favour of a policy; more tries policies longer."""
+GAIN = 0.25
+"""Least possible gain for trying policies, in deviations of a mean pay; less tries more, also on known users."""
 
 
 class UnknownUsers(UserModel):
@@ -51,6 +58,7 @@ class UnknownUsers(UserModel):
     def __init__(self, law: Law, n_users: int) -> None:
         super().__init__(law, n_users)
         self.log_odds: Array = np.full(n_users, _FIRST)
+        self._least = GAIN * float(np.sqrt(law.of_runs.mean()))  # pyright: ignore[reportAttributeAccessIssue]
 
     def weigh(self, users: Numbers, policies: Numbers, signals: Any, log_evidence: Array) -> None:
         """Take in checked signals of distinct users; `log_evidence` (...) is log m(σ)."""
@@ -63,6 +71,19 @@ class UnknownUsers(UserModel):
         law: Any = self.law
         pay = law.prediction(self.shown, users, self.log_weights[users])
         return (pay.mean + DEVIATIONS * np.sqrt(pay.mean_variance))[..., 0, :]
+
+    def tried(self, users: Numbers, bounds: Array, known: Array) -> Any:
+        """Whether policies are tried on `users` (...), (...) bool.
+
+        Parameters
+        ----------
+        bounds : (..., n_policies)
+            Minus infinity where a policy is not available.
+        known : (...)
+            Expected mean pay of the policy that is best for the user's type, of the known types.
+        """
+        log_odds = self.log_odds[users]
+        return (log_odds > 0) | (_expit(log_odds) * (bounds.max(axis=-1) - known) > self._least)
 
     def fade(self, users: Numbers, keep: Array) -> None:
         """Nothing: the unknown type does not change."""
@@ -101,6 +122,11 @@ class UnknownUsers(UserModel):
 
 
 _FIRST = float(np.log(MASS / (1 - MASS)))
+
+
+def _expit(log_odds: Array) -> Array:
+    """Probability of log odds."""
+    return np.exp(-np.logaddexp(0.0, -log_odds))
 
 
 def unknown_law(library: PolicyLibrary, outcomes: Law) -> NormalLaw | None:

@@ -1,7 +1,7 @@
 """Beliefs about very many users, numbered or named: rows of Algorithm 7, updated and read in blocks.
 
 With float32 rows a user takes 24 bytes a type, 4 where the dynamics are given, and with models learnt from a
-finite number of runs 12 bytes more a policy (4 a cell, where outcomes are counted). float32 rows agree with
+finite number of runs 24 bytes more a policy (4 a cell, where outcomes are counted). float32 rows agree with
 float64 rows to 1e-5. A `BayesianPolicyReuse` for each user has the same numbers to 1e-12, where both know the same
 spread. Thesis: §4.2, Alg. 7, with many tasks side by side.
 """
@@ -107,7 +107,6 @@ class UserBeliefs:
             models=models,
             spread=Spread.known(known),
             dtype=dtype,
-            unknown_users=False,
         )
         self.generator = stream(seed, "user beliefs") if isinstance(seed, int | np.integer) else seed
         self.n_users = n_users
