@@ -66,23 +66,6 @@ class ResultsTable:
         """The records whose keys have these values."""
         return ResultsTable([self.records[i] for i in self._places(where)], self.keys)
 
-    def distinct(self, key: str) -> list[Any]:
-        """The values of a key, each once, in order of appearance."""
-        return list({_hashable(record.get(key)): record.get(key) for record in self.records}.values())
-
-    def record(self, **where: Any) -> Mapping[str, Any]:
-        """The first record whose keys have these values.
-
-        Raises
-        ------
-        NotFoundError
-            There is none.
-        """
-        places = self._places(where)
-        if not places:
-            raise NotFoundError(f"no result has {where}; the keys are {', '.join(self.keys)}")
-        return self.records[places[0]]
-
     def values(self, measure: str, **where: Any) -> NDArray[np.float64]:
         """A measure of the records found, in their order: (n,), or (n, length) of a curve.
 

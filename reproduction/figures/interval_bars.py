@@ -19,6 +19,7 @@ def draw_interval_bars(
     *,
     colours: Mapping[str, str] | Sequence[str] = (),
     horizontal: bool = True,
+    scale: float = 1.0,
     words: Callable[[float], str] | None = "{:.3g}".format,
     title: str = "",
     label: str = "",
@@ -36,6 +37,8 @@ def draw_interval_bars(
     colours : mapping or sequence of str
         Colour by group, or a list of colours, one for each name; with one group, a colour for each name.
     horizontal : bool
+    scale : float
+        Factor of all numbers, such as 100 for shares in per cent.
     words : callable, optional
         Text of a value, written at the end of its bar; None writes none.
     title, label : str
@@ -48,23 +51,16 @@ def draw_interval_bars(
         for place, number in enumerate(numbers):
             if number is None or number["value"] is None:
                 continue
+            value, interval = scale * number["value"], [scale * end for end in number.get("ci95") or ()]
             at = place + (g - (len(groups) - 1) / 2) * height
             colour = _colour(colours, group, g, place, len(groups))
             bar = axes.barh if horizontal else axes.bar
-            bar(
-                [at],
-                [number["value"]],
-                height * 0.92,
-                color=colour,
-                label=group if not _has(axes, group) else None,
-            )
-            interval = number.get("ci95")
+            bar([at], [value], height * 0.92, color=colour, label=None if _has(axes, group) else group)
             if interval:
                 ends = (interval, [at, at]) if horizontal else ([at, at], interval)
                 axes.plot(*ends, color=INK, linewidth=1.1, solid_capstyle="butt")
             if words:
-                end = max(number["value"], interval[1] if interval else number["value"])
-                _write(axes, words(number["value"]), end, at, horizontal)
+                _write(axes, words(value), max([value, *interval]), at, horizontal)
     _ticks(axes, names, horizontal)
     axes.set(title=title, **{"xlabel" if horizontal else "ylabel": label})
     if len(groups) > 1 if legend is None else legend:

@@ -21,8 +21,6 @@ def test_values_come_in_the_order_of_the_records():
     assert TABLE.values("first", method=2, schedule=[0.5, 1.0]).tolist() == [20.5, 21.5, 22.5, 23.5]
     assert TABLE.values("curve", method=1, schedule=(0.1, 1.0)).shape == (4, 3)
     assert len(TABLE.select(method=1)) == 8
-    assert TABLE.select(method=1).distinct("schedule") == [[0.1, 1.0], [0.5, 1.0]]
-    assert TABLE.record(method=2, run=3)["first"] == 23.1
 
 
 def test_estimates_are_those_of_the_values():

@@ -87,7 +87,4 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """The seconds of all pictures by kind, ascending."""
     table = ResultsTable.nested(results, "images", keys=("kind",))
-    return [
-        {"kind": kind, "seconds": np.sort(table.values("seconds", kind=kind)).tolist()}
-        for kind in table.distinct("kind")
-    ]
+    return [{"kind": kind, "seconds": np.sort(table.values("seconds", kind=kind)).tolist()} for kind in KINDS]

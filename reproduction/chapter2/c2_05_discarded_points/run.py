@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.intervals import percentile_interval
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import CORE_RELATIONS, SYMMETRIC, PairLabel
@@ -27,7 +28,7 @@ from reproduction.chapter2.scenes.perturbation import fewer_points, without_tabl
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scoring.pair_validation import THRESHOLD
 from reproduction.chapter2.scoring.relation_scoring import JudgedPair, judged_scene, less_rate
-from reproduction.engine.estimates import UNMEASURED, mean_by_cluster, share_by_cluster
+from reproduction.engine.estimates import UNMEASURED, share_by_cluster
 from reproduction.engine.results_table import computed_once
 
 THINNED, SCALED, FIXED = METHODS = ("thinned, threshold scaled", "raw, threshold scaled", "raw, 7 fixed")
@@ -114,19 +115,21 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
 
 def measures(views: Mapping[float, Sequence[JudgedPair]]) -> dict[str, Estimate]:
     """Exact share lost at each share discarded; and that of the most discarded less the majority's rate."""
-    whole = views[0.0]
-    lost = {
-        f"lost_{100 * level:g}": mean_by_cluster(
-            [float(a.exact) - b.exact for a, b in zip(whole, views[level], strict=True)],
-            [pair.scene for pair in whole],
-        )
-        for level in views
-        if level
-    }
+    falls = {f"lost_{100 * level:g}": lost(views[0.0], views[level]) for level in views if level}
     worst = views[max(views)]
     truths = [pair.truth.relation for pair in worst]
     rate = max(map(truths.count, CORE_RELATIONS)) / max(len(truths), 1)
-    return lost | {"less_majority": less_rate(share(worst), rate) if worst else UNMEASURED}
+    return falls | {"less_majority": less_rate(share(worst), rate) if worst else UNMEASURED}
+
+
+def lost(whole: Sequence[JudgedPair], left: Sequence[JudgedPair]) -> Estimate:
+    """Exact share of the whole clouds' pairs less that of the same pairs in what is left; scenes resampled."""
+    names, at = np.unique([pair.scene for pair in whole], return_inverse=True)
+    falls, n = [float(a.exact) - b.exact for a, b in zip(whole, left, strict=True)], len(names)
+    sums = np.stack([np.bincount(at, falls), np.bincount(at)], axis=1)
+    drawn = stream(n, "scenes resampled").multinomial(n, np.full(n, 1 / n), size=1000) @ sums
+    value = float(np.mean(falls))
+    return Estimate(value, value, percentile_interval(drawn[:, 0] / drawn[:, 1]), len(whole))
 
 
 def share(pairs: Sequence[JudgedPair]) -> Estimate:

@@ -16,16 +16,12 @@ def draw(result: Mapping) -> Figure:
     """The networks above, with every contact and with strong ones; bars below."""
     figure, below = gallery_above(examples_of(result), 2.0, columns=2, layers=("cloud", "networks"))
     told = {(row["told by"], row["arrangement"]): row for row in result["rows"] if "told by" in row}
-    bars = {name: [per_cent(told[name, at]) for at in NAMES] for name in COLOURS}
+    bars = {name: [told[name, at] for at in NAMES] for name in COLOURS}
     axes = below.subplots()
     draw_interval_bars(
-        axes, list(NAMES.values()), bars, colours=COLOURS, words="{:.0f}".format, label="classified right (%)"
-    )
+        axes, list(NAMES.values()), bars, colours=COLOURS, scale=100, words="{:.0f}".format,
+        label="classified right (%)",
+    )  # fmt: skip
     axes.set(xlim=(0, 112), xticks=range(0, 101, 20))
     axes.grid(axis="x")
     return figure
-
-
-def per_cent(share: Mapping) -> dict:
-    """A share and its interval in per cent."""
-    return {"value": 100 * share["value"], "ci95": [100 * end for end in share["ci95"]]}

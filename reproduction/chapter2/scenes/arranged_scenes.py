@@ -23,7 +23,7 @@ from lifelore.domains.tabletop.tabletop import (
     sample_scene,
     settle_scene,
 )
-from reproduction.chapter2.scenes.figure_scenes import FIGURES, figure_scene
+from reproduction.chapter2.scenes.figure_scenes import FIGURES, facing, figure_scene
 
 USUAL = TabletopSettings()
 
@@ -96,9 +96,8 @@ def place_corner(rng: np.random.Generator) -> Group:
     size = rng.uniform((0.06, 0.05, 0.05), (0.8 * (length - back), width, 0.9 * (height - foot)))
     at = back - length / 2 + size[0] / 2 + float(rng.uniform(0.0003, 0.002))
     ell = stand(l_block(length, width, height, foot, back))
-    yaw = float(rng.normal(0, 0.3) + np.pi * rng.integers(2))
-    block = stand(box(float(size[0]), float(size[1]), float(size[2])), height=foot).moved(at, 0.0)
-    return [placed.turned(yaw) for placed in (ell, block)]
+    block = stand(box(*size), height=foot).moved(at, 0.0)
+    return facing(rng, [ell, block])
 
 
 def place_ball_on_post(rng: np.random.Generator) -> Group:
@@ -119,8 +118,7 @@ def place_ball_on_post(rng: np.random.Generator) -> Group:
     post = stand(box(size, size, float(height) - foot), height=foot).moved(at, 0.0)
     guest = stand(ball(float(rng.uniform(0.02, 0.035))), height=top([post])).moved(at, 0.0)
     ell = stand(l_block(float(length), float(width), float(height), foot, back))
-    yaw = float(rng.normal(0, 0.3) + np.pi * rng.integers(2))
-    return [placed.turned(yaw) for placed in (ell, guest, post)]
+    return facing(rng, [ell, guest, post])
 
 
 CONTROLS = {

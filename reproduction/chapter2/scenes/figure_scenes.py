@@ -83,7 +83,7 @@ def animal(length: float, width: float, height: float, leg: float) -> Shape:
     return Shape("animal", (trunk, head, *legs))
 
 
-def _facing(rng: np.random.Generator, group: Group) -> Group:
+def facing(rng: np.random.Generator, group: Group) -> Group:
     """Turned so that what is open along y can be looked into."""
     yaw = float(rng.normal(0, 0.3) + np.pi * rng.integers(2))
     return [item.turned(yaw) for item in group]
@@ -98,7 +98,7 @@ def place_hole_hinged(rng: np.random.Generator) -> Group:
         length = back + 2 * block * np.cos(slope) + rng.uniform(0.03, 0.05)
         ell = l_block(length, width * 1.5, rng.uniform(0.08, 0.14), foot, back)
         tent = hinged_blocks(block, width, thick, 2 * slope, about(1, -slope))
-        return _facing(rng, [stand(ell), stand(tent, height=foot).moved(float(back / 2), 0.0)])
+        return facing(rng, [stand(ell), stand(tent, height=foot).moved(float(back / 2), 0.0)])
     slope = rng.uniform(0.6, 1.0)
     height = foot + block * np.sin(slope) - thick / 2
     length = back / 2 + block * (0.5 + np.cos(slope)) + rng.uniform(0.03, 0.05)
@@ -107,7 +107,7 @@ def place_hole_hinged(rng: np.random.Generator) -> Group:
     placed = stand(bent)
     shift = -length / 2 + back / 2 - block / 2 - (low + placed.pose.position[0])
     rise = foot + 0.003 - placed.outline()[:, 2].min()
-    return _facing(rng, [stand(ell), placed.moved(float(shift), 0.0, float(rise))])
+    return facing(rng, [stand(ell), placed.moved(float(shift), 0.0, float(rise))])
 
 
 def place_hole_other(rng: np.random.Generator) -> Group:
@@ -121,13 +121,13 @@ def place_hole_other(rng: np.random.Generator) -> Group:
         leg = rng.uniform(0.014, 0.02)
         guest = animal(long, broad, high, leg) if kind else arch(long, broad, high, 1.3 * leg, 0.3 * high)
         # The toy's head may look out over the foot's end, never into the upright.
-        return _facing(rng, [stand(ell), stand(guest, height=foot).moved(float(back / 2 + 0.01), 0.0)])
+        return facing(rng, [stand(ell), stand(guest, height=foot).moved(float(back / 2 + 0.01), 0.0)])
     rise, reach = height - foot, rng.uniform(0.5, 0.85) * run
     slope = np.arctan2(rise, reach)
     plank = stand(box(np.hypot(rise, reach) * 1.15, 0.7 * width, rng.uniform(0.012, 0.02)), about(1, slope), foot)
     points = plank.outline()
     shift = back - length / 2 + reach + 0.003 - points[points[:, 2].argmin(), 0]
-    return _facing(rng, [stand(ell), plank.moved(float(shift), 0.0)])
+    return facing(rng, [stand(ell), plank.moved(float(shift), 0.0)])
 
 
 def place_hole(rng: np.random.Generator) -> Group:
@@ -144,7 +144,7 @@ def place_no_hole(rng: np.random.Generator) -> Group:
         box(0.75 * length, 0.75 * width, rng.uniform(0.04, 0.12)),
     )
     below = stand(slab)
-    return _facing(rng, [below, stand(block, height=top([below]))])
+    return facing(rng, [below, stand(block, height=top([below]))])
 
 
 def _stack(rng: np.random.Generator, middle_height: float) -> Group:
@@ -159,7 +159,7 @@ def place_stack(rng: np.random.Generator) -> Group:
     """Three boxes on one another (Fig. 2.7)."""
     group = _stack(rng, rng.uniform(0.04, 0.1))
     size = rng.uniform((0.07, 0.05, 0.04), (0.12, 0.09, 0.1))
-    return _facing(rng, [*group, stand(box(*size), about(2, rng.uniform(0, 6)), top(group))])
+    return facing(rng, [*group, stand(box(*size), about(2, rng.uniform(0, 6)), top(group))])
 
 
 def place_stack_two_contacts(rng: np.random.Generator) -> Group:
@@ -167,13 +167,13 @@ def place_stack_two_contacts(rng: np.random.Generator) -> Group:
     group = _stack(rng, rng.uniform(0.04, 0.08))
     length, width, height = rng.uniform((0.11, 0.05, 0.06), (0.125, 0.08, 0.1))
     guest = arch(length, width, height, rng.uniform(0.014, 0.022), 0.35 * height)
-    return _facing(rng, [*group, stand(guest, about(2, rng.normal(0, 0.1)), top(group))])
+    return facing(rng, [*group, stand(guest, about(2, rng.normal(0, 0.1)), top(group))])
 
 
 def place_ball_on_block(rng: np.random.Generator) -> Group:
     """A ball on a block (Fig. 2.2)."""
     block = stand(box(*rng.uniform((0.1, 0.08, 0.05), (0.2, 0.15, 0.15))))
-    return _facing(rng, [block, stand(ball(rng.uniform(0.02, 0.05)), height=top([block]))])
+    return facing(rng, [block, stand(ball(rng.uniform(0.02, 0.05)), height=top([block]))])
 
 
 def place_ball_at_l_block(rng: np.random.Generator) -> Group:
@@ -182,7 +182,7 @@ def place_ball_at_l_block(rng: np.random.Generator) -> Group:
     back = rng.uniform(0.03, 0.05)
     ell = stand(l_block(length, width, height, rng.uniform(0.025, 0.05), back))
     guest = stand(ball(rng.uniform(0.02, 0.035)), height=height)
-    return _facing(rng, [ell, guest.moved(float((back - length) / 2), 0.0)])
+    return facing(rng, [ell, guest.moved(float((back - length) / 2), 0.0)])
 
 
 FIGURES = {

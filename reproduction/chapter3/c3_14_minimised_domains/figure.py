@@ -19,17 +19,10 @@ def draw(result: Mapping) -> Figure:
     figure = new_figure(9.2, 0.9 + 0.42 * len(result["rows"]))
     panels = figure.subplots(1, len(PANELS), sharey=True)
     for axes, (name, (factor, title)) in zip(panels, PANELS.items(), strict=True):
-        groups = {
-            way: [_times(row[name][place], factor) for row in result["rows"]] for place, way in enumerate(COLOURS)
-        }
+        groups = {way: [row[name][place] for row in result["rows"]] for place, way in enumerate(COLOURS)}
         names = [row["kind"] for row in result["rows"]]
-        draw_interval_bars(axes, names, groups, colours=COLOURS, words="{:.3g}".format, title=title, legend=False)
+        draw_interval_bars(axes, names, groups, colours=COLOURS, scale=factor, title=title, legend=False)
         axes.set_xlim(0, 1.2 * axes.get_xlim()[1])
         axes.grid(axis="x")
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower left", ncols=2)
     return figure
-
-
-def _times(number: Mapping, factor: float) -> dict:
-    interval = number["ci95"] and [factor * end for end in number["ci95"]]
-    return {"value": factor * number["value"], "ci95": interval}

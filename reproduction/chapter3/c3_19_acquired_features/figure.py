@@ -21,9 +21,9 @@ def draw(result: Mapping, left: Axes, right: Axes) -> None:
     """Shares of runs by feature, and mean rewards by episode, one standard deviation of the acquired shaded."""
     features = [row for row in result["rows"] if "feature" in row]
     curves = {row["curve_of"]: row for row in result["rows"] if "curve_of" in row}
-    shares = [{"value": 100 * row["value"], "ci95": [100 * end for end in row["ci95"]]} for row in features]
     names = features_in_words([row["feature"] for row in features])
-    draw_interval_bars(left, names, {"": shares}, words=None, title="Runs in which a feature is acquired (%)")
+    title = "Runs in which a feature is acquired (%)"
+    draw_interval_bars(left, names, {"": features}, scale=100, words=None, title=title)
     left.set_xlim(0, 100)
     left.grid(axis="x")
     series = {label: {"mean": curves[name]["mean"]} for name, (label, _) in LABELS.items()}

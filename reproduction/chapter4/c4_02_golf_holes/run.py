@@ -16,7 +16,7 @@ from reproduction.chapter4.golf.rounds import (
     learnt_library,
     play_greedily,
 )
-from reproduction.engine.results_table import ResultsTable
+from reproduction.engine.results_table import having
 
 FIRST = {None: "greedy", WOOD: "club 1"}
 """The first club: the rule's choice, or club 1 as in the worked example."""
@@ -79,6 +79,6 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """The default's curves, and the misses of single clubs and of the best club."""
-    greedy = ResultsTable(results, ("samples", "first", "part")).record(samples=None, first=None, part=None)
+    greedy = having(results[:-1], samples=None, first=None)[0]
     kept = {"error": greedy["error"], "entropy": greedy["entropy"], **results[-1]}
     return [{key: np.mean(kept[key], axis=0).round(4).tolist() for key in ("error", "entropy", "club", "best")}]

@@ -22,21 +22,18 @@ UP = np.array([0.0, 0.0, 1.0])
 def from_seeds(seeds: list[GraspSeed], rng: np.random.Generator) -> Iterator[Grasp]:
     """Each seed that the open hand spans, first as it is, then near it; nothing without such seeds."""
     fit = [Grasp(seed.position, seed.approach, seed.closing) for seed in seeds if seed.width <= OPENING]
-    yield from fit
-    while fit:
-        for grasp in fit:
-            yield near(grasp, rng)
+    return around(fit, rng, BACK)
 
 
-def around(grasps: list[Grasp], rng: np.random.Generator) -> Iterator[Grasp]:
-    """Each grasp as it is, then near it, the hand no farther back."""
+def around(grasps: list[Grasp], rng: np.random.Generator, back: float = 0.0) -> Iterator[Grasp]:
+    """Each grasp as it is, then near it, the hand up to `back` metres farther back."""
     yield from grasps
     while grasps:
         for grasp in grasps:
-            yield near(grasp, rng, 0.0)
+            yield near(grasp, rng, back)
 
 
-def near(grasp: Grasp, rng: np.random.Generator, back: float = BACK) -> Grasp:
+def near(grasp: Grasp, rng: np.random.Generator, back: float) -> Grasp:
     """A grasp moved and turned a little, the hand up to `back` metres farther back."""
     angle = rng.normal(0, TURN)
     closing = np.cos(angle) * grasp.closing + np.sin(angle) * np.cross(grasp.approach, grasp.closing)

@@ -5,29 +5,19 @@ import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ON
-from lifelore.perception.contacts.contact_points import ContactPoint
-from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene
 from reproduction.chapter2.c2_09_substructure.run import READINGS, found_in, readings
 from reproduction.engine.registry import claim_of
+from tests.perception.conftest import interface
 
 
 def scene(*pairs):
     """Things that meet in pairs (a, b, relation, places (x, z))."""
     things = sorted({TABLE, *(label for pair in pairs for label in pair[:2])})
     cloud = LabelledCloud(np.zeros((len(things), 3)), np.array(things))
-    parts = []
-    for a, b, _, places in pairs:
-        sides = [
-            tuple(
-                ContactPoint(np.array([x, 0.0, z]), np.array([0.0, 0, 1]), np.zeros(3), 1.0, 9, other)
-                for x, z in places
-            )
-            for other in (b, a)
-        ]
-        parts.append(Interface(a, b, 0.0, *sides, np.array([(k, k) for k in range(len(places))])))
-    return Scene(cloud, tuple(parts), tuple(Relation(a, b, word, 1.0, 0.0) for a, b, word, _ in pairs))
+    parts = tuple(interface(a, b, [(x, 0, z) for x, z in places]) for a, b, _, places in pairs)
+    return Scene(cloud, parts, tuple(Relation(a, b, word, 1.0, 0.0) for a, b, word, _ in pairs))
 
 
 STACK = scene((2, TABLE, ON, [(0, 0)]), (3, 2, ON, [(0, 0.1)]), (4, 3, ON, [(0, 0.2)]))

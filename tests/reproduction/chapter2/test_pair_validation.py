@@ -72,18 +72,6 @@ def test_votes_by_hand():
     assert told.shares.tolist() == [[n / 4 for n in votes] for votes in expected]
 
 
-def test_ties_go_to_the_first_by_name():
-    rows = one_by_one((ADJACENT, 0), (ON, 1), (NONE, 2), (BOTH, 3))
-    assert votes_of_neighbours(rows, Reading(k=1)).labels[0] == ON
-    assert votes_of_neighbours(rows, Reading(k=2)).labels[0] == NONE
-    assert votes_of_neighbours(rows, Reading(k=3)).labels[0] == BOTH
-    # Two at one distance, all of whom are asked, weigh the same.
-    rows = one_by_one((ON, 0), (NONE, 1), (ADJACENT, -1))
-    told = votes_of_neighbours(rows, Reading(votes="inverse distance"))
-    assert told.shares[0].tolist() == [0, 0.5, 0, 0.5]
-    assert told.labels[0] == ADJACENT
-
-
 def naive(rows, reading, train=None) -> list[tuple[int, dict[str, float]]]:
     """Every displacement against every other, sorted; the votes of each."""
     every = [(i, d) for i, row in enumerate(rows) for d in displacements(row, reading.kernel, reading.threshold)]

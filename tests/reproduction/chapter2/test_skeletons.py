@@ -7,33 +7,25 @@ import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, CORE_RELATIONS, NONE, ON
-from lifelore.perception.contacts.contact_points import ContactPoint
-from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene
 from reproduction.chapter2.c2_07_oversegmented_stack.run import Three, is_path
 from reproduction.chapter2.scenes.scene_example import scene_of_row, scene_row
 from reproduction.chapter2.scenes.skeletons import RELATED, reading
+from tests.perception.conftest import interface
 
 
-def contact(z, other, x=0.0):
-    return ContactPoint(np.array([x, 0.0, z]), np.array([0.0, 0.0, 1.0]), np.zeros(3), 1.0, 9, other)
-
-
-def facing(a, b, *places):
-    """An interface that meets in one contact a place (x, z)."""
-    edges = np.array([(k, k) for k in range(len(places))])
-    sides = [tuple(contact(z, other, x) for x, z in places) for other in (b, a)]
-    return Interface(a, b, 0.0, *sides, edges)
-
-
-def tower(*extra):
+def tower():
     """2 below 3 below 4, on the table, and 2 near 4."""
     points = np.array([[x, y, z] for z in (0.0, 0.05, 0.15, 0.25) for x in (0, 0.05) for y in (0, 0.05)], float)
     cloud = LabelledCloud(points, np.repeat([TABLE, 2, 3, 4], 4), None, np.array([0.0, -1.0, 0.5]))
-    parts = (facing(2, 3, (0, 0.1)), facing(3, 4, (0, 0.2)), facing(2, 4, (0.05, 0.15)), facing(2, TABLE, (0, 0)))
+    met = ((2, 3, (0, 0, 0.1)), (3, 4, (0, 0, 0.2)), (2, 4, (0.05, 0, 0.15)), (2, TABLE, (0, 0, 0)))
     said = ((3, 2, ON), (4, 3, ON), (2, 4, NONE), (2, TABLE, ON))
-    return Scene(cloud, (*parts, *extra), tuple(Relation(a, b, word, 1.0, 0.0) for a, b, word in said))
+    return Scene(
+        cloud,
+        tuple(interface(a, b, [at]) for a, b, at in met),
+        tuple(Relation(a, b, word, 1.0, 0.0) for a, b, word in said),
+    )
 
 
 def points_of(scene):

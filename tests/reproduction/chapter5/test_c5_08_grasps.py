@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.perception.contacts.contact_points import ContactPoint
-from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.grasp_seeds import GraspSeed
 from reproduction.chapter5.c5_08_grasps.parallel_gripper import OPENING, Grasp
 from reproduction.chapter5.c5_08_grasps.run import TRIES, equal_topology, measure, rows
 from reproduction.chapter5.c5_08_grasps.searches import anywhere, around, carried, from_above, from_seeds
+from tests.perception.conftest import interface
 
 DOWN, ALONG = np.array([0.0, 0.0, -1.0]), np.array([0.0, 1.0, 0.0])
 RNG = np.random.default_rng
@@ -20,14 +19,8 @@ RNG = np.random.default_rng
 
 def on_the_table(*places):
     """Object 2 with contact points at `places` to the table."""
-    up, nothing = np.array([0.0, 0.0, 1.0]), np.zeros(3)
-    points = [np.array(place, float) for place in places]
-    own = tuple(ContactPoint(p, up, nothing, 1.0, 7, TABLE) for p in points)
-    table = tuple(ContactPoint(p, -up, nothing, 1.0, 7, 2) for p in points)
-    edges = np.array([[k, k] for k in range(len(points))], np.int64).reshape(-1, 2)
-    return Scene(
-        LabelledCloud(np.array(points), np.full(len(points), 2)), (Interface(2, TABLE, 0.0, own, table, edges),)
-    )
+    cloud = LabelledCloud(np.array(places, float), np.full(len(places), 2))
+    return Scene(cloud, (interface(2, TABLE, places),))
 
 
 def test_seeds_come_first_as_they_are_and_wide_seeds_not_at_all():
