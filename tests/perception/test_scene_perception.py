@@ -69,3 +69,18 @@ def test_two_objects_labelled_0_and_1_are_refused_and_an_empty_table_is_none(tow
     assert perceived_scene(shifted).relation_of(3, 2).relation == "on"
     bare = cloud_of({TABLE: box([-0.2, -0.2, -0.01], [0.3, 0.3, 0]), UNLABELLED: tower[2]})
     assert perceived_scene(bare).relations == ()
+
+
+def test_a_cloud_that_is_not_upright_or_not_in_metres_is_refused(tower, box):
+    cloud = cloud_of({TABLE: box([-0.2, -0.2, -0.01], [0.3, 0.3, 0]), **tower})
+    tilt = np.array([[1, 0, 0], [0, 0.8, -0.6], [0, 0.6, 0.8]])  # by 37°
+    with pytest.raises(InputError, match=r"and z up, but .* no level table: .* to_scene\(read_cloud\(rows\)\)"):
+        perceived_scene(LabelledCloud(cloud.points @ tilt.T, cloud.labels))
+    with pytest.raises(InputError, match="points must be in metres, and at most 20 m wide, got 500; divide"):
+        perceived_scene(LabelledCloud(1000 * cloud.points, cloud.labels))
+
+
+@pytest.mark.parametrize("labels", [np.array([1.0, 2.0]), np.array(["table", "cup"]), np.array([-1, 2])])
+def test_labels_are_whole_numbers(labels):
+    with pytest.raises(InputError, match=f"labels must be 2 whole numbers from 0, got .* of {labels.dtype}"):
+        LabelledCloud(np.zeros((2, 3)), labels)

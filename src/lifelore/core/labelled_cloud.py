@@ -55,8 +55,10 @@ class LabelledCloud:
         n = len(self.points)
         if self.points.shape != (n, 3) or not np.isfinite(self.points).all():
             raise InputError(f"points must be finite and of shape (n, 3), got shape {self.points.shape}")
-        if self.labels.shape != (n,) or (n and self.labels.min() < 0):
-            raise InputError(f"labels must be {n} whole numbers from 0, got shape {self.labels.shape}")
+        if self.labels.shape != (n,) or self.labels.dtype.kind not in "iu" or (n and self.labels.min() < 0):
+            raise InputError(
+                f"labels must be {n} whole numbers from 0, got shape {self.labels.shape} of {self.labels.dtype}"
+            )
         if self.colours is not None and self.colours.shape != (n, 3):
             raise InputError(f"colours must have shape ({n}, 3), got {self.colours.shape}")
         if self.camera is not None and self.camera.shape != (3,):

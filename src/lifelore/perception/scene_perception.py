@@ -8,6 +8,7 @@ import numpy as np
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED, LabelledCloud
 from lifelore.core.relations import NONE
+from lifelore.perception.clouds.cloud_scale import MAX_SPAN
 from lifelore.perception.contacts.interface import Interface, interfaces
 from lifelore.perception.contacts.object_shape import ObjectShape
 from lifelore.perception.pairs.scene_pairs import scene_pairs
@@ -20,6 +21,8 @@ from lifelore.perception.scene import Scene
 
 FLAT = 0.15
 """Largest height of a table, noise of a distant camera included, as a share of its width; larger refuses fewer."""
+LEVEL = 0.35
+"""Largest height of a labelled table beside objects, as a share of its width: a tilt of 20°."""
 
 
 def perceived_scene(
@@ -43,7 +46,7 @@ def perceived_scene(
     ------
     InputError
         The labels are 0 and 1 alone, and what is labelled 1 is too high to be the table: two objects of a user who
-        numbers from 0, as the thesis does.
+        numbers from 0, as the thesis does. Or the table is not level, or the cloud not in metres.
 
     Examples
     --------
@@ -55,7 +58,7 @@ def perceived_scene(
     >>> scene.objects
     (2,)
     """
-    _check_numbers(cloud)
+    _check_frame(cloud)
     model = model or shipped_model()
     core = shipped_model() if model.words.names else model
     found = interfaces(cloud, core.settings)
@@ -94,14 +97,28 @@ def _stated_words(
     return tuple(r for r in model.predict(cloud, found) if r.relation in model.words.names)
 
 
-def _check_numbers(cloud: LabelledCloud) -> None:
-    if cloud.objects or not cloud.has_table or not (cloud.labels == UNLABELLED).any():
+def _check_frame(cloud: LabelledCloud) -> None:
+    """Refuse other units than metres, objects numbered from 0, and a table that is not level."""
+    span = float(np.ptp(cloud.points, axis=0).max()) if len(cloud.points) else 0.0
+    if span > MAX_SPAN:  # stray points apart, as where a file is read
+        span = float(np.ptp(np.quantile(cloud.points, [0.01, 0.99], axis=0), axis=0).max())
+    if span > MAX_SPAN:
+        raise InputError(
+            f"points must be in metres, and at most {MAX_SPAN:.0f} m wide, got {span:,.0f}; divide millimetres by "
+            "1000, or crop the cloud"
+        )
+    if not cloud.has_table:
         return
     low, high = np.quantile(cloud.of(TABLE), [0.05, 0.95], axis=0)
     width, height = float((high - low)[:2].max()), float((high - low)[2])
-    if height > FLAT * width:
+    size = f"the points labelled 1 are {100 * height:.0f} cm high and {100 * width:.0f} cm wide"
+    if not cloud.objects and height > FLAT * width and (cloud.labels == UNLABELLED).any():
         raise InputError(
-            "labels must number objects from 2 (0 is no object, 1 is the table), got 0 and 1 alone, and the points"
-            f" labelled 1 are {100 * height:.0f} cm high and {100 * width:.0f} cm wide, which is no table: add 2"
-            " to every label, or call contact_networks(points_a, points_b)"
+            f"labels must number objects from 2 (0 is no object, 1 is the table), got 0 and 1 alone, and {size}, "
+            "which is no table: add 2 to every label, or call contact_networks(points_a, points_b)"
+        )
+    if cloud.objects and height > LEVEL * width:
+        raise InputError(
+            f"label 1 must be the table, and z up, but {size}, which is no level table: number objects from 2, or "
+            "turn the cloud by to_scene(read_cloud(rows)), a row being x, y, z and label"
         )
