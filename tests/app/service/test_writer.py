@@ -85,6 +85,7 @@ def test_rows_that_wait_together_are_one_batch_and_parts_of_a_long_one_give_way(
         first = asyncio.ensure_future(writer.store("decisions", "s", [Request("ada")]))
         await asyncio.sleep(0.05)
         many = asyncio.ensure_future(in_parts())
+        await asyncio.sleep(0)
         single = [asyncio.ensure_future(writer.store("decisions", "s", [Request(f"v{n}")])) for n in range(3)]
         unknown = asyncio.ensure_future(writer.store("decisions", "t", [Request("ada")]))
         await asyncio.sleep(0.05)
