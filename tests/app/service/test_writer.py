@@ -27,6 +27,10 @@ def a_writer(memory):
     return Writer(memory, OpenStudies(memory), Metrics(), seed=0)
 
 
+async def stored(writer, *requests):
+    return await writer.store("decisions", "s", requests)
+
+
 def n_decisions(memory):
     with memory.studies.totals(memory.studies.newest("s").number) as totals:
         return totals.n_decisions()[0]
@@ -51,10 +55,10 @@ def test_a_refused_transaction_answers_nobody_with_success(memory, monkeypatch):
     writer = a_writer(memory)
     monkeypatch.setattr(memory, "together", refused)
     with pytest.raises(StoreError, match="no space"):
-        asyncio.run(writer.decide("s", [Request("ada")]))
+        asyncio.run(stored(writer, Request("ada")))
     monkeypatch.undo()
     assert n_decisions(memory) == 0
-    assert asyncio.run(writer.decide("s", [Request("ada")]))[0]["user"] == "ada"
+    assert asyncio.run(stored(writer, Request("ada")))[0]["user"] == "ada"
     writer.stop()
     assert n_decisions(memory) == 1
 
@@ -74,15 +78,16 @@ def test_rows_that_wait_together_are_one_batch_and_parts_of_a_long_one_give_way(
 
     async def in_parts():
         users = [Request(f"u{n}") for n in range(2 * PART)]
-        parts = [await writer.decide("s", users[at : at + PART], brief=True) for at in (0, PART)]
+        parts = [await writer.store("decisions", "s", users[at : at + PART], brief=True) for at in (0, PART)]
         return parts[0] + parts[1]
 
     async def ask():
-        first = asyncio.ensure_future(writer.decide("s", [Request("ada")]))
+        first = asyncio.ensure_future(writer.store("decisions", "s", [Request("ada")]))
         await asyncio.sleep(0.05)
         many = asyncio.ensure_future(in_parts())
-        single = [asyncio.ensure_future(writer.decide("s", [Request(f"v{n}")])) for n in range(3)]
-        unknown = asyncio.ensure_future(writer.decide("t", [Request("ada")]))
+        await asyncio.sleep(0)
+        single = [asyncio.ensure_future(writer.store("decisions", "s", [Request(f"v{n}")])) for n in range(3)]
+        unknown = asyncio.ensure_future(writer.store("decisions", "t", [Request("ada")]))
         await asyncio.sleep(0.05)
         gate.set()
         return await asyncio.gather(first, many, *single, unknown)

@@ -27,7 +27,7 @@ from lifelore.app.service.error_documents import (
     without_places,
 )
 from lifelore.app.service.service_state import Service
-from lifelore.app.service.writer import PART, WHOLE
+from lifelore.app.service.writer import PART, WHOLE, Kind
 from lifelore.core.errors import InputError, LifeloreError
 
 LARGEST_BATCH = 100_000
@@ -163,7 +163,7 @@ def hot_routes(service: Service) -> list[HotRoute]:
     writer, encode = service.writer, msgspec.json.Encoder().encode
 
     async def decide(study: str, document: DecisionRequest) -> Any:
-        (answer,) = await writer.decide(study, [document])
+        (answer,) = await writer.store("decisions", study, [document])
         if isinstance(answer, LifeloreError):
             raise answer
         answer["novelty"] = None
@@ -173,22 +173,22 @@ def hot_routes(service: Service) -> list[HotRoute]:
         return answer
 
     async def observe(study: str, document: OutcomeRequest) -> Any:
-        (answer,) = await writer.observe(study, [document.row()])
+        (answer,) = await writer.store("outcomes", study, [document.row()])
         if isinstance(answer, LifeloreError):
             raise answer
         return answer
 
     async def decide_many(study: str, document: Decisions) -> Any:
-        return await in_parts(writer.decide, study, document.items)
+        return await in_parts("decisions", study, document.items)
 
     async def observe_many(study: str, document: Outcomes) -> Any:
-        return await in_parts(writer.observe, study, [item.row() for item in document.items])
+        return await in_parts("outcomes", study, [item.row() for item in document.items])
 
-    async def in_parts(store: Any, study: str, rows: Sequence[Any]) -> msgspec.Raw:
+    async def in_parts(kind: Kind, study: str, rows: Sequence[Any]) -> msgspec.Raw:
         """The answers of a batch, read, stored and encoded a part at a time: other requests get their turns."""
         parts, step = [], WHOLE if len(rows) <= WHOLE else PART
         for at in range(0, len(rows), step):
-            answers = await store(study, rows[at : at + step], brief=True)
+            answers = await writer.store(kind, study, rows[at : at + step], brief=True)
             listed = [refused(one) if isinstance(one, LifeloreError) else one for one in answers]
             parts.append(encode(listed)[1:-1])
         return msgspec.Raw(b'{"items":[' + b",".join(parts) + b"]}")

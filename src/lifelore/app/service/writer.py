@@ -11,7 +11,7 @@ import threading
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import islice
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from lifelore.agent.personalise.decisions import decide, observe
 from lifelore.app.service.study_watch import OpenStudies
@@ -28,13 +28,16 @@ WHOLE, PART = 1000, 500
 which other requests get their turn; more let these wait longer, fewer wait for the disk more often."""
 
 
+Kind = Literal["decisions", "outcomes"]
+
+
 class _Job(NamedTuple):
     """Rows of a study to store.
 
-    kind : "decisions" or "outcomes", the study, and whether answers are brief
+    kind : decisions or outcomes, the study, and whether answers are brief
     """
 
-    kind: tuple[str, str, bool]
+    kind: tuple[Kind, str, bool]
     rows: Sequence[Any]
     future: asyncio.Future[Any]
 
@@ -58,18 +61,11 @@ class Writer:
         self._thread = threading.Thread(target=self._work, name="lifelore writer", daemon=True)
         self._thread.start()
 
-    async def decide(self, study: str, requests: Sequence[Any], *, brief: bool = False) -> list[Any]:
-        """The answers of `decisions.decide`, once the decisions are committed; requests have its fields."""
-        return await self._put(("decisions", study, brief), requests)
-
-    async def observe(
-        self, study: str, outcomes: Sequence[tuple[str, float]], *, brief: bool = False
-    ) -> list[Any]:
-        """The answers of `decisions.observe`, once the outcomes are committed."""
-        return await self._put(("outcomes", study, brief), outcomes)
-
-    def _put(self, kind: tuple[str, str, bool], rows: Sequence[Any]) -> asyncio.Future[Any]:
-        job = _Job(kind, rows, asyncio.get_running_loop().create_future())
+    def store(
+        self, kind: Kind, study: str, rows: Sequence[Any], *, brief: bool = False
+    ) -> asyncio.Future[list[Any]]:
+        """The answers of `decisions.decide` or `decisions.observe` to these rows, once they are committed."""
+        job = _Job((kind, study, brief), rows, asyncio.get_running_loop().create_future())
         self._jobs.put(job)
         return job.future
 
