@@ -130,7 +130,7 @@ class QLearning:
         Raises
         ------
         InputError
-            `discount` is out of range, or `rows` is not a `Rows`.
+            `discount` is out of range, or `rows` comes from elsewhere.
         """
         if not 0 <= discount <= 1:
             raise InputError(f"discount must lie in [0, 1], got {discount}")
