@@ -60,7 +60,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def scope_of(nodeid: str) -> str:
     """The claim of a test of the registry, else the file: tests of a scope share a worker and so a fixture."""
     file = nodeid.partition("::")[0]
-    claim = re.search(r"\[(C\d+\.\d+)\]$", nodeid) if file.endswith("reproduction/test_registry.py") else None
+    claim = re.search(r"\[([CO][\d.]+)\]$", nodeid) if file.endswith("reproduction/test_registry.py") else None
     return claim[1] if claim else file
 
 
