@@ -21,7 +21,6 @@ from lifelore.domains.tabletop.physics import NEAR as AT_CONTACT
 from lifelore.domains.tabletop.physics import Tabletop
 from lifelore.domains.tabletop.settings import TabletopScene
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
-from lifelore.domains.tabletop.views import views_around
 from lifelore.perception.clouds.fused_views import fused
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.registration.registered_views import registered_views
@@ -30,6 +29,7 @@ from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene_perception import perceived_scene
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.engine.estimates import exact_share, ratio_or_unmeasured
+from reproduction.own.o_08_views_without_poses.views_around import views_around
 
 LOT = 5
 SEED = 7012

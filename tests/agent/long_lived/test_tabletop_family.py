@@ -13,7 +13,7 @@ pytestmark = pytest.mark.sim
 from lifelore.agent.long_lived.families import tray_states as tray_  # noqa: E402
 from lifelore.agent.long_lived.families.tabletop import TabletopFamily  # noqa: E402
 from lifelore.agent.long_lived.families.tabletop_task import TabletopTask, reward_bin  # noqa: E402
-from lifelore.agent.long_lived.families.tray_features import look_at_raw_cloud, look_with_labels  # noqa: E402
+from lifelore.agent.long_lived.families.tray_features import look_at_raw_cloud  # noqa: E402
 from lifelore.agent.long_lived.families.tray_features import look_without_relations as look_at_places  # noqa: E402
 from lifelore.agent.long_lived.knowledge import Knowledge  # noqa: E402
 from lifelore.agent.long_lived.live_task import live_task  # noqa: E402
@@ -68,7 +68,7 @@ def test_a_raw_cloud_of_which_no_scene_can_be_made_shows_nothing(monkeypatch):
 def test_features_name_the_target_that_the_user_points_at(family):
     for number in range(2):
         tray = sample_tray(3, number)
-        seen = look_with_labels(TabletopJob(tray, KIND))
+        seen = look_at_raw_cloud(TabletopJob(tray, KIND))
         assert seen is not None
         assert seen.target == tray.target
         assert seen.objects <= set(range(len(tray.shapes)))

@@ -17,8 +17,8 @@ from lifelore.domains.tabletop.depth_camera import KINECT
 from lifelore.domains.tabletop.pose import Pose
 from lifelore.domains.tabletop.settings import TabletopSettings
 from lifelore.domains.tabletop.tabletop import sample_scene
-from lifelore.domains.tabletop.views import views_around
 from lifelore.perception.clouds.cloud_file import read_cloud
+from reproduction.own.o_08_views_without_poses.views_around import views_around
 
 pytest.importorskip("mujoco")
 

@@ -114,28 +114,19 @@ def test_a_copied_state_goes_on_as_the_original_even_pickled():
 
 
 @pytest.mark.slow
-def test_looks_carry_labels_on_request_alone():
+def test_looks_carry_neither_labels_nor_colours_and_show_what_is_left():
     tray = sample_tray(0, 3)
     task = TabletopJob(tray, JOB_TYPES[0])
-    assert set(task.look().labels.tolist()) == {UNLABELLED}
-    assert task.look(labelled=True).objects == tuple(range(2, 2 + task.n_objects))
+    first = task.look()
+    assert (set(first.labels.tolist()), first.colours) == ({UNLABELLED}, None)
+    assert np.array_equal(first.points, tray.cloud.points)
     assert task.object_at(tray.pointed) == tray.target
     task.step(tray.target)
     task.step(HAND_OVER_GENTLY * task.n_objects + tray.target)
-    later = task.look(labelled=True)
-    assert tray.target + 2 not in later.objects
+    later = task.look()
     assert np.array_equal(later.points, task.look().points)
-    plain = task.look(labelled=True, coloured=False)
-    assert plain.colours is None
-    assert np.array_equal(later.points, plain.points)
-    other = next(label for label in later.objects)
-    for cloud in (tray.cloud, later):
-        assert cloud.colours is not None
-    # An object keeps its paint, and where it stayed its place.
-    assert later.colours[later.labels == other].mean(axis=0) == pytest.approx(
-        tray.cloud.colours[tray.cloud.labels == other].mean(axis=0), abs=6
-    )
-    assert later.of(other).mean(axis=0) == pytest.approx(tray.cloud.of(other).mean(axis=0), abs=0.01)
+    taken = tray.cloud.of(tray.target + 2)
+    assert np.linalg.norm(later.points - taken[taken[:, 2].argmax()], axis=1).min() > 0.01
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ the user's points follow from them:
 The world knows no spatial relation; `perception` and the relations' truth are strangers to it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -183,33 +183,25 @@ class TabletopJob:
             return witness.events(push_apart(tray, number), pushed=True)
         return witness.events(hand_over(tray, "brisk" if verb == HAND_OVER_BRISKLY else "gentle"))
 
-    def look(self, labelled: bool = False, coloured: bool = True) -> LabelledCloud:
-        """What the camera sees now, in the table's frame; the hand is out of the picture, what it holds is not.
+    def look(self) -> LabelledCloud:
+        """What the camera sees now, in the table's frame, without labels and colours.
 
-        Parameters
-        ----------
-        labelled : bool
-            Whether points carry the true object (``k + 2``) or the table (1); without, all labels are 0.
-        coloured : bool
-            Whether points have colours, which take a third of the time of a picture.
-
-        Returns
-        -------
-        LabelledCloud
-            At the start it is the tray's own picture. An object that is hidden has no points.
+        The hand is out of the picture, what it holds is not. At the start it is the tray's own picture. An object
+        that is hidden has no points.
         """
         taken = self._observation.n_actions_taken
-        cloud = self.tray.cloud if taken == 0 else self._photograph(taken, coloured)
-        return cloud if labelled else replace(cloud, labels=np.full_like(cloud.labels, UNLABELLED))
+        points = self.tray.cloud.points if taken == 0 else self._photographed(taken)
+        return LabelledCloud(points, np.full(len(points), UNLABELLED), None, self.tray.view.position)
 
-    def _photograph(self, taken: int, coloured: bool) -> LabelledCloud:
+    def _photographed(self, taken: int) -> NDArray[np.float64]:
+        """(n, 3) points of a new picture."""
         rng = stream(self.seed, "tabletop job", "camera", taken)
         outlines = [self._physics.outline(k) for k in self._physics.here]
-        view = self.tray.view
-        photo = photograph(self._physics, outlines, view, self._camera, rng, 0, coloured) if outlines else None
-        if photo is None:
-            return LabelledCloud(np.empty((0, 3)), np.empty(0, np.int64), None, self.tray.view.position)
-        return with_paint_of(photo.cloud, self.tray.cloud)
+        if not outlines:
+            return np.empty((0, 3))
+        photo = photograph(self._physics, outlines, self.tray.view, self._camera, rng, fewest=0, coloured=False)
+        assert photo is not None
+        return photo.cloud.points
 
     def object_at(self, point: NDArray[np.float64]) -> int:
         """The object on the table nearest to a point in the table's frame: what the agent points at.
@@ -237,19 +229,6 @@ class TabletopJob:
             for manner in ("gentle", "brisk")
         )
         return gentle, brisk
-
-
-def with_paint_of(cloud: LabelledCloud, first: LabelledCloud) -> LabelledCloud:
-    """The same cloud, every object in the mean colour that it has in the `first` cloud; shading stays."""
-    if cloud.colours is None or first.colours is None:
-        return cloud
-    colours = cloud.colours.astype(float)
-    for label in np.intersect1d(cloud.labels, first.labels):
-        mine = cloud.labels == label
-        colours[mine] *= first.colours[first.labels == label].mean(axis=0) / np.maximum(
-            colours[mine].mean(axis=0), 1
-        )
-    return replace(cloud, colours=np.clip(colours, 0, 255).astype(np.uint8))
 
 
 def reward_of(user: User, events: Events, brisk: bool, target: int) -> float:

@@ -32,7 +32,7 @@ def family_named(name: str, seed: int) -> TaskFamily:
     if name == "tabletop":
         from lifelore.agent.long_lived.families.tabletop import TabletopFamily
 
-        return TabletopFamily(TaskStream(TABLETOP_TYPES, seed=seed), seed, labelled=False)
+        return TabletopFamily(TaskStream(TABLETOP_TYPES, seed=seed), seed)
     if name == "factory-customers":
         from lifelore.agent.long_lived.families.factory_customers import FactoryFamily
         from lifelore.domains.factory.customer_orders import CUSTOMERS

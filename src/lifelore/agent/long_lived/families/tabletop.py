@@ -15,7 +15,6 @@ from lifelore.agent.long_lived.families.tabletop_task import (
 )
 from lifelore.agent.long_lived.families.tray_features import (
     look_at_raw_cloud,
-    look_with_labels,
     look_without_relations,
 )
 from lifelore.agent.long_lived.families.tray_states import (
@@ -81,15 +80,12 @@ class TabletopFamily(TaskFamily):
         Its types are names of `job_types.JOB_TYPES`.
     seed : int
         Of the trays.
-    labelled : bool
-        Whether the points of the pictures carry the objects' labels; without, objects are cut automatically.
     trees : dict, optional
         Outcomes of (tray, gripper), shared between families that meet the same trays.
     """
 
     stream: TaskStream
     seed: int = 0
-    labelled: bool = True
     trees: dict[tuple[int, str], OutcomeTree] = field(default_factory=dict)
 
     name = "tabletop jobs"
@@ -129,8 +125,7 @@ class TabletopFamily(TaskFamily):
     ) -> "tuple[DrawnTask, TabletopTask]":
         """Task `number`, drawn and met."""
         drawn, job = self.job(number, context)
-        look = look_with_labels if self.labelled else look_at_raw_cloud
-        return drawn, TabletopTask(job, look if abilities.perception else look_without_relations)
+        return drawn, TabletopTask(job, look_at_raw_cloud if abilities.perception else look_without_relations)
 
     def best_return(self, number: int, context: int | None = None) -> float:
         """The best possible return, from a search in the simulator."""

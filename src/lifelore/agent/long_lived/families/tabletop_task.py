@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from lifelore.agent.long_lived.families.outcome_planning import OutcomePlanner
 from lifelore.agent.long_lived.families.tray_features import (
     PerceivedTray,
-    look_with_labels,
+    look_at_raw_cloud,
 )
 from lifelore.agent.long_lived.families.tray_graph import UNKNOWN, Answer, Done, TrayGraph
 from lifelore.agent.long_lived.families.tray_states import (
@@ -93,7 +93,7 @@ class TabletopTask:
     """
 
     def __init__(
-        self, job: JobReplay, look: Callable[[TabletopJob], PerceivedTray | None] = look_with_labels
+        self, job: JobReplay, look: Callable[[TabletopJob], PerceivedTray | None] = look_at_raw_cloud
     ) -> None:
         self.job, self._look = job, look
         self._graph = TrayGraph()

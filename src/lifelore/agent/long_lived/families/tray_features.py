@@ -144,11 +144,6 @@ class PerceivedTray:
         return {other: float(tree.query(points)[0].min()) for other, points in self.points.items()}
 
 
-def look_with_labels(job: TabletopJob) -> PerceivedTray | None:
-    """The tray that the camera sees, with the labels of the points given; None if the target is hidden."""
-    return _perceived(job, job.look(labelled=True, coloured=False))
-
-
 def look_at_raw_cloud(job: TabletopJob) -> PerceivedTray | None:
     """The tray that the camera sees, objects cut automatically.
 
@@ -159,7 +154,7 @@ def look_at_raw_cloud(job: TabletopJob) -> PerceivedTray | None:
         return None
     try:
         # The camera knows which way is up; the frame stays that of the table.
-        cloud = to_scene(PointCloud(seen.points, colours=seen.colours, camera=seen.camera), "z")
+        cloud = to_scene(PointCloud(seen.points, camera=seen.camera), "z")
     except InputError:
         return None
     return _perceived(job, cloud)
