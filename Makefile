@@ -43,6 +43,7 @@ $(BIN)/.test: $(BIN)/.core
 	touch $@
 
 demo: setup ## Hidden goals are searched, known ones driven to, in a generated office; picture out/demo/demo.png
+	mkdir -p out/demo
 	$(BIN)/lifelore live --memory out/demo/lifelore.db --out out/demo/hidden
 	$(BIN)/lifelore live --goals examples/data/courier.csv --memory out/demo/lifelore.db --out out/demo/known
 	$(BIN)/python examples/demo/picture.py out/demo

@@ -20,7 +20,7 @@ BENCHES = {
     "serve": "decisions and outcomes over HTTP, beside a bare FastAPI route",
     "memory": "learners, contexts and memory files of growing size; many memories merged, beside one by one",
     "buildings": "the first and a later task in buildings of 5,000 to 300,000 places",
-    "lives": "the time of a life's tasks, beside Q-learning in plain Python",
+    "lives": "the time of a life's tasks, by agent",
     "priors": "an action prior of a million contexts, beside dictionaries and lists; a factory's tables",
     "personalise_value": "choices for strangers by the default of reuse fit, beside LinUCB; value, not speed",
 }

@@ -20,6 +20,9 @@ def shown(memory):
 
 
 def test_an_export_is_itself_a_memory(lived, tmp_path):
+    with pytest.raises(StoreError, match=r"memory: the folder .*/out does not exist"):
+        lived.export_to(tmp_path / "out" / "export.db")
+    (tmp_path / "out").mkdir()
     assert lived.export_to(tmp_path / "out" / "export.db") == 2
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["export.db"]
     with open_memory(tmp_path / "out" / "export.db") as copy:

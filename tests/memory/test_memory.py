@@ -283,7 +283,7 @@ def test_a_memory_that_must_exist_is_not_created(file, tmp_path: Path):
 
 
 def test_only_the_folder_of_the_users_own_memory_is_created(tmp_path: Path, monkeypatch):
-    with pytest.raises(StoreError, match=r"the folder .*/wrong/dir of memory life\.db does not exist"):
+    with pytest.raises(StoreError, match=r"memory: the folder .*/wrong/dir does not exist"):
         open_memory(tmp_path / "wrong" / "dir" / "life.db")
     assert not (tmp_path / "wrong").exists()
     monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "own"))

@@ -183,9 +183,7 @@ def open_file(path: Path, *, durable: bool = False, journal: Literal["WAL", "DEL
         with one_line_refusals(str(path)):
             path.parent.mkdir(parents=True, exist_ok=True)
     elif not path.parent.exists():
-        raise StoreError(
-            f"the folder {path.parent} of memory {path.name} does not exist; create it, or check the path"
-        )
+        raise StoreError(f"memory: the folder {path.parent} does not exist; create it, or check the path")
 
     def writable() -> Connection:
         conn = connect(path, "rwc")
