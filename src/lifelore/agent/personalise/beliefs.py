@@ -128,7 +128,7 @@ def probabilities(
     mask = np.zeros((len(rows), library.n_policies), bool)
     mask[:, active] = may
     probs = np.empty(may.shape)
-    for part in blocks(len(rows), library, study.selection):
+    for part in blocks(len(rows), algorithm, study.selection):
         probs[part] = algorithm.propensities(rows[part], study.selection, mask[part])[:, active]
     probs = (1 - study.explore) * probs + study.explore * may / may.sum(axis=1, keepdims=True)
     return probs / probs.sum(axis=1, keepdims=True)

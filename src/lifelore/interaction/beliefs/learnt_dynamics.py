@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.law import of_users
 
 Array = NDArray[Any]
 By = Literal["time", "type", "outcome"]
@@ -157,7 +158,7 @@ class LearntRows:
         # A row for each type: products of equal shapes are faster.
         self._rates, self._stay = rates.astype(dtype), np.repeat(stay[:, None], n_types, axis=1).astype(dtype)
         self._anew = self._rates[:, None] * self._prior
-        self._ones, self._ways = np.ones(n_types, dtype), np.ones(len(rates), dtype)
+        self._ones, self._ways = np.ones(n_types, dtype), np.ones((len(rates), len(rates)), dtype)
         self._categories: dict[Hashable, int] = {None: 0}
         for category in settings.categories:
             self._categories.setdefault(category, len(self._categories))
@@ -178,9 +179,9 @@ class LearntRows:
         outcome : hashable, or for many users a sequence of these, optional
             How the episode ended, such as ``"won"``.
         """
-        joint = np.exp(log_belief)[..., None, :] * self.shares[users]
+        joint = self._joint(users, log_belief)
         # Products with ones: sums over short axes are slow.
-        weights = joint @ self._ones
+        weights = joint.dot(self._ones)
         after = joint * self._stay
         after += weights[..., None] * self._anew
         moved: Any = 0.0
@@ -190,9 +191,10 @@ class LearntRows:
                 table.learn(users, joint[..., way, :] / np.maximum(weights[..., way, None], LEAST))
                 after[..., way, :], stayed = table.step(users, joint[..., way, :], category)
                 moved = moved + after[..., way, :] - stayed
-        total = np.maximum(self._ways @ after, LEAST)
-        after /= total[..., None, :]
+        totals = self._ways @ after
+        after /= np.maximum(totals, LEAST, out=totals)
         self.shares[users] = after
+        total = totals[..., 0, :]
         if self.tables:
             self.moved[users] = moved / total
         return np.log(total)
@@ -209,7 +211,7 @@ class LearntRows:
 
     def _joint(self, users: Any, log_belief: Array) -> Array:
         """p(way, type), (..., n_ways, n_types)."""
-        return np.exp(log_belief)[..., None, :] * self.shares[users]
+        return np.exp(log_belief)[..., None, :] * of_users(self.shares, users)
 
     def learnt(self, user: int, log_belief: Array) -> LearntDynamics:
         """Settings that start from what a user has shown."""

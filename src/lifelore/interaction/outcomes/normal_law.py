@@ -144,12 +144,6 @@ class NormalLaw(Law):
         moved += location
         return Posterior(moved, doubt, around, freedom)
 
-    def location(self, policies: Numbers, shown: Array, users: Numbers) -> Array:
-        """The location of `posterior` alone."""
-        n, mean, _ = _parts(self._shown_of(shown, users, policies)[..., None, None, :])
-        pull, location = n * self._doubt[policies], self._location[policies]
-        return location + pull / (1 + pull) * (mean - location)
-
     def _shown_of(self, shown: Array, users: Numbers, policies: Numbers) -> Array:
         """The statistics of pairs of a user and a policy, (..., 3)."""
         return of_users(shown.reshape(-1, 3), users * self.n_policies + policies)
@@ -287,16 +281,20 @@ class NormalRows(NormalPrediction):
         return rows, policies
 
     @cached_property
+    def _tried(self) -> Posterior:
+        rows, policies = self._at
+        return self._law.posterior(policies, self._shown, self._users[rows])
+
+    @cached_property
     def _tried_mean(self) -> Array:
         rows, policies = self._at
-        location = self._law.location(policies, self._shown, self._users[rows])
-        return self._law.natural((self._weights[rows][:, :, None] * location).sum(axis=1), policies)
+        return self._law.natural((self._weights[rows][:, :, None] * self._tried.location).sum(axis=1), policies)
 
     @cached_property
     def _tried_variances(self) -> tuple[Array, Array]:
         """Variance of the mean outcome of tried pairs, and of outcomes around it, (m, n_types) each."""
         rows, policies = self._at
-        location, doubt, squares, freedom = self._law.posterior(policies, self._shown, self._users[rows])
+        location, doubt, squares, freedom = self._tried
         weights, square = self._weights[rows][:, :, None], self._law.unit[policies][:, None] ** 2
         gap = location - (weights * location).sum(axis=1, keepdims=True)
         noise = variance_factor(freedom) * squares / freedom

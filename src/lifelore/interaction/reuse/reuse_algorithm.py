@@ -277,7 +277,7 @@ class ReuseAlgorithm:
     def end_episode(self, users: Numbers, outcome: Any = None) -> None:
         """Take the dynamics' step for `users`; dynamics that learn read by `outcome` how the episodes ended."""
         if self.dynamics.moves:
-            self.log_belief[users] = self.changes.step(self.log_belief[users], users, outcome)
+            self.log_belief[users] = self.changes.step(of_users(self.log_belief, users), users, outcome)
             self._begun[users] = True
 
     def update(self, users: Numbers, policies: Numbers, signals: Any, outcomes: Any = None) -> Observed:

@@ -27,8 +27,8 @@ Numbers = NDArray[np.int64]
 Users = ArrayLike | Sequence[str]
 """Numbers of users, or their names where the users have names."""
 
-BLOCK = 1 << 17
-"""Numbers of a block's beliefs: they stay in the processor's cache."""
+BLOCK = 1 << 18
+"""Numbers that the users of a block take: more would leave the processor's cache, fewer take more calls."""
 LARGEST_BLOCK = 1 << 21
 """Numbers of the largest temporary arrays, which have a row for each user, type, policy and signal."""
 
@@ -163,7 +163,7 @@ class UserBeliefs:
         """
         rows, rule = self._checked_users(users), rule_of(rule, self.library)
         mask, chosen = self._mask(available, len(rows)), np.empty(len(rows), np.int64)
-        for at in blocks(len(rows), self.library, rule):
+        for at in blocks(len(rows), self.algorithm, rule):
             chosen[at] = self.algorithm.select(rows[at], rule, self.generator, _part(mask, at), episodes_left)[0]
         return chosen
 
@@ -192,7 +192,7 @@ class UserBeliefs:
         if not 1 <= k <= most:
             raise InputError(f"k must be 1 to {most}, the number of policies available to every user, got {k}")
         best = np.empty((len(rows), k), np.int64)
-        for at in blocks(len(rows), self.library, rule):
+        for at in blocks(len(rows), self.algorithm, rule):
             scores = self.algorithm.scores(rows[at], rule, self.generator, _part(mask, at), episodes_left)
             best[at] = best_policies(scores, k, self.generator)
         return best
@@ -259,7 +259,7 @@ class UserBeliefs:
         """Probability that `select` takes each policy, (k, n_policies); log it beside the selected policy."""
         rows, rule = self._checked_users(users), rule_of(rule, self.library)
         mask, found = self._mask(available, len(rows)), np.empty((len(rows), self.library.n_policies))
-        for at in blocks(len(rows), self.library, rule):
+        for at in blocks(len(rows), self.algorithm, rule):
             found[at] = self.algorithm.propensities(rows[at], rule, _part(mask, at), episodes_left)
         return found
 
@@ -269,7 +269,7 @@ class UserBeliefs:
 
     def _distinct_blocks(self, rows: Numbers, rule: SelectionRule | None = None) -> Iterator[slice]:
         """`blocks` in none of which a user comes twice: a second signal needs what the first has changed."""
-        for at in blocks(len(rows), self.library, rule):
+        for at in blocks(len(rows), self.algorithm, rule):
             start, inside, ordered = at.start, set[int](), np.sort(rows[at])
             if (ordered[1:] != ordered[:-1]).all():
                 yield at
@@ -309,9 +309,9 @@ class UserBeliefs:
         return self.names.rows(named)  # pyright: ignore[reportArgumentType]
 
 
-def blocks(n_users: int, library: PolicyLibrary, rule: SelectionRule | None = None) -> Iterator[slice]:
-    """Blocks of users whose beliefs fit the cache, and whose scores by `rule` fit the memory."""
-    size = BLOCK // library.n_types
+def blocks(n_users: int, algorithm: ReuseAlgorithm, rule: SelectionRule | None = None) -> Iterator[slice]:
+    """Blocks of users whose numbers fit the cache, and whose scores by `rule` fit the memory."""
+    library, size = algorithm.library, BLOCK // algorithm.width
     if rule is not None and not getattr(rule, "by_means", False):
         n_bins = getattr(rule, "n_bins", 1)
         size = min(size, LARGEST_BLOCK // (library.n_types * library.n_policies * n_bins))

@@ -47,7 +47,9 @@ def drawn_types(belief: Array, generator: np.random.Generator) -> Any:
         return held.searchsorted(generator.random() * held[-1], side="right")
     n = belief.shape[1]
     held = belief @ _running(n, belief.dtype.char) if n <= MOST_TYPES else np.cumsum(belief, axis=1)
-    return (held > generator.random((len(belief), 1)) * held[:, -1:]).argmax(axis=1)
+    # In the rows' precision, where comparison is fast, and below the last sum whatever is rounded.
+    drawn = np.nextafter((generator.random((len(belief), 1)) * held[:, -1:]).astype(held.dtype), 0)
+    return (held > drawn).argmax(axis=1)
 
 
 @lru_cache(maxsize=4)

@@ -116,7 +116,7 @@ def _best(scores: ArrayLike) -> Mask:
             return scores >= _bar(largest, max(abs(largest), abs(least)), tolerance)
     if not scores.shape[-1] or not ((largest := largest_of(scores)) > -np.inf).all():
         raise InputError("scores must be numbers, at least one of them above minus infinity, got NaN or nothing")
-    least = -largest_of(-scores)
+    least = np.take_along_axis(scores, scores.argmin(axis=-1)[..., None], axis=-1)
     if not (least > -np.inf).all():
         least = scores.min(axis=-1, keepdims=True, where=scores > -np.inf, initial=np.inf)
     with np.errstate(invalid="ignore"):
