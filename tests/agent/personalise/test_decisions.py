@@ -20,7 +20,7 @@ from lifelore.agent.personalise.registration import add
 from lifelore.agent.personalise.study import open_study
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.reuse.novelty.novelty_detector import MASS
+from lifelore.interaction.reuse.unknown_users import MASS
 from lifelore.interaction.selection import RULES, rule_named
 from lifelore.memory import open_memory
 
@@ -325,4 +325,5 @@ def test_novelty_is_that_of_a_detector_that_saw_the_same(file_memory):
         agent.update(policy, outcome)
     assert agent.novelty is not None
     assert choose(file_memory, study, "ann", novelty=True)["novelty"] == pytest.approx(agent.novelty.probability)
+    assert explain(file_memory, study, "ann")["novelty"] == pytest.approx(agent.novelty.probability)
     assert choose(file_memory, study, "ann")["novelty"] is None

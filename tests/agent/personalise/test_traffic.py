@@ -11,7 +11,7 @@ from lifelore.agent.personalise import decisions, traffic
 from lifelore.agent.personalise.explanation import explain, novelty_of
 from lifelore.agent.personalise.study import Study
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.novelty.novelty_detector import MASS
+from lifelore.interaction.reuse.unknown_users import MASS
 from lifelore.memory import Memory
 
 DAY, HOUR = traffic.DAY, traffic.HOUR

@@ -1,6 +1,7 @@
 """The evidence behind the belief about a user of a study: why the next policy is likely to be chosen."""
 
 from collections import deque
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,7 @@ import numpy as np
 from lifelore.agent.personalise.beliefs import probabilities, start_at_priors, unknown_log_odds
 from lifelore.agent.personalise.identifiers import identifier
 from lifelore.agent.personalise.study import Study, known_users
-from lifelore.core.errors import NotFoundError
+from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, Evidence, relative_evidence
 from lifelore.memory import Memory
 from lifelore.memory.record_rules import check_name
@@ -25,8 +26,9 @@ def explain(memory: Memory, study: Study, user: str) -> dict[str, Any]:
     -------
     dict
         ``user``, ``study``; ``decisions`` so far, ``open`` ones without an outcome; ``control``; ``context`` and
-        ``features`` as stored; ``belief`` by type, most likely first; ``expected`` outcome and ``probabilities``
-        of the next choice by policy in use (of the control group: None); ``surprise`` of the outcomes in nats (the
+        ``features`` as stored; ``belief`` by type, most likely first, as if one of these fitted; ``novelty``, the
+        probability that none fits (None where it is not computed); ``expected`` outcome and ``probabilities`` of
+        the next choice by policy in use (of the control group: None); ``surprise`` of the outcomes in nats (the
         sum of −log evidence; it depends on the noise, and is no sign of a new type); ``evidence``: for
         each of the last outcomes its ``policy``, ``log_evidence``, and by type the log likelihood less that of the
         best type (None: impossible); ``last``: the last decisions with their logged probability and outcome.
@@ -51,7 +53,9 @@ def explain(memory: Memory, study: Study, user: str) -> dict[str, Any]:
     odds = probabilities(study, algorithm, np.zeros(1, np.int64))[0]
     belief = algorithm.belief(0)
     expected = algorithm.known(0).performance.expected(belief)[study.active_numbers]
-    relative = relative_evidence(list(evidence), study.library.n_types)
+    relative, novelty = relative_evidence(list(evidence), study.library.n_types), None
+    with suppress(InputError):  # there is no broad type for such signals
+        novelty = _novelty(study, known, shown)
     return {
         "study": study.name,
         "user": user,
@@ -64,6 +68,7 @@ def explain(memory: Memory, study: Study, user: str) -> dict[str, Any]:
         "expected": _by_name(tuple(study.active), expected),
         "probabilities": None if study.holds_out(user) else _by_name(tuple(study.active), odds),
         "surprise": surprise,
+        "novelty": novelty,
         "evidence": [
             {
                 "policy": study.library.policies[one.policy],
@@ -96,11 +101,15 @@ def stranger_table(study: Study) -> dict[str, Any]:
 
 def novelty_of(memory: Memory, study: Study, user: str) -> float:
     """The probability that no type of the library fits a user; InputError where no broad law is known."""
+    known, _, shown = _read(memory, study, user)
+    return _novelty(study, known, shown)
+
+
+def _novelty(study: Study, known: UserRow, shown: list[tuple[str, float]]) -> float:
     from scipy.special import expit, logit
 
-    from lifelore.interaction.reuse.novelty.novelty_detector import MASS
+    from lifelore.interaction.reuse.unknown_users import MASS
 
-    known, _, shown = _read(memory, study, user)
     (log_odds,) = unknown_log_odds(study, [known], [(known.number, *pair) for pair in shown])
     return float(expit(log_odds + logit(MASS)))
 

@@ -21,7 +21,7 @@ from lifelore.agent.personalise.beliefs import open_beliefs, unknown_log_odds
 from lifelore.agent.personalise.calibration import difference
 from lifelore.agent.personalise.study import Study
 from lifelore.core.errors import InputError
-from lifelore.interaction.reuse.novelty.novelty_detector import MASS
+from lifelore.interaction.reuse.unknown_users import MASS
 from lifelore.memory import Memory
 from lifelore.memory.study_totals import UserHalves
 

@@ -3,8 +3,8 @@
 The deterministic form of Russo and Van Roy (2014). It has no κ and no horizon to choose. It is not in the thesis;
 in the thesis's experiments it does as well as expected improvement.
 
-On users whom perhaps no known type fits, agents try policies by `UnknownUsers` instead, since information about the
-type ends there. Where models are exact, or taken for the truth, no such users are looked for.
+On users whom perhaps no known type fits, agents try policies by `UnknownUsers` instead, since information about
+the type ends there. Where models are exact, or taken for the truth, no such users are looked for.
 """
 
 from dataclasses import dataclass

@@ -21,10 +21,8 @@ from lifelore.interaction.reuse.novelty.calibration import NoveltyCalibration, c
 from lifelore.interaction.reuse.novelty.misfit import Misfit
 from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
 from lifelore.interaction.reuse.reuse_algorithm import Dynamics, named_part
+from lifelore.interaction.reuse.unknown_users import MASS
 from lifelore.interaction.selection import SelectionRule, rule_of
-
-MASS = 0.05
-"""Usual prior probability that no known type fits."""
 
 
 class NoveltyDetector:
