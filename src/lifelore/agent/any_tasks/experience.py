@@ -178,8 +178,9 @@ class Experience:
         one, about = np.array([bool(news.belief)], np.int64), {"n_actions": self.n_actions}
         yield Record(COUNTS, f"{self.key}/tasks", VERSION, "add", np.zeros(1, np.int64), one, about)
         yield news.prior.to_record({"prior": "tasks", "means": self.key})
-        met = self.prior.counts(list(news.prior.labels)).any(axis=1).tolist()
-        features = {code: one for (code, one), old in zip(news.prior.labels.items(), met, strict=True) if not old}
+        codes = news.prior.contexts
+        new = set(codes[self.prior.counts(codes).sum(axis=1) == 0].tolist())
+        features = {code: one for code, one in news.prior.labels.items() if code in new}
         contexts = {} if news.context in self.labels else {news.context: news.label}
         yield labels_record(f"{self.key}/features", features)
         yield labels_record(f"{self.key}/contexts", contexts)
@@ -271,7 +272,8 @@ class Experience:
                 return again.recall(LABELS, f"{key}/features", LABELS_VERSION)
 
         if labels is not None:
-            made._features.maps.append(ContextLabels(features))
+            later: Any = ContextLabels(features)
+            made._features.maps.append(later)
         return made
 
 
