@@ -38,7 +38,7 @@ def _log_options(
         list[str] | None,
         Option(
             metavar="OURS=THEIRS,…",
-            help="Names of the log's columns, such as user=household,policy=brand.",
+            help="Names of the log's columns, such as user=household,policy=brand,weight=ipw.",
         ),
     ] = None,
     separator: Annotated[

@@ -15,6 +15,7 @@ from lifelore.agent.personalise.fitting.types_by_context import (
     priors_by_context,
 )
 from lifelore.agent.personalise.log.log import read_log
+from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.study import open_study
 from lifelore.memory import open_memory
 
@@ -134,6 +135,15 @@ def test_contexts_move_jointly_normal_means_and_leave_one_covariance():
     # Outcomes less their contexts' means are noise.
     variance = performance.noise**2 + np.diag(performance.covariance)
     assert variance == pytest.approx(NOISE**2, abs=0.04)
+
+
+def test_rows_of_weight_0_count_for_no_context():
+    table = drawn(0, RATES, n_users=90) | {"weight": [1.0, 0.0] * 270}
+    part = {name: column[::2] for name, column in table.items()}
+    logs = [read_log(one, LogFormat(columns={"weight": "weight"})) for one in (table, part)]
+    whole, half = (by_context(log, typed_of(log, 1), "gaussian") for log in logs)
+    assert whole.library.performance.mean == pytest.approx(half.library.performance.mean)
+    assert whole.counts.tolist() == half.counts.tolist()
 
 
 def test_contexts_of_few_users_have_no_types_and_everybodys_prior():

@@ -36,7 +36,7 @@ def test_a_file_restores_every_bit(tmp_path, monkeypatch):
     assert again.signal.outcomes is again.performance  # pyright: ignore
     broken = {name: value for name, value in model().to_arrays().items() if name != "covariance"}
     monkeypatch.setattr(JointNormalOutcomes, "to_arrays", lambda _: broken)
-    with pytest.raises(InputError, match="no policy library that can be read .'covariance'."):
+    with pytest.raises(InputError, match=r"no policy library that can be read .'covariance'."):
         PolicyLibrary.from_bytes(library.to_bytes())
 
 

@@ -70,9 +70,7 @@ def test_trees_learn_relations_and_the_order_of_names_carries_nothing():
     scenes = [seen([1, 0], [-1, 0]), seen([-1, 0], [1, 0]), seen([0, 0], [0, 0])] * 3
     labels = [PairLabel(2, 3, "on"), PairLabel(3, 2, "on"), PairLabel(3, 2, "adjacent")] * 3
     doubtful = PairLabel(2, 3, "adjacent", 1)
-    model = OrientationTrees().fit(
-        [*scenes, seen([1, 0], [-1, 0])], [*([one] for one in labels), [doubtful]]
-    )
+    model = OrientationTrees().fit([*scenes, seen([1, 0], [-1, 0])], [*([one] for one in labels), [doubtful]])
     for rows, expected in zip(
         ([[1, 0], [-1, 0]], [[0, 0], [0, 0]]), ((5, 4, "on"), (4, 5, "adjacent")), strict=True
     ):

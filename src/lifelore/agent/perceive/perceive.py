@@ -325,9 +325,7 @@ def read_scene(source: Source, settings: PerceiveSettings) -> PointCloud:
     """Read the cloud of a source, with its files beside it; refuse a segmentation of a labelled cloud."""
     cloud = read_source(source, settings.units, settings.labels, settings.up, settings.beside)
     if settings.segmentation is not None and cloud.is_labelled:
-        raise InputError(
-            "segmentation (--set segment=METHOD) needs a cloud without labels: leave it out"
-        )
+        raise InputError("segmentation (--set segment=METHOD) needs a cloud without labels: leave it out")
     return cloud
 
 

@@ -1,4 +1,4 @@
-"""Columns of numbers in logs and tables in memory as logs."""
+"""Columns of numbers in logs (weights, features) and tables in memory as logs."""
 
 import numpy as np
 import pytest
@@ -11,6 +11,8 @@ from lifelore.agent.personalise.past import warm
 from lifelore.agent.personalise.study import open_study
 from lifelore.core.errors import InputError
 from lifelore.memory import open_memory
+
+WEIGHTED = LogFormat({"weight": "ipw"})
 
 
 @pytest.fixture
@@ -29,6 +31,12 @@ def written(tmp_path):
     return write
 
 
+def test_weights_are_read_only_where_they_are_named(written):
+    path = written("user,policy,outcome,weight\na,p,1,2.5\nb,p,2,0\n")
+    assert read_log([path]).weights is None
+    assert read_log([path], LogFormat({"weight": "weight"})).weights.tolist() == [2.5, 0]
+
+
 def test_features_are_each_users_last_values(written):
     form = LogFormat(features=("Age", "visits"), decimal_comma=True, separator="semicolon", missing=("NA",))
     text = "user;policy;outcome;visits;age\na;p;1;4;31,5\na;p;2;;\na;p;3;7;NA\nb;p;;3;20\nb;p;1;;\nc;p;1;1;9\n"
@@ -43,9 +51,14 @@ def test_features_are_each_users_last_values(written):
 @pytest.mark.parametrize(
     ("text", "form", "words"),
     [
+        ("user,policy,outcome\na,p,1\n", WEIGHTED, "it has no ipw"),
         ("user,policy,outcome\na,p,1\n", LogFormat(features=("age",)), "it has no age"),
+        ("user,policy,outcome,ipw\na,p,1,-2\n", WEIGHTED, "line 2: ipw must be a weight of at least 0, got '-2'"),
+        ("user,policy,outcome,ipw\na,p,1,\n", WEIGHTED, "line 2: ipw must be a weight of at least 0, got ''"),
+        ("user,policy,outcome,ipw\na,p,1,much\n", WEIGHTED, "line 2: ipw must be a finite number, got 'much'"),
         ("user,policy,outcome,age\na,p,1,old\n", LogFormat(features=("age",)), "line 2: age must be a finite"),
         ("user,policy,outcome,age,age\na,p,1,2,3\n", LogFormat(features=("age",)), "must have one column 'age'"),
+        ("user,policy,outcome,ipw\na,p,1,0\n", WEIGHTED, "weight must be above 0 on at least one line"),
     ],
 )
 def test_bad_numbers_are_refused_by_their_line(text, form, words, written, memory):
@@ -59,12 +72,35 @@ def test_bad_names_of_features_are_refused(features):
         LogFormat(features=features)
 
 
-HEAD = "user,type,policy,outcome\n"
+LINES = ["a,k,x,1,1", "a,k,x,3,3", "b,l,x,5,2", "b,l,y,6,0", "b,l,z,9,1", "c,k,y,4,1"]
+HEAD = "user,type,policy,outcome,w\n"
+
+
+def test_a_fit_with_weights_by_hand(written, memory):
+    form = LogFormat({"weight": "w"})
+    document = fit([written(HEAD + "\n".join(LINES) + "\n")], memory, FitSettings(model="gaussian"), form)
+    library = open_study(memory).library
+    assert library.policies == ("x", "y", "z")
+    # (1 + 3 · 3) / 4; y on type l has no weighted outcome and gets that of k, z on k that of l.
+    assert library.performance.mean.tolist() == [[2.5, 4, 9], [5, 4, 9]]
+    assert library.performance.moments.count[0].tolist() == pytest.approx([16 / 10, 1, 1])
+    assert document["outcomes"] == [[2, 1, 0], [1, 0, 1]]
+    assert document["borrowed"] == 2
+    # The prior counts users: two of k, one of l, one more in each.
+    assert library.prior == pytest.approx([3 / 5, 2 / 5])
+
+
+def test_equal_weights_fit_the_library_of_none(written, memory):
+    path = written("\n".join([HEAD.strip(), *(line[:-1] + "0.7" for line in LINES)]) + "\n")
+    fit([path], memory, FitSettings(model="gaussian"))
+    plain = open_study(memory).library.to_bytes()
+    fit([path], memory, FitSettings(model="gaussian"), LogFormat({"weight": "w"}))
+    assert open_study(memory).library.to_bytes() == plain
 
 
 def frame_of(lines):
     columns = zip(*(line.split(",") for line in lines), strict=True)
-    frame = dict(zip(("user", "type", "policy", "outcome"), map(list, columns), strict=True))
+    frame = dict(zip(("user", "type", "policy", "outcome", "w"), map(list, columns), strict=True))
     return frame | {"outcome": [float(value) for value in frame["outcome"]], "note": list(range(len(lines)))}
 
 
@@ -81,7 +117,7 @@ def tables():
 @pytest.mark.parametrize("kind", sorted(tables()))
 def test_a_table_is_fitted_as_its_file(kind, written, memory, tmp_path):
     # Outcomes that need all their digits.
-    lines = [f"u{i % 7},k{i % 2},{'xy'[i % 3 % 2]},{float(v)!r}" for i, v in
+    lines = [f"u{i % 7},k{i % 2},{'xy'[i % 3 % 2]},{float(v)!r},1" for i, v in
              enumerate(np.random.default_rng(0).normal(size=40))]  # fmt: skip
     lines = [f"u{i % 8},k{i % 2},{line.split(',', 2)[2]}" for i, line in enumerate(lines)]
     from_file = fit([written(HEAD + "\n".join(lines) + "\n")], memory, FitSettings("file", "gaussian"))
@@ -93,7 +129,7 @@ def test_a_table_is_fitted_as_its_file(kind, written, memory, tmp_path):
     assert choose(memory, first, "u3")["belief"] == choose(memory, second, "u3")["belief"]
     # The same table again is known, a table that has grown adds its new rows.
     assert warm([table], memory, second)["rows"] == 0
-    assert warm([tables()[kind](frame_of([*lines, "new,k0,x,1.5"]))], memory, second)["rows"] == 1
+    assert warm([tables()[kind](frame_of([*lines, "new,k0,x,1.5,1"]))], memory, second)["rows"] == 1
 
 
 def test_missing_outcomes_of_a_table_are_pending_and_bools_are_numbers():

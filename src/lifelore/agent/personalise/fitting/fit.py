@@ -10,9 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.personalise.fitting.fit_notes import fit_notes, personalised_by
-from lifelore.agent.personalise.fitting.library_from_log import Fitted, TypedRows, library_of, typed_rows
+from lifelore.agent.personalise.fitting.library_from_log import Fitted, TypedRows, library_of
 from lifelore.agent.personalise.fitting.model_choice import Kind, chosen_model
 from lifelore.agent.personalise.fitting.types_by_context import by_context, contexts_differ, priors_by_context
+from lifelore.agent.personalise.fitting.types_of_users import typed_rows
 from lifelore.agent.personalise.log.log import ReuseLog, read_log
 from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.past import keep_fitted_past

@@ -102,7 +102,7 @@ def chosen_model(
     sizes = range(1, min(MOST_TYPES, users // 2) + 1) if types is None else [types]
     plain = [trial.best_size(family, [None] if log.says_types else sizes) for family in _families(log, model)]
     kinds = [one.kind for one in plain]
-    if model == "auto" and not log.says_types:
+    if model == "auto" and not log.says_types and log.weights is None:
         kinds += [Kind("joint-normal", size) for size in sorted({types or 1, kinds[-1].types or 1})]
     best = _best(trial.candidates(_with_contexts(kinds, types or 1) if differ else kinds))
     return ModelChoice(best.kind, trial.document(best))

@@ -106,7 +106,8 @@ def user_means(rows: OutcomeRows, users: NDArray[np.int64]) -> OutcomeRows:
     """The mean outcome of each user with each policy, as rows: users are independent, their outcomes are not."""
     pairs, of_group = np.unique(users * (rows.pair.max() + 1) + rows.pair, return_inverse=True)
     pair = pairs % (rows.pair.max() + 1)
-    values = np.bincount(of_group, rows.values) / np.bincount(of_group)
+    weights = np.ones(len(users)) if rows.weights is None else rows.weights
+    values = np.bincount(of_group, weights * rows.values) / np.bincount(of_group, weights)
     return OutcomeRows(pair // rows.shape[1], pair % rows.shape[1], values, rows.shape)
 
 
@@ -163,12 +164,15 @@ def _parted(log: ReuseLog, typed: TypedRows, contexts: list[int]) -> TypedRows:
 
 
 def _rows(log: ReuseLog, parted: TypedRows, wide: PolicyLibrary) -> tuple[OutcomeRows, NDArray[np.int64]]:
-    """Rows of outcomes, policies numbered as in the library, and the user of each."""
-    at = parted.rows
+    """Rows of outcomes, policies numbered as in the library, and the user of each; weight 0 leaves a row out."""
+    weights = None if log.weights is None else log.weights[parted.rows]
+    used = np.ones(len(parted.rows), bool) if weights is None else weights > 0
+    at = parted.rows[used]
     numbers = {policy: number for number, policy in enumerate(wide.policies)}
     of_policy = np.array([numbers.get(policy, -1) for policy in log.policy.names])[log.policy.codes[at]]
     shape = len(parted.names), wide.n_policies
-    return OutcomeRows(parted.types, of_policy, log.outcomes[at], shape), log.user.codes[at]
+    rows = OutcomeRows(parted.types[used], of_policy, log.outcomes[at], shape)
+    return rows if weights is None else rows.with_weights(weights[used]), log.user.codes[at]
 
 
 def _joint_normal(log: ReuseLog, typed: TypedRows, parted: TypedRows, moves: Array) -> JointNormalOutcomes:

@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.personalise.log.log_format import LogFormat
+from lifelore.agent.personalise.log.log_format import WEIGHT, LogFormat
 from lifelore.agent.personalise.log.log_reader import WORDS, LogReader
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.interaction.outcomes.frame_columns import FrameColumns, is_frame
@@ -72,8 +72,8 @@ class ReuseLog:
         missing outcome or policy got what the format says (``filled_outcomes``, ``filled_policies``).
     group : Column
         "" where the log says nothing, and where the format does not read it.
-    probability : (n,) float64, optional
-        NaN where missing; None where the format does not read it.
+    probability, weights : (n,) float64, optional
+        NaN where missing, and at least 0; None where the format does not read them.
     feature_names : tuple of str
         As the format gives them.
     features : (n, n_features) float64
@@ -92,6 +92,7 @@ class ReuseLog:
     counts: dict[str, int]
     group: Column
     probability: NDArray[np.float64] | None = None
+    weights: NDArray[np.float64] | None = None
     feature_names: tuple[str, ...] = ()
     features: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)))
 
@@ -106,7 +107,7 @@ class ReuseLog:
     def take(self, rows: NDArray[np.int64]) -> "ReuseLog":
         """The log with the rows at some places alone, and the names that they have."""
         columns = {name: getattr(self, name).take(rows) for name in WORDS}
-        names = ("outcomes", "file", "line", "features", "probability")
+        names = ("outcomes", "file", "line", "features", "probability", "weights")
         own = {name: values[rows] for name in names if (values := getattr(self, name)) is not None}
         return replace(self, **columns, **own)
 
@@ -192,9 +193,11 @@ def _content(path: Path) -> bytes:
 def _log(reader: LogReader, form: LogFormat) -> ReuseLog:
     outcomes, file, line, words, numbers = reader.columns()
     columns = {name: _column(reader.codes[name], codes) for name, codes in zip(WORDS, words, strict=True)}
+    weights = numbers.pop(0) if WEIGHT in form.columns else None
     probability = numbers.pop(0) if form.probabilities else None
     return ReuseLog(
-        **columns, outcomes=outcomes, file=file, line=line, counts=reader.counts, probability=probability,
+        **columns, outcomes=outcomes, file=file, line=line, counts=reader.counts, weights=weights,
+        probability=probability,
         feature_names=tuple(name.strip() for name in form.features),
         features=np.stack(numbers, axis=1) if numbers else np.empty((len(outcomes), 0)),
     )  # fmt: skip

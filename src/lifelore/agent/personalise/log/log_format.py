@@ -12,6 +12,8 @@ NEEDED = ("user", "policy", "outcome")
 OPTIONAL = ("type", "context", "decision", "time")
 PROBABILITY, GROUP = "probability", "group"
 """Columns of the log that `reuse report` writes, read for off-policy evaluation only."""
+WEIGHT = "weight"
+"""Column of weights; read only where `columns` names it, because a log may have a column of that name."""
 SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t"}
 LEAVE_OUT, REFUSE = "leave-out", "refuse"
 FORMULAS = "=+-@\t\r"
@@ -25,8 +27,8 @@ class LogFormat:
     Parameters
     ----------
     columns : dict of str to str
-        The log's own name of a column, by ours (`NEEDED`, `OPTIONAL`, `PROBABILITY`, `GROUP`); others have
-        our names. Capitals do not matter.
+        The log's own name of a column, by ours (`NEEDED`, `OPTIONAL`, `PROBABILITY`, `GROUP`, `WEIGHT`); others
+        have our names. Capitals do not matter.
     separator : {"comma", "semicolon", "tab"}, optional
         Between columns; default: the one that makes the needed columns of the header.
     decimal_comma : bool
@@ -62,7 +64,7 @@ class LogFormat:
     probabilities: bool = False
 
     def __post_init__(self) -> None:
-        known = (*NEEDED, *OPTIONAL, PROBABILITY, GROUP)
+        known = (*NEEDED, *OPTIONAL, PROBABILITY, GROUP, WEIGHT)
         for ours in self.columns:
             if ours not in known:
                 raise InputError(f"columns must name {', '.join(known)}, got '{ours}'")
@@ -91,9 +93,9 @@ class LogFormat:
 
     @property
     def numbers(self) -> tuple[str, ...]:
-        """The log's names of its columns of numbers beside the outcome: probabilities, features."""
-        probability = [self.column(PROBABILITY)] if self.probabilities else []
-        return (*probability, *(name.strip().lower() for name in self.features))
+        """The log's names of its columns of numbers beside the outcome: weights, probabilities, features."""
+        ours = [WEIGHT] * (WEIGHT in self.columns) + [PROBABILITY] * self.probabilities
+        return (*map(self.column, ours), *(name.strip().lower() for name in self.features))
 
 
 def parse_features(words: Sequence[str]) -> dict[str, float]:

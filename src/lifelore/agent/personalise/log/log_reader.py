@@ -15,6 +15,7 @@ from lifelore.agent.personalise.log.log_format import (
     OPTIONAL,
     REFUSE,
     SEPARATORS,
+    WEIGHT,
     LogFormat,
     read_outcome,
     unescaped,
@@ -143,12 +144,15 @@ class LogReader:
         return math.nan
 
     def _numbers(self, name: str, words: Sequence[str], line: Ints) -> NDArray[np.float64]:
-        """A column of numbers; NaN where missing."""
+        """A column of numbers; NaN where missing, which a weight may not be."""
+        is_weight = WEIGHT in self._form.columns and name == self._form.numbers[0]
         values = np.full(len(words), math.nan)
         for place, word in enumerate(map(str.strip, words)):
+            where = f"{self._name} line {line[place]}: "
             if word not in self._missing:
-                where = f"{self._name} line {line[place]}: "
                 values[place] = read_outcome(word, where, decimal_comma=self._form.decimal_comma, name=name)
+            if is_weight and not values[place] >= 0:
+                raise InputError(f"{where}{name} must be a weight of at least 0, got {word[:60]!r}")
         return values
 
     def _words(self, name: str, column: Sequence[str] | None, line: Ints) -> Ints:
