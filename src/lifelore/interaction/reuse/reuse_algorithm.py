@@ -226,8 +226,9 @@ class ReuseAlgorithm:
 
     def unknown_probability(self, user: int) -> float | None:
         """Probability that no known type fits a user; None where such users are not looked for."""
-        log_odds = -np.inf if self.unknown is None else float(self.unknown.log_odds[user])
-        return None if log_odds == -np.inf else float(np.exp(-np.logaddexp(0.0, -log_odds)))
+        if self.unknown is None or self.unknown.log_odds[user] == -np.inf:
+            return None
+        return float(self.unknown.probability(user))
 
     # ---- likelihood, belief, dynamics --------------------------------------------------------------------
 

@@ -82,8 +82,12 @@ class UnknownUsers(UserModel):
         known : (...)
             Expected mean pay of the policy that is best for the user's type, of the known types.
         """
-        log_odds = self.log_odds[users]
-        return (log_odds > 0) | (_expit(log_odds) * (bounds.max(axis=-1) - known) > self._least)
+        gain = self.probability(users) * (bounds.max(axis=-1) - known)
+        return (self.log_odds[users] > 0) | (gain > self._least)
+
+    def probability(self, users: Numbers) -> Array:
+        """P(unknown type) of `users` (...), (...)."""
+        return np.exp(-np.logaddexp(0.0, -self.log_odds[users]))
 
     def fade(self, users: Numbers, keep: Array) -> None:
         """Nothing: the unknown type does not change."""
@@ -122,11 +126,6 @@ class UnknownUsers(UserModel):
 
 
 _FIRST = float(np.log(MASS / (1 - MASS)))
-
-
-def _expit(log_odds: Array) -> Array:
-    """Probability of log odds."""
-    return np.exp(-np.logaddexp(0.0, -log_odds))
 
 
 def unknown_law(library: PolicyLibrary, outcomes: Law) -> NormalLaw | None:
