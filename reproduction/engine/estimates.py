@@ -1,6 +1,6 @@
 """Estimates of claims with 95 % intervals: exact shares, means by cluster, quantiles, shares of a grid."""
 
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Collection, Hashable, Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -24,7 +24,7 @@ def exact_share(answers: Iterable[bool]) -> Estimate:
     return Estimate(right / n, float(2 * right > n) if 2 * right != n else 0.5, (low, high), n)
 
 
-def mean_by_cluster(values: Sequence[float], clusters: Sequence[Hashable]) -> Estimate:
+def mean_by_cluster(values: Collection[float], clusters: Collection[Hashable]) -> Estimate:
     """Mean of values with an interval that resamples clusters; `n` counts clusters."""
     order = {name: number for number, name in enumerate(dict.fromkeys(clusters))}
     at = np.array([order[name] for name in clusters])
@@ -32,7 +32,7 @@ def mean_by_cluster(values: Sequence[float], clusters: Sequence[Hashable]) -> Es
     return ratio_estimate(sums, np.bincount(at, minlength=len(order)).astype(float))
 
 
-def share_by_cluster(answers: Sequence[bool], clusters: Sequence[Hashable]) -> Estimate:
+def share_by_cluster(answers: Collection[bool], clusters: Collection[Hashable]) -> Estimate:
     """Share of true answers, clusters resampled; the exact interval where no resample differs."""
     exact = exact_share(answers)
     if not exact.n:

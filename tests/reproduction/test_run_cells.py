@@ -45,7 +45,7 @@ def test_a_process_that_dies_is_one_line_and_what_is_finished_is_kept(tmp_path):
     with pytest.raises(InputError, match=r"died, perhaps for want of memory; .* fewer than 2"):
         reproduce(["C3.1"], "full", SMALL, jobs=2, out=tmp_path, progress=kill)
     first = []
-    reproduce(["C3.1"], "full", SMALL, jobs=2, out=tmp_path, progress=lambda *call: first.append(call[0]))
+    reproduce(["C3.1"], "full", SMALL, jobs=1, out=tmp_path, progress=lambda *call: first.append(call[0]))
     assert first[0] == ended[-1] >= 1
 
 
