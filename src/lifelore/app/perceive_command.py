@@ -183,7 +183,7 @@ def setting_keys() -> "SettingKeys":
         Setting("masks_out", str, "File NAME.png for a 16-bit image of the objects' numbers."),
         Setting("with_masks", bool, "Whether JSON holds each object's pixels, or its points' numbers.", False),
     )
-    return SettingKeys((), extra=rare)
+    return SettingKeys(rare)
 
 
 def _several(clouds: list[str], source: Callable[[str], Any], settings: Any, files: Files, as_json: bool) -> int:
