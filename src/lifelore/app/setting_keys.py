@@ -89,7 +89,7 @@ class SettingKeys:
         return dict(self._pair(text) for text in texts)
 
     def arguments(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """The arguments of a callable source, with its groups, that values by key give; other keys are left out."""
+        """The arguments of the callable source, with groups, that values by key give; other keys are left out."""
         assert callable(self.source), "settings without a source are no arguments"
         return arguments_by_key(self.source, values, self.names)
 

@@ -60,6 +60,7 @@ def test_a_defect_shows_no_traceback_and_logs_it(shared, monkeypatch, caplog):
 
 
 def test_errors_name_no_file_of_the_server(serve, tmp_path):
+    (tmp_path / "secret-folder").mkdir()
     client = serve(str(tmp_path / "secret-folder" / "lifelore.db"))
     assert "secret-folder" not in client.get("/v1/studies/nobody").text
 
