@@ -84,7 +84,7 @@ def _perceive(folder: Path) -> None:
 
 
 def _two_boxes_on_a_table() -> tuple[np.ndarray, np.ndarray]:
-    """Points (n, 3) in metres and labels (n,), 0 the table: a box on a box, seen from the front and above."""
+    """Points (n, 3) in metres and labels (n,), 1 the table: a box on a box, seen from the front and above."""
     random = np.random.default_rng(0)
 
     def face(n: int, low: tuple, high: tuple) -> np.ndarray:
@@ -99,7 +99,7 @@ def _two_boxes_on_a_table() -> tuple[np.ndarray, np.ndarray]:
     parts = [face(6000, (-0.4, -0.4, 0), (0.4, 0.4, 0)), box(0.0, 0.12), box(0.12, 0.1)]
     # The camera does not see the table behind and below the boxes.
     parts[0] = parts[0][~((abs(parts[0][:, 0]) < 0.06) & (parts[0][:, 1] > -0.06) & (parts[0][:, 1] < 0.2))]
-    return np.vstack(parts), np.repeat(np.arange(3), [len(part) for part in parts])
+    return np.vstack(parts), np.repeat([1, 2, 3], [len(part) for part in parts])
 
 
 VERBS: dict[str, Callable[[Path], None]] = {"live": _live, "perceive": _perceive}

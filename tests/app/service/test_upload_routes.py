@@ -37,12 +37,12 @@ def box(low, size, label):
 
 @pytest.fixture(scope="module")
 def cloud():
-    """A box on a box on a table, labelled, as the bytes of an npy file; and the array."""
-    table = np.column_stack([SQUARE * 0.02 - 0.4, np.zeros((len(SQUARE), 2))])
-    scene = np.concatenate([table, box([0, 0, 0], [0.1, 0.1, 0.1], 1), box([0.01, 0, 0.1], [0.08, 0.08, 0.06], 2)])
+    """A box on a box on a table, labelled, as the bytes of an npy file."""
+    table = np.column_stack([SQUARE * 0.02 - 0.4, np.zeros(len(SQUARE)), np.ones(len(SQUARE))])
+    scene = np.concatenate([table, box([0, 0, 0], [0.1, 0.1, 0.1], 2), box([0.01, 0, 0.1], [0.08, 0.08, 0.06], 3)])
     file = io.BytesIO()
     np.save(file, scene)
-    return file.getvalue(), scene
+    return file.getvalue()
 
 
 def ask(client, content, **options):
@@ -53,7 +53,7 @@ def ask(client, content, **options):
 
 
 def test_a_cloud_becomes_a_scene_with_pddl(shared, cloud, tmp_path):
-    content, _ = cloud
+    content = cloud
     answer = ask(shared, content, format="npy")
     assert answer.status_code == 200, answer.text
     document = answer.json()
@@ -70,47 +70,39 @@ def test_a_cloud_becomes_a_scene_with_pddl(shared, cloud, tmp_path):
     assert document["dot"].startswith("digraph")
 
 
-@pytest.fixture(scope="module")
-def pile(cloud):
-    """The same with the table labelled, so that the boxes are objects 2 and 3."""
-    file = io.BytesIO()
-    np.save(file, cloud[1] + [0, 0, 0, 1])
-    return file.getvalue()
-
-
 @pytest.mark.planning
-def test_a_goal_is_planned_for(shared, pile):
+def test_a_goal_is_planned_for(shared, cloud):
     client = shared
-    plan = ask(client, pile, format="npy", goal="holding(o2)", plan=True).json()["plan"]
+    plan = ask(client, cloud, format="npy", goal="holding(o2)", plan=True).json()["plan"]
     named = [(step["action"], step["objects"][0]["id"]) for step in plan["steps"]]
     assert (named[0], named[-1], len(named)) == (("pick-up", 3), ("pick-up", 2), 3)
     assert plan["reason"] is None
-    refused = ask(client, pile, format="npy", plan=True)
+    refused = ask(client, cloud, format="npy", plan=True)
     assert refused.status_code == 422
     assert "plan (--plan) needs a goal" in refused.text
 
 
-def test_up_is_a_direction(shared, pile):
+def test_up_is_a_direction(shared, cloud):
     client = shared
     stated = {
-        up: {(r["relation"], r["a"], r["b"]) for r in ask(client, pile, format="npy", up=up).json()["relations"]}
+        up: {(r["relation"], r["a"], r["b"]) for r in ask(client, cloud, format="npy", up=up).json()["relations"]}
         for up in ("z", "0,0,2")
     }
     assert stated["z"] == stated["0,0,2"] >= {("on", 3, 2)}
     for wrong in ("0,0", "a,b,c", "sideways"):
-        refused = ask(client, pile, format="npy", up=wrong)
+        refused = ask(client, cloud, format="npy", up=wrong)
         assert refused.status_code == 422
         assert "up must be" in refused.text
 
 
-def test_a_region_is_cut_out(shared, pile):
+def test_a_region_is_cut_out(shared, cloud):
     client = shared
-    (only,) = ask(client, pile, format="npy", roi="-1,1,-1,1,-1,0.09").json()["objects"]
+    (only,) = ask(client, cloud, format="npy", roi="-1,1,-1,1,-1,0.09").json()["objects"]
     assert only["id"] == 2
-    refused = ask(client, pile, format="npy", roi="1,2")
+    refused = ask(client, cloud, format="npy", roi="1,2")
     assert refused.status_code == 422
     assert "roi must be six numbers" in refused.text
-    assert "max_range must be a positive number" in ask(client, pile, format="npy", max_range=-1).text
+    assert "max_range must be a positive number" in ask(client, cloud, format="npy", max_range=-1).text
 
 
 @pytest.fixture(scope="module")
@@ -174,7 +166,7 @@ def test_a_depth_image_comes_with_the_file_of_its_camera_and_masks(shared, depth
 def test_damaged_clouds_are_refused_in_one_line(shared, cloud, tmp_path):
     """Bytes changed, cut and made up at random, in every format: 4xx in the library's words, no path, no crash."""
     client, draw = shared, random.Random(7)
-    content = cloud[0]
+    content = cloud
     for number in range(40):
         damaged = bytearray(content[:128] if number % 2 else content)
         for _ in range(draw.randrange(1, 20)):
@@ -193,7 +185,7 @@ def test_damaged_clouds_are_refused_in_one_line(shared, cloud, tmp_path):
 def test_no_parameter_names_a_file(shared, cloud):
     paths = {"format": "/etc/passwd", "up": "../x", "units": "/", "goal": "/etc/passwd", "model": "/etc/passwd"}
     for name, value in paths.items():
-        answer = ask(shared, cloud[0], **({"format": "npy"} | {name: value}))
+        answer = ask(shared, cloud, **({"format": "npy"} | {name: value}))
         assert (answer.status_code, "root:" in answer.text) == (422, False), name
 
 
