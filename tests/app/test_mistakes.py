@@ -105,7 +105,7 @@ MAPS = {
     f"{BUILDING} --set destinations=5000": "destinations must be at most",
 }
 PLACES = {
-    f"{LATTICE} --log life.mcap": "log applies to domain building, got lattice",
+    f"{LATTICE} --log life.mcap": "log as a file applies to domain building, got lattice; give a folder",
     "live --log life.bag": "log must name a file that ends with .mcap or .rrd",
     "memory nav2 {map} --memory {known} --out {folder}": "memory knows no place of the map",
     f"{LATTICE} --out ''": "out must name a folder",

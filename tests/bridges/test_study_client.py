@@ -553,6 +553,25 @@ def test_a_full_disk_stops_nobody(service, tmp_path):
     assert "outcomes are in memory alone" in done.stderr
 
 
+def test_a_file_that_breaks_loses_no_later_outcome(tmp_path):
+    """Full for a moment, the file keeps its outcomes, and still forgets; unreadable, it stops nobody."""
+    queue = _Queue(tmp_path / "queue", 10, fsync=False)
+    queue.put({"user": "ada", "outcome": 1.0})
+    (pages,) = queue._file.execute("PRAGMA page_count").fetchone()
+    queue._file.execute(f"PRAGMA max_page_count = {pages}")
+    queue.put({"user": "ben", "outcome": 2.0, "long": "x" * 10_000})
+    assert [line["user"] for line in queue.head(9)] == ["ada", "ben"]
+    queue.forget("ada")
+    queue.close()
+    queue = _Queue(tmp_path / "queue", 10, fsync=False)
+    assert (len(queue), queue.head(9)) == (0, [])  # and a forgotten user is not delivered after a restart
+    queue.put({"user": "ada", "outcome": 1.0})
+    queue._file.close()
+    assert queue.put({"user": "ben", "outcome": 2.0})
+    assert (len(queue), [line["user"] for line in queue.head(9)]) == (1, ["ben"])
+    queue.close()
+
+
 # Kills
 
 

@@ -178,7 +178,10 @@ def _opened_log(path: str, settings: "LifeSettings") -> "LifeLog | None":
 
     if Path(path).suffix:
         if settings.world.domain != "building":
-            raise InputError(f"log applies to domain building, got {settings.world.domain}; leave it out")
+            raise InputError(
+                f"log as a file applies to domain building, got {settings.world.domain}; give a folder, named "
+                "without a dot, for episodes, or leave it out"
+            )
         return check_log(path)
     if settings.driven:
         raise InputError(f"log as a folder holds episodes of searches, got {path} with known goals; leave it out")

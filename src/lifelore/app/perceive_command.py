@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Mapping
 from contextlib import nullcontext
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
@@ -169,21 +170,40 @@ def perceive(
 
 def setting_keys() -> "SettingKeys":
     """The rare settings of `perceive`, by key."""
-    from lifelore.app.setting_keys import Setting, SettingKeys
+    from lifelore.app.setting_keys import SettingKeys
 
-    methods = ("convexity", "clusters", "curvature", "colour")
-    rare = (
-        Setting("segment", str, "Segmentation of a cloud without labels.", methods[0], methods),
-        Setting("colours", int, "With segment=colour: clusters of colour; the smallest is background.", 3),
-        Setting("index", int, "Number of a rosbag's cloud, from 0.", 0),
-        Setting("depth_scale", float, "Metres for each unit of depth; 0.001 for whole numbers, 1 for floats."),
-        Setting(
-            "table_mask", int, "Number of the table's mask; without it, the plane without a mask is the table."
-        ),
-        Setting("masks_out", str, "File NAME.png for a 16-bit image of the objects' numbers."),
-        Setting("with_masks", bool, "Whether JSON holds each object's pixels, or its points' numbers.", False),
-    )
-    return SettingKeys(rare)
+    return SettingKeys(RareSettings)
+
+
+@dataclass(frozen=True)
+class RareSettings:
+    """What ``perceive --set`` changes.
+
+    Parameters
+    ----------
+    segment : {"convexity", "clusters", "curvature", "colour"}
+        Segmentation of a cloud without labels.
+    colours : int
+        With segment=colour: clusters of colour; the smallest is background.
+    index : int
+        Number of a rosbag's cloud, from 0.
+    depth_scale : float, optional
+        Metres for each unit of depth; 0.001 for whole numbers, 1 for floats.
+    table_mask : int, optional
+        Number of the table's mask; without it, the plane without a mask is the table.
+    masks_out : str, optional
+        File NAME.png for a 16-bit image of the objects' numbers.
+    with_masks : bool
+        Whether JSON holds each object's pixels, or its points' numbers.
+    """
+
+    segment: str = "convexity"
+    colours: int = 3
+    index: int = 0
+    depth_scale: float | None = None
+    table_mask: int | None = None
+    masks_out: str | None = None
+    with_masks: bool = False
 
 
 def _several(clouds: list[str], source: Callable[[str], Any], settings: Any, files: Files, as_json: bool) -> int:

@@ -59,24 +59,22 @@ class SettingKeys:
 
     Parameters
     ----------
-    source : callable or sequence of Setting
-        A frozen dataclass, or a function; or the settings themselves.
+    source : callable
+        A frozen dataclass, or a function.
     names : mapping
         Name of a parameter to its key, where they differ.
     elsewhere : mapping
         Key to the words that follow it in a refusal: settings that the verb does not take by ``--set``.
     """
 
-    source: Callable | Sequence[Setting]
+    source: Callable
     names: Mapping[str, str] = field(default_factory=dict)
     elsewhere: Mapping[str, str] = field(default_factory=dict)
 
     @cached_property
     def settings(self) -> dict[str, Setting]:
         """The settings that ``--set`` takes, by key."""
-        source = self.source
-        found = self._settings_of(source) if callable(source) else source
-        return {one.key: one for one in found if one.key not in self.elsewhere}
+        return {one.key: one for one in self._settings_of(self.source) if one.key not in self.elsewhere}
 
     def read(self, texts: Sequence[str]) -> dict[str, Any]:
         """The values of texts ``KEY=VALUE`` by key; of one key, the last.
@@ -89,8 +87,7 @@ class SettingKeys:
         return dict(self._pair(text) for text in texts)
 
     def arguments(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """The arguments of the callable source, with groups, that values by key give; other keys are left out."""
-        assert callable(self.source), "settings without a source are no arguments"
+        """The arguments of the source, with its groups, that values by key give; other keys are left out."""
         return arguments_by_key(self.source, values, self.names)
 
     def show(self, as_json: bool) -> None:

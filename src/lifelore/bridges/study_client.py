@@ -565,7 +565,8 @@ class _Queue:
         self.path = None if path is None else os.fspath(path)
         self._capacity, self._lock, self._in_memory = capacity, threading.Lock(), path is None
         self._file = _opened(":memory:" if self.path is None else self.path, fsync)
-        (self._length,) = self._file.execute("SELECT COUNT(*) FROM outcomes").fetchone()
+        self._left: sqlite3.Connection | None = None  # a file that could not be written
+        self._count()
 
     def __len__(self) -> int:
         return self._length
@@ -575,7 +576,7 @@ class _Queue:
         with self._lock:
             if self._length >= self._capacity:
                 return False
-            self._length += self._change("INSERT INTO outcomes (line) VALUES (?)", json.dumps(line))
+            self._change("INSERT INTO outcomes (line) VALUES (?)", json.dumps(line), 1)
             return True
 
     def head(self, most: int) -> list[dict[str, Any]]:
@@ -588,30 +589,46 @@ class _Queue:
         """Remove the oldest outcomes, which are delivered."""
         oldest = "SELECT number FROM outcomes ORDER BY number LIMIT ?"
         with self._lock:
-            self._length -= self._change(f"DELETE FROM outcomes WHERE number IN ({oldest})", number)
+            self._change(f"DELETE FROM outcomes WHERE number IN ({oldest})", number, -1)
 
     def forget(self, user: str) -> None:
         """Remove the outcomes of a user whom they name."""
         with self._lock:
-            self._length -= self._change("DELETE FROM outcomes WHERE json_extract(line, '$.user') = ?", user)
+            statement = "DELETE FROM outcomes WHERE json_extract(line, '$.user') = ?"
+            self._change(statement, user, -1)
+            if self._left is not None:
+                try:
+                    with self._left:
+                        self._left.execute(statement, [user])
+                except sqlite3.Error as error:
+                    log.error("outcomes of a forgotten user stay in the queue's file: %s", error)
 
     def close(self) -> None:
         with self._lock:
             self._file.close()
+            if self._left is not None:
+                self._left.close()
 
-    def _change(self, statement: str, value: Any) -> int:
-        """The number of rows that a statement changes. What the file cannot take is in memory from here on."""
+    def _count(self) -> None:
+        (self._length,) = self._file.execute("SELECT COUNT(*) FROM outcomes").fetchone()
+
+    def _change(self, statement: str, value: Any, sign: int) -> None:
+        """Add rows (sign 1) or remove them (-1). What the file cannot take is in memory from here on."""
         try:
             with self._file:
-                return self._file.execute(statement, [value]).rowcount
+                changed = self._file.execute(statement, [value]).rowcount
+            self._length += sign * changed
         except sqlite3.Error as error:
             if self._in_memory:
                 raise
             log.error("outcomes are in memory alone, since their file cannot be written: %s", error)
-            file, self._file, self._in_memory = self._file, _opened(":memory:", fsync=False), True
-            with closing(file):
-                file.backup(self._file)  # those in the file are delivered again after a restart, and count once
-            return self._change(statement, value)
+            self._left, self._file, self._in_memory = self._file, _opened(":memory:", fsync=False), True
+            try:
+                self._left.backup(self._file)  # its outcomes are delivered again after a restart, and count once
+            except sqlite3.Error as unread:
+                log.error("the outcomes in that file wait for a restart: %s", unread)
+            self._count()
+            self._change(statement, value, sign)
 
 
 def _opened(path: str, fsync: bool) -> sqlite3.Connection:

@@ -1,4 +1,5 @@
 import os
+import pickle
 import re
 import signal
 import subprocess
@@ -161,6 +162,19 @@ def test_features_behind_contexts_are_read_when_they_are_shown(tmp_path):
     with open_memory(tmp_path / "life.db") as memory:
         labels = ContextLabels(lambda: memory.recall("context_labels", "windy grid/features", 1))
         assert dict(labels) == agent.prior.labels
+
+
+def test_features_behind_contexts_are_found_from_another_folder_and_can_be_pickled(tmp_path, monkeypatch):
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path)
+    with LongLivedAgent(**SETTINGS, memory="life.db") as agent:
+        agent.live(WindyGrid(1))
+    agent = LongLivedAgent(**SETTINGS, memory="life.db")
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    text = pickle.dumps(agent.prior)
+    assert dict(pickle.loads(text).labels) == dict(agent.prior.labels)
+    assert set(agent.prior.labels.values()) <= {-1, 0, 1}
+    agent.close()
 
 
 def test_robots_share_what_they_learn(tmp_path):

@@ -149,7 +149,8 @@ class LongLivedAgent(AbstractContextManager):
         self._reset_by: ResetBy = reset_by
         self._codes, self._contexts = MoveCodes(), ContextCodes(CONTEXT_BITS)
         self._experience: Experience | None = None
-        self._where, self._memory = memory, None if memory is None else open_memory(memory)
+        self._memory = None if memory is None else open_memory(memory)
+        self._where = memory if memory is None or "://" in str(memory) else Path(memory).expanduser().absolute()
         self._revision = ""
         self._lived = 0
         self._recall()

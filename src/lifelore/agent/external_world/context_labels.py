@@ -68,6 +68,10 @@ class ContextLabels(Mapping[int, Any]):
     def __init__(self, read: Callable[[], Record | None]) -> None:
         self._read = read
 
+    def __getstate__(self) -> dict[str, Any]:
+        """A pickle holds the record itself, and neither the memory's place nor its password."""
+        return {"_record": self._record}
+
     @cached_property
     def _record(self) -> Record:
         """The record, by rising slots."""
