@@ -55,7 +55,7 @@ MONDAY_8 = 1_704_096_000.0
 """2024-01-01 08:00 by the robot's clock."""
 
 
-def observe(map: str, memory: str, clock: float, seconds: float, n=6, everywhere=False) -> None:
+def observe(map: str, memory: str, clock: float, seconds: float, n=6, everywhere=False, below=2.0) -> None:
     """Remember `n` moves, ten minutes apart, of the cells at the bottom door, x 5.5 to 6.5 m, or of all cells."""
     settings = WorldSettings(map=map)
     with open_memory(memory) as opened:
@@ -63,7 +63,7 @@ def observe(map: str, memory: str, clock: float, seconds: float, n=6, everywhere
         place = recognised_place(settings, world_from_settings(settings, occupancy), occupancy, opened)
         travel = Travel.recalled(place.world, place.grid, opened)
         x, y = place.world.positions(np.arange(place.world.n_states)).T
-        chosen = (x > 5.5) & (x < 6.5) & (y < 2) | everywhere
+        chosen = (x > 5.5) & (x < 6.5) & (y < below) | everywhere
         state, action = np.nonzero(chosen[:, None] & (place.world.neighbour >= 0))
         when = clock + 600 * np.repeat(np.arange(n), len(state))
         travel.observe(np.tile(state, n), np.tile(action, n), when, np.full(len(when), seconds))
@@ -102,11 +102,11 @@ def test_a_robot_of_another_radius_finds_a_way(tmp_path, lived, asks):
     assert nearest > asks - 0.1  # half a pixel's diagonal and more
 
 
-def never_driven(x0: float, x1: float, y1: float):
-    """Memory knows no place with x from x0 to x1 and y below y1."""
+def never_driven(x0: float, x1: float, y0: float, y1: float):
+    """Memory knows no place with x from x0 to x1 and y from y0 to y1."""
 
     def forget(model, x, y):
-        gone = (x > x0) & (x < x1) & (y < y1)
+        gone = (x > x0) & (x < x1) & (y > y0) & (y < y1)
         model.target[gone], model.percept[gone] = -1, -1
         model.target[np.isin(model.target, np.flatnonzero(gone))] = -1
 
@@ -116,7 +116,7 @@ def never_driven(x0: float, x1: float, y1: float):
 def test_ground_that_was_never_driven_is_used_where_it_saves_more_than_its_price(tmp_path):
     """Two metres at the bottom door were never driven; that way is shorter by 6 m, then by 0.3 m."""
     rooms = two_rooms(tmp_path, "rooms", (2, 45))
-    memory = remember(tmp_path, rooms, never_driven(5.0, 7.0, 2.0))
+    memory = remember(tmp_path, rooms, never_driven(5.0, 7.0, 0.0, 2.0))
     straight = find(rooms, memory)
     assert straight.length == pytest.approx(9.5, rel=0.02)
     assert straight.undriven == 4
@@ -142,6 +142,16 @@ def test_a_door_that_was_refused_is_avoided_until_it_is_passed(tmp_path):
     assert np.array_equal(find(rooms, memory).poses, around.poses)
     observe(rooms, memory, MONDAY_8 + 7200, 1.0, 20)
     assert find(rooms, memory).poses[:, 1].max() < 2.5
+
+
+def test_undriven_ground_beside_a_refused_place_is_avoided_too(tmp_path):
+    """What blocks the lower half of a wide door probably blocks its upper half, where no robot has driven."""
+    rooms = two_rooms(tmp_path, "rooms", (2, 35, 45))  # below: y from 0.7 to 2.7 m
+    memory = remember(tmp_path, rooms, never_driven(5.0, 7.0, 1.5, 4.0))
+    observe(rooms, memory, MONDAY_8 - 86_400, 1.0, everywhere=True)
+    assert find(rooms, memory).poses[:, 1].max() < 3.0
+    observe(rooms, memory, MONDAY_8, float("nan"), below=1.5)
+    assert find(rooms, memory).poses[:, 1].max() > 5.0
 
 
 def test_a_slow_door_is_avoided_where_the_way_around_takes_less_time(tmp_path):

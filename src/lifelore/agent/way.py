@@ -15,6 +15,7 @@ from lifelore.agent.live.buildings.recognition import recognised_place
 from lifelore.agent.live.buildings.remembered_moves import contradicted_moves, remembered_record
 from lifelore.agent.live.goals.destinations import Destination, NamedPlaces
 from lifelore.agent.travel import Travel
+from lifelore.agent.travel.move_costs import DETOUR
 from lifelore.core.atomic_write import refused_writes
 from lifelore.core.errors import InputError
 from lifelore.domains.buildings.clear_path import clear_path
@@ -80,7 +81,8 @@ def way(
 
     The path turns at any angle. It costs its length, and what memory knows about its moves: where they took
     longer or were refused, the path leads around if that is expected to take less time (``MoveCosts.cost``).
-    A metre on ground that memory does not know costs `UNDRIVEN` metres more.
+    A metre on ground that memory does not know costs `UNDRIVEN` metres more; such ground beside a place that is
+    probably blocked counts as blocked, too, since what blocks is often wider.
 
     Parameters
     ----------
@@ -123,7 +125,9 @@ def way(
     first, last = floor.state_at("from", ends[0]), floor.state_at("to", ends[1])
     known = transitions.from_record(place.world, record, place.grid.corner).percept >= 0
     costs, cell = travel.costs(travel.newest if clock is None else clock), place.world.frame.cell
-    price = price_of_moves(costs.cost, cell) + np.where(known[place.world.neighbour], 0.0, UNDRIVEN * cell)
+    unsure = ~known & costs.beside_closed()
+    cost = costs.cost + np.where(unsure[place.world.neighbour], DETOUR, 0.0)
+    price = price_of_moves(cost, cell) + np.where(known[place.world.neighbour], 0.0, UNDRIVEN * cell)
     path = footprint_path(floor, *ends, footprint, price) if footprint else clear_path(floor, *ends, price)
     assert path is not None, "the places of a floor are joined"
     passed, seconds = _driven(path, floor, costs.seconds / cell)
