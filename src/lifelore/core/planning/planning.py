@@ -50,8 +50,8 @@ def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDAr
             return q
         if discount == 1 and moved > STEADY * before:
             raise InputError(
-                "discount must be below 1 in this task: its values grow for ever, because some state never reaches "
-                "a terminal one without an endless loss, or moves in a circle pay"
+                "discount must be below 1 in this task: its values grow for ever, because some state never reaches"
+                " a terminal one without an endless loss, or moves in a circle pay"
             )
 
 
