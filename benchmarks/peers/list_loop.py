@@ -2,7 +2,6 @@
 
 import random
 import time
-from collections.abc import Callable
 
 from benchmarks.lattice import ALPHA, DISCOUNT, EPSILON, MAX_STEPS, lattice_task
 from lifelore.core.mdp import Tables
@@ -18,16 +17,13 @@ def _prepared(tables: Tables):
     return moves, q, tables.starts.tolist(), random.Random(0).random
 
 
-def tuned_rate(
-    steps: int = STEPS, tables: Tables | None = None, clock: Callable[[], float] = time.perf_counter
-) -> float:
-    """Million steps a second by `clock` on the lattice or other tables, doing the work that all do."""
-    tables = tables or lattice_task().tables()
-    moves, q, starts, draw = _prepared(tables)
+def tuned_rate(steps: int = STEPS) -> float:
+    """Million steps a second on the lattice, doing the work that all do."""
+    moves, q, starts, draw = _prepared(lattice_task().tables())
     n_starts, n_actions, largest, every = len(starts), len(q[0]), max, range(len(q[0]))
     visits = [[0] * n_actions for _ in q]
     curve, done = [], 0
-    started = clock()
+    started = time.perf_counter()
     while done < steps:
         state = starts[int(draw() * n_starts)]
         row = q[state]
@@ -60,7 +56,7 @@ def tuned_rate(
             step += 1
         curve.append((discounted, total, step, collisions, event & 1))
         done += step
-    return done / (clock() - started) / 1e6
+    return done / (time.perf_counter() - started) / 1e6
 
 
 def short_tuned_rate(steps: int = STEPS) -> float:

@@ -80,6 +80,13 @@ def test_a_cloud_that_is_not_upright_or_not_in_metres_is_refused(tower, box):
         perceived_scene(LabelledCloud(1000 * cloud.points, cloud.labels))
 
 
+def test_a_table_may_be_labelled_with_what_is_below_its_top(tower, box):
+    shelf = np.concatenate([box([-0.3, -0.3, -0.01], [0.4, 0.4, 0]), box([-0.3, 0, -0.5], [0.4, 0.4, -0.49])])
+    assert perceived_scene(cloud_of({TABLE: shelf, **tower})).relation_of(3, 2).relation == "on"
+    with pytest.raises(InputError, match="number objects from 2"):  # a tower numbered from 1 has such sides, too
+        perceived_scene(cloud_of({label - 1: points for label, points in tower.items()}))
+
+
 @pytest.mark.parametrize("labels", [np.array([1.0, 2.0]), np.array(["table", "cup"]), np.array([-1, 2])])
 def test_labels_are_whole_numbers(labels):
     with pytest.raises(InputError, match=f"labels must be 2 whole numbers from 0, got .* of {labels.dtype}"):

@@ -22,7 +22,7 @@ from lifelore.perception.scene import Scene
 FLAT = 0.15
 """Largest height of a table, noise of a distant camera included, as a share of its width; larger refuses fewer."""
 LEVEL = 0.35
-"""Largest height of a labelled table beside objects, as a share of its width: a tilt of 20°."""
+"""Largest height of a labelled table's top beside objects, as a share of its width: a tilt of 20°."""
 
 
 def perceived_scene(
@@ -117,8 +117,20 @@ def _check_frame(cloud: LabelledCloud) -> None:
             f"labels must number objects from 2 (0 is no object, 1 is the table), got 0 and 1 alone, and {size}, "
             "which is no table: add 2 to every label, or call contact_networks(points_a, points_b)"
         )
-    if cloud.objects and height > LEVEL * width:
+    if cloud.objects and height > LEVEL * width and not _has_level_top(cloud, width):
         raise InputError(
             f"label 1 must be the table, and z up, but {size}, which is no level table: number objects from 2, or "
             "turn the cloud by to_scene(read_cloud(rows)), a row being x, y, z and label"
         )
+
+
+def _has_level_top(cloud: LabelledCloud, width: float) -> bool:
+    """Whether a table of this width is far wider than any object, and a third of its points lie in one level.
+
+    The rest is below the top: legs, sides, a shelf.
+    """
+    widest = max(float(np.ptp(cloud.of(label)[:, :2], axis=0).max()) for label in cloud.objects)
+    heights = np.sort(cloud.of(TABLE)[:, 2])
+    third = -(-len(heights) // 3)
+    thickness = float((heights[third - 1 :] - heights[: len(heights) - third + 1]).min())
+    return width > 2 * widest and 3 * thickness <= LEVEL * width

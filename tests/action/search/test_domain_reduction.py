@@ -249,6 +249,7 @@ BEST = best_of(TASK, 4)
             lambda: minimised_domain([TASK, goal_task([(0,)] * 5, 0, [1])], [BEST, BEST[:, :1]]),
             "tasks must be of one domain, got task 1 with other",
         ),
+        (lambda: minimised_transitions(TASK, minimised_domain([TASK], [BEST])), r"tasks must be a list of Tables"),
         (lambda: futile_goal_probability(0, 1, 0.1), "n_actions must be at least 1"),
         (lambda: futile_goal_probability(2, -1, 0.1), "n_tasks at least 0"),
         (lambda: futile_goal_probability(2, 1, 0.0), "alpha0 positive"),

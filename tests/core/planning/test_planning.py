@@ -59,6 +59,16 @@ def test_a_discount_out_of_range_is_refused(discount, message):
         optimal_q(ring(), discount)
 
 
+def test_without_discount_values_of_a_slow_walk_settle():
+    """A drunkard's walk: from the closed end of n places, n (n − 1) steps to the open one."""
+    n = 120
+    walk = np.zeros((n, n))
+    walk[np.arange(n - 1), np.maximum(np.arange(n - 1) - 1, 0)] = 0.5
+    walk[np.arange(n - 1), np.arange(1, n)] += 0.5
+    tables = Tables.from_matrices(walk[:, None], -np.ones((n, 1)), terminal=n - 1)
+    assert optimal_q(tables, 1.0)[0, 0] == pytest.approx(-n * (n - 1), rel=1e-9)
+
+
 def test_without_discount_values_that_grow_for_ever_are_refused():
     with pytest.raises(InputError, match="discount must be below 1 in this task"):
         optimal_q(ring(), 1.0)

@@ -27,6 +27,15 @@ def test_a_table_among_clutter(normal):
     assert abs(plane.offset) == pytest.approx(0.6, abs=0.0004)
 
 
+@pytest.mark.parametrize("part", ["shelf", "front"])
+def test_what_else_is_labelled_as_table_does_not_tilt_it(part):
+    boxes = {"shelf": ([-0.5, 0, -0.41], [0.5, 0.3, -0.4]), "front": ([-0.5, -0.31, -0.7], [0.5, -0.3, 0])}
+    rng = np.random.default_rng(5)
+    top = rng.uniform([-0.5, -0.3, -0.001], [0.5, 0.3, 0.001], (3000, 3))
+    plane = fitted_plane(np.concatenate([top, rng.uniform(*boxes[part], (2400, 3))]))
+    assert abs(plane.normal[2]) > np.cos(np.radians(0.2))
+
+
 @pytest.mark.parametrize(
     "points",
     [

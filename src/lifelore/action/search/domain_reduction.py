@@ -290,8 +290,10 @@ def _shared_moves(tasks: Sequence[Tables]) -> Moves:
     Raises
     ------
     InputError
-        Two tasks have other states, actions or transitions.
+        The tasks are no list of tasks, or two have other states, actions or transitions.
     """
+    if isinstance(tasks, Tables) or not tasks:
+        raise InputError(f"tasks must be a list of Tables, at least one, got {type(tasks).__name__}")
     n_outcomes = max(tables.n_outcomes for tables in tasks)
     following, cumulative, acting = [], [], []
     for tables in tasks:

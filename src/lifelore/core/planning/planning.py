@@ -14,8 +14,10 @@ TIE_TOLERANCE = 1e-9
 """Actions whose values differ by no more than this, relative to the row's best, are tied."""
 TIE_FLOOR = 1e-12
 """Also tied are values that differ by less than this, relative to the largest value: rounding is no better."""
-MOST_SWEEPS = 100_000
-"""Sweeps after which values without discount are taken to grow for ever; more only costs time."""
+SWEEPS = 50_000
+"""Sweeps between two looks at how much values still move."""
+STEADY = 0.99
+"""Values without discount grow for ever that still move this share of what they moved `SWEEPS` sweeps before."""
 
 
 def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDArray[np.float64]:
@@ -38,26 +40,28 @@ def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDAr
     """
     if not 0 <= discount <= 1:
         raise InputError(f"discount must lie in [0, 1], got {discount}")
-    sweeps = MOST_SWEEPS if discount == 1 else np.iinfo(np.int64).max
     tolerance *= max(1.0, float(np.abs(tables.reward).max()))
-    q, settled = _sweep(tables.by_pair, float(discount), tolerance, sweeps)
-    if not settled:
-        raise InputError(
-            f"discount must be below 1 in this task: its values still grow after {MOST_SWEEPS:,} sweeps, because "
-            "some state never reaches a terminal one without an endless loss, or moves in a circle pay"
-        )
-    return q
+    q, value = np.zeros(tables.next_state.shape[:2]), np.zeros(tables.n_states)
+    moved = np.inf
+    while True:
+        before, moved = moved, _sweep(tables.by_pair, float(discount), tolerance, q, value)
+        # Large values are rounded by more than the tolerance.
+        if not moved > max(tolerance, 2 * np.finfo(np.float64).eps * float(np.abs(value).max())):
+            return q
+        if discount == 1 and moved > STEADY * before:
+            raise InputError(
+                "discount must be below 1 in this task: its values grow for ever, because some state never reaches"
+                " a terminal one without an endless loss, or moves in a circle pay"
+            )
 
 
 @kernel
-def _sweep(tables, discount, tolerance, sweeps):
-    n_states, n_actions = tables.next_state.shape[:2]
-    q, value = np.zeros((n_states, n_actions)), np.zeros(n_states)
-    moved = tolerance + 1.0
-    forwards = True
-    while moved > tolerance and sweeps > 0:
-        moved = 0.0
-        sweeps -= 1
+def _sweep(tables, discount, tolerance, q, value):
+    n_states, n_actions = q.shape
+    moved, sweeps = tolerance + 1.0, 0
+    while moved > tolerance and sweeps < SWEEPS:
+        moved, forwards = 0.0, sweeps % 2 == 0
+        sweeps += 1
         for i in range(n_states):
             s = i if forwards else n_states - 1 - i
             best = q[s, 0] = backup(tables, s, 0, discount, value)
@@ -68,8 +72,7 @@ def _sweep(tables, discount, tolerance, sweeps):
             if abs(best - value[s]) > moved:
                 moved = abs(best - value[s])
             value[s] = best
-        forwards = not forwards
-    return q, moved <= tolerance
+    return moved
 
 
 @inlined
