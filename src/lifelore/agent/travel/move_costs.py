@@ -54,4 +54,4 @@ class MoveCosts:
         rows, columns = (self.world.cells - self.world.cells.min(axis=0)).T
         grid = np.zeros((rows.max() + 1, columns.max() + 1), np.bool_)
         grid[rows, columns] = self.closed()
-        return binary_dilation(grid, np.ones((3, 3), np.bool_))[rows, columns]
+        return binary_dilation(grid, np.ones((3, 3), np.bool_))[rows, columns].astype(np.bool_)
