@@ -125,7 +125,7 @@ def way(
     first, last = floor.state_at("from", ends[0]), floor.state_at("to", ends[1])
     known = transitions.from_record(place.world, record, place.grid.corner).percept >= 0
     costs, cell = travel.costs(travel.newest if clock is None else clock), place.world.frame.cell
-    unsure = ~known & costs.beside_closed()
+    unsure = ~known & place.world.around(costs.closed())
     cost = costs.cost + np.where(unsure[place.world.neighbour], DETOUR, 0.0)
     price = price_of_moves(cost, cell) + np.where(known[place.world.neighbour], 0.0, UNDRIVEN * cell)
     path = footprint_path(floor, *ends, footprint, price) if footprint else clear_path(floor, *ends, price)

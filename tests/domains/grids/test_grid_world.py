@@ -59,3 +59,11 @@ def test_broken_rules():
         GridWorld.from_free("test", FLOOR, wall_reward=float("nan"))
     with pytest.raises(InputError, match=r"goal must be a state in \[0, 3\), got 3"):
         GridWorld.from_free("test", FLOOR).task(3)
+
+
+@pytest.mark.parametrize("chosen", [[], [7], [0, 7, 23]])
+def test_states_around_others(chosen):
+    world = GridWorld.from_free("test", np.random.default_rng(1).random((6, 7)) < 0.8)
+    near = [any(np.abs(cell - world.cells[one]).max() <= 1 for one in chosen) for cell in world.cells]
+    mask = np.isin(np.arange(world.n_states), chosen)
+    assert world.around(np.array(chosen, np.int64)).tolist() == world.around(mask).tolist() == near

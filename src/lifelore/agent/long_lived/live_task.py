@@ -26,7 +26,6 @@ from lifelore.domains.task_stream import DrawnTask
 
 Array = NDArray[np.float64]
 
-
 UNKNOWN = 0.05
 """Prior probability that no known type fits."""
 

@@ -19,6 +19,9 @@ from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.memory import Memory
 from lifelore.memory.study_rows import DecisionRow, UserRow
 
+Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+
 SAMPLE = 2000
 """Largest number of users in a sample; more cost time and make curves and calibration less noisy."""
 
@@ -73,10 +76,6 @@ def difference(first: NDArray[np.float64], second: NDArray[np.float64]) -> dict[
     ci95 = welch_interval(first, second)  # pyright: ignore[reportArgumentType]
     value = float(np.mean(first) - np.mean(second))
     return {"value": value, "ci95": list(ci95) if ci95 else None, "n": [len(first), len(second)]}
-
-
-Array = NDArray[np.float64]
-Numbers = NDArray[np.int64]
 
 
 def lived_again(study: Study, histories: Sequence[History]) -> tuple[ReuseAlgorithm, dict[str, Any] | None]:

@@ -5,7 +5,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import binary_dilation
 
 from lifelore.domains.grids.grid_world import GridWorld
 
@@ -48,10 +47,3 @@ class MoveCosts:
         closed = np.zeros(self.world.n_states, bool)
         closed[self.world.neighbour[tail, action]] = True
         return closed
-
-    def beside_closed(self) -> NDArray[np.bool_]:
-        """(n_states,) places that are `closed`, or one of whose eight neighbours is."""
-        rows, columns = (self.world.cells - self.world.cells.min(axis=0)).T
-        grid = np.zeros((rows.max() + 1, columns.max() + 1), np.bool_)
-        grid[rows, columns] = self.closed()
-        return binary_dilation(grid, np.ones((3, 3), np.bool_))[rows, columns].astype(np.bool_)

@@ -7,6 +7,7 @@ only in which cells exist and which moves join them.
 import hashlib
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -193,6 +194,13 @@ class GridWorld:
     def move_vectors(self) -> NDArray[np.float64]:
         """Unit vectors (n_actions, 2) of the moves, x and y in the world."""
         return Frame(1.0, (0.0, 0.0, self.frame.origin[2])).metres(MOVES[:, 1], -MOVES[:, 0])
+
+    def around(self, states: NDArray[Any]) -> NDArray[np.bool_]:
+        """(n_states,) whether a state is one of `states`, given by number or as a mask, or touches one."""
+        grid = np.zeros(np.add(self.shape, 2), np.bool_)
+        for offset in np.ndindex(3, 3):
+            grid[tuple((self.cells[states] + offset).T)] = True
+        return grid[tuple((self.cells + 1).T)]
 
     def states_at(self, points: ArrayLike) -> NDArray[np.int32]:
         """The states (n,) int32 in whose cells `points` lie, (n, 2) x and y in metres; -1 where there is none."""

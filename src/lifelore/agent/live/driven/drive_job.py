@@ -108,8 +108,6 @@ def drive_job(
 
 def _doubt(world: GridWorld, blocked: list[int]) -> NDArray[np.float64]:
     """Seconds to add to moves into each state: infinite for blocked ones, `DOUBT` beside them, else 0."""
-    seconds = np.zeros(world.n_states)
-    for place in blocked:
-        seconds[np.abs(world.cells - world.cells[place]).max(axis=1) <= 1] = DOUBT
+    seconds = np.where(world.around(np.array(blocked, np.int64)), DOUBT, 0.0)
     seconds[blocked] = np.inf
     return seconds
