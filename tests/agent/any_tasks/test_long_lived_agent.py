@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+from collections import Counter
 from pathlib import Path
 from threading import Event
 
@@ -12,7 +13,8 @@ import gymnasium
 import numpy as np
 import pytest
 
-from lifelore import LongLivedAgent, compare_agents, open_memory
+from lifelore import ActionPrior, LongLivedAgent, compare_agents, open_memory
+from lifelore.agent.any_tasks.experience import Experience, TaskNews
 from lifelore.agent.any_tasks.one_task import SETTLED
 from lifelore.agent.any_tasks.reuse import TaskReuse
 from lifelore.agent.external_world.context_labels import ContextLabels
@@ -333,6 +335,31 @@ def test_states_that_hardly_repeat_are_a_warning():
     with pytest.warns(UserWarning, match="began in a state that the task had not met before"):
         LongLivedAgent(key="pole", episodes=40).live(env)
     LongLivedAgent(key="pole", episodes=40, state=lambda seen: tuple(seen[2:].round(1))).live(env)
+
+
+def test_rewards_that_hardly_repeat_are_a_warning():
+    class Noisy(gymnasium.RewardWrapper):
+        """Pays with noise, which hides what tells types apart."""
+
+        def reward(self, reward):
+            return reward + self.np_random.normal()
+
+    with pytest.warns(UserWarning, match="paid a reward that no move had paid before, so known types look new"):
+        LongLivedAgent(**SETTINGS).live(Noisy(WindyGrid(0)))
+    LongLivedAgent(**SETTINGS, signals="returns").live(Noisy(WindyGrid(0)))
+    LongLivedAgent(**SETTINGS).live(gymnasium.wrappers.TransformReward(Noisy(WindyGrid(0)), round))
+
+
+@pytest.mark.parametrize("unit", [1e-4, 1.0, 1e6, 1e9])
+def test_returns_of_any_size_keep_their_deviation(tmp_path, unit):
+    """The fixed point of memory keeps squares of small returns, and those of large ones do not overflow."""
+    news = TaskNews(0, 0, {"a": 1.0}, Counter(), {"p": [3 * unit, 4 * unit, 8 * unit] * 20}, ActionPrior(2))
+    with open_memory(tmp_path / "m.db") as memory:
+        for task in range(50):
+            memory.contribute("robot", Experience("k", 2).learn(news), process="one", seq=task, task={})
+        number, total, squares = Experience.recalled("k", memory).types["a"].returns["p"]
+    assert number == 3000
+    np.testing.assert_allclose([total, squares], [15_000 * unit, 89_000 * unit**2], rtol=1e-3)
 
 
 def test_returns_alone_tell_types_apart_too():

@@ -34,6 +34,16 @@ class Probe(gymnasium.Env):
         self.closed += 1
 
 
+class OldStep(Probe):
+    def step(self, action):
+        return self.answer, self.reward, False, {}
+
+
+class OldReset(Probe):
+    def reset(self, *, seed=None, options=None):
+        return self.answer
+
+
 def lake(task, slippery=False):
     return gymnasium.make("FrozenLake-v1", desc=generate_random_map(4, seed=task), is_slippery=slippery)
 
@@ -165,6 +175,9 @@ def test_hashable_by_hand():
         ),
         (lambda: GymnasiumWorld(Probe()).step(0), "step must follow reset"),
         (lambda: begun(reward=None).step(0), "reward of Probe must be a number, got NoneType"),
+        (lambda: begun(reward=np.ones(1)).step(0), "reward of Probe must be a number, got ndarray"),
+        (lambda: begun(made=OldStep).step(0), r"step of OldStep must return \(observation.*info\), got 4 values"),
+        (lambda: begun(made=OldReset), r"reset of OldReset must return \(observation, info\), got int"),
         (lambda: GymnasiumWorld(Probe()).context(0, 0.0), "state must be the last state"),
         (lambda: begun().context(8, 0.0), "state must be the last state"),
         (
@@ -179,8 +192,8 @@ def test_mistakes_are_named(refused, said):
         refused()
 
 
-def begun(context=None, state=None, **how):
+def begun(context=None, state=None, made=Probe, **how):
     """A world in its first episode."""
-    world = GymnasiumWorld(Probe(**how), context, state)
+    world = GymnasiumWorld(made(**how), context, state)
     world.reset(0, 0)
     return world

@@ -32,6 +32,8 @@ STALE = 0.5
 """Share of a policy's earlier returns that no longer counts once a task has taught the policy more."""
 DATE_BITS = 32
 """Bits of a task's context beside its date in a slot."""
+SIZE_SLOTS = 1 << 40
+"""Slots of the sums of each size of returns, see `_sums_record`."""
 
 
 @dataclass(eq=False)
@@ -64,12 +66,13 @@ class TypeExperience:
 
     def add_returns(self, policy: str, record: Record) -> None:
         """Add returns of a policy, by the round in which it earned them; exact in any order."""
-        of_record, column = np.divmod(record.slots, 3)
+        size, slot = np.divmod(record.slots, SIZE_SLOTS)
+        of_record, column = np.divmod(slot, 3)
         known = self.rounds.get(policy, 0)
         self.rounds[policy] = newest = max(known, int(of_record.max(initial=0)))
         sums = self.returns.setdefault(policy, np.zeros(3))
         sums *= (1 - STALE) ** (newest - known)
-        np.add.at(sums, column, record.values / ONE * (1 - STALE) ** (newest - of_record))
+        np.add.at(sums, column, record.values / ONE * 2.0 ** (20 * size) * (1 - STALE) ** (newest - of_record))
 
 
 class TaskNews(NamedTuple):
@@ -162,8 +165,7 @@ class Experience:
                 sums = belief * np.array([len(values), np.sum(values), np.square(values).sum()])
                 known = self.types.get(name)
                 round_ = 0 if known is None else known.rounds.get(policy, 0) + (policy == news.learner)
-                key = f"{self.key}/returns/{name}/{policy}"
-                yield Record(COUNTS, key, VERSION, "add", 3 * round_ + np.arange(3), _fixed(sums))
+                yield _sums_record(f"{self.key}/returns/{name}/{policy}", round_, sums)
         if news.learner is not None:
             idle = np.array([news.idle], np.int64)
             yield Record(
@@ -171,7 +173,7 @@ class Experience:
             )
             yield from self._policy_records(news.learner, news.policy)
         if len(news.fresh):
-            sums = _fixed([len(news.fresh), np.sum(news.fresh)])
+            sums = np.rint(np.array([len(news.fresh), np.sum(news.fresh)]) * ONE).astype(np.int64)
             yield Record(COUNTS, f"{self.key}/fresh", VERSION, "add", np.arange(2), sums)
         yield counts_record(COUNTS, f"{self.key}/causes", Counter({(cause, 0) for cause, _ in news.moves}))
         # Tasks of agents that keep no types do not count: they have shown no causes.
@@ -277,5 +279,13 @@ class Experience:
         return made
 
 
-def _fixed(values: Any) -> NDArray[np.int64]:
-    return np.rint(np.asarray(values, np.float64) * ONE).astype(np.int64)
+def _sums_record(key: str, round_: int, sums: NDArray[np.float64]) -> Record:
+    """Sums (3,) of returns in fixed point, in units by their size, so that squares keep their digits.
+
+    A sum of size k counts units of 2^(20 k) millionths. Sums from 0.001 to a million have size 0.
+    """
+    millionths = np.abs(sums) * ONE
+    above = np.ceil((np.log2(np.maximum(millionths, 1)) - 40) / 20)
+    size = np.where(millionths < 1000, -1, np.maximum(above, 0)).astype(np.int64)
+    values = np.rint(sums * ONE / 2.0 ** (20 * size)).astype(np.int64)
+    return Record(COUNTS, key, VERSION, "add", SIZE_SLOTS * size + 3 * round_ + np.arange(3), values)

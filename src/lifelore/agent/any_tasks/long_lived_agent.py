@@ -21,7 +21,7 @@ from lifelore.agent.any_tasks.task_result import TaskResult
 from lifelore.agent.any_tasks.task_settings import AGENTS, TaskSettings, check_names
 from lifelore.agent.external_world.context_code import CONTEXT_BITS, ContextCodes
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld, ResetBy
-from lifelore.agent.external_world.life_warnings import new_states
+from lifelore.agent.external_world.life_warnings import new_rewards, new_states
 from lifelore.agent.life.loop import LivedTask, Stopped, run_life
 from lifelore.agent.live.life_settings import PriorSettings
 from lifelore.agent.long_lived.curiosity import CuriousContext, curious_contexts
@@ -187,7 +187,8 @@ class LongLivedAgent(AbstractContextManager):
         Warns
         -----
         UserWarning
-            The states hardly repeat, and the learner is one of a table.
+            The states hardly repeat, and the learner is one of a table; or the rewards hardly repeat, and they
+            tell types apart.
         """
         if not isinstance(env, gymnasium.Env):
             raise InputError(f"env must be a gymnasium.Env, got {type(env).__name__}; pass gymnasium.make(...)")
@@ -195,9 +196,11 @@ class LongLivedAgent(AbstractContextManager):
         run_life(task, 1, memory=self._memory, robot=self.robot, stop=stop, notify=lost.append)
         if task.result is None:
             raise StoreError(f"{lost[0]}; live it again") if lost else Stopped
-        if not callable(self.settings.learner):
-            for sentence in new_states(task.world.name, task.states):
-                warnings.warn(sentence, stacklevel=2)
+        said = [] if callable(self.settings.learner) else new_states(task.world.name, task.states)
+        if self.settings.signals == "moves" and self.settings.abilities.reuse:
+            said += new_rewards(task.world.name, task.rewards)
+        for sentence in said:
+            warnings.warn(sentence, stacklevel=2)
         return task.result
 
     def world(self, env: gymnasium.Env | Callable[[int], gymnasium.Env]) -> GymnasiumWorld:
@@ -279,6 +282,7 @@ class _NextTask:
     context: Hashable
     result: TaskResult | None = None
     states: Sequence[int] = ()
+    rewards: Sequence[float] = ()
 
     def recall(self) -> None:
         """Know what other processes have stored."""
@@ -294,7 +298,7 @@ class _NextTask:
         )  # fmt: skip
         news = task.live(f"{agent.robot}.{number}")
         records = [] if news is None else experience.learn(news)
-        self.states = [step.state for step in task.steps]
+        self.states, self.rewards = [step.state for step in task.steps], [step.reward for step in task.steps]
         # What memory refuses was not learnt: the agent knows it from `finish` on.
         agent._experience = None
         document = {"key": agent.key, "world": self.world.name, **result.to_dict()}

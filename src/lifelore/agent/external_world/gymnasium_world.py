@@ -18,6 +18,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
 
 ResetBy = Literal["task", "episode"]
+STEP_PARTS = ("observation", "reward", "terminated", "truncated", "info")
 
 
 class GymnasiumWorld(AbstractContextManager):
@@ -112,7 +113,8 @@ class GymnasiumWorld(AbstractContextManager):
             self._change_task(task)
         episode = stream(seed, "episode")
         number = episode if self._reset_by == "episode" else stream(self._seed, "task", task)
-        observation, _ = self._env.reset(seed=int(number.integers(2**31)))
+        found = self._env.reset(seed=int(number.integers(2**31)))
+        observation, _ = self._parts("reset", ("observation", "info"), found)
         if self._reset_by == "task":
             self._env.unwrapped.np_random = np.random.default_rng(int(episode.integers(2**31)))
         return self.see(observation)
@@ -135,12 +137,23 @@ class GymnasiumWorld(AbstractContextManager):
         """Take action number `action` of [0, n_actions): (state, reward, terminated, truncated)."""
         if self._current is None:
             raise InputError("step must follow reset, got step first; call reset(task, seed)")
-        observation, reward, terminated, truncated, _ = self._env.step(self.first_action + int(action))
-        if not isinstance(reward, SupportsFloat):
+        found = self._env.step(self.first_action + int(action))
+        observation, reward, terminated, truncated, _ = self._parts("step", STEP_PARTS, found)
+        if not isinstance(reward, SupportsFloat) or getattr(reward, "ndim", 0):
             raise InputError(
                 f"reward of {self.name} must be a number, got {type(reward).__name__}; correct its step"
             )
         return self.see(observation), float(reward), bool(terminated), bool(truncated)
+
+    def _parts(self, function: str, parts: tuple[str, ...], found: Any) -> tuple[Any, ...]:
+        """What `reset` or `step` of the environment returned, as a tuple of these parts."""
+        if isinstance(found, tuple) and len(found) == len(parts):
+            return found
+        got = f"{len(found)} values" if isinstance(found, tuple) else type(found).__name__
+        raise InputError(
+            f"{function} of {self.name} must return ({', '.join(parts)}), got {got}; "
+            "an environment of the old Gym interface needs a wrapper, such as Shimmy's"
+        )
 
     def context(self, state: Hashable, last_reward: float) -> Hashable:
         """Features of the current state; the observations of other states are not stored."""

@@ -11,6 +11,8 @@ LEAST_MOVES = 200
 """Moves of a task below which new states say nothing: each first episode has new ones."""
 HARDLY_REPEAT = 0.9
 """Share of a task's moves that begin in a state not met before, from which nothing is learnt of a state."""
+LEAST_REWARDS = 30
+"""Moves of a task below which new rewards say nothing."""
 
 
 def new_states(world: str, states: Sequence[int]) -> list[str]:
@@ -21,6 +23,18 @@ def new_states(world: str, states: Sequence[int]) -> list[str]:
     return [
         f"Of {len(states):,} moves in a task of {world}, {share:.0%} began in a state that the task had not met "
         "before, so hardly anything can be learnt. Pass state= to bin continuous observations."
+    ]
+
+
+def new_rewards(world: str, rewards: Sequence[float]) -> list[str]:
+    """A sentence if the rewards of a task's moves hardly repeat, else none."""
+    share = len(set(rewards)) / len(rewards) if len(rewards) >= LEAST_REWARDS else 0.0
+    if share < HARDLY_REPEAT:
+        return []
+    return [
+        f"Of {len(rewards):,} moves in a task of {world}, {share:.0%} paid a reward that no move had paid before, "
+        "so known types look new. Round noisy rewards with gymnasium.wrappers.TransformReward, or pass "
+        'signals="returns".'
     ]
 
 
