@@ -126,6 +126,20 @@ def test_a_joint_normal_study_serves_a_user(fitted, memory):
         assert choose(memory, study, f"likes {liked}", available=rest)["policy"] == other
 
 
+@pytest.mark.parametrize(("telling", "said"), [(True, "2 types in each context"), (False, "context tells little")])
+def test_contexts_say_whether_they_tell_of_types(fitted, telling, said):
+    """Two types of user, as many as were asked for; the context names the type, or is drawn."""
+    random = np.random.default_rng(0)
+    lines = []
+    for user in range(80):
+        likes, drawn = user % 2, random.integers(2)
+        for visit in range(8):
+            outcome = 4 * (visit % 2 == likes) + random.normal()
+            lines.append(f"u{user},c{likes if telling else drawn},p{visit % 2},{outcome:.2f}")
+    document, _ = fitted(lines, "user,context,policy,outcome", types=2)
+    assert document["notes"][0].startswith(said)
+
+
 def test_contexts_have_priors_of_their_own(fitted):
     lines = [f"u{i},{'k' if i < 6 else 'l'},{'web' if i < 5 else 'app'},x,{i % 2}" for i in range(10)]
     document, study = fitted(lines, "user,type,context,policy,outcome")

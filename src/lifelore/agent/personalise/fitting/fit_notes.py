@@ -56,12 +56,13 @@ def _of_context(study: Study, document: Mapping[str, Any]) -> list[str]:
         if context["differ"]:
             found = f"outcomes differ by it, but that gives no better choices ({served})"
         return [f"{context['column']} changes nothing: {found}"]
-    worth = ""
+    worth, tells = "", "tells of types"
     if context["worth"] is not None:
         gain, low, high = context["worth"]
         worth = f", worth {gain:+.3g} ({low:.3g} to {high:.3g}) an outcome on users held out"
+        tells = tells if low > 0 else "tells little of types"
     if not context["types_of"]:
-        return [f"{context['column']} tells of types{worth}"]
+        return [f"{context['column']} {tells}{worth}"]
     types = study.library.n_types // context["types_of"]
     found = "one type: users of a context start alike" if types == 1 else f"{types} types in each context"
     return [f"{found}; {context['types_of']} contexts ({context['column']}) have outcomes of their own{worth}"]

@@ -113,7 +113,9 @@ def _with_contexts(kinds: list[Kind], least: int) -> list[Kind]:
     found: list[Kind] = []
     for model in dict.fromkeys(kind.model for kind in kinds):
         own = [kind for kind in kinds if kind.model == model]
-        sizes = {least} if model == "joint-normal" else {least, *(kind.types or 1 for kind in own)}
+        sizes = {least, *(kind.types or 1 for kind in own)}
+        if model == "joint-normal":
+            sizes &= {1}  # by context, its means are those of a single type
         found += [Kind(model, size, True) for size in sorted(sizes)] + own
     return found
 
