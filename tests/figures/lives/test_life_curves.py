@@ -38,6 +38,14 @@ def test_zero_collisions_have_their_place():
     assert low < 0 < high
 
 
+def test_steps_of_one_power_of_ten_have_several_numbers():
+    steps = {"steps_to_80": np.array([200.0, 900, 8000]), "collisions": np.ones(3), "reached": np.full(3, True)}
+    figure = draw_life([0, 1, 2], {"lore": steps})
+    figure.canvas.draw()
+    shown = {label.get_text() for label in figure.axes[0].get_yticklabels(which="both")}
+    assert {"200", "500", "1,000", "2,000", "5,000"} <= shown
+
+
 def test_a_measure_of_another_length_is_refused():
     with pytest.raises(InputError, match="one value a task, got 2 for 3"):
         draw_life([0, 1, 2], _agents(2))

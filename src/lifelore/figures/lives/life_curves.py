@@ -92,8 +92,8 @@ def _dress(axes: "Axes", tasks: NDArray, may_be_zero: bool) -> None:
     else:
         axes.set_yscale("log")
         low, high = axes.get_ylim()
-        # A range with no power of ten in it, or one, needs other numbers at its ticks.
-        shown = "23468" if high < 5 * low else "25" if high < 20 * low else ""
+        # A range with at most two powers of ten in it needs other numbers at its ticks.
+        shown = "23468" if high < 5 * low else "25" if high < 100 * low else ""
         axes.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: _plain(value, shown)))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
     axes.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=8, min_n_ticks=1))

@@ -94,7 +94,7 @@ function drawKnown(map, tasks, task) {
   const words = `${short(map.known)} known places of a map of ${map.shape[0]} by ${map.shape[1]} cells. ${about}`;
   const near = $("part").value === "near" ? { row, column } : null;
   drawMap($("map"), map, goals, { near, words });
-  const open = map.untried ? ` A diamond marks each of ${short(map.untried)} places from which it has never made some open move.` : "";
+  const open = map.untried ? ` A diamond marks a place from which it has never made some open move; ${short(map.untried)} in all.` : "";
   $("map-words").textContent = `${words} The filled circle is the goal of task ${task.task}, the others are goals before it.${open}`;
   return `It knows ${short(map.known)} places.`;
 }
