@@ -97,6 +97,9 @@ def print_results(results: Sequence[Mapping], folder: Path) -> None:
         console.print(table, highlight=False)
         picture = result_folder(folder / claim.id, result["mode"]) / "figure.png"
         console.print(f"{picture}\n", soft_wrap=True, highlight=False)
+    console.print(
+        "Marks: at the default, under some reasonable reading, under most readings; ½: in part or on average"
+    )
 
 
 def _print_verified(found: list[dict]) -> None:

@@ -1,5 +1,6 @@
 """`lifelore learn-from`: learn from the runs of a real robot."""
 
+from collections import Counter
 from typing import Annotated
 
 import typer
@@ -108,8 +109,9 @@ def _print(report: dict) -> None:
     if report["competence"] is not None:
         console.print(f"estimated competence {report['competence']:.2f}")
     if report["new_obstacles"]:
-        places = "; ".join(f"{x:.2f},{y:.2f} {move}" for x, y, move in report["new_obstacles"][:5])
-        console.print(f"{len(report['new_obstacles'])} bumps where the map is free, such as {places}")
+        bumps = Counter(f"{x:.2f},{y:.2f} {move}" for x, y, move in report["new_obstacles"])
+        places = "; ".join(f"{place} × {times}" for place, times in bumps.most_common(5))
+        console.print(f"{bumps.total()} bumps where the map is free, such as {places}")
     if not report["clock"]:
         console.print("times of the log are no seconds since 1970: its runs count as driven at this hour")
     for warning in report["warnings"]:
