@@ -4,7 +4,6 @@ from collections.abc import Callable
 from typing import Any
 
 from lifelore.core.metrics import mean_estimate
-from lifelore.figures.style import new_figure
 from reproduction.engine.claim import Claim
 from reproduction.engine.statement import Statement
 
@@ -24,12 +23,5 @@ def toy_claim(settings: dict, run_cell: Callable[..., dict], **more: Any) -> Cla
         run_cell=run_cell,
         measure=lambda s, results: {"x": mean_estimate([r["x"] for r in results])},
         rows=lambda s, results: list(results),
-        draw=draw,
         **more,
     )
-
-
-def draw(result):
-    figure = new_figure(2, 2)
-    figure.subplots().plot([0, 1], [0, len(result["rows"])])
-    return figure

@@ -23,7 +23,7 @@ from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.noise_maze import noise_maze
 from reproduction.chapter5.c5_03_priors_in_search import bandit
-from reproduction.engine.results_table import BAND, ResultsTable
+from reproduction.engine.results_table import ResultsTable
 
 PLACE, PERCEPT = KINDS = ("place", "percept")
 FORMS = ("proportion", "dirichlet", "softmax", "support")
@@ -37,8 +37,6 @@ NONE = {"kind": None, "form": "uniform"}
 EVEN = {"kind": None, "form": "even"}
 """Without a prior; and for bandits, as many pseudo-pulls spread evenly."""
 INDICES = {"ucb1": bandit.ucb1, "beta": bandit.beta_thompson}
-BLOCKS = 20
-"""Points of a stored curve of regret."""
 
 
 class Maze(NamedTuple):
@@ -153,7 +151,7 @@ def _depth_first_searches(settings: Mapping, maze: Maze, names: tuple) -> Iterat
 
 
 def _bandits(settings: Mapping, maze: Maze, names: tuple) -> Iterator[dict]:
-    """Regret from each start of the arms, the mean over the places; its curve where it is drawn."""
+    """Regret from each start of the arms, the mean over the places."""
     slip, horizon = settings["slip"], settings["pulls"]
     means = np.where(maze.best[maze.starts], 1 - slip, slip)
     payoffs = (stream(*names, "payoffs").random((len(means), horizon, means.shape[1])) < means[:, None]).astype(
@@ -161,14 +159,11 @@ def _bandits(settings: Mapping, maze: Maze, names: tuple) -> Iterator[dict]:
     )
     begun = list(_arms(settings, maze))
     every = bandit.Arms(*(np.concatenate(part) for part in zip(*(arms for _, arms in begun), strict=True)))
-    at = np.unique(np.linspace(0, horizon - 1, BLOCKS).astype(int))
     for name, index in INDICES.items():
         pulled = bandit.play(index, every, np.tile(payoffs, (len(begun), 1, 1)), stream(*names, "pulls", name))
         lost = bandit.regret(pulled, np.tile(means, (len(begun), 1))).reshape(len(begun), len(means), horizon)
-        for (about, _), curve in zip(begun, lost.mean(axis=1), strict=True):
-            found = {"index": name, **about, "regret": float(curve[-1])}
-            drawn = about["kind"] is None or about["form"] == DEFAULT["form"]
-            yield {**found, "curve": np.round(curve[at], 3).tolist()} if drawn else found
+        for (about, _), mean in zip(begun, lost[:, :, -1].mean(axis=1), strict=True):
+            yield {"index": name, **about, "regret": float(mean)}
 
 
 def _arms(settings: Mapping, maze: Maze) -> Iterator[tuple[dict, bandit.Arms]]:
@@ -217,21 +212,3 @@ def _gain(table: ResultsTable, prior: Mapping, guides: str) -> Estimate:
 
 def _nodes_ratio(table: ResultsTable, prior: Mapping, order: str) -> Estimate:
     return table.ratio("expanded", {**prior, "order": order}, {**NONE, "order": None})
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Goals reached by tree search, nodes expanded, and curves of regret; without a prior and with each kind."""
-    search, order, arms = _tables(results)
-    form = DEFAULT["form"]
-    uses = [(NONE, None, None), *(({"kind": kind, "form": form}, GUIDES[0], ORDERS[0]) for kind in KINDS)]
-    found = [
-        {
-            "kind": prior["kind"],
-            "reached": search.mean("reached", **prior, guides=guides).to_dict(),
-            "expanded": order.mean("expanded", **prior, order=use).to_dict(),
-        }
-        for prior, guides, use in uses
-    ]
-    for index, prior in product(INDICES, [NONE, EVEN, *(prior for prior, *_ in uses[1:])]):
-        found.append({"index": index, **prior, **arms.curve("curve", 3, BAND, index=index, **prior)})
-    return found
