@@ -22,6 +22,6 @@ def toy_claim(settings: dict, run_cell: Callable[..., dict], **more: Any) -> Cla
         cells=lambda s: [{"i": i} for i in range(s["n"])],
         run_cell=run_cell,
         measure=lambda s, results: {"x": mean_estimate([r["x"] for r in results])},
-        rows=lambda s, results: list(results),
+        rows=lambda s, results: [dict(one) for one in results],
         **more,
     )
