@@ -1,4 +1,4 @@
-"""A claim of the thesis as a folder: `claim.toml`, `run.py`, and `figure.py` where the thesis prints a figure.
+"""A claim of the thesis as a folder: `claim.toml`, `run.py`, and `figure.py` where numbers alone do not do.
 
 - ``claim.toml``: the thesis's sentence, its statements with the conditions that make them true, settings.
 - ``run.py``: ``cells(settings)`` lists the cells of a run (without it: `each_run`), ``run_cell(settings, cell,
@@ -7,9 +7,9 @@
   and named estimates there, the default first; ``measure(settings, results)`` gives what is measured at the
   default beside the first reading, or instead of it. One of the two may be missing. ``rows(settings, results)``
   gives what the figure needs beside them, and may be missing.
-- ``figure.py``: ``draw(result)`` draws the thesis's figure from the finished result, in the house style, which the
-  engine sets; it runs nothing again. Most are functions of panels, see `reproduction.figures.panels`. Without it
-  the picture shows the number of each statement beside its bound.
+- ``figure.py``: ``draw(result)`` draws the thesis's figure, or ours beside others, from the finished result in the
+  house style, which the engine sets; it runs nothing again. Most are functions of panels, see
+  `reproduction.figures.panels`. Without it the picture shows the number of each statement beside its bound.
 
 Claims with the same ``run_cell`` share their finished cells where a module has ``shared = ("pairs", "camera")``:
 the names of the settings that ``run_cell`` reads. Without it all settings count, and cells belong to one claim.
