@@ -19,6 +19,7 @@ QUICK = (
     "reproduction/test_statement.py",
     "benchmarks/test_rounds.py",
     "app/test_console.py",
+    "app/test_every_verb.py",
     "figures/test_label_placement.py",
 )
 """Quick files of these folders, a file a room."""

@@ -1,4 +1,4 @@
-"""A claim of the thesis as a folder: `claim.toml`, `run.py` and `figure.py`.
+"""A claim of the thesis as a folder: `claim.toml`, `run.py`, and `figure.py` where numbers alone do not do.
 
 - ``claim.toml``: the thesis's sentence, its statements with the conditions that make them true, settings.
 - ``run.py``: ``cells(settings)`` lists the cells of a run (without it: `each_run`), ``run_cell(settings, cell,
@@ -7,8 +7,9 @@
   and named estimates there, the default first; ``measure(settings, results)`` gives what is measured at the
   default beside the first reading, or instead of it. One of the two may be missing. ``rows(settings, results)``
   gives what the figure needs beside them, and may be missing.
-- ``figure.py``: ``draw(result)`` draws the thesis's figure from the finished result, in the house style, which the
-  engine sets; it runs nothing again. Most are functions of panels, see `reproduction.figures.panels`.
+- ``figure.py``: ``draw(result)`` draws the thesis's figure, or ours beside others, from the finished result in the
+  house style, which the engine sets; it runs nothing again. Most are functions of panels, see
+  `reproduction.figures.panels`. Without it the picture shows the number of each statement beside its bound.
 
 Claims with the same ``run_cell`` share their finished cells where a module has ``shared = ("pairs", "camera")``:
 the names of the settings that ``run_cell`` reads. Without it all settings count, and cells belong to one claim.
@@ -104,11 +105,11 @@ class Claim:
     statements: tuple[Statement, ...]
     sizes: Mapping[str, Settings]
     run_cell: Callable[[Settings, Cell, int], dict]
-    draw: Callable[[Mapping], "Figure"]
     measure: Callable[[Settings, Sequence[CellResult]], Estimates] = no_measures
     cells: Callable[[Settings], list[dict]] = each_run
     readings: Callable[[Settings, Sequence[CellResult]], Iterable[tuple[Cell, Estimates]]] = no_readings
     rows: Callable[[Settings, Sequence[CellResult]], list[dict]] = no_readings
+    draw: Callable[[Mapping], "Figure"] | None = None
     figure: tuple[str, ...] = ()
     erratum: str = ""
     limits: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
@@ -198,11 +199,8 @@ def _functions(folder: Path, package: str, settings: Settings) -> dict[str, Any]
     }
     known = ("run_cell", "draw", "measure", "readings", "cells", "rows", "check", "shared")
     found = {name: scope[name] for name in known if name in scope}
-    absent = [name for name in known[:2] if name not in found]
-    if absent := absent + ([] if {"measure", "readings"} & found.keys() else ["measure"]):
-        raise InputError(
-            f"modules of {folder} must define run_cell, draw and measure or readings; missing {', '.join(absent)}"
-        )
+    if "run_cell" not in found or not {"measure", "readings"} & found.keys():
+        raise InputError(f"modules of {folder} must define run_cell, and measure or readings")
     if unread := set(found.get("shared", ())) - settings.keys():
         raise InputError(f"shared of {folder} must name settings, got {', '.join(sorted(unread))}")
     return found

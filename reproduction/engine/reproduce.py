@@ -253,10 +253,10 @@ def _write(claim: Claim, result: dict, folder: Path) -> None:
 def draw(claim: Claim, result: Mapping, folder: Path) -> None:
     """Draw ``figure.png``, and ``readings.png`` where there are several readings; nothing is run."""
     from lifelore.figures.style import house_style, save_figure
-    from reproduction.engine.readings_figure import draw_readings
+    from reproduction.engine.statement_figures import draw_numbers, draw_readings
 
     with house_style():
-        save_figure(claim.draw(result), folder / "figure.png")
+        save_figure(claim.draw(result) if claim.draw else draw_numbers(claim, result), folder / "figure.png")
         if len(result["readings"]) > 2:
             save_figure(draw_readings(claim, result), folder / "readings.png")
 

@@ -5,23 +5,14 @@ A record is a plain mapping: some entries are keys (method, run, choices of the 
 """
 
 from collections import Counter
-from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from functools import wraps
-from typing import Any, TypeVar
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.core.intervals import t_interval
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
-from reproduction.engine.cell_store import canonical
-
-T = TypeVar("T")
-
-PARTS = ("mean", "deviation", "low", "high")
-"""Parts of a summarised curve; `low` and `high` are the ends of its 95 % interval."""
-BAND = ("mean", "low", "high")
 
 
 class ResultsTable:
@@ -106,15 +97,6 @@ class ResultsTable:
         """Ratio of the means, the first selection to the second, with its paired 95 % interval."""
         return ratio_estimate(*self.paired(measure, first, second, **where))
 
-    def curve(
-        self, measure: str, digits: int | None = None, parts: Sequence[str] = PARTS, **where: Any
-    ) -> dict[str, list[float]]:
-        """Mean of a curve over the records, its standard deviation and its 95 % t interval, point by point.
-
-        Returns the `parts` asked for, each (length,), rounded to `digits` decimals.
-        """
-        return curve_of(self.values(measure, **where), digits, parts)
-
     def _places(self, where: Mapping[str, Any]) -> list[int]:
         unknown = where.keys() - set(self.keys)
         if unknown:
@@ -128,14 +110,11 @@ class ResultsTable:
         return self._index[names].get(tuple(_hashable(where[name]) for name in names), [])
 
 
-def curve_of(curves: ArrayLike, digits: int | None = None, parts: Sequence[str] = PARTS) -> dict[str, list[float]]:
-    """The `parts` asked for of `curves` (n, length): mean, standard deviation, 95 % t interval, each (length,)."""
+def curve_of(curves: ArrayLike) -> dict[str, list[float]]:
+    """Mean and standard deviation of `curves` (n, length), each (length,), rounded to one decimal."""
     curves = np.asarray(curves, float)
-    n, mean = len(curves), curves.mean(axis=0)
-    deviation = curves.std(axis=0, ddof=1) if n > 1 else np.zeros(curves.shape[1])
-    low, high = t_interval(mean, deviation / np.sqrt(n), n - 1) if n > 1 else (mean, mean)
-    found = {"mean": mean, "deviation": deviation, "low": low, "high": high}
-    return {part: (found[part] if digits is None else np.round(found[part], digits)).tolist() for part in parts}
+    deviation = curves.std(axis=0, ddof=1) if len(curves) > 1 else np.zeros(curves.shape[1])
+    return {"mean": np.round(curves.mean(axis=0), 1).tolist(), "deviation": np.round(deviation, 1).tolist()}
 
 
 def having(records: Iterable[Mapping[str, Any]], **values: Any) -> list[Mapping[str, Any]]:
@@ -161,24 +140,6 @@ def tally(records: Iterable[Mapping[str, Any]], label: str) -> list[dict[str, An
     keys = [tuple(map(_hashable, record.values())) for record in records]
     first, counts = dict(zip(keys, records, strict=True)), Counter(keys)
     return [{**first[key], label: counts[key]} for key in sorted(counts)]  # type: ignore[type-var]
-
-
-def computed_once(
-    function: Callable[[Mapping[str, Any], Sequence[Mapping[str, Any]]], T],
-) -> Callable[[Mapping[str, Any], Sequence[Mapping[str, Any]]], T]:
-    """`function` of (settings, results) with its latest value cached: measures and rows rest on the same work."""
-    latest: dict[str, T] = {}
-
-    @wraps(function)
-    def cached(settings: Mapping[str, Any], results: Sequence[Mapping[str, Any]]) -> T:
-        key = canonical([settings, results])
-        if key not in latest:
-            value = function(settings, results)
-            latest.clear()
-            latest[key] = value
-        return latest[key]
-
-    return cached
 
 
 def _hashable(value: Any) -> Hashable:

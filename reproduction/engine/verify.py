@@ -12,8 +12,6 @@ from reproduction.engine.provenance import data_hash
 from reproduction.engine.registry import RESULTS, claim_ids, claim_of
 from reproduction.engine.reproduce import ClaimRun, run_plan, stored_result
 
-FILE = "verify.json"
-"""Among the results: what `verify` gave for all of them, ``--json``."""
 CIRCUMSTANCES = ("source", "processor", "simd", "data")
 MOST_SHOWN = 20
 """Differences that are listed for a claim."""

@@ -5,7 +5,6 @@ import json
 
 import numpy as np
 import pytest
-import typer
 
 from lifelore.app.advise_command import advise
 from lifelore.core.errors import InputError, NotFoundError
@@ -58,14 +57,3 @@ def test_a_bad_line_ends_it_after_the_good_ones(experts, monkeypatch, capsys):
 def test_a_watch_file_that_is_not_there(experts):
     with pytest.raises(NotFoundError, match="file 'nowhere' does not exist"):
         advise("lattice", str(experts), watch="nowhere")
-
-
-def test_the_options_are_what_typer_makes_of_them(experts, tmp_path, capsys):
-    app = typer.Typer()
-    app.command()(advise)
-    (tmp_path / "steps.jsonl").write_text(ASK)
-    app(
-        ["lattice", "--experts", str(experts), "--watch", str(tmp_path / "steps.jsonl"), "--share", "0.1"],
-        standalone_mode=False,
-    )
-    assert not any(json.loads(line)["advise"] for line in capsys.readouterr().out.splitlines())

@@ -1,17 +1,14 @@
 """``python -m benchmarks``: the list, one line for a mistake, JSON, a table, and the stored file."""
 
 import json
-import subprocess
-import sys
 from importlib import import_module
 from types import SimpleNamespace
 
 import pytest
 
 import benchmarks
-from benchmarks import BENCHES, bench, rounds
+from benchmarks import BENCHES, rounds
 from benchmarks.__main__ import main
-from lifelore.core.errors import InputError, NotFoundError
 
 
 @pytest.fixture
@@ -63,17 +60,3 @@ def test_a_run_prints_and_stores_only_when_asked(quick, capsys, tmp_path, monkey
     assert json.loads((tmp_path / "own" / "kernels.json").read_text()) == document
     shown = capsys.readouterr().out
     assert all(part in shown for part in ("ours", "theirs", "<= 3.0", "yes", "–"))
-
-
-def test_the_process_ends_with_the_status():
-    done = subprocess.run(
-        [sys.executable, "-m", "benchmarks", "speed"], capture_output=True, text=True, check=False
-    )
-    assert (done.returncode, len(done.stderr.splitlines())) == (2, 1)
-
-
-def test_the_function_refuses_with_errors():
-    with pytest.raises(NotFoundError, match=r"benchmark must be one of kernels, .*, got 'speed'"):
-        bench("speed")
-    with pytest.raises(InputError, match="got 1001"):
-        bench("kernels", repeats=1001)

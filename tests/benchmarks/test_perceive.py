@@ -1,14 +1,13 @@
 """The benchmark of perceiving: its contract at a small size, its stages, and points that are made up."""
 
-import os
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from benchmarks import perceive
-from benchmarks.perceive import AGAIN, PARTS, bench_perceive, process_parts
-from benchmarks.process import Cost, process_cost
+from benchmarks.perceive import AGAIN, PARTS, bench_perceive
+from benchmarks.process import Cost
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from reproduction.chapter2.scoring.perception_stages import STAGES
 from tests.benchmarks.contract import checked
@@ -51,15 +50,3 @@ def test_the_answer_keeps_its_contract(small):
     assert next(line["ratio"] for line in result["rows"] if line["name"].endswith(": imports")) == pytest.approx(
         1 / 9
     )
-
-
-def test_parts_are_those_of_a_real_process(cloud, tmp_path):
-    environment, source = dict(os.environ), tmp_path / "cloud.npz"
-    np.savez(source, points=cloud.points, labels=cloud.labels)
-    process_parts(source, environment)  # compiled and warm
-    cost, parts = process_cost(["perceive", source, "--json"], environment), process_parts(source, environment)
-    assert set(parts) == {*PARTS, AGAIN}
-    assert all(seconds > 0 for seconds in parts.values())
-    # Besides the parts, a process parses its arguments and ends; other programs disturb both processes.
-    assert 0.3 < sum(parts[part] for part in PARTS) / cost.cpu < 2
-    assert parts[AGAIN] < sum(parts[part] for part in PARTS) / 2

@@ -5,7 +5,7 @@ import pytest
 
 from benchmarks import priors
 from benchmarks.priors import ACTIONS, ALPHA0, DENSE, DICT, OURS, SCATTERED, STATES, Case, bench_priors
-from lifelore.core.errors import InputError, LifeloreError
+from lifelore.core.errors import InputError
 from tests.benchmarks.contract import checked
 
 
@@ -46,13 +46,6 @@ def test_the_answer_keeps_its_contract(monkeypatch):
             assert measured[f"{name} / {OURS}"] == line["ratio"]
     assert measured[f"{priors.TABLES}, ms"] == rows[priors.TABLES]["value"]
     assert len(measured) == 6 + 2 + 2
-
-
-def test_unlike_values_of_a_factory_are_refused(monkeypatch):
-    monkeypatch.setattr(priors, "COMPONENTS", 1)
-    monkeypatch.setattr(priors, "optimal_q", lambda tables, discount: np.zeros(tables.next_state.shape[:2]))
-    with pytest.raises(LifeloreError, match="both ways must find the same values"):
-        priors._factory(1, lambda label: None)
 
 
 def test_unlike_work_is_refused(monkeypatch):

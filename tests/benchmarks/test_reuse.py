@@ -38,26 +38,6 @@ def test_the_answer_keeps_its_contract_without_the_outside_programs(short):
     assert goals["README's example in a fresh process: imports of Numba and SciPy"] == 0
 
 
-def test_all_players_meet_the_same_tasks():
-    seen = []
-
-    def make(seed):
-        paid = []
-        seen.append((seed, paid))
-        return (lambda: 3), (lambda policy, payoff: paid.append((policy, payoff)))
-
-    mean = np.arange(64.0).reshape(8, 8)
-    timed = reuse._episodes(mean, make)
-    assert timed() > 0
-    first, again = seen[: reuse.TASKS], seen[reuse.TASKS :]
-    assert first == again
-    assert len({tuple(paid) for _, paid in first}) == reuse.TASKS
-    # 50 payoffs of policy 3 with deviation 1 about one of its means, which are 8 apart: five deviations of a mean.
-    for _, paid in first:
-        mean_paid = np.mean([payoff for policy, payoff in paid if policy == 3])
-        assert np.abs(mean[:, 3] - mean_paid).min() < 5 / np.sqrt(reuse.EPISODES)
-
-
 @pytest.mark.parametrize("name", PEERS)
 def test_a_peer_learns(name):
     package, make = PEERS[name]

@@ -1,9 +1,8 @@
 """The separator's benchmark at a size for tests, and the pairs it is run on."""
 
-import numpy as np
 import pytest
 
-from benchmarks import cloud_pairs, separator
+from benchmarks import separator
 from benchmarks.cloud_pairs import DRAWN, cloud_pair
 from benchmarks.separator import FINE, WIDE, bench_separator
 from tests.benchmarks.contract import checked
@@ -30,16 +29,3 @@ def test_the_answer_keeps_its_contract(small):
     assert met["greatest difference of f at tolerance 1e-5"]
     assert not met["first separator in a fresh process, cold, s"]
     assert met["first separator in a fresh process, warm, s"]
-
-
-@pytest.mark.skipif(len(cloud_pairs.names()) == 1, reason="LIFELORE_DATA is not set")
-@pytest.mark.parametrize("name", cloud_pairs.REAL)
-@pytest.mark.parametrize("setting", [FINE, WIDE])
-def test_real_pairs_have_the_support_vectors_of_libsvm(name, setting):
-    first, second = cloud_pair(name, 4000)
-    found = separator.separate(first, second, length=setting.length, cost=setting.cost, tolerance=1e-6)
-    twin = separator._libsvm(first, second, setting.length, setting.cost, 1e-7)
-    support = np.concatenate([found.support_first, found.support_second + len(first)])
-    assert np.array_equal(support, np.sort(twin.support_))
-    points = np.concatenate([first, second])
-    assert np.abs(found.decision(points) - twin.decision_function(points)).max() <= 1e-4

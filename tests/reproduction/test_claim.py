@@ -103,7 +103,7 @@ def test_a_claim_is_loaded_from_its_folder(tmp_path, monkeypatch):
     assert claim.cells is claim.draw is print
     assert claim.check is None
     for program, words in {
-        "run_cell = rows = print  # no figure": "missing draw, measure",
+        "run_cell = rows = print": "must define run_cell, and measure or readings",
         "run_cell = readings = draw = print; shared = ('speed',)": r"shared of .* must name settings, got speed",
     }.items():
         (tmp_path / "small/run.py").write_text(program)

@@ -4,7 +4,6 @@ from collections.abc import Callable
 from typing import Any
 
 from lifelore.core.metrics import mean_estimate
-from lifelore.figures.style import new_figure
 from reproduction.engine.claim import Claim
 from reproduction.engine.statement import Statement
 
@@ -23,13 +22,6 @@ def toy_claim(settings: dict, run_cell: Callable[..., dict], **more: Any) -> Cla
         cells=lambda s: [{"i": i} for i in range(s["n"])],
         run_cell=run_cell,
         measure=lambda s, results: {"x": mean_estimate([r["x"] for r in results])},
-        rows=lambda s, results: list(results),
-        draw=draw,
+        rows=lambda s, results: [dict(one) for one in results],
         **more,
     )
-
-
-def draw(result):
-    figure = new_figure(2, 2)
-    figure.subplots().plot([0, 1], [0, len(result["rows"])])
-    return figure

@@ -6,12 +6,12 @@ import numpy as np
 
 from lifelore.core.relations import ADJACENT
 from lifelore.figures.scenes.object_palette import mixed
-from lifelore.figures.style import INK, PAPER, Axes
+from lifelore.figures.style import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, PAPER, Axes
 from reproduction.chapter2.c2_03_displacements_by_relation.run import EDGE
-from reproduction.figures.palettes import RELATION_COLOURS, RELATION_MARKERS
 from reproduction.figures.panels import panels
-from reproduction.figures.scatter import draw_scatter
 
+LOOKS = {"on": (BLUE, "o"), "adjacent": (ORANGE, "s"), "both": (GREEN, "^"), "none": (GREY, "x")}
+"""Colour and marker of each relation, distinguishable with every common colour blindness."""
 CLOSE = 20
 """Millimetres; how far the second view reaches."""
 
@@ -35,22 +35,22 @@ def draw(result: Mapping, whole: Axes, close: Axes) -> None:
 def draw_displacements(axes: Axes, rows: Sequence[Mapping], title: str, reach: float) -> None:
     """The displacements of each relation within `reach` mm, and the band of *adjacent*, shaded.
 
+    Many points fade, so that dense places stay visible.
     `rows` are ``{"relation", "mm", "middle_of_on"}``.
     """
     down = rows[0]["middle_of_on"][1]
     groups = {row["relation"]: np.array(row["mm"]).reshape(-1, 2) for row in rows}
-    draw_scatter(
-        axes,
-        groups,
-        colours=RELATION_COLOURS,
-        markers=RELATION_MARKERS,
-        size=20,
-        title=title,
-        xlabel="x (mm to the right)",
-        ylabel="y (mm, down is positive, as in a picture)",
-    )
+    axes.axhline(0, color=LIGHT, lw=1, zorder=0)
+    axes.axvline(0, color=LIGHT, lw=1, zorder=0)
+    for relation, at in groups.items():
+        colour, marker = LOOKS[relation]
+        alpha = float(np.clip(12 / np.sqrt(max(1, len(at))), 0.25, 0.85))
+        edge = {} if marker == "x" else {"edgecolors": mixed(colour, INK, 0.3)}
+        axes.scatter(*at.T, s=20, marker=marker, color=colour, alpha=alpha, linewidths=0.5, **edge)
+        axes.scatter([], [], s=22, marker=marker, color=colour, label=relation)
+    axes.set(title=title, xlabel="x (mm to the right)", ylabel="y (mm, down is positive, as in a picture)")
     if down is not None:
         ends = sorted((EDGE * down, -np.sign(down) * 2 * reach))
-        axes.axhspan(ends[0], ends[1], color=mixed(RELATION_COLOURS[ADJACENT], PAPER, 0.85), lw=0, zorder=-1)
+        axes.axhspan(ends[0], ends[1], color=mixed(LOOKS[ADJACENT][0], PAPER, 0.85), lw=0, zorder=-1)
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
     axes.set_aspect("equal")

@@ -82,9 +82,3 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         for key in ("seconds", "points"):
             found[f"{key}_{kind}"] = mean_or_unmeasured(image[key] for image in own)
     return found | {"seconds_stereo_95_percent": quantile_estimate(table.values("seconds", kind="stereo"), 0.95)}
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The seconds of all pictures by kind, ascending."""
-    table = ResultsTable.nested(results, "images", keys=("kind",))
-    return [{"kind": kind, "seconds": np.sort(table.values("seconds", kind=kind)).tolist()} for kind in KINDS]

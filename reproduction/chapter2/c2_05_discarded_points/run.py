@@ -29,7 +29,6 @@ from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scoring.pair_validation import THRESHOLD
 from reproduction.chapter2.scoring.relation_scoring import JudgedPair, judged_scene, less_rate
 from reproduction.engine.estimates import UNMEASURED, share_by_cluster
-from reproduction.engine.results_table import computed_once
 
 THINNED, SCALED, FIXED = METHODS = ("thinned, threshold scaled", "raw, threshold scaled", "raw, 7 fixed")
 LOT = 6
@@ -137,7 +136,6 @@ def share(pairs: Sequence[JudgedPair]) -> Estimate:
     return share_by_cluster([pair.exact for pair in pairs], [pair.scene for pair in pairs])
 
 
-@computed_once
 def judged(settings: Mapping, results: Sequence[Mapping]) -> dict[str, dict[float, list[JudgedPair]]]:
     """By method and share discarded, each labelled pair of the held-out scenes beside its predicted relation.
 
@@ -171,12 +169,3 @@ def scene_of(pairs: Pairs) -> ScenePairs:
     gaps = np.repeat([float(gap) for _, _, gap, _ in pairs], 2)
     features = PairFeatures((), np.empty((len(both), 0)), both, gaps)
     return ScenePairs(features, tuple(np.array(moved, float).reshape(-1, 3) for *_, moved in pairs))
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The exact share by method and share discarded."""
-    return [
-        {"method": method, "discarded": level, **share(pairs).to_dict()}
-        for method, views in judged(settings, results).items()
-        for level, pairs in views.items()
-    ]

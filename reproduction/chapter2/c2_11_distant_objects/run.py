@@ -127,16 +127,3 @@ def measures(results: Sequence[Mapping], kernel: str) -> dict[str, Estimate]:
         "no_contacts_far": exact_share(found[:, -1, 1] == 0),
         "far_over_seen": mean_estimate(far / seen),
     }
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """By kernel and gap the median number of support vectors and the share of pairs with a contact."""
-    pairs = [pair for result in results for pair in result["pairs"]]
-    places = [round(float(np.median([pair["gap"] for pair in pairs])), 4), *gaps(settings)]
-    lines = []
-    for length, cost in kernels(settings):
-        found = np.array([pair["found"][kernel_name(length, cost)] for pair in pairs])
-        support, contact = np.median(found[:, :, 0], axis=0), (found[:, :, 1] > 0).mean(axis=0)
-        head = {"length": length, "cost": cost, "gap": places}
-        lines.append(head | {"support": support.tolist(), "with_contact": np.round(contact, 4).tolist()})
-    return lines

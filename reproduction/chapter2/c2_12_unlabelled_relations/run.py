@@ -94,11 +94,3 @@ def blurred(relations: NDArray[np.str_], labels: Labels) -> float:
 def mostly(relations: NDArray[np.str_]) -> str:
     """The most frequent relation; among equals the first of `CORE_RELATIONS`."""
     return max(CORE_RELATIONS, key=lambda name: int((relations == name).sum()))
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The displacements of the first data set, millimetres to the right and up, their relations and clusters."""
-    moved, relations = joined(simulated_sets(results)[0], Reading(), "three dimensions")
-    labels = x_means(moved, stream(0, "relation clusters", 0), most=min(MOST, len(moved))).labels
-    at = np.round(1000 * moved[:, SPACES["plane of Figure 2.4"]], 1).tolist()
-    return [{"mm": at, "relations": relations.tolist(), "clusters": labels.tolist()}]

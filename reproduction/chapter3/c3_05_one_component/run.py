@@ -145,7 +145,4 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     table = ResultsTable.nested(own, "found", keys=("method", *grid.default))
     found = {method: table.values("rewards", **grid.where(method, grid.default)) for method in (UNIFORM, LEARNT)}
     found["optimal"] = np.array([result["optimal"] for result in own])
-    return [
-        {"curve_of": name, **curve_of(values, digits=1, parts=("mean", "deviation"))}
-        for name, values in found.items()
-    ]
+    return [{"curve_of": name, **curve_of(values)} for name, values in found.items()]

@@ -106,7 +106,7 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         {
             "curve_of": method,
             "part": part,
-            **curve_of(table.values(part, **grid.where(method, grid.default)), 1, ("mean", "deviation")),
+            **curve_of(table.values(part, **grid.where(method, grid.default))),
         }
         for part in PARTS
         for method in METHODS

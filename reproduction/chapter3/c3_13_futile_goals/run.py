@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import binomtest
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import prior_rows
@@ -182,19 +181,3 @@ def _slopes(settings: Mapping, results: Sequence[Mapping]) -> list[float]:
 def slope(tasks: Sequence[int], frequencies: Sequence[float]) -> float:
     """Least-squares slope of the logarithm of `frequencies` over that of `tasks`."""
     return float(np.polyfit(np.log(tasks), np.log(frequencies), 1)[0])
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Cases with the first |A|, pooled over runs with exact intervals; least probabilities of worlds by kind."""
-    found, draws = [], settings["draws"] * len(results)
-    for place, case in enumerate(results[0]["constructed"]):
-        if case["actions"] == settings["actions"][0]:
-            taken = sum(result["constructed"][place]["taken"] for result in results)
-            low, high = binomtest(taken, draws).proportion_ci()
-            numbers = {"measured": taken / draws, "low": float(low), "high": float(high)}
-            found.append({key: case[key] for key in ("alpha0", "tasks", "formula")} | numbers)
-    worlds = [world for result in results for world in result["found"]]
-    for kind, n_tasks in product(settings["kinds"], settings["found_tasks"]):
-        least = [round(w["least"], 4) for w in worlds if (w["kind"], w["tasks"]) == (kind, n_tasks)]
-        found.append({"kind": kind, "of_tasks": n_tasks, "least": least})
-    return found

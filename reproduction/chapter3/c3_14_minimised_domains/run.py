@@ -23,7 +23,7 @@ from lifelore.core.streams import stream
 from reproduction.chapter3.c3_14_minimised_domains.minimised_worlds import Solved, TaskSet, task_set
 from reproduction.chapter3.learning.grid_tasks import WINDOW, drawn_starts
 from reproduction.chapter3.learning.schedules import Epsilon, schedule_of
-from reproduction.engine.estimates import mean_or_unmeasured, share_of
+from reproduction.engine.estimates import share_of
 from reproduction.engine.results_table import having
 
 TRACE = 1e-12
@@ -206,19 +206,3 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
             costs = _costs(own, place)
             found = _kept(own) | costs if place == 0 else {"to_80_ratio": costs["to_80_ratio"]}
             yield {"kind": kind, "schedule": schedule}, found
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Kind by kind traps, collisions and episodes to 80 %, each in the domain and within."""
-    found = []
-    for kind in settings["kinds"]:
-        own = having(results, kind=kind)
-        trapped = [
-            np.mean([traps for of_set in result["exact"] for traps in of_set["traps"]], 0) for result in own
-        ]
-        costs = {"collisions": [r["collisions"] for r in own], "to_80": [r["to_80"][0] for r in own]}
-        row: dict = {"kind": kind}
-        for name, values in {"traps": trapped, **costs}.items():
-            row[name] = [mean_or_unmeasured(of_way).to_dict() for of_way in np.array(values).T]
-        found.append(row)
-    return found

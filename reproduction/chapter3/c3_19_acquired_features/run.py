@@ -155,19 +155,3 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
     """Entropy, surprise and rewards with acquired features, by start and least bits."""
     for place, choice in enumerate(combinations(settings, CHOICES)):
         yield choice, _gains(results, place)
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Shares of runs by feature, then mean rewards by episode of each method, at the default."""
-    shares = acquired_shares(results)
-    found = [
-        {"feature": name, **shares[name].to_dict()}
-        for name in POOL.names
-        if name not in STARTS[settings["start"][0]]
-    ]
-    for method in METHODS:
-        own = [result[method][0] if method in (START, ACQUIRED) else result[method] for result in results]
-        curve = np.array([of_run["rewards"] for of_run in own])
-        numbers = {"mean": curve.mean(axis=0), "deviation": curve.std(axis=0)}
-        found.append({"curve_of": method, **{key: np.round(of, 1).tolist() for key, of in numbers.items()}})
-    return found

@@ -95,7 +95,7 @@ class Comparison:
         """A row with a method's ``mean`` rewards and their standard ``deviation`` across the tasks of all runs."""
         records = self.table.select(**self.grid.where(method, cell)).records
         curves = [of_task for record in records for of_task in record["rewards"]]
-        return {"curve_of": method, **curve_of(curves, digits=1, parts=("mean", "deviation"))}
+        return {"curve_of": method, **curve_of(curves)}
 
 
 def functions_of(

@@ -94,13 +94,3 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         "printed_formulas_bound": share_of([one["table"][name] <= one["printed"][name] for one, name in every]),
         "right_formulas": share_of([one["table"][name] == one["right"][name] for one, name in every]),
     }
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Each application's tables and printed formulas, of the middle number of states."""
-    states = sorted(settings["states"])[len(settings["states"]) // 2]
-    return [
-        {key: one[key] for key in ("states", "rewards", "table", "printed")}
-        for one in results
-        if one["states"] == states
-    ]

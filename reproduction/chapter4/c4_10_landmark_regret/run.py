@@ -22,8 +22,6 @@ Array = NDArray[np.float64]
 EXAMPLE = ((10.0, 10.0), (9.0, 11.0))
 """Two policies on two tasks within ε = 1 of each other: a best policy of the first costs 2 ε on the second."""
 SMOOTH, RESERVE = "smooth", "surveillance"
-BINS = 40
-"""Bins of regret from 0 to 2 ε."""
 WAVES = 4
 
 
@@ -58,12 +56,10 @@ def parted(table: Array, share: float) -> dict:
     epsilon = share * float(np.ptp(table))
     types = epsilon_types(table, epsilon)
     regret = (member_regret(table, types) / epsilon)[np.bincount(types.labels)[types.labels] > 1]
-    counts, _ = np.histogram(np.minimum(regret, 2.0), bins=BINS, range=(0, 2))
     return {
         "shared": len(regret),
         "largest": round(float(regret.max(initial=0.0)), 9),
         "past": int((regret > 1 + 1e-9).sum()),
-        "counts": counts.tolist(),
     }
 
 
@@ -89,16 +85,3 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         if result["family"] == SMOOTH and shared:
             within.append(1 - past / shared)
     return {"largest_regret": exact_value(max(largest), len(largest)), "within": mean_or_unmeasured(within)}
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Histogram of regret in ε by family."""
-    return [
-        {
-            "family": family,
-            "counts": np.sum(
-                [one["counts"] for r in results if r["family"] == family for one in r["parted"]], axis=0
-            ).tolist(),
-        }
-        for family in (SMOOTH, RESERVE)
-    ]

@@ -18,9 +18,8 @@ from reproduction.chapter4.ball_game.trials import (
     run_cell,
 )
 from reproduction.chapter4.c4_13_type_naming.run import numbers as naming
-from reproduction.engine.results_table import BAND, curve_of
 
-__all__ = ["cells", "check", "readings", "rows", "run_cell", "shared"]
+__all__ = ["cells", "check", "readings", "run_cell", "shared"]
 shared = SHARED
 
 
@@ -46,16 +45,3 @@ def numbers(result: Mapping, instead: Mapping[str, str]) -> dict[str, Estimate]:
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterable[tuple[dict, dict[str, Estimate]]]:
     """The numbers of every game, and of the first with each other choice."""
     return readings_of(results, numbers)
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Mean loss and regret by method and episode in the first game, and their 95 % intervals."""
-    losses = {method: np.array(lost).mean(axis=0) for method, lost in results[0]["losses"].items()}
-    return [
-        {"method": method, "what": what, **curve_of(values, 4, BAND)}
-        for method in (STATIC, EXP3, BEAT)
-        for what, values in {
-            "loss": losses[method],
-            "regret": (losses[method] - losses[ORACLE]).cumsum(axis=1),
-        }.items()
-    ]

@@ -30,8 +30,6 @@ from reproduction.engine.estimates import exact_value
 EPSILONS = ("1/n", "by episode")
 """The two schedules that the thesis prints."""
 N_STATES = max(N_CONTEXTS, N_OUTCOMES)
-SHOWN = 120
-"""Steps of a session that the figure shows."""
 
 
 class Algorithm9:
@@ -95,7 +93,6 @@ def _session(
 ) -> dict:
     """One user's episodes: steps, those decided alike, the largest difference of beliefs, when products vanish."""
     steps, alike, apart, vanished = 0, 0, 0.0, 0
-    beliefs: list[list[float]] = []
     heading, signal, before = np.empty(1, np.int64), np.empty(1, np.int64), np.empty((1, 2), np.int64)
     for episode in range(EPISODES):
         balls = new_balls(game, [kind], draw_sigma(world), random_states(world, 1))
@@ -111,9 +108,7 @@ def _session(
             steps += 1
             vanished = vanished or (0 if beat.printed.any() else steps)
             apart = max(apart, float(np.abs(beat.belief - reuse.belief).max()))
-            beliefs.append([beat.belief[kind], reuse.belief[kind]])
-    shown = np.round(beliefs[:SHOWN], 6).T.tolist()
-    return {"kind": kind, "steps": steps, "alike": alike, "apart": apart, "vanished": vanished, "beliefs": shown}
+    return {"steps": steps, "alike": alike, "apart": apart, "vanished": vanished}
 
 
 def library_of(game: BallGame, trained: Trained, scale: LossScale) -> PolicyLibrary:
@@ -150,12 +145,3 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         "beliefs_apart": exact_value(max(session["apart"] for session in sessions), len(sessions)),
         "products_that_vanish": mean_estimate([float(session["vanished"] > 0) for session in sessions]),
     }
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The belief in the true type in the first session of each type, and when products vanish in every session."""
-    sessions = results[-1]["sessions"]
-    firsts = {session["kind"]: session for session in reversed(sessions)}
-    vanished = [session["vanished"] for result in results for session in result["sessions"] if session["vanished"]]
-    shown = [{"kind": kind, "beliefs": firsts[kind]["beliefs"]} for kind in sorted(firsts)]
-    return [*shown, {"vanished": vanished}]

@@ -178,11 +178,11 @@ def true_compounds(scene: TabletopScene) -> Facts:
     return between | inside
 
 
-def compound_counts(results: Sequence[Mapping], word: str, kinds: Sequence[str] = KINDS) -> NDArray[np.float64]:
-    """Of each compound scene of the kinds: facts rightly found by the rule, found, true, ``(n, 3)``."""
+def compound_counts(results: Sequence[Mapping], word: str) -> NDArray[np.float64]:
+    """Of each compound scene: facts rightly found by the rule, found, true, ``(n, 3)``."""
     counts = []
     for result in results:
-        for scene in result["scenes"] if result["kind"] in kinds else ():
+        for scene in result["scenes"] if result["kind"] in KINDS else ():
             found, true = ({tuple(fact) for fact in scene[key] if fact[0] == word} for key in ("rule", "true"))
             counts.append((len(found & true), len(found), len(true)))
     return np.array(counts, float).reshape(-1, 3)
@@ -210,14 +210,4 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
             f"precision_{word}": ratio_or_unmeasured(right, said),
             f"recall_{word}": ratio_or_unmeasured(right, true),
         }
-    return found
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """F1 of each word; counts of between and in by kind of scene."""
-    found: list[dict] = [{"word": word, "f1": score.to_dict()} for word, score in learnt(results).items()]
-    for word in COMPOUNDS:
-        for kind in KINDS:
-            right, said, true = compound_counts(results, word, (kind,)).sum(axis=0).astype(int).tolist()
-            found.append({"compound": word, "scenes": kind, "right": right, "said": said, "true": true})
     return found

@@ -15,8 +15,7 @@ from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ADJACENT, NONE
 from lifelore.core.streams import stream
 from lifelore.perception.scene import Scene
-from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of
+from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scenes.skeletons import perceived, reading
 from reproduction.chapter5.c5_02_functional_roles.functional_similarity import overlap, role, shape_distribution
 from reproduction.chapter5.ranking import average_precision
@@ -24,16 +23,8 @@ from reproduction.chapter5.role_scenes import PARTS, POOLS, role_scene
 from reproduction.engine.estimates import mean_by_cluster
 
 LOT = 10
-ROLES = tuple(dict.fromkeys(role for part in PARTS.values() for role in part.roles))
 BAGS = ("topology", "predicates")
-METHODS = {
-    "topology": "topology of networks",
-    "predicates": "relations alone",
-    "shape": "shape (D2)",
-    "chance": "chance",
-}
-DRAWN = ("tower", "bridge", "lean")
-"""Kinds of scene of the figure."""
+METHODS = (*BAGS, "shape", "chance")
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -42,17 +33,15 @@ def cells(settings: Mapping) -> list[dict]:
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """The objects of a lot of scenes, each with its role and all descriptors; a picture from the first lot."""
+    """The objects of a lot of scenes, each with its role and all descriptors."""
     name = f"{cell['pool']} {cell['part']}"
-    objects, examples = [], []
+    objects = []
     for number in numbers_of(cell, LOT, settings["scenes"]):
         scene = perceived(role_scene(cell["part"], cell["pool"], name, seed, number).cloud)
         rng = stream(seed, "pairs of points", name, number)
         for label, own_role in enumerate(PARTS[cell["part"]].roles, start=2):
             objects.append({"scene": f"{name} {number}", "role": own_role, **descriptors(scene, label, rng)})
-        if number == 0 and cell["pool"] == "second" and cell["part"] in DRAWN:
-            examples.append(scene_row(reading(scene), ", ".join(PARTS[cell["part"]].roles)))
-    return {"pool": cell["pool"], "things": objects, "examples": examples}
+    return {"pool": cell["pool"], "things": objects}
 
 
 def descriptors(scene: Scene, label: int, rng: np.random.Generator) -> dict:
@@ -109,14 +98,3 @@ def judged_queries(results: Sequence[Mapping]) -> list[dict]:
             precision = {name: average_precision(scores[name], relevant) for name in METHODS}
             queries.append({"scene": item["scene"], "role": item["role"], **precision})
     return queries
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """By role the mean average precision of each method; and pictures."""
-    queries = judged_queries(results)
-    table = []
-    for own_role in ROLES:
-        own = [query for query in queries if query["role"] == own_role]
-        precision = {method: float(np.mean([query[method] for query in own])) for method in METHODS}
-        table.append({"role": own_role, "queries": len(own), **precision})
-    return table + examples_in(results)

@@ -22,8 +22,8 @@ from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.noise_maze import noise_maze
-from reproduction.chapter5.c5_03_priors_in_search import bandit
-from reproduction.engine.results_table import BAND, ResultsTable
+from reproduction.chapter5.c5_03_priors_in_search.bandit import BANDITS, regret
+from reproduction.engine.results_table import ResultsTable
 
 PLACE, PERCEPT = KINDS = ("place", "percept")
 FORMS = ("proportion", "dirichlet", "softmax", "support")
@@ -36,9 +36,6 @@ DEFAULT = {"kind": PLACE, "form": "proportion"}
 NONE = {"kind": None, "form": "uniform"}
 EVEN = {"kind": None, "form": "even"}
 """Without a prior; and for bandits, as many pseudo-pulls spread evenly."""
-INDICES = {"ucb1": bandit.ucb1, "beta": bandit.beta_thompson}
-BLOCKS = 20
-"""Points of a stored curve of regret."""
 
 
 class Maze(NamedTuple):
@@ -153,31 +150,29 @@ def _depth_first_searches(settings: Mapping, maze: Maze, names: tuple) -> Iterat
 
 
 def _bandits(settings: Mapping, maze: Maze, names: tuple) -> Iterator[dict]:
-    """Regret from each start of the arms, the mean over the places; its curve where it is drawn."""
+    """Regret from each start of the arms, the mean over the places."""
     slip, horizon = settings["slip"], settings["pulls"]
     means = np.where(maze.best[maze.starts], 1 - slip, slip)
     payoffs = (stream(*names, "payoffs").random((len(means), horizon, means.shape[1])) < means[:, None]).astype(
         float
     )
     begun = list(_arms(settings, maze))
-    every = bandit.Arms(*(np.concatenate(part) for part in zip(*(arms for _, arms in begun), strict=True)))
-    at = np.unique(np.linspace(0, horizon - 1, BLOCKS).astype(int))
-    for name, index in INDICES.items():
-        pulled = bandit.play(index, every, np.tile(payoffs, (len(begun), 1, 1)), stream(*names, "pulls", name))
-        lost = bandit.regret(pulled, np.tile(means, (len(begun), 1))).reshape(len(begun), len(means), horizon)
-        for (about, _), curve in zip(begun, lost.mean(axis=1), strict=True):
-            found = {"index": name, **about, "regret": float(curve[-1])}
-            drawn = about["kind"] is None or about["form"] == DEFAULT["form"]
-            yield {**found, "curve": np.round(curve[at], 3).tolist()} if drawn else found
+    theta = np.concatenate([theta for _, theta, _ in begun])
+    strength = np.repeat([strength for *_, strength in begun], len(means))[:, None]
+    luck, mean = np.tile(payoffs, (len(begun), 1, 1)), np.tile(means, (len(begun), 1))
+    for name in BANDITS:
+        lost = regret(name, theta, strength, luck, mean, stream(*names, "pulls", name))
+        for (about, *_), own in zip(begun, lost.reshape(len(begun), -1).mean(axis=1), strict=True):
+            yield {"index": name, **about, "regret": float(own)}
 
 
-def _arms(settings: Mapping, maze: Maze) -> Iterator[tuple[dict, bandit.Arms]]:
-    """Starts of the arms: pseudo-pulls of the moves at each place before the first pull."""
+def _arms(settings: Mapping, maze: Maze) -> Iterator[tuple[dict, NDArray[np.float64], float]]:
+    """Starts of the arms: mean payoffs and number of the pseudo-pulls of the moves at each place."""
     shape = (len(maze.starts), maze.best.shape[1])
-    yield NONE, bandit.flat_arms(*shape)
-    yield EVEN, bandit.prior_arms(np.full(shape, 1 / shape[1]), settings["strength"])
+    yield NONE, np.zeros(shape), 0.0
+    yield EVEN, np.full(shape, 1 / shape[1]), settings["strength"]
     for (kind, form), probs in maze.probs_of.items():
-        yield {"kind": kind, "form": form}, bandit.prior_arms(probs[maze.starts], settings["strength"])
+        yield {"kind": kind, "form": form}, probs[maze.starts], settings["strength"]
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -186,8 +181,8 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     return {
         "search_gain": _gain(search, DEFAULT, GUIDES[0]),
         "nodes_ratio": _nodes_ratio(order, DEFAULT, ORDERS[0]),
-        **{f"{index}_ratio": arms.ratio("regret", DEFAULT, NONE, index=index) for index in INDICES},
-        **{f"{index}_even_ratio": arms.ratio("regret", DEFAULT, EVEN, index=index) for index in INDICES},
+        **{f"{index}_ratio": arms.ratio("regret", DEFAULT, NONE, index=index) for index in BANDITS},
+        **{f"{index}_even_ratio": arms.ratio("regret", DEFAULT, EVEN, index=index) for index in BANDITS},
     }
 
 
@@ -200,7 +195,7 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
             yield {**prior, "guides": guides}, {"search_gain": _gain(search, prior, guides)}
         for use in ORDERS:
             yield {**prior, "order": use}, {"nodes_ratio": _nodes_ratio(order, prior, use)}
-        yield prior, {f"{index}_ratio": arms.ratio("regret", prior, NONE, index=index) for index in INDICES}
+        yield prior, {f"{index}_ratio": arms.ratio("regret", prior, NONE, index=index) for index in BANDITS}
 
 
 def _tables(results: Sequence[Mapping]) -> tuple[ResultsTable, ResultsTable, ResultsTable]:
@@ -217,21 +212,3 @@ def _gain(table: ResultsTable, prior: Mapping, guides: str) -> Estimate:
 
 def _nodes_ratio(table: ResultsTable, prior: Mapping, order: str) -> Estimate:
     return table.ratio("expanded", {**prior, "order": order}, {**NONE, "order": None})
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Goals reached by tree search, nodes expanded, and curves of regret; without a prior and with each kind."""
-    search, order, arms = _tables(results)
-    form = DEFAULT["form"]
-    uses = [(NONE, None, None), *(({"kind": kind, "form": form}, GUIDES[0], ORDERS[0]) for kind in KINDS)]
-    found = [
-        {
-            "kind": prior["kind"],
-            "reached": search.mean("reached", **prior, guides=guides).to_dict(),
-            "expanded": order.mean("expanded", **prior, order=use).to_dict(),
-        }
-        for prior, guides, use in uses
-    ]
-    for index, prior in product(INDICES, [NONE, EVEN, *(prior for prior, *_ in uses[1:])]):
-        found.append({"index": index, **prior, **arms.curve("curve", 3, BAND, index=index, **prior)})
-    return found

@@ -19,7 +19,6 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.regret import library_regret
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection import default_rule
-from reproduction.engine.results_table import BAND, curve_of
 
 Array = NDArray[np.float64]
 
@@ -29,8 +28,6 @@ LIBRARY, LEARNT, CONTEXT, NO_DECAY, TRUE = "library", "learnt", "context", "no d
 AGENTS = (LIBRARY, LEARNT, CONTEXT, NO_DECAY, TRUE)
 """The prior of each agent: the library's, learnt in all contexts alike, learnt by context, that without decay,
 and the true popularity."""
-BLOCKS = 20
-"""Parts of a life in the curves of the rows."""
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -114,14 +111,3 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         "decay_over_none_drift": ratio(DRIFT, CONTEXT, NO_DECAY),
         "decay_over_none_steady": ratio(STEADY, CONTEXT, NO_DECAY),
     }
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """A row an agent and world: mean early regret over lives in parts of the life, with its 95 % interval."""
-    found = []
-    for result in results:
-        early = np.array(result["early"])
-        parts = np.array_split(early, min(BLOCKS, early.shape[1]), axis=1)
-        means = np.array([part.mean(axis=1) for part in parts]).T
-        found.append({"world": result["world"], "agent": result["agent"], **curve_of(means, 2, BAND)})
-    return found

@@ -25,7 +25,7 @@ from lifelore.core.streams import stream
 from lifelore.domains.factory.customer_orders import CUSTOMERS
 from lifelore.domains.task_stream import TaskStream
 from reproduction.engine.estimates import UNMEASURED, exact_share
-from reproduction.engine.results_table import BAND, curve_of, having
+from reproduction.engine.results_table import having
 
 UNIFORM, CURIOUS = CHOOSERS = ("uniform", "curious")
 """How the context of a spare order is chosen."""
@@ -187,13 +187,3 @@ def auc_over_lives(lives: Sequence[Mapping], sign: str) -> Estimate:
     found = [wins[np.ix_(draw, draw)].sum() / (len(lives) * n[draw].sum()) for draw in draws]
     value = wins.sum() / (len(lives) * n.sum())
     return Estimate(float(value), float(np.median(found)), percentile_interval(found), len(lives))
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """A row a chooser: points missed after each span of spare orders; and a row of each sign's values."""
-    late = having(results, part="late type")
-    found: list[dict] = [{"chooser": name, **curve_of(own, 3, BAND)} for name, own in curves(results).items()]
-    for at in (0, 2):
-        known = [task[at] for life in late for task in life["known"]]
-        found.append({"sign": SIGNS[at], "known": known, "late": [life["late"][at] for life in late]})
-    return found

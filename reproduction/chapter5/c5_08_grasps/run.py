@@ -16,8 +16,7 @@ from lifelore.domains.tabletop.settings import TabletopScene
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.grasp_seeds import grasp_seeds
 from reproduction.chapter2.scenes.arranged_scenes import arranged
-from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of
+from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scenes.skeletons import perceived, reading
 from reproduction.chapter2.scenes.substructure import Substructure, find_substructure, skeleton
 from reproduction.chapter5.c5_08_grasps.parallel_gripper import Grasp, GraspedTabletop
@@ -36,8 +35,6 @@ HOLES = ("hole-other", "hole-hinged")
 """Arrangements of the tabletop with a hole through two objects; both scenes of a pair are of the same kind."""
 ARRANGEMENTS = ("two", "tower", "bridge", "lean", "neighbours", "row", *HOLES)
 """Kinds of scene; the others are those of C5.2, the two scenes of a pair from pools without a common shape."""
-DRAWN = ("bridge", "lean", "hole-other")
-"""Arrangements of the figure."""
 SEARCHES = ("seeded", "anywhere", "above")
 TRANSFERS = ("carried", "not carried", "above, not carried")
 TRIES = 10
@@ -53,7 +50,7 @@ def cells(settings: Mapping) -> list[dict]:
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """Tries until success, by object and search; None where no try of `TRIES` succeeds."""
-    name, objects, examples = cell["arrangement"], [], []
+    name, objects = cell["arrangement"], []
     for number in numbers_of(cell, LOT, settings["pairs"]):
         pair = [drawn_scene(name, pool, seed, number) for pool in POOLS]
         scenes = [perceived(scene.cloud) for scene in pair]
@@ -66,9 +63,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
             if same is not None:
                 row |= transferred(worlds, networks, same, label, rng)
             objects.append(row)
-        if number == 0 and name in DRAWN:
-            examples.append(scene_row(networks[1], name))
-    return {"objects": objects, "examples": examples}
+    return {"objects": objects}
 
 
 def drawn_scene(name: str, pool: str, seed: int, number: int) -> TabletopScene:
@@ -146,30 +141,15 @@ def objects_carried(results: Sequence[Mapping]) -> list[Mapping]:
     return [row for result in results for row in result["objects"] if "carried" in row]
 
 
-def share(rows: Sequence[Mapping], name: str, tries: int = TRIES) -> Estimate:
-    """Share of objects that a search grasps within a number of tries."""
-    return _mean([_within(row, name, tries) for row in rows], rows)
+def share(rows: Sequence[Mapping], name: str) -> Estimate:
+    """Share of objects that a search grasps."""
+    return _mean([float(row[name] is not None) for row in rows], rows)
 
 
 def difference(rows: Sequence[Mapping], name: str, other: str) -> Estimate:
     """Share of one search less that of another on the same objects."""
-    return _mean([_within(row, name, TRIES) - _within(row, other, TRIES) for row in rows], rows)
-
-
-def _within(row: Mapping, name: str, tries: int) -> float:
-    return float(row[name] is not None and row[name] <= tries)
+    return _mean([float(row[name] is not None) - float(row[other] is not None) for row in rows], rows)
 
 
 def _mean(values: Sequence[float], rows: Sequence[Mapping]) -> Estimate:
     return mean_by_cluster(values, [row["scene"] for row in rows]) if rows else UNMEASURED
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Shares within 1, 2, … tries by search; pictures."""
-    curves = [
-        {"search": name, "within": [share(own, name, n).value for n in range(1, TRIES + 1)]}
-        for own, names in ((objects_with_seeds(results), SEARCHES), (objects_carried(results), TRANSFERS))
-        for name in names
-        if own
-    ]
-    return curves + examples_in(results)

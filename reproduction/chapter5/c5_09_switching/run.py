@@ -102,19 +102,6 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
             yield {"worlds": words}, measure(settings, own)
 
 
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Shares by agent of each schedule in each world."""
-    every = list(SCHEDULES)
-    return [
-        {
-            "world": one["world"],
-            "schedule": one["schedule"],
-            **{name: round(_share([one], name, every).value, 3) for name in one["gains"] if name != KNOWS},
-        }
-        for one in results
-    ]
-
-
 def key_of(name: str) -> str:
     """An agent in the name of a measure."""
     return {OURS: "ours", OKR: "okr"}.get(name, name.lower().translate(str.maketrans(" -.+", "___p")))

@@ -95,12 +95,3 @@ def numbers(results: Sequence[Mapping], models: str, unseen: str) -> dict[str, E
         "auc_of_entropy": mean_estimate(entropies),
         "auc_above_entropy": difference_estimate(aucs, entropies),
     }
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Share of tasks with an alarm by each episode, by kind of task, with the first kind of models."""
-    own = [result["found"] for result in results if result["models"] == settings["models"][0]]
-    return [
-        {"kind": kind, "alarms": np.mean([one[kind]["alarms"] for one in own], axis=0).round(5).tolist()}
-        for kind in (KNOWN, HELD, CELLS)
-    ]

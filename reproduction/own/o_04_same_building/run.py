@@ -56,11 +56,3 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         "false_recognitions": exact_value(sum(one["recognised"] for one in others), len(others)),
         "largest_false_match": exact_value(max(one["match"] for one in others), len(others)),
     }
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The matches of every kind of map."""
-    return [
-        {"map": name, "same": name in EDITS, "match": [result["compared"][name]["match"] for result in results]}
-        for name in (*EDITS, *OTHERS)
-    ]

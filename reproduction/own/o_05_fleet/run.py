@@ -94,11 +94,3 @@ def numbers(settings: Mapping, results: Sequence[Mapping], competent: float) -> 
     found |= {f"tasks_of_{robots}": mean_estimate(robots * own) for robots, own in needed.items()}
     few = min(needed)
     return found | {f"ratio_{robots}_to_{few}": ratio_estimate(own, needed[few]) for robots, own in needed.items()}
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Mean refused moves by round and number of robots; at the end that of robots that know nothing."""
-    by = {robots: [r["fleet"] for r in results if r["robots"] == int(robots)] for robots in settings["rounds"]}
-    nothing = float(np.mean([move for result in results for move in result["nothing"]]))
-    curves = [{"robots": int(robots), "fleet": np.mean(own, axis=0).tolist()} for robots, own in by.items()]
-    return [*curves, {"nothing": nothing}]

@@ -101,13 +101,3 @@ def measures_of(results: Sequence[Mapping], where: str) -> dict[str, Estimate]:
             np.array([o.prod(axis=1).sum() for o in objects[CONVEXITY]]), points
         ),
     }
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Share of objects found by kind of scene and method."""
-    found = {where: measures_of(results, where) for where in (SIMULATED, REAL)}
-    return [
-        {"scenes": where, **{name: own[f"found_{name}"].to_dict() for name in METHODS}}
-        for where, own in found.items()
-        if own["found_convexity"].n
-    ]

@@ -155,14 +155,3 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         more = [sum(scene[how]) - sum(scene[ALONE]) for scene in scenes]
         found[f"contacts_gained_{name}"] = ratio_or_unmeasured(more, n)
     return found
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The errors of all registrations by angle; refused ones are counted."""
-    pairs = [pair for result in results for pair in result["pairs"]]
-    found = []
-    for angle in settings["angles"]:
-        own = [(t, s) for a, t, s in pairs if a == angle]
-        kept = [(t, s) for t, s in own if t is not None]
-        found.append({"angle": angle, "refused": len(own) - len(kept), "errors": kept})
-    return found

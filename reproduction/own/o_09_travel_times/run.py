@@ -152,16 +152,3 @@ def _numbers(results: Sequence[Mapping], scale: str) -> dict[str, Estimate]:
         "likely_predicted": ratio_estimate(likely[:, 1], np.maximum(likely[:, 0], 1)),
         "likely_gap": mean_estimate((likely[:, 1] - likely[:, 2]) / np.maximum(likely[:, 0], 1)),
     }
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Errors of moves and of ways by method, a value a life; then the bins of all lives."""
-    errors = [
-        {
-            "method": method,
-            "moves": [r["seconds"][place] for r in results],
-            "ways": [r["ways"][place] for r in results],
-        }
-        for place, method in enumerate(METHODS)
-    ]
-    return [*errors, {"bins": np.sum([result["bins"] for result in results], axis=0).tolist()}]

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON
-from reproduction.chapter2.c2_02_label_components.figure import PRINTED
 from reproduction.chapter2.c2_02_label_components.run import COMPONENTS, component_answers, split_answers
 from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES
 from reproduction.chapter2.scoring.pair_validation import Reading
@@ -73,7 +72,6 @@ def test_clear_clusters_are_right_in_every_split():
 
 def test_agreement_is_asked_of_the_exact_intervals_of_28_and_18_of_49():
     asked = {one.measure: one.bound for one in claim_of("C2.2").statements}
-    for name in ("on_agreement", "adjacent_agreement"):
-        agreed = PRINTED[name]
+    for name, agreed in (("on_agreement", 28), ("adjacent_agreement", 18)):
         low, high = exact_share([True] * agreed + [False] * (49 - agreed)).ci95
         assert asked[name] == (round(low, 3), round(high, 3))

@@ -5,11 +5,11 @@ import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from reproduction.chapter2.c2_04_time_per_image import run as image_timing
-from reproduction.chapter2.c2_04_time_per_image.run import made_dense, measure, rows, timed_image
+from reproduction.chapter2.c2_04_time_per_image.run import made_dense, measure, timed_image
 from reproduction.chapter2.scoring.perception_stages import STAGES
 
 
-def test_measures_and_rows_by_hand():
+def test_measures_by_hand():
     images = [{"kind": "stereo", "points": 100, "seconds": seconds} for seconds in (0.1, 0.6, 0.2, 0.3)]
     images += [{"kind": "dense", "points": 900, "seconds": 0.7}]
     results = [{"images": images[:2]}, {"images": images[2:]}]
@@ -17,7 +17,6 @@ def test_measures_and_rows_by_hand():
     assert found["seconds_stereo"].value == pytest.approx(0.3)
     assert found["seconds_stereo_95_percent"].value == pytest.approx(0.3 + 0.85 * 0.3)
     assert (found["points_dense"].value, found["seconds_dense"].value) == (900, 0.7)
-    assert rows({}, results)[0] == {"kind": "stereo", "seconds": [0.1, 0.2, 0.3, 0.6]}
 
 
 def test_of_the_repeats_the_one_in_the_middle_counts(monkeypatch):

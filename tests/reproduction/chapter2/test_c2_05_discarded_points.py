@@ -11,7 +11,6 @@ from reproduction.chapter2.c2_05_discarded_points.run import (
     THINNED,
     judged,
     measures,
-    rows,
     strong_places,
     view,
 )
@@ -88,10 +87,8 @@ def test_pairs_are_told_by_the_lessons_and_those_on_the_border_left_out():
         scene("d", "both", [UP[0], ASIDE[0]], UP[:1]),
     ]
     results = [{"kind": "lessons", "scenes": lessons}, {"kind": "scenes", "scenes": scenes}]
-    settings = {"discarded": [0.7]}
-    found = judged(settings, results)[THINNED]
+    found = judged({"discarded": [0.7]}, results)[THINNED]
     assert {level: [pair.relation for pair in pairs] for level, pairs in found.items()} == {
         0.0: ["on", "adjacent", "both"],
         0.7: ["adjacent", "none", "on"],
     }
-    assert [row["value"] for row in rows(settings, results)] == [1, 0] * len(METHODS)

@@ -10,7 +10,7 @@ from lifelore.perception.contacts.contact_points import linked
 from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS
 from lifelore.perception.separation.separator import separate
 from reproduction.chapter2.c2_11_distant_objects import run as c2_11
-from reproduction.chapter2.c2_11_distant_objects.run import away, bearing_pairs, readings, rows, shift_to
+from reproduction.chapter2.c2_11_distant_objects.run import away, bearing_pairs, readings, shift_to
 from reproduction.chapter2.scenes.tabletop_pairs import STANDARD
 from reproduction.engine.registry import claim_of
 from tests.perception.conftest import box_surface
@@ -89,7 +89,7 @@ def test_pairs_that_bear_a_relation_in_the_labels_order():
     assert (left[:, 0].max(), right[:, 0].min()) == pytest.approx((0.04, 0.05))
 
 
-def test_measures_readings_and_rows_by_hand():
+def test_measures_and_readings_by_hand():
     # As seen, at 0.1 m and at 1 m: support vectors of an object, contacts of both.
     first = {
         "gap": 0.004,
@@ -104,8 +104,6 @@ def test_measures_readings_and_rows_by_hand():
     assert found["no_contacts_far"].value == 0.5
     assert found["far_over_seen"].value == pytest.approx((5 / 20 + 12 / 8) / 2)
     assert [numbers["no_contacts_far"].value for _, numbers in readings(SETTINGS, results)] == [0.5, 1]
-    line = rows(SETTINGS, results)[0]
-    assert (line["gap"], line["support"], line["with_contact"]) == ([0.005, 0.1, 1.0], [14, 6, 8.5], [1, 0, 0.5])
 
 
 # --- far apart there are support vectors all the same (errata) ---------------------------------------------

@@ -1,12 +1,8 @@
 """Claim C3.17: policies learnt so far, the ceiling of κ, and measures from made-up mazes, by hand."""
 
-from math import log
-
 import numpy as np
 import pytest
 
-from lifelore.action.advice.advisor import Advisor
-from lifelore.action.advice.goal_model import GoalModel
 from reproduction.chapter3.c3_17_advice_cost.run import (
     EARLY,
     LATE,
@@ -16,23 +12,11 @@ from reproduction.chapter3.c3_17_advice_cost.run import (
     steepest_rise,
 )
 from reproduction.engine.registry import claim_of
-from tests.action.advice.goal_models import goal_model_of
 
 SETTINGS = {
     **claim_of("C3.17").sizes["quick"], "kappas": [0.5, 1.4], "loops": [0.1], "experts": ["walks"],
     "alpha0": [0.1], "heeds": [True, False],
 }  # fmt: skip
-
-
-@pytest.mark.parametrize("alpha0", [0.0, 1.0])
-def test_an_agent_that_is_surely_lost_gains_the_ceiling_and_an_expert_nothing(alpha0):
-    models = [goal_model_of([[True, False, False, False]], alpha0=alpha0 or 1e-9)]
-    models = [GoalModel((), models[0].prior, models[0].steps, advised_alpha0=alpha0)]
-    theta = models[0].theta[0]
-    entropy = -sum(p * log(p) for p in theta if p)
-    for weights, gain in (([1e-12, 1], log(4) - entropy), ([1, 1e-12], 0.0)):
-        advisor = Advisor(models, weights=weights)
-        assert advisor.consider(advisor.watch(), 0).gain == pytest.approx(gain, abs=1e-8)
 
 
 def test_greedy_policy_by_hand():

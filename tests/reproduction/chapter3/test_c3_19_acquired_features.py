@@ -7,11 +7,9 @@ from reproduction.chapter3.c3_19_acquired_features.run import (
     ACQUIRED,
     ALL,
     PLAIN,
-    POOL,
     START,
     doubt,
     readings,
-    rows,
 )
 from reproduction.engine.registry import claim_of
 
@@ -45,9 +43,6 @@ def test_measures_by_hand():
     (first, at_first), (second, at_second) = readings(only, results)
     assert (first["least"], second["least"]) == (0.1, 0.05)
     assert (at_first["reward_gain"].value, at_second["reward_gain"].value) == (21.0, -1.0)
-    drawn = rows(SETTINGS, results)
-    assert {row["feature"] for row in drawn if "feature" in row} == set(POOL.names) - {"PosMM", "Items"}
-    assert [row["mean"][0] for row in drawn if "curve_of" in row] == [0.0, 9.0, 30.0, 31.0]
 
 
 def test_doubt_by_hand():

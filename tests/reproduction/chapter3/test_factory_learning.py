@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from lifelore.core.learning.q_learner import QLearning
 from lifelore.domains.factory.contexts import state_contexts
 from lifelore.domains.factory.layout import factory
 from reproduction.chapter3.factory import learning
@@ -11,12 +10,8 @@ from reproduction.chapter3.factory.learning import (
     Problem,
     exact_prior,
     greedy_return,
-    hand_made_prior,
-    problem_of,
-    rows_of,
     solved,
 )
-from reproduction.engine.learning_run import learnt
 from reproduction.engine.registry import claim_of
 
 SETTINGS = {**claim_of("C3.5").sizes["full"], "max_steps": 300}
@@ -68,15 +63,3 @@ def test_prior_counts_as_a_plain_loop_does(encoding):
     acting = [code for code, count in counts.items() if count.any()]
     assert len(prior) == len(acting)
     np.testing.assert_array_equal(prior.counts(acting), [counts[code] for code in acting])
-
-
-def test_without_counts_a_prior_is_q_learning_to_the_bit():
-    problem = problem_of(SETTINGS, (2,), (5, "test"))
-    schedule = QLearning(episodes=20, max_steps=300).schedule(0.99)
-    plain, learner = learnt(problem.tables, problem.stream, None, schedule)
-    counted = rows_of(problem, exact_prior([], "global", 0.1), "global", "prior")
-    silent = rows_of(problem, hand_made_prior(np.zeros_like(problem.solved.best), 35, 0.1), None, "prior")
-    for rows in (counted, silent):
-        curve, other = learnt(problem.tables, problem.stream, rows, schedule)
-        assert curve.rewards.tobytes() == plain.rewards.tobytes()
-        assert other.q.tobytes() == learner.q.tobytes()

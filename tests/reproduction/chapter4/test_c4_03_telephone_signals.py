@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from lifelore.domains.telephone.telephone import Telephone
+from lifelore.domains.telephone.telephone import ANGRY, HUNG_UP, OPEN, STATES, SUCCESS, Telephone, reward
+from lifelore.figures.style import new_figure
+from reproduction.chapter4.c4_03_telephone_signals.call_graph import EDGES, PLACES, draw_call_graph
 from reproduction.chapter4.c4_03_telephone_signals.run import (
     SIGNAL_OF_PATH,
     compared,
@@ -47,3 +49,17 @@ def test_under_reading_b_states_tell_what_rewards_tell():
     found = {signal: run_cell(SMALL, {**cell, "signal": signal}, 1)["sums"] for signal in SIGNAL_OF_PATH}
     assert found["(s, a, s′)"] == found["(s, a, r)"]
     assert found["(s, a, r)"] != found["U"]
+
+
+def test_call_graph_is_the_worlds():
+    assert set(PLACES) == set(STATES)
+    for (before, after), (_, paid) in EDGES.items():
+        assert paid == reward(STATES.index(before), STATES.index(after))
+    there = {(STATES[s], STATES[s2]) for s in OPEN for s2 in (s + 1, SUCCESS, HUNG_UP)}
+    assert set(EDGES) == there
+    axes = new_figure(7, 4).subplots()
+    draw_call_graph(axes)
+    written = [text.get_text() for text in axes.texts]
+    assert STATES[ANGRY] in written
+    for part in ("[10]", "[3]", "(1−η)ρ"):
+        assert any(part in text for text in written)

@@ -63,23 +63,6 @@ def test_signals_are_those_of_the_batched_reader():
     assert one.hits == table[:, 4].sum()
 
 
-def test_without_noise_the_ball_goes_straight_by_its_speed():
-    one = new_round(2, 0.0)
-    x, y = one.x, one.y
-    one.move(2, SPEEDS.index(50))
-    assert (one.x, one.y) == (x + 50, y)
-
-
-def test_a_ball_that_goes_into_a_wall_collides_and_never_arrives():
-    one = new_round(2, 0.0)
-    while not one.over:
-        one.move(0, 0)
-    assert not one.reached
-    assert len(one.moves) == 400
-    assert one.hits > 380  # each move goes into the wall but for slips, 1 % of the moves
-    assert one.loss == pytest.approx(1 + one.hits / 20)
-
-
 @pytest.mark.parametrize("heading", [-1, 4, "north", None, True, 1.0])
 def test_a_wrong_direction_changes_nothing(heading):
     one = new_round()

@@ -25,7 +25,7 @@ def test_algorithm_9_by_hand():
 
 
 def session(**changed):
-    return {"kind": 1, "steps": 10, "alike": 10, "apart": 0.0, "vanished": 0, "beliefs": [[0.5], [0.5]], **changed}
+    return {"steps": 10, "alike": 10, "apart": 0.0, "vanished": 0, **changed}
 
 
 def test_a_step_that_differs_is_seen():

@@ -108,5 +108,4 @@ def test_facts_are_counted_by_kind_of_scene():
     row = {"kind": "row", "scenes": [{"true": [["between", 3, 2, 4]], "rule": []}] * 2}
     angle = {"kind": "angle", "scenes": [{"true": [], "rule": [["between", 3, 2, 4]]}]}
     assert compound_counts([row, angle], "between").tolist() == [[0, 0, 1], [0, 0, 1], [0, 1, 0]]
-    assert compound_counts([row, angle], "between", ("angle",)).tolist() == [[0, 1, 0]]
     assert compound_counts([row, angle], "in").tolist() == [[0, 0, 0]] * 3

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from lifelore.core.mdp import TERMINAL
+from reproduction.chapter5.c5_03_priors_in_search.bandit import BANDITS
 from reproduction.chapter5.c5_03_priors_in_search.run import (
     EVEN,
     FORMS,
     GUIDES,
-    INDICES,
     KINDS,
     NONE,
     ORDERS,
@@ -63,7 +63,7 @@ def test_measures_by_hand():
             + [{**prior, "order": order, "expanded": 8.0 + maze / 2} for prior in priors for order in ORDERS],
             "bandit": [
                 {"index": index, **prior, "regret": lost + maze}
-                for index in INDICES
+                for index in BANDITS
                 for prior, lost in [(NONE, 20.0), (EVEN, 15.0), *((prior, 10.0) for prior in priors)]
             ],
         }

@@ -1,8 +1,6 @@
 """O5: rounds to competence and measures by hand."""
 
-import pytest
-
-from reproduction.own.o_05_fleet.run import cells, numbers, readings, rounds_to_competence, rows
+from reproduction.own.o_05_fleet.run import cells, numbers, readings, rounds_to_competence
 
 
 def test_rounds_to_competence_by_hand():
@@ -27,6 +25,3 @@ def test_measures_by_hand():
     assert found["ratio_2_to_1"].value == 0.5
     read = {cell["competent at"]: found for cell, found in readings(settings, results)}
     assert read[0.6]["rounds_of_1"].value == 3
-    *fleets, last = rows(settings, results)
-    assert [row["robots"] for row in fleets] == [1, 2, 8]
-    assert last == {"nothing": pytest.approx(100)}

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from reproduction.own.o_08_views_without_poses.run import distance_to_hull, error_of, measure, rows
+from reproduction.own.o_08_views_without_poses.run import distance_to_hull, error_of, measure
 
 
 def test_distance_to_a_square_by_hand():
@@ -40,4 +40,3 @@ def test_measures_by_hand():
     assert (found["registered"].value, found["wrong"].value) == (0.75, 0.5)
     assert found["contacts_gained_registered"].value == 0.25
     assert found["contacts_gained_true_poses"].value == 0.5
-    assert [row["refused"] for row in rows({"angles": [20, 45]}, [result])] == [0, 1]

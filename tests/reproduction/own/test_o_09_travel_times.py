@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.domains.grids.grid_world import GridWorld
 from reproduction.engine.registry import claim_of
-from reproduction.own.o_09_travel_times.run import BINS, Baselines, _by_bin, _shortest_way, rows
+from reproduction.own.o_09_travel_times.run import BINS, Baselines, _by_bin, _shortest_way
 
 
 def test_baselines_by_hand():
@@ -45,4 +45,3 @@ def test_measures_by_hand():
     assert found["squared_to_share"].value == pytest.approx(0.05 / 0.25)
     assert found["likely_refused"].value == pytest.approx(2 / 3)
     assert found["likely_gap"].value == pytest.approx((2.2 - 2) / 3)
-    assert rows({}, [life, other])[0]["moves"] == [0.3, 0.4]
