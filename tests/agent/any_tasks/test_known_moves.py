@@ -60,6 +60,15 @@ def test_a_noisy_type_leaves_another_certain():
     assert moves.laws[0, place, first] > moves.laws[1, place, second] + 0.1
 
 
+def test_a_noisy_cause_leaves_the_others_certain():
+    certain = {cause: {1: 10} for cause in range(2, 42, 2)}
+    noisy = {cause: {1: 4, 2: 3, 3: 3} for cause in range(42, 82, 2)}
+    moves = KnownMoves([counts_of(certain | noisy)])
+    one, other = moves.place(2, 1)[0], moves.place(42, 1)[0]
+    assert moves.laws[0, other, -1] > 5 * moves.laws[0, one, -1]
+    assert moves.laws[0, one, 0] > 0.97
+
+
 def test_own_outcomes_of_the_task_teach_every_type():
     moves = KnownMoves([FIRST, SECOND])
     own = np.zeros(moves.base.shape[1])

@@ -8,8 +8,8 @@ In most causes types are alike, in some they differ. For each cause c with count
     P_i(o | c)   (1 − q_c) (Σ_j n_j + own + b) / … + q_c (n_i + own + b_i) / …
 
 DM is the Dirichlet-multinomial law with pseudo-observations b: α spread over the outcomes that the cause has shown
-and one more, and θ of outcomes never shown. Both are learnt, and ρ, for moves and for rewards: each outcome is
-predicted from all others (leave one out). b_i is learnt from type i alone.
+and one more, and θ of outcomes never shown. Each cause has an α of its own: one that was noisy stays noisy. How
+frequent each α is, θ and ρ are learnt for moves and for rewards. b_i is learnt from type i alone.
 ``own`` are the outcomes of the present task. So a cause that a type has not shown is expected to be as in other
 types, as far as causes are usually alike.
 """
@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.any_tasks.moves import Counts
-from lifelore.agent.any_tasks.novelty import log_odds
+from lifelore.agent.any_tasks.novelty import log_odds, logsumexp
 from lifelore.agent.long_lived.same_type import joined_types, log_evidence
 
 Array = NDArray[np.float64]
@@ -31,10 +31,10 @@ MOST_EFFECTS = 12
 """Most outcomes of a cause that are told apart; the rest counts as never shown."""
 APART = (0.1, 10.0)
 """Share ρ before anything was seen, and the number of causes that it counts as."""
-ALPHAS, THETAS = 2.0 ** np.arange(-5, 1), 2.0 ** np.arange(-6, 4)
+ALPHAS, THETAS = 2.0 ** np.arange(-5, 4), 2.0 ** np.arange(-6, 4)
 """Values of α and θ that compete."""
-PRIOR_BASE = 2.0
-"""Weight of a prior for large α, in nats by factor e: a few outcomes alike do not make a law certain."""
+NOISE = ALPHAS / ALPHAS.sum()
+"""Causes of each α before anything was seen, one in all: a few outcomes alike do not make a law certain."""
 ALIKE = -1.0
 """Log odds below which two types are joined: to keep one type as two costs less than to mix two in one."""
 ROUNDS = 20
@@ -68,8 +68,11 @@ class KnownMoves:
     def __init__(self, types: Sequence[Counts]) -> None:
         self.codes = sorted({cause for one in types for cause, _ in one})
         self._places = {code: place for place, code in enumerate(self.codes)}
-        totals = self._rows(*types)
-        self._effects = [_most(row) for row in totals]
+        rows: list[Counter[int]] = [Counter() for _ in self.codes]
+        for one in types:
+            for (cause, outcome), count in one.items():
+                rows[self._places[cause]][outcome] += count
+        self._effects = [_most(row) for row in rows]
         n_effects = 1 + max((len(row) for row in self._effects), default=0)
         self.counts = np.zeros((len(types), len(self.codes), n_effects))
         for number, one in enumerate(types):
@@ -78,24 +81,16 @@ class KnownMoves:
         known = (np.arange(n_effects) < shown) | (np.arange(n_effects) == n_effects - 1)
         self.broad: Array = known / (shown + 1)
         self.kinds = np.array(self.codes, np.int64) & 1
-        self.base: Array = self._base(totals)
-        self.own_base: Array = np.array([self._base(self._rows(one)) for one in types])
+        self.base: Array = self._base(self.pooled)
+        self.own_base: Array = np.array([self._base(one) for one in self.counts])
 
-    def _rows(self, *types: Counts) -> list[Counter[int]]:
-        """Counts of types together by outcome, of each cause."""
-        rows: list[Counter[int]] = [Counter() for _ in self.codes]
-        for one in types:
-            for (cause, outcome), count in one.items():
-                rows[self._places[cause]][outcome] += count
-        return rows
-
-    def _base(self, rows: Sequence[Mapping[int, float]]) -> Array:
-        """The pseudo-observations that counts by outcome teach, of each kind its own, (n_causes, n_effects)."""
+    def _base(self, counts: Array) -> Array:
+        """The pseudo-observations that counts (n_causes, n_effects) teach, of each kind its own."""
         base = self.broad.copy()
         for kind in np.unique(self.kinds).tolist():
             own = self.kinds == kind
-            alpha, theta = learnt_base([row for row, mine in zip(rows, own.tolist(), strict=True) if mine])
-            base[own] *= alpha
+            alpha, theta = learnt_base(counts[own], self.broad[own])
+            base[own] *= alpha[:, None]
             base[own, -1] += theta
         return base
 
@@ -184,28 +179,31 @@ def _most(row: Mapping[int, float]) -> dict[int, int]:
     return {outcome: number for number, outcome in enumerate(sorted(kept))}
 
 
-def learnt_base(totals: Sequence[Mapping[int, float]]) -> tuple[float, float]:
-    """α and θ, of the grid, under which each outcome is best predicted from the others of its cause.
+def learnt_base(counts: Array, broad: Array) -> tuple[Array, float]:
+    """α of each cause, (n_causes,), and θ.
+
+    The weights of α in all causes are those by which the counts are most probable (EM). θ is that by which each
+    outcome is best predicted from the others of its cause.
 
     Parameters
     ----------
-    totals : sequence of mapping of int to float
-        Counts of outcomes by code, of each cause.
+    counts, broad : (n_causes, n_effects) float64
+        See `KnownMoves`.
     """
-    counts = np.array([count for row in totals for count in row.values()])
-    others = np.array([sum(row.values()) for row in totals for _ in row]) - np.minimum(counts, 1.0)
-    broad = 1 / (1.0 + np.array([len(row) for row in totals for _ in row]))
-    several = others > 0
-    counts, others, broad = counts[several], others[several], broad[several]
-    best, found = -np.inf, (1.0, float(THETAS[0]))
-    for alpha in ALPHAS:
-        for theta in THETAS:
-            once = counts <= 1
-            law = np.where(once, alpha * broad + theta, counts - np.minimum(counts, 1.0) + alpha * broad)
-            score = float((counts * np.log(law / (others + alpha + theta))).sum()) + PRIOR_BASE * np.log(alpha)
-            if score > best:
-                best, found = score, (float(alpha), float(theta))
-    return found
+    evidence = np.array([log_evidence(counts, alpha * broad) for alpha in ALPHAS])
+    total = counts.sum(axis=1, keepdims=True)
+    several = total[:, 0] > 1
+    belief = np.tile(NOISE[:, None] / NOISE.sum(), len(counts))
+    for _ in range(ROUNDS):
+        weights = belief[:, several].sum(axis=1) + NOISE
+        joint = np.log(weights)[:, None] + evidence
+        belief = np.exp(joint - logsumexp(joint, axis=0))
+    alpha = np.asarray(ALPHAS @ belief, np.float64)
+    left_out, new = np.minimum(counts, 1.0), counts <= 1
+    known, others = counts - left_out + alpha[:, None] * broad, total - left_out + alpha[:, None]
+    tells = counts * several[:, None]
+    scores = [np.sum(tells * np.log((known + theta * new) / (others + theta))) for theta in THETAS]
+    return alpha, float(THETAS[np.argmax(scores)])
 
 
 def _apart(evidence: Array, several: NDArray[np.bool_]) -> Array:

@@ -48,7 +48,7 @@ class TaskReuse:
     """
 
     def __init__(self, experience: Experience, known: KnownTypes, prior: Array, settings: TaskSettings) -> None:
-        seed, false_alarm = settings.seed, settings.false_alarm
+        seed, false_alarm = settings.seed, experience.alarm_level(settings.false_alarm)
         self.known = known
         self.policies = experience.policies
         self.names = tuple(one.name for one in known.types)
