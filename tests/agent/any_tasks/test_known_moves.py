@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from lifelore.agent.any_tasks.known_moves import KnownMoves
-from lifelore.agent.long_lived.same_type import joined_types
+from lifelore.agent.types.same_type import joined_types
 
 
 def counts_of(rows):
@@ -97,10 +97,10 @@ def test_a_task_of_another_type_is_told_from_a_known_one():
     random = np.random.default_rng(1)
     law = random.dirichlet([0.3] * 3, 40)
     moves = KnownMoves([drawn(random, law, 8), drawn(random, random.dirichlet([0.3] * 3, 40), 8)])
-    assert moves.evidence_of_another(0, drawn(random, law, 8)) < 0
+    assert moves.evidence_of_another(0, moves.own(drawn(random, law, 8))) < 0
     other = law.copy()
     other[:8] = random.dirichlet([0.3] * 3, 8)  # differs in a fifth of its causes
-    found = [moves.evidence_of_another(0, drawn(random, other, 8)) for _ in range(5)]
+    found = [moves.evidence_of_another(0, moves.own(drawn(random, other, 8))) for _ in range(5)]
     assert min(found) > 0
 
 
