@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.long_lived.type_prior import HALF_LIVES, TypePrior
+from lifelore.agent.types.type_prior import HALF_LIVES, TypePrior
 from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.surveillance.surveillance import Surveillance

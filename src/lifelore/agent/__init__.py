@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     from lifelore.agent.long_lived.task_family import Plan as Plan
     from lifelore.agent.long_lived.task_family import Step as Step
     from lifelore.agent.long_lived.task_family import TaskFamily as TaskFamily
-    from lifelore.agent.long_lived.type_prior import TypePrior as TypePrior
     from lifelore.agent.perceive.perceive import PerceiveSettings as PerceiveSettings
+    from lifelore.agent.types.type_prior import TypePrior as TypePrior
 
 _HOME = {
     "AgentTask": ".long_lived.task_family",
@@ -38,7 +38,7 @@ _HOME = {
     "Plan": ".long_lived.task_family",
     "Step": ".long_lived.task_family",
     "TaskFamily": ".long_lived.task_family",
-    "TypePrior": ".long_lived.type_prior",
+    "TypePrior": ".types.type_prior",
     "check_family": ".long_lived.check_family",
     "compare_agents": ".any_tasks.comparison",
     "live_in": ".any_tasks.live_in",

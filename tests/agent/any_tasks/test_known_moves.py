@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from lifelore.agent.any_tasks.known_moves import KnownMoves
-from lifelore.agent.long_lived.same_type import joined_types
+from lifelore.agent.types.same_type import joined_types
 
 
 def counts_of(rows):
@@ -60,6 +60,15 @@ def test_a_noisy_type_leaves_another_certain():
     assert moves.laws[0, place, first] > moves.laws[1, place, second] + 0.1
 
 
+def test_a_noisy_cause_leaves_the_others_certain():
+    certain = {cause: {1: 10} for cause in range(2, 42, 2)}
+    noisy = {cause: {1: 4, 2: 3, 3: 3} for cause in range(42, 82, 2)}
+    moves = KnownMoves([counts_of(certain | noisy)])
+    one, other = moves.place(2, 1)[0], moves.place(42, 1)[0]
+    assert moves.laws[0, other, -1] > 5 * moves.laws[0, one, -1]
+    assert moves.laws[0, one, 0] > 0.97
+
+
 def test_own_outcomes_of_the_task_teach_every_type():
     moves = KnownMoves([FIRST, SECOND])
     own = np.zeros(moves.base.shape[1])
@@ -88,10 +97,10 @@ def test_a_task_of_another_type_is_told_from_a_known_one():
     random = np.random.default_rng(1)
     law = random.dirichlet([0.3] * 3, 40)
     moves = KnownMoves([drawn(random, law, 8), drawn(random, random.dirichlet([0.3] * 3, 40), 8)])
-    assert moves.evidence_of_another(0, drawn(random, law, 8)) < 0
+    assert moves.evidence_of_another(0, moves.own(drawn(random, law, 8))) < 0
     other = law.copy()
     other[:8] = random.dirichlet([0.3] * 3, 8)  # differs in a fifth of its causes
-    found = [moves.evidence_of_another(0, drawn(random, other, 8)) for _ in range(5)]
+    found = [moves.evidence_of_another(0, moves.own(drawn(random, other, 8))) for _ in range(5)]
     assert min(found) > 0
 
 

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore import LongLivedAgent
-from lifelore.agent.any_tasks.experience import Experience, TypeExperience
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.agent.any_tasks.experience import Experience, TaskNews, TypeExperience
 from lifelore.agent.any_tasks.known_types import KnownTypes
 from lifelore.agent.any_tasks.one_task import SHORT
 from lifelore.agent.any_tasks.reuse import TaskReuse
@@ -41,3 +42,18 @@ def test_a_lost_bet_between_types_is_no_shortfall(experience, prior, falls_short
 def test_a_task_teaches_the_most_believed_type_alone(experience):
     reuse = TaskReuse(experience, KnownTypes(experience), np.array([0.4, 0.6]), LongLivedAgent(key="key").settings)
     assert reuse.best_member() == {"b": pytest.approx(0.6)}
+
+
+def test_the_level_of_the_alarm_follows_how_often_it_was_false():
+    """A ratio of rates by Gamma(1, 1) has the mean (1 + k) / (1 + 0.05 n) after n tasks with k false alarms."""
+    one, other = Experience("key", 2), Experience("key", 2)
+    assert one.alarm_level(0.05) == 0.05
+    for date in range(20):
+        alarm = None if date < 4 else date < 7
+        news = TaskNews(date, 0, {}, Counter(), {}, ActionPrior(2, key="key/prior"), alarm=alarm)
+        other.add(one.learn(news))
+    for experience in (one, other):
+        assert experience.alarm_level(0.05) == pytest.approx(0.05 * (1 + 0.05 * 16) / (1 + 3))
+    quiet = Experience("key", 2)
+    quiet.alarms[0] = 1000
+    assert quiet.alarm_level(0.05) == 0.5

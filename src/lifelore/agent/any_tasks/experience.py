@@ -30,6 +30,8 @@ HOPELESS = 0.1
 """Share of the range of mean returns above the least one up to which a policy counts as worthless."""
 STALE = 0.5
 """Share of a policy's earlier returns that no longer counts once a task has taught the policy more."""
+DOUBT, MOST_LEVEL = 1.0, 0.5
+"""False alarms after which the observed rate counts as much as the calibrated one, and the largest level."""
 DATE_BITS = 32
 """Bits of a task's context beside its date in a slot."""
 SIZE_SLOTS = 1 << 40
@@ -85,6 +87,7 @@ class TaskNews(NamedTuple):
     learner, policy : the type whose policy was learnt, by name, and the policy; None where none was
     idle : tasks in a row in which exploring this policy brought no gain
     fresh : last returns of a learner that began with nothing
+    alarm : whether the alarm was raised although a known type fits; None where none fits
     """
 
     date: int
@@ -98,6 +101,7 @@ class TaskNews(NamedTuple):
     policy: Any = None
     idle: int = 0
     fresh: Sequence[float] = ()
+    alarm: bool | None = None
 
 
 class Experience:
@@ -121,6 +125,7 @@ class Experience:
         self.labels: dict[int, Any] = {}  # contexts of tasks as they were given, by code
         self.n_tasks = 0
         self.fresh = np.zeros(2)  # number and sum of last returns of learners that began with nothing
+        self.alarms = np.zeros(2)  # number of tasks of known types, and of those with an alarm
 
     # ---- reading -----------------------------------------------------------------------------------
 
@@ -144,6 +149,14 @@ class Experience:
     def hope(self) -> float:
         """Return that a learner from nothing usually reaches in the end; infinity where none was seen."""
         return float(self.fresh[1] / self.fresh[0]) if self.fresh[0] else np.inf
+
+    def alarm_level(self, stated: float) -> float:
+        """The level at which alarms in tasks of known types are as frequent as stated, by how often they were.
+
+        The ratio of the true rate to the calibrated one has a Gamma law, at first of mean 1 and weight `DOUBT`.
+        """
+        known, raised = self.alarms
+        return min(stated * (DOUBT + stated * known) / (DOUBT + raised), MOST_LEVEL)
 
     # ---- learning ----------------------------------------------------------------------------------
 
@@ -175,6 +188,9 @@ class Experience:
         if len(news.fresh):
             sums = np.rint(np.array([len(news.fresh), np.sum(news.fresh)]) * ONE).astype(np.int64)
             yield Record(COUNTS, f"{self.key}/fresh", VERSION, "add", np.arange(2), sums)
+        if news.alarm is not None:
+            seen = np.array([1, news.alarm], np.int64)
+            yield Record(COUNTS, f"{self.key}/alarms", VERSION, "add", np.arange(2), seen)
         yield counts_record(COUNTS, f"{self.key}/causes", Counter({(cause, 0) for cause, _ in news.moves}))
         # Tasks of agents that keep no types do not count: they have shown no causes.
         one, about = np.array([bool(news.belief)], np.int64), {"n_actions": self.n_actions}
@@ -216,6 +232,8 @@ class Experience:
                 self.n_tasks += values[0]
             case "fresh":
                 self.fresh += record.values / ONE
+            case "alarms":
+                self.alarms += record.values
             case "causes":
                 self.causes.update(counts_of(record))
             case "moves":

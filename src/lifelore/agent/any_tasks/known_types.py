@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from lifelore.agent.any_tasks.experience import Experience
 from lifelore.agent.any_tasks.known_moves import KnownMoves
 from lifelore.agent.any_tasks.moves import Counts
-from lifelore.agent.long_lived.same_type import JoinedType
-from lifelore.agent.long_lived.type_prior import Sightings
+from lifelore.agent.types.same_type import JoinedType
+from lifelore.agent.types.type_prior import Sightings
 
 Array = NDArray[np.float64]
 

@@ -299,6 +299,8 @@ class OneTask:
         prior.labels = {code: features[code] for code in prior.contexts.tolist()}
         news = TaskNews(result.number, self.context, belief, moves, dict(self.ran), prior, result.context)
         own = result.type if result.new or self.reuse is None else self.reuse.own_policy()
+        if self.reuse is not None and not result.new:
+            news = news._replace(alarm=self.alarmed)
         if not belief or own is None:
             return news
         if self.learner is not None and (result.new or self.goes_on_with == own or self.gained_on(own)):

@@ -15,8 +15,8 @@ from lifelore.agent.any_tasks.experience import Experience
 from lifelore.agent.any_tasks.known_returns import known_returns
 from lifelore.agent.any_tasks.known_types import KnownTypes
 from lifelore.agent.any_tasks.moves import Counts, Pairs
-from lifelore.agent.any_tasks.novelty import NoveltyAlarm
 from lifelore.agent.any_tasks.task_settings import TaskSettings
+from lifelore.agent.types.novelty import NoveltyAlarm
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -48,7 +48,7 @@ class TaskReuse:
     """
 
     def __init__(self, experience: Experience, known: KnownTypes, prior: Array, settings: TaskSettings) -> None:
-        seed, false_alarm = settings.seed, settings.false_alarm
+        seed, false_alarm = settings.seed, experience.alarm_level(settings.false_alarm)
         self.known = known
         self.policies = experience.policies
         self.names = tuple(one.name for one in known.types)
@@ -65,13 +65,7 @@ class TaskReuse:
         static, generator = TypeDynamics.static(), stream(seed, "any tasks", "alarm", experience.n_tasks)
         self.alarm: NoveltyAlarm | NoveltyDetector
         if self.by_moves:
-            # Twice the usual number of causes: tasks of unknown types try more.
-            horizon = 2 * known.frequency.sum() / max(experience.n_tasks, 1)
-            moves, frequency = known.moves, known.frequency
-            self.alarm = NoveltyAlarm(
-                moves.laws, moves.broad, moves.kinds, moves.known_apart, prior, frequency, horizon, false_alarm,
-                generator,
-            )  # fmt: skip
+            self.alarm = known.moves.alarm(prior, known.frequency, experience.n_tasks, false_alarm, generator)
         else:
             n_tasks = max(1000, int(np.ceil(LEAST_ALARMS / false_alarm)))
             self.alarm = NoveltyDetector.calibrate(
@@ -193,7 +187,11 @@ class TaskReuse:
         """
         if self.alarmed and not self.by_moves:
             return True
-        return self.known.moves.evidence_of_another(self.best, moves) + self.returns_against(self.best) > 0
+        return (
+            self.known.moves.evidence_of_another(self.best, self.known.moves.own(moves))
+            + self.returns_against(self.best)
+            > 0
+        )
 
     def returns_against(self, type_: int) -> float:
         """Evidence in nats that the returns of policies are not those that they get from a type."""

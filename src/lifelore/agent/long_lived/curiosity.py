@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from lifelore.agent.long_lived.knowledge import Knowledge
-from lifelore.agent.long_lived.type_prior import Sightings
+from lifelore.agent.types.type_prior import Sightings
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import entropy
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from lifelore.action.priors.action_prior import KIND, ActionPrior
 from lifelore.agent.long_lived.known_types import Effects, KnownTypes, effect_counts
 from lifelore.agent.long_lived.task_family import SharedKnowledge, TaskFamily
-from lifelore.agent.long_lived.type_prior import Sightings
+from lifelore.agent.types.type_prior import Sightings
 from lifelore.core.protocols import Record
 
 Array = NDArray[np.float64]

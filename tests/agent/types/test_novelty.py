@@ -3,7 +3,7 @@ from copy import deepcopy
 import numpy as np
 import pytest
 
-from lifelore.agent.any_tasks.novelty import AGAIN, SHARES, NoveltyAlarm, log_odds
+from lifelore.agent.types.novelty import AGAIN, SHARES, NoveltyAlarm, log_odds
 
 
 def test_log_odds_are_the_mean_over_shares_of_each_kind():

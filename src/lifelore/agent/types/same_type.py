@@ -33,9 +33,10 @@ def log_evidence(counts: Array, base: Array) -> Array:
     base : (n_causes, n_outcomes) float
         Pseudo-observations; outcomes without any do not count.
     """
-    safe = np.where(base > 0, base, 1.0)
-    gain = np.where(base > 0, gammaln(safe + counts) - gammaln(safe), 0.0).sum(axis=-1)
-    total = base.sum(axis=-1)
+    gain, known = np.zeros(counts.shape), (counts > 0) & (base > 0)
+    before = np.broadcast_to(base, counts.shape)[known]
+    gain[known] = gammaln(before + counts[known]) - gammaln(before)
+    gain, total = gain.sum(axis=-1), base.sum(axis=-1)
     return gain - (gammaln(total + counts.sum(axis=-1)) - gammaln(total))
 
 

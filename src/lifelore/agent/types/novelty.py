@@ -42,13 +42,13 @@ def log_odds(evidence: Array, kinds: NDArray[np.int64], apart: Array) -> float:
     Parameters
     ----------
     evidence, kinds, apart : (n_causes,)
-        Each kind has a share ρ of its own; ``apart`` is q, see `shares`.
+        Each kind has a share ρ of its own; ``apart`` is q, see `shares`. Among causes of one kind it is not 0.
     """
     terms = np.log1p(shares(apart) * np.expm1(np.clip(evidence, -700, 700)))
-    return sum(
-        float(logsumexp(terms[:, kinds == kind].sum(axis=1)) - np.log(len(SHARES)))
-        for kind in np.unique(kinds).tolist()
-    )
+    found = np.unique(kinds).tolist()
+    if len(found) == 1:
+        terms = terms[1:]
+    return sum(float(logsumexp(terms[:, kinds == kind].sum(axis=1)) - np.log(len(terms))) for kind in found)
 
 
 class NoveltyAlarm:
@@ -98,23 +98,30 @@ class NoveltyAlarm:
         self.horizon = int(np.clip(round(horizon), 1, min(MOST_CAUSES, len(broad))))
         self._belief = np.log(np.maximum(prior, LEAST))
         self._kinds, self._shares = kinds, shares(apart)
-        self._odds = np.zeros((2, len(SHARES)))
+        self._odds = np.zeros((int(kinds.max()) + 1, len(SHARES)))
         self._judged: set[int] = set()
         self.alarm, self.score = False, 0.0
         highest = self._simulated(laws, prior, frequency, generator)
         self.threshold = float(np.quantile(highest, 1 - false_alarm, method="higher"))
 
     def observe(self, cause: int, effect: int) -> None:
-        """Judge the first effect of a cause; later ones, and causes beyond the horizon, do not count."""
-        if cause in self._judged or len(self._judged) >= self.horizon:
+        """Judge the first effect of a cause; later ones do not count, and beyond the horizon raise no alarm."""
+        if cause in self._judged:
             return
-        self._judged.add(cause)
         before = logsumexp(self._belief)
         self._belief = self._belief + self._log_laws[cause, effect]
+        self._judged.add(cause)
+        if len(self._judged) > self.horizon:
+            return
         evidence = self._log_broad[cause, effect] - (logsumexp(self._belief) - before)
         self._odds[self._kinds[cause]] += np.log1p(self._shares[:, cause] * np.expm1(evidence))
         self.score = float((logsumexp(self._odds, axis=1) - np.log(len(SHARES))).sum())
         self.alarm |= self.score > self.threshold
+
+    @property
+    def belief(self) -> Array:
+        """Over the known types, (n_types,), from the first effects of causes."""
+        return np.exp(self._belief - logsumexp(self._belief))
 
     def _simulated(self, laws: Array, prior: Array, frequency: Array, generator: np.random.Generator) -> Array:
         """The largest log odds in each of `N_TASKS` tasks of known types, (N_TASKS,)."""
@@ -130,7 +137,7 @@ class NoveltyAlarm:
         given = np.diff(mixture, axis=1, prepend=0.0)
         terms = np.log1p(self._shares[:, order] * np.expm1(self._log_broad[order, effects] - given))
         odds = np.zeros(order.shape)
-        for kind in (0, 1):
+        for kind in range(len(self._odds)):
             own = np.where(self._kinds[order] == kind, terms, 0.0).cumsum(axis=2)
             odds += logsumexp(own, axis=0) - np.log(len(SHARES))
         return odds.max(axis=1)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.agent.long_lived.type_prior import LIBRARY_TASKS, TypePrior
+from lifelore.agent.types.type_prior import LIBRARY_TASKS, TypePrior
 from lifelore.core.errors import InputError
 
 PRIOR = [0.5, 0.3, 0.2]

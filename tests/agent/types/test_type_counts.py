@@ -1,0 +1,45 @@
+"""The law of types in both regimes: causes in which types differ, and causes in which they agree."""
+
+import numpy as np
+import pytest
+
+from lifelore.agent.types.type_counts import ALPHAS, TypeCounts, Usual
+
+USUAL = Usual(0.5, 4.0, np.full(len(ALPHAS), 1 / len(ALPHAS)))
+BROAD, KINDS = np.full((6, 2), 0.5), np.zeros(6, np.int64)
+
+
+def of(*rows):
+    """Types with these numbers of each outcome in all causes, or by cause."""
+    counts = np.array([np.broadcast_to(row, (6, 2)) for row in rows], np.float64)
+    return TypeCounts(counts, BROAD, KINDS, USUAL)
+
+
+def test_types_that_differ_in_all_causes_are_certain_each():
+    known = of((8, 0), (0, 8))
+    assert known.apart.min() > 0.95
+    assert known.laws[0, :, 0].min() > 0.9
+    assert known.laws[1, :, 1].min() > 0.9
+    assert len(known.joined()) == 2
+
+
+def test_types_that_agree_are_one_also_where_causes_are_noisy():
+    known = of((4, 4), (4, 4))
+    assert known.apart.max() < 0.5
+    assert known.laws == pytest.approx(np.full((2, 6, 2), 0.5), abs=0.1)
+    assert len(known.joined(0.0)) == 1
+
+
+def test_a_type_that_has_shown_nothing_is_as_others_where_these_agree():
+    rows = np.array([[8, 0]] * 3 + [[0, 8]] * 3)
+    laws = of((8, 0), rows, (0, 0)).laws[2]
+    assert laws[:3, 0].min() > 0.75 > laws[3:, 0].max()
+    assert laws[3:] == pytest.approx(np.full((3, 2), 0.5), abs=0.1)
+
+
+def test_drawn_laws_have_the_mean_of_the_laws():
+    known = of((8, 0), (2, 6))
+    generator = np.random.default_rng(0)
+    drawn = np.mean([known.drawn_laws(generator) for _ in range(2000)], axis=0)
+    # The deviation of a drawn probability is at most 1/2: that of the mean of 2000 at most 0.012.
+    assert drawn == pytest.approx(known.laws, abs=0.05)
