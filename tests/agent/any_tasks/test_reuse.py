@@ -1,4 +1,6 @@
 from collections import Counter
+from copy import copy
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -25,6 +27,13 @@ def experience():
         made.types[name] = TypeExperience(moves, Counter(), returns, {})
     made.causes.update({(cause, 0): 2 for cause in range(2, 22, 2)})
     made.n_tasks = 2
+    return made
+
+
+def replace_types(experience, **types):
+    """The same experience with other types of these names."""
+    made = copy(experience)
+    made.types = experience.types | types
     return made
 
 
@@ -57,3 +66,12 @@ def test_the_level_of_the_alarm_follows_how_often_it_was_false():
     quiet = Experience("key", 2)
     quiet.alarms[0] = 1000
     assert quiet.alarm_level(0.05) == 0.5
+
+
+@pytest.mark.parametrize(("own", "runs"), [(10.0, "a"), (0.0, "b")])
+def test_the_policy_of_the_most_believed_type_runs_unless_it_is_hopeless(experience, own, runs):
+    """The other policy once earned 9.5 on this type, and 10 on its own: it has the larger expected return."""
+    other = replace(experience.types["a"], returns={"a": sums(own, own), "b": sums(9.5)})
+    known = replace_types(experience, a=other)
+    reuse = TaskReuse(known, KnownTypes(known), np.array([0.6, 0.4]), LongLivedAgent(key="key").settings)
+    assert reuse.policy == runs

@@ -47,8 +47,8 @@ class LongLivedAgent(AbstractContextManager):
     """An agent over policies for tasks of your own environments (thesis chapter 5).
 
     A task is an environment whose hidden type stays for its episodes, in a context that the agent sees. The agent
-    expects the types that the context usually has, runs the policy that is worth most, follows each move by Bayes'
-    rule, notices when no known type fits, learns a policy then, and remembers all of it.
+    expects the types that the context usually has, runs the policy of the type that it believes most, follows
+    each move by Bayes' rule, notices when no known type fits, learns a policy then, and remembers all of it.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@
 
 β ← prior over types, given the context and the date                                   recognise
 for each episode:
-    π ← the known policy that is worth most under β                                    reuse
+    π ← the policy of the most believed type                                           reuse
     until the episode ends:
         act by π, or by the learner; each move teaches what acted
         β, alarm ← the outcome of the move                                             notice
@@ -132,7 +132,7 @@ class OneTask:
     # ---- reuse, and notice -------------------------------------------------------------------------
 
     def live_episode(self) -> None:
-        """Play an episode by the learner, or by the policy that is worth most; take in each move."""
+        """Play an episode by the learner, or by a known policy; take in each move."""
         number, episode = self.result.number, len(self.result.returns)
         # A learner of the user may have played more episodes than the task has.
         known = episode < len(self.seeds)

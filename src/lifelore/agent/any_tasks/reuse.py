@@ -1,7 +1,7 @@
 """Which type a task has, and which known policy to run: Bayesian policy reuse over the library of a life.
 
 β      ← prior over types, given the context                          an action prior over policies, decayed
-π      ← the policy with the largest expected return under β
+π      ← the policy of the most believed type; where it is hopeless, of the largest expected return under β
 β      ← β · P(outcome | state, action; type) after each move         or by the returns of episodes
 alarm  ← what is seen fits no known type, at a stated rate of false alarms
 """
@@ -74,6 +74,7 @@ class TaskReuse:
             )  # fmt: skip
         detector = self.alarm if isinstance(self.alarm, NoveltyDetector) else None
         self.agent = BayesianPolicyReuse(library, dynamics=static, seed=seed, novelty=detector)
+        self._hopeless = {name for name in self.policies if experience.is_hopeless(name)}
         self._own: dict[int, Array] = {}  # outcomes of this task by cause
         self._short: list[float] = []
         self._ran: list[tuple[int, float]] = []
@@ -98,10 +99,17 @@ class TaskReuse:
         return self.alarm.alarm
 
     def select(self) -> str:
-        """The policy that is worth most now, by name."""
-        self.policy = self.policies[self.agent.select()]
-        self._believed = self.best
-        return self.policy
+        """The policy to run now, by name.
+
+        Moves tell the type whichever policy runs, and another takes over once another type is believed most. So
+        what a policy earns in a whole episode of another type is rarely at stake, and rarely seen: it counts only
+        where the policy of the most believed type is hopeless, or returns alone tell types.
+        """
+        self._believed, own = self.best, self.own_policy()
+        if not self.by_moves or own is None or own in self._hopeless:
+            own = self.policies[self.agent.select()]
+        self.policy = own
+        return own
 
     @property
     def shortfall(self) -> float:
@@ -149,7 +157,7 @@ class TaskReuse:
         self.agent.end_episode()
 
     def begin_episode(self) -> str:
-        """The policy that is worth most for the next episode, by name."""
+        """The policy for the next episode, by name."""
         policy = self.select()
         values = self.agent.library.performance.mean[:, self.policies.index(policy)]
         mean = float(self.belief @ values)
@@ -174,11 +182,10 @@ class TaskReuse:
         return {self.known.types[self.best].members[0]: float(self.belief.max())}
 
     def own_policy(self) -> str | None:
-        """A policy of the type that is believed most, by name; None where it has none."""
-        members = self.known.types[self.best].members
-        if self.policy in members:
-            return self.policy
-        return next((name for name in members if name in self.policies), None)
+        """The best policy of the type that is believed most, by name; None where it has none."""
+        own = [name for name in self.known.types[self.best].members if name in self.policies]
+        values = self.agent.library.performance.mean[self.best]
+        return max(own, key=lambda name: values[self.policies.index(name)]) if own else None
 
     def differs(self, moves: Counts) -> bool:
         """Whether the moves of the task, also after an alarm, are better explained by a type of its own.
