@@ -12,7 +12,7 @@ def slippery(params, s, a, u):
     goal = params[0]
     if u >= 0.8:
         return 0, -1.0, COLLISION
-    return (s + 1, 0.0, NOTHING) if s + 1 != goal else (goal, 9.0, TERMINAL)
+    return (min(s + 1, 2), 0.0, NOTHING) if s + 1 != goal else (goal, 9.0, TERMINAL)
 
 
 def row(**settings) -> Domain:
@@ -28,6 +28,17 @@ def test_tables_by_hand():
     assert tables.outcome_cum.tolist() == [0.8, 1.0]
     assert tables.starts.tolist() == [0, 1]
     assert [a.dtype for a in tables] == [np.int32, np.float64, np.uint8, np.float64, np.int32]
+
+
+@pytest.mark.parametrize("answer", [(3, 0.0, NOTHING), (-1, 0.0, NOTHING), (1, np.nan, NOTHING)])
+def test_a_step_out_of_the_domain_or_without_a_reward_is_refused(answer):
+    domain = Domain("out", 3, 1, lambda params, s, a, u: answer, 0.9)
+    with pytest.raises(
+        InputError, match="step of domain 'out' must lead to states from 0 to 2 with finite rewards"
+    ):
+        Task(domain, (), np.array([0])).tables()
+    with pytest.raises(InputError, match="starts must name at least one state, numbers from 0 to 2"):
+        Task(domain, (), np.array([0.5]))  # pyright: ignore[reportArgumentType]
 
 
 def test_tabulate_takes_the_place_of_the_enumeration():

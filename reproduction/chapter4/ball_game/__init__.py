@@ -1,1 +1,1 @@
-"""The ball game: `games`, players and their `play`, `learners`, and the `methods` that are compared."""
+"""The ball game: `games`, `move_signal`, players and their `play`, `learners`, and the `methods` compared."""

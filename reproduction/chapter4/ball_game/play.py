@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import BallGame, LossScale, draw_sigma
-from lifelore.interaction.adaptation.move_signal import MoveSignal
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from reproduction.chapter4.ball_game.move_signal import MoveSignal
 from reproduction.chapter4.ball_game.moves import N_OUTCOMES, N_SIGNALS, read_moves
 from reproduction.chapter4.ball_game.players import Balls, advance, new_balls, random_states
 

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from lifelore.domains.ball_game.ball_game import SIZES, SPEEDS, LossScale
 from lifelore.interaction.adaptation.beat import Beat
-from lifelore.interaction.adaptation.move_signal import MoveSignal
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from reproduction.chapter4.ball_game.move_signal import MoveSignal
 from reproduction.chapter4.ball_game.moves import N_OUTCOMES, N_SIGNALS
 from reproduction.chapter4.c4_14_people.ball_round import column
 from reproduction.chapter4.c4_14_people.study_plan import TRAINING, StudySettings

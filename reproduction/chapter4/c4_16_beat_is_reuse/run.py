@@ -14,13 +14,13 @@ from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import BallGame, LossScale, draw_sigma
 from lifelore.interaction.adaptation.beat import rule_at
-from lifelore.interaction.adaptation.move_signal import PRIOR_MOVES
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 from lifelore.interaction.signals.transition_signal import TransitionSignal
 from reproduction.chapter4.ball_game.games import N_TYPES, Game
+from reproduction.chapter4.ball_game.move_signal import PRIOR_MOVES
 from reproduction.chapter4.ball_game.moves import N_CONTEXTS, N_OUTCOMES, read_moves
 from reproduction.chapter4.ball_game.play import Trained, train
 from reproduction.chapter4.ball_game.players import advance, new_balls, random_states

@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.interaction import baselines
-from lifelore.interaction.baselines.policy_kernels import performance_kernel
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from reproduction.chapter4.surveillance.policy_kernels import performance_kernel
 
 GIVEN = {
     "UCB1": "each policy's mean pay over the types, worth one pull",

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import LossScale
-from lifelore.interaction.adaptation.move_signal import MoveSignal
 from reproduction.chapter4.ball_game.games import Game
+from reproduction.chapter4.ball_game.move_signal import MoveSignal
 from reproduction.chapter4.ball_game.play import FixedSpeeds, Ints, Moves, Players, play_all, train
 from reproduction.chapter5.c5_09_switching.rounds import Recorded
 

@@ -46,44 +46,4 @@ if TYPE_CHECKING:
     from lifelore.action.search.domain_reduction import minimised_transitions as minimised_transitions
     from lifelore.action.search.domain_reduction import reachable_states as reachable_states
 
-_HOME = {
-    "ActionPrior": ".priors.action_prior",
-    "AdviceSettings": ".advice.advisor",
-    "Advisor": ".advice.advisor",
-    "AgentClass": ".features.feature_function",
-    "ClassAdvisor": ".advice.agent_classes",
-    "CountedFeatures": ".features.counted_features",
-    "Demonstration": ".demonstrations.demonstrations",
-    "FeatureAcquisition": ".features.feature_acquisition",
-    "FeatureSet": ".features.feature_set",
-    "GoalModel": ".advice.goal_model",
-    "JoinedFeatures": ".features.feature_function",
-    "LastReward": ".features.feature_function",
-    "LearntContexts": ".features.learnt_contexts",
-    "MinimisedDomain": ".search.domain_reduction",
-    "OnlineFeatureSelection": ".features.feature_selection",
-    "OutcomeMap": ".advice.outcome_map",
-    "StateFeatures": ".features.feature_function",
-    "TaskFeature": ".features.feature_function",
-    "Trajectory": ".advice.goal_model",
-    "best_feature_set": ".features.feature_selection",
-    "context_codes": ".features.feature_function",
-    "count_demonstrations": ".demonstrations.demonstrations",
-    "domain_futile_actions": ".search.domain_reduction",
-    "domain_futile_states": ".search.domain_reduction",
-    "feature_rows": ".features.feature_rows",
-    "futile_goal_probability": ".search.domain_reduction",
-    "independent_features": ".features.feature_selection",
-    "load_prior": ".priors.prior_file",
-    "minimised_domain": ".search.domain_reduction",
-    "minimised_transitions": ".search.domain_reduction",
-    "prior_report": ".priors.prior_report",
-    "prior_rows": ".priors.exploration",
-    "reachable_states": ".search.domain_reduction",
-    "read_demonstrations": ".demonstrations.demonstrations",
-    "save_prior": ".priors.prior_file",
-    "why_uncertain": ".features.uncertainty",
-}
-
-__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
-__getattr__, __dir__ = lazy_exports(__name__, _HOME)
+__all__, __getattr__, __dir__ = lazy_exports(__name__)  # pyright: ignore[reportUnsupportedDunderAll]

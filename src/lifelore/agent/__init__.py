@@ -27,24 +27,4 @@ if TYPE_CHECKING:
     from lifelore.agent.perceive.perceive import PerceiveSettings as PerceiveSettings
     from lifelore.agent.types.type_prior import TypePrior as TypePrior
 
-_HOME = {
-    "AgentTask": ".long_lived.task_family",
-    "BatchContexts": ".any_tasks.stored_prior",
-    "GymnasiumWorld": ".external_world.gymnasium_world",
-    "L2Log": ".live.output.l2_log",
-    "LifeSettings": ".live.life_settings",
-    "LongLivedAgent": ".any_tasks.long_lived_agent",
-    "PerceiveSettings": ".perceive.perceive",
-    "Plan": ".long_lived.task_family",
-    "Step": ".long_lived.task_family",
-    "TaskFamily": ".long_lived.task_family",
-    "TypePrior": ".types.type_prior",
-    "check_family": ".long_lived.check_family",
-    "compare_agents": ".any_tasks.comparison",
-    "live_in": ".any_tasks.live_in",
-    "live_long": ".long_lived.long_life",
-    "prior_from_memory": ".any_tasks.stored_prior",
-}
-
-__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
-__getattr__, __dir__ = lazy_exports(__name__, _HOME)
+__all__, __getattr__, __dir__ = lazy_exports(__name__)  # pyright: ignore[reportUnsupportedDunderAll]

@@ -9,11 +9,4 @@ if TYPE_CHECKING:
     from lifelore.app.pages.mount import app_with_pages as app_with_pages
     from lifelore.app.service.settings import ServiceSettings as ServiceSettings
 
-_HOME = {
-    "HEADERS": ".pages.mount",
-    "ServiceSettings": ".service.settings",
-    "app_with_pages": ".pages.mount",
-}
-
-__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
-__getattr__, __dir__ = lazy_exports(__name__, _HOME)
+__all__, __getattr__, __dir__ = lazy_exports(__name__)  # pyright: ignore[reportUnsupportedDunderAll]

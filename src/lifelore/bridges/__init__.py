@@ -11,13 +11,4 @@ if TYPE_CHECKING:
     from lifelore.bridges.prior_mask import PriorMask as PriorMask
     from lifelore.bridges.study_client import StudyClient as StudyClient
 
-_HOME = {
-    "PriorMask": ".prior_mask",
-    "StudyClient": ".study_client",
-    "SymbolicView": ".minigrid_view",
-    "open_directions": ".minigrid_view",
-    "solved_layout": ".minigrid_view",
-}
-
-__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
-__getattr__, __dir__ = lazy_exports(__name__, _HOME)
+__all__, __getattr__, __dir__ = lazy_exports(__name__)  # pyright: ignore[reportUnsupportedDunderAll]

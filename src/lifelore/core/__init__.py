@@ -41,39 +41,4 @@ if TYPE_CHECKING:
     from lifelore.core.relations import PairLabel as PairLabel
     from lifelore.core.streams import stream as stream
 
-_HOME = {
-    "COLLISION": ".mdp",
-    "CloudOrigin": ".cloud_origin",
-    "Domain": ".mdp",
-    "InputError": ".errors",
-    "LabelledCloud": ".labelled_cloud",
-    "LifeloreError": ".errors",
-    "MissingExtraError": ".errors",
-    "NOTHING": ".mdp",
-    "NotFoundError": ".errors",
-    "PairLabel": ".relations",
-    "Policy": ".protocols",
-    "QLearning": ".learning.q_learner",
-    "Record": ".protocols",
-    "SignalModel": ".protocols",
-    "StoreError": ".errors",
-    "TERMINAL": ".mdp",
-    "Tables": ".mdp",
-    "Task": ".mdp",
-    "World": ".protocols",
-    "best_actions": ".planning.planning",
-    "difference_estimate": ".metrics",
-    "greedy_policy": ".planning.planning",
-    "learning_gain": ".learning.learning_metrics",
-    "learnt_best_actions": ".planning.planning",
-    "lifetime_transfer": ".learning.transfer",
-    "mean_estimate": ".metrics",
-    "mean_start_value": ".planning.planning",
-    "optimal_actions": ".planning.planning",
-    "optimal_q": ".planning.planning",
-    "policy_values": ".planning.planning",
-    "stream": ".streams",
-}
-
-__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
-__getattr__, __dir__ = lazy_exports(__name__, _HOME)
+__all__, __getattr__, __dir__ = lazy_exports(__name__)  # pyright: ignore[reportUnsupportedDunderAll]

@@ -194,17 +194,25 @@ class Task:
 
     def __post_init__(self) -> None:
         starts, n_states = np.asarray(self.starts), self.domain.n_states
-        if not starts.size or starts.min() < 0 or starts.max() >= n_states:
-            raise InputError(f"starts must name at least one state, each in [0, {n_states}), got {starts}")
+        if starts.dtype.kind not in "iu" or not starts.size or starts.min() < 0 or starts.max() >= n_states:
+            raise InputError(
+                f"starts must name at least one state, numbers from 0 to {n_states - 1}, got {starts}"
+            )
 
     def tables(self) -> Tables:
-        """Enumerate the task into `Tables`."""
+        """Enumerate the task into `Tables`; InputError where a step leaves the domain or pays no number."""
         domain = self.domain
         cum = np.cumsum(np.asarray(domain.outcome_probs, dtype=np.float64))
         cum[-1] = 1.0
         midpoints = cum - np.asarray(domain.outcome_probs) / 2
         enumerate_all = domain.tabulate or _enumerate_with(domain)
         next_state, reward, event = enumerate_all(self.params, midpoints)
+        # A state out of range would read foreign memory inside the kernels.
+        if next_state.min() < 0 or next_state.max() >= domain.n_states or not np.isfinite(reward).all():
+            raise InputError(
+                f"step of domain '{domain.name}' must lead to states from 0 to {domain.n_states - 1} with finite "
+                f"rewards, from a goal too; it leads to {next_state.min()} to {next_state.max()}"
+            )
         return Tables(next_state, reward, event, cum, np.ascontiguousarray(self.starts, dtype=np.int32))
 
 

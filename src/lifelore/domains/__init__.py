@@ -37,36 +37,7 @@ if TYPE_CHECKING:
     from lifelore.domains.worlds import make_world as make_world
     from lifelore.domains.worlds import world_from_settings as world_from_settings
 
-_HOME = {
-    "Frame": ".grids.grid_world",
-    "Golf": ".golf.golf",
-    "GridEnvironment": ".grid_environment",
-    "GridWorld": ".grids.grid_world",
-    "OccupancyMap": ".buildings.occupancy_map",
-    "PacmanMaze": ".pacman.pacman",
-    "PacmanTask": ".pacman.pacman",
-    "Surveillance": ".surveillance.surveillance",
-    "TaskEnvironment": ".task_environment",
-    "TaskStream": ".task_stream",
-    "Telephone": ".telephone.telephone",
-    "WorldSettings": ".worlds",
-    "advice_maze": ".advice.advice_maze",
-    "building_from_map": ".buildings.building",
-    "domain_names": ".worlds",
-    "floor_of": ".buildings.floor",
-    "lattice": ".grids.lattice",
-    "make_world": ".worlds",
-    "maze_goals": ".advice.advice_maze",
-    "modified_factory": ".factory.modified_factory",
-    "noise_maze": ".grids.noise_maze",
-    "office_map": ".buildings.office",
-    "read_occupancy_map": ".buildings.occupancy_map",
-    "world_from_settings": ".worlds",
-    "write_occupancy_map": ".buildings.occupancy_map",
-}
-
-__all__ = ["ENVIRONMENTS", *_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
-__getattr__, __dir__ = lazy_exports(__name__, _HOME)
+__all__, __getattr__, __dir__ = lazy_exports(__name__, "ENVIRONMENTS")  # pyright: ignore[reportUnsupportedDunderAll]
 
 ENVIRONMENTS = {
     "lifelore/AdviceMaze-v0": ("grid_environment:AdviceMazeEnvironment", 5000),

@@ -10,12 +10,4 @@ if TYPE_CHECKING:
     from lifelore.figures.style import new_figure as new_figure
     from lifelore.figures.style import save_figure as save_figure
 
-_HOME = {
-    "house_style": ".style",
-    "new_figure": ".style",
-    "plot_prior": ".lives.prior_table",
-    "save_figure": ".style",
-}
-
-__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
-__getattr__, __dir__ = lazy_exports(__name__, _HOME)
+__all__, __getattr__, __dir__ = lazy_exports(__name__)  # pyright: ignore[reportUnsupportedDunderAll]

@@ -18,9 +18,6 @@ if TYPE_CHECKING:
     from lifelore.interaction.baselines.gp_ucb import GPUCB as GPUCB
     from lifelore.interaction.baselines.interval_estimation import IntervalEstimation as IntervalEstimation
     from lifelore.interaction.baselines.lin_ucb import LinUCB as LinUCB
-    from lifelore.interaction.baselines.probabilistic_policy_reuse import (
-        ProbabilisticPolicyReuse as ProbabilisticPolicyReuse,
-    )
     from lifelore.interaction.baselines.sliding_window_ucb import SlidingWindowUCB as SlidingWindowUCB
     from lifelore.interaction.baselines.thompson import GaussianThompson as GaussianThompson
     from lifelore.interaction.baselines.try_all import TryAll as TryAll
@@ -61,51 +58,4 @@ if TYPE_CHECKING:
     from lifelore.interaction.signals.step_reward_signal import StepRewardSignal as StepRewardSignal
     from lifelore.interaction.signals.transition_signal import TransitionSignal as TransitionSignal
 
-_HOME = {
-    "BPRPlus": ".baselines.bpr_plus",
-    "BayesOKR": ".baselines.bayes_okr",
-    "BayesianPolicyReuse": ".reuse.bayesian_policy_reuse",
-    "Beat": ".adaptation.beat",
-    "BeliefEntropy": ".selection.belief_entropy",
-    "BeliefSampling": ".selection.belief_sampling",
-    "CategorySignal": ".signals.category_signal",
-    "Deterministic": ".selection.rule",
-    "EXP3": ".baselines.exp3",
-    "EpsilonGreedy": ".selection.epsilon_greedy",
-    "ExpectedImprovement": ".selection.expected_improvement",
-    "FeaturePrior": ".beliefs.feature_prior",
-    "GPUCB": ".baselines.gp_ucb",
-    "GaussianThompson": ".baselines.thompson",
-    "Greedy": ".selection.greedy",
-    "InformationDirected": ".selection.information_directed",
-    "IntervalEstimation": ".baselines.interval_estimation",
-    "JointNormalOutcomes": ".outcomes.joint_normal_outcomes",
-    "JointSignal": ".signals.joint_signal",
-    "KnowledgeGradient": ".selection.knowledge_gradient",
-    "LikelihoodSignal": ".signals.likelihood_signal",
-    "LinUCB": ".baselines.lin_ucb",
-    "NoveltyDetector": ".reuse.novelty.novelty_detector",
-    "PolicyLibrary": ".library.policy_library",
-    "ProbabilisticPolicyReuse": ".baselines.probabilistic_policy_reuse",
-    "ProbabilityOfImprovement": ".selection.probability_of_improvement",
-    "ReturnSignal": ".signals.return_signal",
-    "RewardSignal": ".signals.reward_signal",
-    "SlidingWindowUCB": ".baselines.sliding_window_ucb",
-    "StepRewardSignal": ".signals.step_reward_signal",
-    "TransitionSignal": ".signals.transition_signal",
-    "TryAll": ".baselines.try_all",
-    "TypeDynamics": ".beliefs.type_dynamics",
-    "UCB1": ".baselines.ucb1",
-    "UserBeliefs": ".reuse.user_beliefs",
-    "ValueOfPerfectInformation": ".selection.value_of_perfect_information",
-    "best_plan": ".selection.belief_program",
-    "epsilon_types": ".library.task_types",
-    "joint_normal_fit": ".outcomes.joint_normal_fit",
-    "landmark_library": ".library.task_types",
-    "library_regret": ".reuse.regret",
-    "load_session": ".reuse.reuse_session",
-    "save_session": ".reuse.reuse_session",
-}
-
-__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
-__getattr__, __dir__ = lazy_exports(__name__, _HOME)
+__all__, __getattr__, __dir__ = lazy_exports(__name__)  # pyright: ignore[reportUnsupportedDunderAll]

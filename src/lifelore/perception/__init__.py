@@ -25,20 +25,4 @@ if TYPE_CHECKING:
     from lifelore.perception.segmentation.table_frame import to_scene as to_scene
     from lifelore.perception.trees.tree_training import TreeSettings as TreeSettings
 
-_HOME = {
-    "CameraIntrinsics": ".clouds.camera_intrinsics",
-    "ContactPointNetwork": ".contacts.contact_network",
-    "ContactSettings": ".contacts.contact_settings",
-    "LabelledCloud": "lifelore.core.labelled_cloud",
-    "PointCloud": ".clouds.point_cloud",
-    "RelationClassifier": ".relations.relation_classifier",
-    "Scene": ".scene",
-    "TreeSettings": ".trees.tree_training",
-    "contact_networks": ".contacts.pair_networks",
-    "perceived_scene": ".scene_perception",
-    "read_cloud": ".clouds.cloud_file",
-    "to_scene": ".segmentation.table_frame",
-}
-
-__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
-__getattr__, __dir__ = lazy_exports(__name__, _HOME)
+__all__, __getattr__, __dir__ = lazy_exports(__name__)  # pyright: ignore[reportUnsupportedDunderAll]

@@ -39,6 +39,8 @@ def test_all_measures_by_hand():
         ({"baseline": [[np.nan] * 4] * 3}, "baseline must be finite"),
         ({"baseline": WITHOUT[:2]}, r"must agree run by run, got \(3, 4\) and \(2, 4\)"),
         ({"threshold": [1.0, 2.0]}, r"threshold must be one number or one a run \(3\), got \(2,\)"),
+        ({"threshold": np.nan}, "threshold and floor must be finite"),
+        ({"floor": np.nan}, "threshold and floor must be finite"),
         ({"share": 0.0}, r"share must lie in \(0, 1\], got 0.0"),
     ],
 )

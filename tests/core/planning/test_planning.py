@@ -9,6 +9,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL, Tables
 from lifelore.core.planning.planning import (
     best_actions,
+    greedy_policy,
     learnt_best_actions,
     optimal_actions,
     optimal_q,
@@ -57,6 +58,21 @@ def test_a_policy_on_a_cycle_and_into_it():
 def test_a_discount_out_of_range_is_refused(discount, message):
     with pytest.raises(InputError, match=message):
         optimal_q(ring(), discount)
+    with pytest.raises(InputError, match=r"discount must lie in \[0, 1\)"):
+        policy_values(ring(), np.zeros(4, int), discount)
+
+
+@pytest.mark.parametrize("q", [[1.0, 2.0], [[]], [[np.nan, 1.0]], [[0.0, 1.0], [np.nan, np.nan]]])
+def test_values_that_are_no_table_or_hold_nan_are_refused(q):
+    for read in (best_actions, learnt_best_actions, greedy_policy):
+        with pytest.raises(InputError, match=r"q must be values \(n_rows, n_actions\) without NaN"):
+            read(q)
+
+
+@pytest.mark.parametrize("policy", [[0, 0, 0], [0, 0, 0, 2], [0, 0, 0, -2], [0.5, 0, 0, 0], [0, 0, 0, 0, 0]])
+def test_a_policy_that_names_no_action_for_each_state_is_refused(policy):
+    with pytest.raises(InputError, match="policy must give each of 4 states an action, 0 to 1, or -1"):
+        policy_values(ring(), np.array(policy), 0.9)  # pyright: ignore[reportArgumentType]
 
 
 def test_without_discount_values_of_a_slow_walk_settle():

@@ -5,7 +5,6 @@ import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.adaptation.beat import EPSILONS, Beat, rule_at
-from lifelore.interaction.adaptation.move_signal import MoveSignal
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
@@ -87,18 +86,15 @@ def test_bad_input():
 
 
 def test_many_users_equal_single_ones():
-    lib, probs, value = library(3)
-    # The same moves by number, (sets, signals, types).
-    table = np.log(probs).reshape(N_TYPES, N_SETS, -1).transpose(1, 2, 0)
-    by_number = PolicyLibrary.from_means(value, 1.0, signal=MoveSignal(table))
-    users = ReuseAlgorithm(by_number, 20, dynamics=TypeDynamics.static(), models="plug-in")
+    lib, probs, _ = library(3)
+    users = ReuseAlgorithm(lib, 20, dynamics=TypeDynamics.static(), models="plug-in")
     singles, world, generator = [Beat(lib) for _ in range(20)], np.random.default_rng(5), np.random.default_rng(6)
     for _ in range(100):
         playing = np.flatnonzero(world.random(20) < 0.7)
         chosen, _ = users.select(playing, EpsilonGreedy(0.0), generator)
         assert chosen.tolist() == [singles[u].select() for u in playing]
         triples = [move(world, probs, u % N_TYPES, p, 0) for u, p in zip(playing, chosen, strict=True)]
-        users.observe(playing, chosen, np.array([(s * 2 + a) * N_STATES + s1 for s, a, s1 in triples]))
+        users.observe(playing, chosen, [[triple] for triple in triples])
         for u, p, triple in zip(playing, chosen, triples, strict=True):
             singles[u].update(int(p), [triple])
     for u, beat in enumerate(singles):

@@ -4,14 +4,13 @@ from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF
 
 from lifelore.interaction.baselines import GPUCB
-from lifelore.interaction.baselines.policy_kernels import metric_kernel
 
 PLACES = np.random.default_rng(0).random((12, 2))
 GAPS = np.linalg.norm(PLACES[:, None] - PLACES[None], axis=2)
 
 
 def process(**settings):
-    return GPUCB(12, kernel=metric_kernel(GAPS, length=0.4), **({"noise": 0.3} | settings))
+    return GPUCB(12, kernel=np.exp(-0.5 * (GAPS / 0.4) ** 2), **({"noise": 0.3} | settings))
 
 
 @pytest.mark.parametrize("episodes", [1, 5, 30, 200])
@@ -50,8 +49,12 @@ def test_beta_of_srinivas_by_hand():
     assert player._beta() == pytest.approx(10.5703 + 2 * np.log(4), abs=1e-3)
 
 
-@pytest.mark.parametrize("kernel", ["performance", "covariance", np.eye(4)])
-def test_from_library(library, kernel):
-    player = GPUCB.from_library(library, kernel=kernel, beta=0)
+def test_from_library(library):
+    player = GPUCB.from_library(library, beta=0)
     assert player._scores()[0] == pytest.approx([0.75, 0.35, 0.45, 0.025])
     assert player.noise == pytest.approx(0.1)
+    types = np.random.default_rng(1).choice(2, 200_000, p=library.prior)
+    drawn = np.cov(library.performance.mean[types].T)
+    # The deviation of a covariance of 200,000 draws of values in [0, 1] is below 0.0006.
+    assert player.kernel == pytest.approx(drawn, abs=0.003)
+    assert GPUCB.from_library(library, kernel=np.eye(4)).kernel.tolist() == np.eye(4).tolist()

@@ -88,6 +88,8 @@ def test_bad_dynamics_are_refused():
             TypeDynamics(*made)  # pyright: ignore[reportArgumentType]
     with pytest.raises(InputError, match="law must be probabilities"):
         TypeDynamics("hazard", 0.1, np.array([0.5, np.nan]))
+    with pytest.raises(InputError, match="law must be probabilities"):
+        TypeDynamics("hazard", 0.1, np.array([1.5, -0.5]))
 
 
 def test_a_certain_type_is_never_more_than_certain():

@@ -114,6 +114,8 @@ def test_a_policy_retires():
     assert made.signal.outcomes is made.performance
     with pytest.raises(InputError, match="the chosen numbers must be"):
         made.without_policy("right")
+    with pytest.raises(InputError, match="the chosen numbers must be"):
+        library().take([0.7])  # pyright: ignore[reportArgumentType]
     with pytest.raises(NotFoundError):
         made.without_policy("left")
 

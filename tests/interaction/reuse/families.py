@@ -16,7 +16,6 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
-from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.joint_signal import JointSignal
@@ -82,7 +81,7 @@ class Family(NamedTuple):
 def with_spread(library: PolicyLibrary, spread: Spread) -> PolicyLibrary:
     """The library, whose models that are learnt from runs hold `spread` possible."""
     performance, signal = library.performance, library.signal
-    if isinstance(performance, MomentOutcomes):
+    if isinstance(performance, GaussianOutcomes):
         learnt = np.isfinite(performance.moments.count).any()
     else:
         learnt = isinstance(performance, CountedOutcomes) and not performance.exact

@@ -112,6 +112,7 @@ def test_a_model_that_answers_wrongly_is_named(answer, message):
         ({"prior": [0.5, 0.6]}, "prior must sum to 1"),
         ({"prior": [1.0]}, r"prior must be \(2,\)"),
         ({"horizon": 0}, "horizon must be at least 1"),
+        ({"seed": 1.5}, "seed must be a whole number or a numpy generator, got 1.5"),
         ({"horizon": math.nan}, "horizon must be at least 1"),
         ({"dynamics": TypeDynamics.hazard(0.1, [0.2, 0.3, 0.5])}, "dynamics are for 3 types"),
     ],

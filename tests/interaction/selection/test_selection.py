@@ -286,6 +286,13 @@ def test_settings_that_break_their_rule_are_refused(make, message):
         make()
 
 
+@pytest.mark.parametrize("rule", [KnowledgeGradient(), ValueOfPerfectInformation()])
+def test_a_negative_number_of_episodes_left_is_refused(rule):
+    library, belief = problem(0)
+    with pytest.raises(InputError, match="episodes_left must be at least 0, got -5"):
+        rule.scores(library, belief, episodes_left=-5)
+
+
 def test_unknown_rules_and_missing_generators_are_named():
     with pytest.raises(NotFoundError, match="rule must be one of greedy"):
         rule_named("best")

@@ -133,6 +133,8 @@ def independent_features(counted: CountedFeatures, threshold: float | None = Non
         increase[name] = action_set_entropy(pooled_counts(features.coarser(codes, others), counts)[1]) - full
     mean = float(np.mean(list(increase.values()))) if increase else 0.0
     omega = mean if threshold is None else float(threshold)
+    if np.isnan(omega):
+        raise InputError(f"threshold must be a number, got {threshold}")
     chosen = tuple(name for name, delta in increase.items() if delta >= omega - SLACK)
     return FeatureChoice(chosen, full, increase, omega)
 

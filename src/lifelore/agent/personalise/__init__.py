@@ -21,18 +21,4 @@ if TYPE_CHECKING:
     from lifelore.agent.personalise.study import open_study as open_study
     from lifelore.agent.personalise.study_report import report as report
 
-_HOME = {
-    "FitSettings": ".fitting.fit",
-    "LogFormat": ".log.log_format",
-    "Request": ".decisions",
-    "choose": ".decisions",
-    "decide": ".decisions",
-    "fit": ".fitting.fit",
-    "observe": ".decisions",
-    "open_study": ".study",
-    "report": ".study_report",
-    "update": ".decisions",
-}
-
-__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
-__getattr__, __dir__ = lazy_exports(__name__, _HOME)
+__all__, __getattr__, __dir__ = lazy_exports(__name__)  # pyright: ignore[reportUnsupportedDunderAll]

@@ -99,6 +99,8 @@ def learning_gain(
     thresholds = np.asarray(threshold, float)
     if thresholds.shape not in ((), (len(curves),)):
         raise InputError(f"threshold must be one number or one a run ({len(curves)}), got {thresholds.shape}")
+    if not (np.isfinite(thresholds).all() and np.isfinite(floor)):
+        raise InputError(f"threshold and floor must be finite, got {threshold} and {floor}")
     if not 0 < share <= 1:
         raise InputError(f"share must lie in (0, 1], got {share}")
     own, never = _times(curves, thresholds, window)

@@ -20,10 +20,10 @@ STEADY = 0.99
 """Values without discount grow for ever that still move this share of what they moved `SWEEPS` sweeps before."""
 
 
-def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDArray[np.float64]:
+def optimal_q(tables: Tables, discount: float) -> NDArray[np.float64]:
     """Optimal action values by value iteration, (n_states, n_actions).
 
-    Sweeps in place until no value moves by more than `tolerance` times the largest reward. Where every
+    Sweeps in place until no value moves by more than 10⁻¹² of the largest reward. Where every
     reward but a terminal one is zero or a loss, values settle exactly after as many sweeps as the longest
     shortest path.
 
@@ -40,7 +40,7 @@ def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDAr
     """
     if not 0 <= discount <= 1:
         raise InputError(f"discount must lie in [0, 1], got {discount}")
-    tolerance *= max(1.0, float(np.abs(tables.reward).max()))
+    tolerance = 1e-12 * max(1.0, float(np.abs(tables.reward).max()))
     q, value = np.zeros(tables.next_state.shape[:2]), np.zeros(tables.n_states)
     moved = np.inf
     while True:
@@ -89,23 +89,34 @@ def backup(tables, s, a, discount, value):
     return total
 
 
-def best_actions(
-    q: NDArray[np.float64], tolerance: float = TIE_TOLERANCE, floor: float = TIE_FLOOR
-) -> NDArray[np.bool_]:
+def best_actions(q: ArrayLike, tolerance: float = TIE_TOLERANCE, floor: float = TIE_FLOOR) -> NDArray[np.bool_]:
     """Which actions are best or tied best in each row (Eq. 3.1), (n_rows, n_actions) bool.
 
     Tied are values within `tolerance` · |the row's best| or `floor` · |the largest finite value of all rows|,
-    whichever is more: where the best value is 0, rounding must not choose. A value that is not finite marks an
-    action that does not exist.
+    whichever is more: where the best value is 0, rounding must not choose. An infinite value marks an action that
+    does not exist.
+
+    Raises
+    ------
+    InputError
+        `q` is no table of values, or holds NaN.
 
     Examples
     --------
     >>> best_actions(np.array([[1.0, 1.0, 0.0], [0.0, 2.0, 1.0]])).tolist()
     [[True, True, False], [False, True, False]]
     """
-    best = q.max(axis=1, keepdims=True)
+    q, best = _with_best(q)
     largest = np.abs(q).max(where=np.isfinite(q), initial=0.0)
     return q >= best - np.maximum(tolerance * np.abs(best), floor * largest)
+
+
+def _with_best(q: ArrayLike) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Values as an array, and the best of each row, (n_rows, 1); InputError for another shape or NaN."""
+    q = np.asarray(q)
+    if q.ndim != 2 or not q.shape[1] or np.isnan(best := q.max(axis=1, keepdims=True)).any():
+        raise InputError(f"q must be values (n_rows, n_actions) without NaN, got {q.dtype} of shape {q.shape}")
+    return q, best
 
 
 def checked_best(best: ArrayLike) -> NDArray[np.bool_]:
@@ -147,7 +158,7 @@ def states_from(
     return reached
 
 
-def learnt_best_actions(q: NDArray[np.float64]) -> NDArray[np.bool_]:
+def learnt_best_actions(q: ArrayLike) -> NDArray[np.bool_]:
     """`best_actions` of a learned Q; rows whose best value is 0, as at the start, are all False: nothing learned.
 
     Where every move costs, an untried action has the best value of its row. A value just learned may be very
@@ -158,10 +169,11 @@ def learnt_best_actions(q: NDArray[np.float64]) -> NDArray[np.bool_]:
     >>> learnt_best_actions(np.array([[0.0, 2.0], [0.0, 0.0]])).tolist()
     [[False, True], [False, False]]
     """
-    return best_actions(q, floor=0.0) & (q.max(axis=1, keepdims=True) != 0)
+    q, best = _with_best(q)
+    return best_actions(q, floor=0.0) & (best != 0)
 
 
-def greedy_policy(q: NDArray[np.float64]) -> NDArray[np.int32]:
+def greedy_policy(q: ArrayLike) -> NDArray[np.int32]:
     """The first best action of each state; -1 where no value is above zero.
 
     A learner without a value above zero in a state has no policy there yet. It counts as standing still, with
@@ -172,7 +184,8 @@ def greedy_policy(q: NDArray[np.float64]) -> NDArray[np.int32]:
     >>> greedy_policy(np.array([[0.0, 2.0], [0.0, 0.0]])).tolist()
     [1, -1]
     """
-    return np.where(q.max(axis=1) > 0, q.argmax(axis=1), -1).astype(np.int32)
+    q, best = _with_best(q)
+    return np.where(best[:, 0] > 0, q.argmax(axis=1), -1).astype(np.int32)
 
 
 def policy_values(tables: Tables, policy: NDArray[np.int32], discount: float) -> NDArray[np.float64]:
@@ -186,6 +199,11 @@ def policy_values(tables: Tables, policy: NDArray[np.int32], discount: float) ->
     discount : float
         γ in [0, 1).
 
+    Raises
+    ------
+    InputError
+        `discount` lies outside [0, 1), or `policy` is no action, or -1, for each state.
+
     Examples
     --------
     >>> T = np.eye(3)[[[0, 1], [0, 2], [1, 2]]]  # three places in a row; actions left and right
@@ -193,7 +211,17 @@ def policy_values(tables: Tables, policy: NDArray[np.int32], discount: float) ->
     >>> policy_values(tables, np.array([1, 1, -1], np.int32), 0.9).round(2).tolist()
     [0.9, 1.0, 0.0]
     """
-    policy = np.ascontiguousarray(policy, dtype=np.int32)
+    if not 0 <= discount < 1:
+        raise InputError(f"discount must lie in [0, 1), got {discount}")
+    given = np.asarray(policy)
+    # An action out of range would read foreign memory inside the kernel.
+    whole = given.shape == (tables.n_states,) and given.dtype.kind in "iu"
+    if not (whole and given.min() >= -1 and given.max() < tables.n_actions):
+        raise InputError(
+            f"policy must give each of {tables.n_states} states an action, 0 to {tables.n_actions - 1}, or -1, "
+            f"got {given.dtype} of shape {given.shape}: {policy!r:.60}"
+        )
+    policy = np.ascontiguousarray(given, dtype=np.int32)
     if tables.n_outcomes == 1:
         return _follow(tables.by_pair, policy, float(discount))
     return _iterate(tables.by_pair, policy, float(discount), 1e-12 * max(1.0, float(np.abs(tables.reward).max())))

@@ -17,15 +17,4 @@ if TYPE_CHECKING:
     from lifelore.domains.tabletop_job.tray import Tray as Tray
     from lifelore.domains.tabletop_job.tray import sample_tray as sample_tray
 
-_HOME = {
-    "OutcomeTree": ".best_return",
-    "PICK": ".job",
-    "TabletopJob": ".job",
-    "Tray": ".tray",
-    "VERBS": ".job",
-    "job_type_named": ".job_types",
-    "sample_tray": ".tray",
-}
-
-__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
-__getattr__, __dir__ = lazy_exports(__name__, _HOME)
+__all__, __getattr__, __dir__ = lazy_exports(__name__)  # pyright: ignore[reportUnsupportedDunderAll]

@@ -104,7 +104,7 @@ class Beat:
         self.algorithm = ReuseAlgorithm(library, prior=prior, dynamics=TypeDynamics.static(), models="plug-in")
         self.step = self.episode = self.surprises = 0
         self._epsilon = epsilon
-        self._generator = seed if isinstance(seed, np.random.Generator) else stream(seed, "beat")
+        self._generator = stream(seed, "beat")
 
     @classmethod
     def from_tasks(

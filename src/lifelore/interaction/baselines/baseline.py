@@ -50,7 +50,7 @@ class Baseline(ABC):
         if n_tasks is not None and n_tasks < 1:
             raise InputError(f"n_tasks must be at least 1, got {n_tasks}; leave it out for a single task")
         self.n_policies, self.n_tasks, self.episode = n_policies, n_tasks, 0
-        self._generator = seed if isinstance(seed, np.random.Generator) else stream(seed, "baseline", self.name)
+        self._generator = stream(seed, "baseline", self.name)
 
     @classmethod
     def from_library(cls, library: PolicyLibrary, **settings: Any) -> Self:

@@ -75,13 +75,13 @@ class BayesOKR:
         floor: float = 0.01,
         seed: int | np.random.Generator = 0,
     ) -> None:
-        if not 0 <= weight <= 1 or window < 1:
+        if not 0 <= weight <= 1 or not window >= 1:
             raise InputError(f"weight must lie in [0, 1] and window be at least 1, got {weight} and {window}")
         self.library, self.weight, self.floor = library, weight, checked_floor(floor, library)
         self.between: Array = log_prior(library.prior if prior is None else prior)
         if self.between.shape != (library.n_types,):
             raise InputError(f"prior must be ({library.n_types},), got {self.between.shape}")
-        self.generator = stream(seed, "bayes-okr") if isinstance(seed, int | np.integer) else seed
+        self.generator = stream(seed, "bayes-okr")
         self._law = law_of(library.signal, library.n_types, "plug-in")
         self._last: deque[Array] = deque(maxlen=window)
         self._begin()

@@ -70,7 +70,7 @@ class BPRPlus(Baseline):
         super().__init__(n_policies, **common)
         if n_policies != library.n_policies:
             raise InputError(f"n_policies must be the library's {library.n_policies}, got {n_policies}")
-        if window < 0 or not 0 <= threshold <= 1:
+        if not window >= 0 or not 0 <= threshold <= 1:
             raise InputError(f"window must be at least 0 and threshold in [0, 1], got {window} and {threshold}")
         self.library, self.rule, self.floor = library, rule_of(rule, library), checked_floor(floor, library)
         self.window, self.threshold = window, threshold

@@ -89,7 +89,7 @@ def _gamma(gamma: float | None, horizon: int | None, n_policies: int) -> float:
     if (gamma is None) == (horizon is None):
         raise InputError("give either gamma or horizon")
     if horizon is not None:
-        if horizon < 1:
+        if not horizon >= 1:
             raise InputError(f"horizon must be at least 1, got {horizon}")
         return float(min(1.0, np.sqrt(n_policies * np.log(n_policies) / ((np.e - 1) * horizon)))) or 1.0
     assert gamma is not None

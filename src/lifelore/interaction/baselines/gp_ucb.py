@@ -4,17 +4,14 @@ The process is over finitely many policies, so that each payoff y of a policy i 
 exactly: with k = K[i] and s = K[i, i] + noise², m ← m + k (y − m[i]) / s and K ← K − k kᵀ / s.
 """
 
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import InputError
 from lifelore.interaction.baselines.baseline import Baseline, library_moments, row_of
-from lifelore.interaction.baselines.policy_kernels import performance_kernel, prior_covariance
 from lifelore.interaction.library.policy_library import PolicyLibrary
-
-KERNELS = ("performance", "covariance")
 
 
 class GPUCB(Baseline):
@@ -23,7 +20,7 @@ class GPUCB(Baseline):
     Parameters
     ----------
     kernel : (n_policies, n_policies) float
-        Covariance of the policies' mean payoffs, see `policy_kernels`.
+        Covariance of the policies' mean payoffs.
     noise : float
         Deviation > 0 of a payoff about its mean.
     prior_means : float or (n_policies,) float
@@ -35,8 +32,7 @@ class GPUCB(Baseline):
     n_policies, n_tasks, seed
         As in `Baseline`.
 
-    `from_library` takes ``kernel="performance"`` (how alike policies did in training), ``"covariance"`` (over the
-    library's types), or an array of the caller's own metric; means and noise under G₀.
+    `from_library` gives the covariance over the library's types, means and noise, all under G₀.
     Thesis: §4.6.4, §4.7.3, Fig. 4.11.
 
     Examples
@@ -73,15 +69,12 @@ class GPUCB(Baseline):
         self._mean = np.tile(row_of("prior_means", prior_means, n_policies), (self.rows, 1))
 
     @classmethod
-    def from_library(cls, library: PolicyLibrary, *, kernel: Any = "performance", **settings: Any) -> Self:
-        """Kernel, means and noise from the library; `settings` override."""
-        return super().from_library(library, kernel=_kernel_of(library, kernel), **settings)
-
-    @classmethod
     def settings_from(cls, library: PolicyLibrary) -> dict[str, Any]:
-        """Means and noise under the library's prior."""
+        """Covariance, means and noise under the library's prior."""
         mean, _, noise = library_moments(library)
-        return {"prior_means": mean, "noise": float(np.sqrt((noise**2).mean()))}
+        apart = np.asarray(library.performance.mean) - mean
+        kernel = (apart * np.asarray(library.prior)[:, None]).T @ apart
+        return {"kernel": kernel, "prior_means": mean, "noise": float(np.sqrt((noise**2).mean()))}
 
     def posterior(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Mean and deviation of each policy's mean payoff, (rows, n_policies) each."""
@@ -104,16 +97,6 @@ class GPUCB(Baseline):
         square = np.maximum(column[every, policies], 0.0) + self.noise**2
         self._mean += column * ((rewards - self._mean[every, policies]) / square)[:, None]
         self._covariance -= column[:, :, None] * (column / square[:, None])[:, None, :]
-
-
-def _kernel_of(library: PolicyLibrary, kernel: Any) -> NDArray[np.float64]:
-    if not isinstance(kernel, str):
-        return np.asarray(kernel, np.float64)
-    if kernel == "performance":
-        return performance_kernel(library.performance.mean)
-    if kernel == "covariance":
-        return prior_covariance(library)
-    raise NotFoundError(f"kernel must be one of {', '.join(KERNELS)}, or an array, got {kernel!r}")
 
 
 def _checked_kernel(kernel: ArrayLike, n_policies: int) -> NDArray[np.float64]:

@@ -10,7 +10,7 @@ That is GP-UCB with the covariance X Xᵀ / λ and a constant β = α². A user 
 is linear in the library: x are a policy's mean payoffs on each type, and w are the shares of the types.
 """
 
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -71,11 +71,6 @@ class LinUCB(GPUCB):
         if not (alpha >= 0 and np.isfinite(alpha)):
             raise InputError(f"alpha must be finite and at least 0, got {alpha}")
         super().__init__(n_policies, kernel=rows @ rows.T / ridge, noise=noise, beta=alpha**2, **common)
-
-    @classmethod
-    def from_library(cls, library: PolicyLibrary, **settings: Any) -> Self:
-        """Features and noise from the library; `settings` override."""
-        return cls(library.n_policies, **(cls.settings_from(library) | settings))
 
     @classmethod
     def settings_from(cls, library: PolicyLibrary) -> dict[str, Any]:

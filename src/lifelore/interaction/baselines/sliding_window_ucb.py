@@ -76,7 +76,7 @@ def _window(window: int | None, horizon: int | None, changes: int) -> int:
     if window is not None and horizon is not None:
         raise InputError("give either window or horizon")
     for name, value in (("window", window), ("horizon", horizon), ("changes", changes)):
-        if value is not None and value < 1:
+        if value is not None and not value >= 1:
             raise InputError(f"{name} must be at least 1, got {value}")
     if horizon is None:
         return WINDOW if window is None else window

@@ -35,7 +35,7 @@ class TryAll(ArmBaseline):
 
     def __init__(self, n_policies: int, *, rounds: int = 1, **common: Any) -> None:
         super().__init__(n_policies, **common)
-        if rounds < 1:
+        if not rounds >= 1:
             raise InputError(f"rounds must be at least 1, got {rounds}")
         self.rounds = rounds
         self.arms = ArmStatistics.empty(self.rows, n_policies)

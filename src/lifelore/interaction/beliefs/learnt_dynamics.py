@@ -292,7 +292,7 @@ class LearntRows:
 
     def _number(self, outcome: Any) -> int:
         outcome = outcome.item() if isinstance(outcome, np.generic) else outcome
-        if not isinstance(outcome, str | float | int | None):
+        if not isinstance(outcome, str | float | int | None) or outcome != outcome:
             raise InputError(f"outcome must be a word, a number or None, got {outcome!r:.80}")
         if outcome not in self._categories and len(self._categories) > MOST_CATEGORIES:
             raise InputError(

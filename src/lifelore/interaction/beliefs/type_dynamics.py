@@ -60,7 +60,8 @@ class TypeDynamics:
         axes = {"static": 0, "hazard": 1, "transitions": 2}.get(self.kind)
         if axes != len(shape) or len(set(shape)) > 1 or 0 in shape or not 0 <= self.rate <= 1:
             raise InputError(f"no dynamics of kind {self.kind!r}, rate {self.rate} and law of shape {shape}")
-        if self.law is not None and not (np.abs(np.sum(self.law, axis=-1) - 1) <= SUM_TOLERANCE).all():
+        law = np.ones(1) if self.law is None else np.asarray(self.law)
+        if not ((law >= 0).all() and (np.abs(law.sum(axis=-1) - 1) <= SUM_TOLERANCE).all()):
             raise InputError("law must be probabilities that sum to 1")
 
     @classmethod

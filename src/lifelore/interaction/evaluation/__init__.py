@@ -21,19 +21,4 @@ if TYPE_CHECKING:
     from lifelore.interaction.evaluation.propensity_weights import weight_summary as weight_summary
     from lifelore.interaction.evaluation.reward_models import policy_means as policy_means
 
-_HOME = {
-    "ClusteredEstimate": ".estimate_by_user",
-    "WeightSummary": ".propensity_weights",
-    "clustered_estimate": ".estimate_by_user",
-    "doubly_robust": ".estimators",
-    "importance_weights": ".propensity_weights",
-    "inverse_propensity": ".estimators",
-    "logged_value": ".estimators",
-    "policy_means": ".reward_models",
-    "self_normalised": ".estimators",
-    "trajectory_weights": ".propensity_weights",
-    "weight_summary": ".propensity_weights",
-}
-
-__all__ = [*_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
-__getattr__, __dir__ = lazy_exports(__name__, _HOME)
+__all__, __getattr__, __dir__ = lazy_exports(__name__)  # pyright: ignore[reportUnsupportedDunderAll]

@@ -18,7 +18,6 @@ from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.finite_signals.simulated_table import simulated_table
 from lifelore.interaction.library.library_names import checked_prior, distinct_names, index_of, new_name
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
-from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.outcome_columns import rows_of_columns
 from lifelore.interaction.outcomes.outcome_kinds import outcome_kind
 from lifelore.interaction.outcomes.outcome_model import OutcomeModel
@@ -358,7 +357,7 @@ class PolicyLibrary:
 
     def _guessing(self, gaps: bool) -> dict[str, Any]:
         """Options of the outcome model's `with_type` and `with_policy`."""
-        if gaps and not isinstance(self.performance, MomentOutcomes):
+        if gaps and not isinstance(self.performance, GaussianOutcomes):
             name = type(self.performance).__name__
             raise InputError(f"gaps are guessed by 'gaussian' and 'student-t' models, got {name}; run every pair")
         return {"gaps": True} if gaps else {}

@@ -1,8 +1,8 @@
 """Types of tasks: sets of tasks on which every policy achieves nearly the same, and a landmark task for each.
 
 Two tasks are ε-equivalent when no policy's utility differs by more than ε (Def. 4.3.3). The relation is not
-transitive, so it does not partition tasks. Here types cover tasks greedily, each task has a single type
-(`labels`), and `membership` holds the other types that fit it.
+transitive, so it does not partition tasks: others could fit a type, too. Here types cover tasks greedily, and each
+task has a single type.
 
 Playing the landmark's best policy on another member of its type costs up to 2 ε, not ε as printed: the utility of
 this policy may be ε lower than on the landmark, and the utility of the member's own best policy ε higher.
@@ -10,7 +10,6 @@ Thesis: §4.3.3.
 """
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,8 +21,6 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 
 Array = NDArray[np.float64]
 
-Form = Literal["pairwise", "ball"]
-
 
 @dataclass(frozen=True)
 class TaskTypes:
@@ -34,14 +31,11 @@ class TaskTypes:
         Each task's type.
     landmarks : (n_types,) int64
         The landmark task of each type.
-    membership : (n_types, n_tasks) bool
-        Whether a task fits the members of the type: types may overlap. True wherever `labels` names the type.
     """
 
     epsilon: float
     labels: NDArray[np.int64]
     landmarks: NDArray[np.int64]
-    membership: NDArray[np.bool_]
 
     @property
     def n_types(self) -> int:
@@ -59,8 +53,10 @@ class TaskTypes:
         return np.bincount(self.labels, weights, minlength=self.n_types).astype(np.float64)
 
 
-def epsilon_types(utilities: ArrayLike, epsilon: float, form: Form = "pairwise") -> TaskTypes:
-    """Tasks covered by few types of size ε, greedily, the task with most neighbours first.
+def epsilon_types(utilities: ArrayLike, epsilon: float) -> TaskTypes:
+    """Tasks covered by few types, greedily, the task with most neighbours first.
+
+    Any two tasks of a type are within ε. The landmark is the task in the middle of its type.
 
     Parameters
     ----------
@@ -68,56 +64,27 @@ def epsilon_types(utilities: ArrayLike, epsilon: float, form: Form = "pairwise")
         Utility of each policy on each task; finite.
     epsilon : float
         At least 0; 0 joins only tasks with equal utilities of every policy.
-    form : {"pairwise", "ball"}
-        ``pairwise``: any two tasks of a type are within ε, as in Def. 4.3.3. ``ball``: every task is within ε of
-        its landmark, which needs fewer types; the bound of 2 ε on the landmark's regret is the same.
 
     Raises
     ------
     InputError
-        Utilities are not finite, ε is negative, or there is no such form.
+        Utilities are not finite, or ε is negative.
 
     Examples
     --------
-    >>> types = epsilon_types([[0.0], [1.0], [2.0], [9.0]], epsilon=1.0, form="ball")
+    >>> types = epsilon_types([[0.0], [1.0], [2.0], [9.0]], epsilon=2.0)
     >>> types.labels.tolist(), types.landmarks.tolist()
     ([0, 0, 0, 1], [1, 3])
     """
-    utilities = _checked(utilities)
+    utilities = np.asarray(utilities, np.float64)
+    if utilities.ndim != 2 or not utilities.size or not np.isfinite(utilities).all():
+        raise InputError(f"utilities must be (n_tasks, n_policies) finite numbers, got {utilities.shape}")
     if not (epsilon >= 0 and np.isfinite(epsilon)):
         raise InputError(f"epsilon must be at least 0 and finite, got {epsilon}")
-    if form not in ("pairwise", "ball"):
-        raise InputError(f"form must be 'pairwise' or 'ball', got {form!r}")
     near = cdist(utilities, utilities, "chebyshev") <= epsilon
-    if form == "ball":
-        labels, landmarks = _balls(near)
-        return TaskTypes(float(epsilon), labels, landmarks, near[landmarks])
-    labels = _cliques(utilities, near, epsilon)
-    members = [np.flatnonzero(labels == type_) for type_ in range(labels.max() + 1)]
-    landmarks = np.array([_centre(utilities, of_type) for of_type in members])
-    fits = np.stack([near[of_type].all(axis=0) for of_type in members])
-    return TaskTypes(float(epsilon), labels, landmarks, fits)
-
-
-def landmark_regret_bound(epsilon: float) -> float:
-    """The largest regret of the landmark's best policy on a task of its type: 2 ε, a tight bound."""
-    return 2 * epsilon
-
-
-def landmark_regret(utilities: ArrayLike, types: TaskTypes) -> Array:
-    """Regret on each task of the policy that is best on its type's landmark, (n_tasks,).
-
-    Among policies that are equally good on the landmark, the policy with the largest regret counts.
-
-    Raises
-    ------
-    InputError
-        Utilities are not finite, or are for another number of tasks.
-    """
-    utilities = _checked(utilities, types)
-    of_landmark = utilities[types.landmarks[types.labels]]
-    best = of_landmark == of_landmark.max(axis=1, keepdims=True)
-    return utilities.max(axis=1) - np.where(best, utilities, np.inf).min(axis=1)
+    labels = _cliques(utilities, near)
+    landmarks = [_centre(utilities, np.flatnonzero(labels == type_)) for type_ in range(labels.max() + 1)]
+    return TaskTypes(float(epsilon), labels, np.array(landmarks))
 
 
 def landmark_library(library: PolicyLibrary, types: TaskTypes) -> PolicyLibrary:
@@ -140,26 +107,7 @@ def landmark_library(library: PolicyLibrary, types: TaskTypes) -> PolicyLibrary:
     return library.take(types=types.landmarks.tolist(), prior=types.type_prior(library.prior))
 
 
-def _checked(utilities: ArrayLike, types: TaskTypes | None = None) -> Array:
-    utilities = np.asarray(utilities, np.float64)
-    if utilities.ndim != 2 or not utilities.size or not np.isfinite(utilities).all():
-        raise InputError(f"utilities must be (n_tasks, n_policies) finite numbers, got {utilities.shape}")
-    if types is not None and len(utilities) != len(types.labels):
-        raise InputError(f"utilities must be of the {len(types.labels)} tasks of the types, got {len(utilities)}")
-    return utilities
-
-
-def _balls(near: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Labels and landmarks of balls; the ball that covers most of the remaining tasks is first."""
-    labels, landmarks = np.full(len(near), -1), []
-    while (left := labels < 0).any():
-        covers = np.where(left, near[:, left].sum(axis=1), 0)
-        landmarks.append(int(covers.argmax()))
-        labels[left & near[landmarks[-1]]] = len(landmarks) - 1
-    return labels, np.array(landmarks)
-
-
-def _cliques(utilities: Array, near: NDArray[np.bool_], epsilon: float) -> NDArray[np.int64]:
+def _cliques(utilities: Array, near: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Labels of sets of tasks that are near in pairs, grown outwards from a seed."""
     labels, found = np.full(len(near), -1), 0
     for seed in np.argsort(-near.sum(axis=1), kind="stable"):

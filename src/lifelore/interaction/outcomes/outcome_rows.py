@@ -156,10 +156,10 @@ def chosen_of(chosen: Sequence[int] | None, n: int) -> NDArray[np.int64]:
     """The chosen numbers below n, all where None; InputError where none is chosen or a number is not below n."""
     if chosen is None:
         return np.arange(n)
-    index = np.asarray(chosen, np.int64)
-    if index.ndim != 1 or not index.size or index.min() < 0 or index.max() >= n:
+    index = np.asarray(chosen)
+    if index.ndim != 1 or not index.size or index.dtype.kind not in "iu" or index.min() < 0 or index.max() >= n:
         raise InputError(f"the chosen numbers must be one or more of 0 to {n - 1}, got {chosen}")
-    return index
+    return index.astype(np.int64, copy=False)
 
 
 def finite_outcomes(values: Any) -> Any:

@@ -2,7 +2,8 @@
 
 The prior on the mean is the reference prior; the prior on the variance is an inverse χ² around the pooled
 variance, which counts as `shrinkage` samples. The next outcome then has a t distribution with the sample mean as
-location, scale² = variance (1 + 1 / count), and the degrees of freedom of the variance. Thesis: §4.4.1, step 4.
+location, scale² = variance (1 + 1 / count), and the degrees of freedom of the variance. Agents with uncertain
+models predict so from Gaussian outcomes, too. Thesis: §4.4.1, step 4.
 """
 
 from typing import Any, ClassVar
@@ -11,16 +12,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
+from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.normal_law import log_t_height
-from lifelore.interaction.outcomes.outcome_moments import known_moments
 from lifelore.interaction.outcomes.prediction import over_pairs, over_types
 from lifelore.interaction.outcomes.special_functions import stdtr
 
 Array = NDArray[np.float64]
 
 
-class StudentTOutcomes(MomentOutcomes):
+class StudentTOutcomes(GaussianOutcomes):
     """P(U | type, policy) = t(freedom) around a location, in units of a scale.
 
     Parameters
@@ -39,9 +39,6 @@ class StudentTOutcomes(MomentOutcomes):
     """
 
     kind: ClassVar[str] = "student-t"
-
-    def __init__(self, mean: ArrayLike, deviation: ArrayLike, count: ArrayLike) -> None:
-        super().__init__(known_moments(mean, deviation, count))
 
     @property
     def freedom(self) -> Array:

@@ -112,7 +112,7 @@ class BayesianPolicyReuse:
         self.novelty = novelty
         self.episode, self.surprise, self.unexplained = 0, 0.0, 0
         self._taught = False
-        self.generator = stream(seed, "policy reuse") if isinstance(seed, int | np.integer) else seed
+        self.generator = stream(seed, "policy reuse")
         self._selected: tuple[int, Array] | None = None
         self._evidence: deque[Evidence] = deque(maxlen=MAX_EVIDENCE)
         if horizon is not None and not horizon >= 1:

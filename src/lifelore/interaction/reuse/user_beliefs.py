@@ -108,7 +108,7 @@ class UserBeliefs:
             spread=Spread.known(known),
             dtype=dtype,
         )
-        self.generator = stream(seed, "user beliefs") if isinstance(seed, int | np.integer) else seed
+        self.generator = stream(seed, "user beliefs")
         self.n_users = n_users
 
     @property

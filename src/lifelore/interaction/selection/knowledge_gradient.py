@@ -17,7 +17,14 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.prediction import supported, weighted
 from lifelore.interaction.selection.information import predicted_signals, signals_by_type
-from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, Variant, check_variant
+from lifelore.interaction.selection.rule import (
+    Array,
+    Deterministic,
+    RuleLibrary,
+    Variant,
+    check_variant,
+    weight_of_future,
+)
 from lifelore.interaction.selection.support import MASS, check_mass, truncated
 
 Candidates = Literal["auto", "responses", "all"]
@@ -82,7 +89,7 @@ class KnowledgeGradient(Deterministic):
     ) -> Array:
         """Expected utilities plus the weighted gain of learning, (P,) or (k, P)."""
         mean, table = library.performance.mean, library.table(self.n_bins)
-        weight = self.lookahead if episodes_left is None else episodes_left
+        weight = weight_of_future(self.lookahead, episodes_left)
         if self.variant == "thesis":
             gain = printed_gain(belief, mean, table)
         else:

@@ -99,6 +99,14 @@ def check_variant(variant: str) -> None:
         raise InputError(f"variant must be 'standard' or 'thesis' (as printed), got {variant!r}")
 
 
+def weight_of_future(lookahead: float, episodes_left: float | None) -> float:
+    """The number of episodes left, or `lookahead` where that is not known; InputError where it is below 0."""
+    weight = lookahead if episodes_left is None else episodes_left
+    if not weight >= 0:
+        raise InputError(f"episodes_left must be at least 0, got {weight}")
+    return weight
+
+
 def check_generator(rule: str, generator: np.random.Generator | None) -> np.random.Generator:
     """The generator; InputError where it is None and the rule draws."""
     if generator is None:

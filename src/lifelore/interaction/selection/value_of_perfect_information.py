@@ -17,7 +17,7 @@ import numpy as np
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.prediction import Prediction, weighted
-from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary
+from lifelore.interaction.selection.rule import Array, Deterministic, RuleLibrary, weight_of_future
 
 Counted = Literal["episodes", "once"]
 
@@ -65,7 +65,7 @@ class ValueOfPerfectInformation(Deterministic):
         self, library: RuleLibrary, belief: Array, *, episodes_left: float | None = None, **_: Any
     ) -> Array:
         """Expected utilities plus the gain of perfect information, (P,) or (k, P)."""
-        weight = self.lookahead if episodes_left is None else episodes_left
+        weight = weight_of_future(self.lookahead, episodes_left)
         expected = library.performance.expected(belief)
         gain = perfect_gain(library.performance, belief, expected)
         return expected + (1.0 if self.counted == "once" else weight) * gain

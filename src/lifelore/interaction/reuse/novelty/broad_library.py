@@ -17,7 +17,6 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
-from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.return_signal import ReturnSignal
@@ -52,7 +51,7 @@ def broad_library(library: PolicyLibrary) -> PolicyLibrary:
     if isinstance(model, CategoricalOutcomes):
         outcomes: Any = CategoricalOutcomes.of(model.cells, broad_counts(model.probs, prior), 0.0)
         return PolicyLibrary(outcomes)
-    if isinstance(model, MomentOutcomes | HistogramOutcomes):
+    if isinstance(model, GaussianOutcomes | HistogramOutcomes):
         return PolicyLibrary(GaussianOutcomes.of(broad_moments(model.mean, model.deviation, prior)))
     raise InputError(
         f"novelty is computed from outcomes or categories, got {type(signal).__name__}; build a second library "

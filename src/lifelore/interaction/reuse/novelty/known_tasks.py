@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
-from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
+from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.normal_law import EXACT
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
 from lifelore.interaction.reuse.novelty.misfit import weight_of_runs
@@ -69,7 +69,7 @@ def known_tasks(library: PolicyLibrary, n: int, generator: np.random.Generator) 
     types = generator.choice(library.n_types, n, p=library.prior)
     signal = library.signal
     model: Any = signal.outcomes if isinstance(signal, ReturnSignal) else None
-    if isinstance(model, MomentOutcomes):
+    if isinstance(model, GaussianOutcomes):
         return normal_tasks(*drawn_moments(model, types, generator), generator)
     if isinstance(model, CountedOutcomes):
         probs = drawn_probs(model, types, generator)
@@ -81,7 +81,7 @@ def known_tasks(library: PolicyLibrary, n: int, generator: np.random.Generator) 
     raise InputError(f"known tasks have outcomes or categories as signals, got {type(signal).__name__}")
 
 
-def drawn_moments(model: MomentOutcomes, types: Numbers, generator: np.random.Generator) -> tuple[Array, Array]:
+def drawn_moments(model: GaussianOutcomes, types: Numbers, generator: np.random.Generator) -> tuple[Array, Array]:
     """Mean and deviation of each policy on tasks of `types` (n,), drawn from their law, (n, n_policies) each."""
     moments, spread = model.moments, float(model.spread.least.values[0])
     variance, freedom = (array[types] for array in posterior_variance(moments))

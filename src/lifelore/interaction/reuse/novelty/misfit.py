@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.law import Numbers
 from lifelore.interaction.outcomes.log_probability import log_of
-from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.special_functions import gammaln
 from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
 from lifelore.interaction.signals.return_signal import ReturnSignal
@@ -148,7 +148,7 @@ class CountedPairs:
 def pairs_of(signal: Any) -> MeanPairs | CountedPairs:
     """χ² against the runs of a signal model whose signals are outcomes or categories."""
     model: Any = signal.outcomes if isinstance(signal, ReturnSignal) else signal
-    if isinstance(model, MomentOutcomes):
+    if isinstance(model, GaussianOutcomes):
         doubt = 1 / model.moments.count + model.spread.least.values[0]
         return MeanPairs(model.moments.mean, model.moments.variance, doubt)
     weight = weight_of_runs(model)

@@ -121,7 +121,7 @@ class NoveltyDetector:
             An argument breaks its rule, or signals are neither outcomes nor categories.
         """
         check_rate(false_alarm, n_tasks)
-        generator = stream(seed, "novelty calibration") if isinstance(seed, int | np.integer) else seed
+        generator = stream(seed, "novelty calibration")
         known = known_statistic(library, rule_of(rule, library), horizon, n_tasks, generator, **agent)
         return cls(library, mass, **agent, calibration=NoveltyCalibration.of(known, false_alarm))
 

@@ -2,12 +2,11 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.baselines.policy_kernels import (
+from reproduction.chapter4.surveillance.policy_kernels import (
     likeliest_length,
     metric_kernel,
     performance_distances,
     performance_kernel,
-    prior_covariance,
 )
 
 LINE = np.abs(np.arange(5.0)[:, None] - np.arange(5.0))
@@ -42,13 +41,6 @@ def test_the_length_that_made_the_rows_is_found():
     gaps = np.abs(np.linspace(0, 10, 40)[:, None] - np.linspace(0, 10, 40))
     # Neighbours among the lengths that are compared differ by a factor of 1.30.
     assert likeliest_length(gaps, rows, deviation=1.0) == pytest.approx(1.5, rel=0.3)
-
-
-def test_the_prior_covariance_is_that_of_drawn_types(library):
-    types = np.random.default_rng(1).choice(2, 200_000, p=library.prior)
-    drawn = np.cov(library.performance.mean[types].T)
-    # The deviation of a covariance of 200,000 draws of values in [0, 1] is below 0.0006.
-    assert prior_covariance(library) == pytest.approx(drawn, abs=0.003)
 
 
 @pytest.mark.parametrize(

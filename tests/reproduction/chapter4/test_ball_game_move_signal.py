@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.adaptation.move_signal import MoveSignal
+from reproduction.chapter4.ball_game.move_signal import MoveSignal
 
 COUNTS = np.array([[[2.0], [6.0], [0.0], [0.0]]])
 """One policy and type, two contexts of two outcomes."""

@@ -1,15 +1,13 @@
 """Covariances between policies, for Gaussian processes over a finite set of policies.
 
-Three sources of similarity: performance in training, a true metric that the caller knows, and the covariance of
-payoffs over a library's types. Thesis: §4.6.4 (the metric is not known and "is approximated from performance in
-the training tasks").
+Two sources of similarity: performance in training, and a true metric that the caller knows. Thesis: §4.6.4 (the
+metric is not known and "is approximated from performance in the training tasks").
 """
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.library.policy_library import PolicyLibrary
 
 JITTER = 1e-10
 """Share of the mean variance added to the diagonal, so that a factorisation exists."""
@@ -74,16 +72,6 @@ def performance_kernel(mean: ArrayLike) -> NDArray[np.float64]:
         raise InputError("mean must differ between types for at least one policy; give a kernel of another metric")
     length = likeliest_length(gaps, centred, deviation)
     return metric_kernel(gaps, length=length, deviation=deviation)
-
-
-def prior_covariance(library: PolicyLibrary) -> NDArray[np.float64]:
-    """Covariance of the policies' mean payoffs when the type is drawn from G₀, (n_policies, n_policies).
-
-    It is the best second-moment summary of the library for a Gaussian process.
-    """
-    prior, means = np.asarray(library.prior), np.asarray(library.performance.mean)
-    centred = means - prior @ means
-    return (centred * prior[:, None]).T @ centred
 
 
 def likeliest_length(distances: ArrayLike, centred: ArrayLike, deviation: float) -> float:
