@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.pacman.pacman import STRATEGIES, PacmanMaze
+from lifelore.interaction.baselines.probabilistic_policy_reuse import ProbabilisticPolicyReuse
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import BeliefSampling
 from reproduction.chapter4.c4_04_pacman import pacman_library
 from reproduction.chapter4.c4_04_pacman.pacman_library import GREATEST, Arena, falling_schedule
-from reproduction.chapter4.c4_04_pacman.probabilistic_policy_reuse import ProbabilisticPolicyReuse
 from reproduction.chapter4.reuse.many_tasks import play_rule
 
 Array = NDArray[np.float64]

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from lifelore.interaction.baselines.gp_ucb import GPUCB as GPUCB
     from lifelore.interaction.baselines.interval_estimation import IntervalEstimation as IntervalEstimation
     from lifelore.interaction.baselines.lin_ucb import LinUCB as LinUCB
+    from lifelore.interaction.baselines.probabilistic_policy_reuse import (
+        ProbabilisticPolicyReuse as ProbabilisticPolicyReuse,
+    )
     from lifelore.interaction.baselines.sliding_window_ucb import SlidingWindowUCB as SlidingWindowUCB
     from lifelore.interaction.baselines.thompson import GaussianThompson as GaussianThompson
     from lifelore.interaction.baselines.try_all import TryAll as TryAll

@@ -10,8 +10,8 @@ from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learning import Schedule, uniform_rows
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 from lifelore.core.streams import stream
+from lifelore.interaction.baselines.probabilistic_policy_reuse import ProbabilisticPolicyReuse, _draw_policy
 from reproduction.chapter4.c4_04_pacman.episode_value import return_moments
-from reproduction.chapter4.c4_04_pacman.probabilistic_policy_reuse import ProbabilisticPolicyReuse, _draw_policy
 
 N_STATES, N_ACTIONS = 6, 3
 ROW_OF = np.array([0, 1, 2, 3, 0, 1], np.int32)
