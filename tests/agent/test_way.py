@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from lifelore.agent.live.buildings.recognition import recognised_place
+from lifelore.agent.live.buildings.remembered_moves import remembered_record
 from lifelore.agent.live.goals.destinations import Destination
 from lifelore.agent.live.goals.job_list import Job
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
-from lifelore.agent.live.transitions import model_table, to_record
+from lifelore.agent.live.transitions import from_record, model_table, to_record
 from lifelore.agent.travel import Travel
 from lifelore.agent.way import Way, path_message, poses_along, way, write_poses
 from lifelore.core.errors import InputError, NotFoundError, StoreError
@@ -56,15 +57,17 @@ MONDAY_8 = 1_704_096_000.0
 
 
 def observe(map: str, memory: str, clock: float, seconds: float, n=6, everywhere=False, below=2.0) -> None:
-    """Remember `n` moves, ten minutes apart, of the cells at the bottom door, x 5.5 to 6.5 m, or of all cells."""
+    """Remember `n` moves, ten minutes apart, of the cells at the bottom door, or between all known cells."""
     settings = WorldSettings(map=map)
     with open_memory(memory) as opened:
         occupancy = map_from_settings(settings)
         place = recognised_place(settings, world_from_settings(settings, occupancy), occupancy, opened)
         travel = Travel.recalled(place.world, place.grid, opened)
         x, y = place.world.positions(np.arange(place.world.n_states)).T
-        chosen = (x > 5.5) & (x < 6.5) & (y < below) | everywhere
-        state, action = np.nonzero(chosen[:, None] & (place.world.neighbour >= 0))
+        chosen, to = (x > 5.5) & (x < 6.5) & (y < below), place.world.neighbour
+        if everywhere:
+            chosen = from_record(place.world, remembered_record(place, opened)).percept >= 0
+        state, action = np.nonzero(chosen[:, None] & (to >= 0) & (chosen[to] | (not everywhere)))
         when = clock + 600 * np.repeat(np.arange(n), len(state))
         travel.observe(np.tile(state, n), np.tile(action, n), when, np.full(len(when), seconds))
         opened.contribute("robot", [*place.news, *travel.news()], process=str(clock), seq=1, task={})

@@ -123,7 +123,7 @@ def way(
     floor = floor_of(place.occupancy or occupancy, place.world)
     ends = start.located_point, goal.located_point
     first, last = floor.state_at("from", ends[0]), floor.state_at("to", ends[1])
-    known = transitions.from_record(place.world, record, place.grid.corner).percept >= 0
+    known = (transitions.from_record(place.world, record, place.grid.corner).percept >= 0) | travel.driven
     costs, cell = travel.costs(travel.newest if clock is None else clock), place.world.frame.cell
     unsure = ~known & place.world.around(costs.closed())
     cost = costs.cost + np.where(unsure[place.world.neighbour], DETOUR, 0.0)

@@ -3,11 +3,12 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from lifelore.agent.live.buildings.building_record import (
+from lifelore.agent.building_record import (
     KIND,
     MAP_KIND,
     VERSION,
     Building,
+    joined_buildings,
     map_digest,
     map_record,
     remembered_buildings,
@@ -19,7 +20,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.domains.buildings.map_alignment import aligned_map
 from lifelore.domains.buildings.occupancy_map import OccupancyMap
-from lifelore.domains.buildings.registration import IDENTITY, Fit, Pose, Walls, register, register_near
+from lifelore.domains.buildings.registration import IDENTITY, Fit, Pose, Walls, composed, register, register_near
 from lifelore.domains.grids.grid_world import Frame, GridWorld
 from lifelore.domains.worlds import WorldSettings, world_from_settings
 from lifelore.memory import Memory
@@ -121,7 +122,7 @@ def recognised_place(
     if memory.recall(MAP_KIND, map_digest(occupancy), VERSION) is None:
         news = [
             building.record(occupancy, found.pose, memory.recall(KIND, building.key, VERSION)),
-            map_record(occupancy, building, found.pose, found.walls),
+            map_record(map_digest(occupancy), building, found.pose, found.walls),
         ]
     return Place(world, grid, report, [record for record in news if len(record.slots)], laid, earlier)
 
@@ -142,21 +143,24 @@ def recognised_building(
     buildings = remembered_buildings(memory)
     by_key = {building.key: building for building in buildings}
     seen = memory.recall(MAP_KIND, map_digest(occupancy), VERSION)
-    if seen is not None and seen.about["building"] in by_key:
-        building = by_key[seen.about["building"]]
+    key, pose = (seen.about["building"], tuple(seen.about["pose"])) if seen else (None, IDENTITY)
+    if joined := joined_buildings(memory).get(key or ""):
+        key, pose = joined.home.key, composed(joined.pose, pose)
+    if seen is not None and key in by_key:
+        building = by_key[key]
         if name not in (None, building.name):
             raise InputError(
                 f"building of this map is remembered as {building.name!r}, got {name!r}; leave it out, or forget "
                 f"that building with: lifelore memory forget --building '{building.name}'"
             )
-        return Recognised(building, tuple(seen.about["pose"]), seen.about["walls"]), None
+        return Recognised(building, pose, seen.about["walls"]), None
     named = [building for building in buildings if building.name == name]
     if name is not None and not named:
         return None, "no building of this name is remembered"
     if name is None and (by_frame := _in_frame(occupancy, world, by_key, memory)):
         return by_frame, None
     return fitting_building(
-        occupancy, {building: _map_of(building, memory) for building in named or buildings}, name
+        occupancy, {building: map_of(building, memory) for building in named or buildings}, name
     )
 
 
@@ -168,11 +172,18 @@ def _in_frame(
     building = by_key.get(earlier.record.about.get("building", "")) if earlier else None
     if building is None or building.frame.origin != occupancy.origin:
         return None
-    fit = register_near(Walls(_map_of(building, memory)), Walls(occupancy))
+    fit = register_near(Walls(map_of(building, memory)), Walls(occupancy))
     return Recognised(building, IDENTITY, fit.match if fit else 0.0)
 
 
-def _map_of(building: Building, memory: Memory) -> OccupancyMap:
+def map_of(building: Building, memory: Memory) -> OccupancyMap:
+    """The map of a building as memory holds it.
+
+    Raises
+    ------
+    InputError
+        Another process has forgotten the building.
+    """
     record = memory.recall(KIND, building.key, VERSION)
     if record is None:
         raise InputError(f"building {building.name!r} has been forgotten by another process; try again")
