@@ -83,8 +83,10 @@ def _entry(one: Building, to: Recognised | None, reason: str | None, memory: Mem
 def described(entry: dict[str, Any]) -> str:
     """An entry of ``buildings`` as a line for people."""
     line = f"building {entry['building']}: "
+    if entry["reason"] is None and entry["joined"] is None:
+        return line + "is new here"
     if entry["joined"] is None:
-        return line + ("stays a building of its own" + (f": {entry['reason']}" if entry["reason"] else ""))
+        return line + f"stays a building of its own: {entry['reason']}"
     line += f"joined to {entry['joined']}, {int(100 * entry['walls'])} % of the walls agree"
     if entry["names"]:
         line += (

@@ -28,6 +28,9 @@ from lifelore.memory import Memory
 LEAST_MATCH, LEAST_NAMED_MATCH = 0.96, 0.75
 """Least share of walls on walls for a recognition; the second where the user names the building. A floor with the
 same walls and other furniture reaches 0.95, another building 0.6 (generated offices, see docs/courier.md)."""
+LEAST_IN_FRAME = 0.85
+"""The same for a map in the frame of the building whose places are mostly unchanged: other furniture leaves more,
+other floors of one outline leave less."""
 LEAST_MARGIN = 0.15
 """Least lead over the best clearly different pose, and over every other building."""
 SAME_FRAME = 0.05, 0.002
@@ -167,13 +170,13 @@ def recognised_building(
 def _in_frame(
     occupancy: OccupancyMap, world: GridWorld, by_key: dict[str, Building], memory: Memory
 ) -> Recognised | None:
-    """A map on the same grid whose percepts are mostly unchanged."""
+    """A map on the same grid whose percepts and walls are mostly unchanged."""
     earlier = same_place(world, memory, BuildingGrid(frame_key(world)))
     building = by_key.get(earlier.record.about.get("building", "")) if earlier else None
     if building is None or building.frame.origin != occupancy.origin:
         return None
     fit = register_near(Walls(map_of(building, memory)), Walls(occupancy))
-    return Recognised(building, IDENTITY, fit.match if fit else 0.0)
+    return Recognised(building, IDENTITY, fit.match) if fit and fit.match >= LEAST_IN_FRAME else None
 
 
 def map_of(building: Building, memory: Memory) -> OccupancyMap:
