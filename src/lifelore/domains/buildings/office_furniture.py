@@ -22,7 +22,7 @@ def furnish(
 ) -> list[Piece]:
     """Pieces of furniture for a room; `doors` are (from, to) along the corridor's side."""
     pieces = []
-    for u0, v0, u1, v1 in _FURNITURE[kind](length, depth, generator):
+    for u0, v0, u1, v1 in () if kind == "shaft" else _FURNITURE[kind](length, depth, generator):
         inside = u0 >= -1e-9 and v0 >= -1e-9 and u1 <= length + 1e-9 and v1 <= depth + 1e-9
         in_the_way = v0 < _DOOR_CLEARANCE and any(u0 < b + 0.2 and u1 > a - 0.2 for a, b in doors)
         if inside and not (in_the_way and kind != "open"):
@@ -139,10 +139,6 @@ def _open(length: float, depth: float, generator) -> Iterator[Piece]:
         yield u, depth - 0.4, u + 1.2, depth
 
 
-def _nothing(length: float, depth: float, generator) -> Iterator[Piece]:
-    return iter(())
-
-
 _FURNITURE: dict[Kind, Callable[..., Iterator[Piece]]] = {
     "office": _office,
     "shared": _shared,
@@ -152,5 +148,4 @@ _FURNITURE: dict[Kind, Callable[..., Iterator[Piece]]] = {
     "storage": _storage,
     "washroom": _washroom,
     "open": _open,
-    "shaft": _nothing,
 }
