@@ -74,7 +74,7 @@ def observe(map: str, memory: str, clock: float, seconds: float, n=6, everywhere
 
 
 def find(map: str, memory: str, start=LEFT, goal=RIGHT, **options) -> Way:
-    return way(WorldSettings(map=map), start, goal, memory, **options)
+    return way(start, goal, map=map, memory=memory, **options)
 
 
 def test_a_way_leads_through_the_door(tmp_path):
@@ -96,7 +96,7 @@ def test_a_robot_of_another_radius_finds_a_way(tmp_path, lived, asks):
     rooms, memory = two_rooms(tmp_path, "rooms", (2,)), MemorySettings(str(tmp_path / "life.db"))
     settings = LifeSettings(WorldSettings(map=rooms, robot_radius=lived), memory=memory, tasks=6, compare=False)
     live(settings)
-    found = way(WorldSettings(map=rooms, robot_radius=asks), LEFT, RIGHT, memory.location)
+    found = way(LEFT, RIGHT, map=rooms, robot_radius=asks, memory=memory.location)
     assert np.abs(np.diff(found.poses[:, 0] > 6.05)).sum() == 1
     occupancy = read_occupancy_map(rooms)
     floor = floor_of(occupancy, world_from_settings(WorldSettings(map=rooms, robot_radius=asks), occupancy))
@@ -232,13 +232,11 @@ def test_another_building_or_no_memory(tmp_path):
     rooms = two_rooms(tmp_path, "rooms", (2,))
     memory = remember(tmp_path, rooms)
     with pytest.raises(NotFoundError, match=r"knows no moves of this building with cell 0.25, min_free"):
-        way(WorldSettings(map=rooms, cell=0.25), LEFT, RIGHT, memory)
+        way(LEFT, RIGHT, map=rooms, cell=0.25, memory=memory)
     with pytest.raises(NotFoundError, match="knows no moves of this building"):
-        way(WorldSettings(seed=3), LEFT, RIGHT, memory)
+        way(LEFT, RIGHT, seed=3, memory=memory)
     with pytest.raises(StoreError, match="does not exist"):
         find(rooms, str(tmp_path / "none.db"))
-    with pytest.raises(InputError, match="domain must be building"):
-        way(WorldSettings("lattice"), LEFT, RIGHT, memory)
 
 
 def test_poses_lie_on_the_path_at_equal_distances_and_look_ahead():

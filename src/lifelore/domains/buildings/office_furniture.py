@@ -47,11 +47,6 @@ def _table_with_chairs(u0: float, v0: float, u1: float, v1: float, generator) ->
                 yield _chair(at, edge) if along_u else _chair(edge, at)
 
 
-def _desks(u0: float, v0: float, columns: int, generator) -> Iterator[Piece]:
-    """A block of desks of 1.6 m × 0.8 m, two rows facing each other, chairs outside."""
-    yield from _table_with_chairs(u0, v0, u0 + 1.6 * columns, v0 + 1.6, generator)
-
-
 def _office(length: float, depth: float, generator) -> Iterator[Piece]:
     mirrored = generator.random() < 0.5
 
@@ -73,7 +68,7 @@ def _office(length: float, depth: float, generator) -> Iterator[Piece]:
 def _shared(length: float, depth: float, generator) -> Iterator[Piece]:
     columns = 2 if length >= 5.4 else 1
     u0, v0 = (length - 1.6 * columns) / 2, (depth - 1.6) / 2 + 0.3
-    yield from _desks(u0, v0, columns, generator)
+    yield from _table_with_chairs(u0, v0, u0 + 1.6 * columns, v0 + 1.6, generator)
     if generator.random() < 0.6:
         yield 0.0, depth - 0.4, float(generator.uniform(1.0, 1.8)), depth
     if generator.random() < 0.5:
@@ -132,7 +127,7 @@ def _open(length: float, depth: float, generator) -> Iterator[Piece]:
             v = 0.6 + (j + 0.5) * (depth - 0.6) / n_v - 0.8
             what = generator.random()
             if what < 0.8:
-                yield from _desks(u, v, columns, generator)
+                yield from _table_with_chairs(u, v, u + 1.6 * columns, v + 1.6, generator)
             elif what < 0.9:
                 yield u + 0.2, v + 0.4, u + 1.4, v + 0.9
     for u in np.arange(1, int(length / 5)) * length / int(length / 5 + 1):

@@ -58,8 +58,10 @@ class Destination:
             )
 
     @classmethod
-    def of(cls, place: "Point | str") -> "Destination":
-        """A name, or a point of any two numbers."""
+    def of(cls, place: "Destination | Point | str") -> "Destination":
+        """A destination as it is, a name, or a point of any two numbers."""
+        if isinstance(place, Destination):
+            return place
         return cls(name=place) if isinstance(place, str) else cls((float(place[0]), float(place[1])))
 
     @property
