@@ -2,10 +2,12 @@
 
 from typing import Any
 
+import numpy as np
 from gymnasium import spaces
 
+from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL, Task
-from lifelore.domains.checked_environment import CheckedEnvironment, chosen_number
+from lifelore.domains.checked_environment import CheckedEnvironment
 
 
 class TaskEnvironment(CheckedEnvironment):
@@ -55,9 +57,7 @@ class TaskEnvironment(CheckedEnvironment):
     def _begin(self, options: dict[str, Any]) -> tuple[int, dict[str, Any]]:
         chosen, starts = options.get("state"), self.task.starts
         drawn = int(starts[int(self.np_random.random() * len(starts))])
-        self._state = (
-            drawn if chosen is None else chosen_number(chosen, self.task.domain.n_states, "options['state']")
-        )
+        self._state = drawn if chosen is None else self._check_state(chosen)
         return self._observed(), self._info(0)
 
     def _advance(self, action: int) -> tuple[int, float, bool, dict[str, Any]]:
@@ -69,6 +69,13 @@ class TaskEnvironment(CheckedEnvironment):
         """The observation of the present state."""
         assert self._state is not None
         return self._state
+
+    def _check_state(self, state: Any) -> int:
+        if isinstance(state, bool) or not isinstance(state, (int, np.integer)):
+            raise InputError(f"options['state'] must be the number of a state, got {state!r}")
+        if not 0 <= state < self.task.domain.n_states:
+            raise InputError(f"options['state'] must lie in [0, {self.task.domain.n_states}), got {state}")
+        return int(state)
 
     def _info(self, event: int) -> dict[str, Any]:
         return {"collision": bool(event & COLLISION)}
