@@ -83,7 +83,7 @@ class DriveByMemory(Behaviour):
         self._drive, self._outcome, self.feedback_message = [], None, ""
         try:
             ends = destination_from_text("start", self._from()), destination_from_text("goal", self._goal)
-            found = way(self._world, *ends, self._memory.location, SPACING)
+            found = way(*ends, map=self._world.map, memory=self._memory.location, spacing=SPACING)
         except LifeloreError as error:
             self._outcome, self.feedback_message = FAILED, str(error)
             return

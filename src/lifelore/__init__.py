@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from lifelore.agent.perceive.perceive import PerceiveSettings as PerceiveSettings
     from lifelore.agent.perceive.perceive import perceive as perceive
     from lifelore.agent.recognise import recognise as recognise
+    from lifelore.agent.way import way as way
     from lifelore.core.cloud_origin import CloudOrigin as CloudOrigin
     from lifelore.core.errors import LifeloreError as LifeloreError
     from lifelore.core.labelled_cloud import LabelledCloud as LabelledCloud
@@ -62,7 +63,6 @@ if TYPE_CHECKING:
     from lifelore.perception.segmentation.table_frame import to_scene as to_scene
     from lifelore.verbs import learn_from as learn_from
     from lifelore.verbs import live as live
-    from lifelore.verbs import way as way
 
 __version__ = "0.2.0"
 

@@ -18,10 +18,8 @@ from lifelore.core.protocols import Progress
 
 if TYPE_CHECKING:
     from lifelore.agent.learn_from.run_log import Run
-    from lifelore.agent.live.goals.destinations import Point
     from lifelore.agent.live.life import Life, Watcher
     from lifelore.agent.live.life_settings import LifeSettings
-    from lifelore.agent.way import Way
 
 PathText = str | PathLike[str]
 
@@ -76,61 +74,6 @@ def live(
         raise InputError(f"settings holds all settings, got also {', '.join(keys)}; give one of the two")
     chosen = settings or _life_settings(keys)
     return live_through(chosen, progress=progress, stop=stop, watch=watch, notify=notify)
-
-
-def way(
-    start: "str | Point",
-    goal: "str | Point",
-    *,
-    map: PathText | None = None,
-    memory: PathText | None = None,
-    cell: float | None = None,
-    robot_radius: float | None = None,
-    seed: int = 0,
-    **more: Any,
-) -> "Way":
-    """The quickest path from one place of a building to another by what memory knows, clear of obstacles.
-
-    Parameters
-    ----------
-    start, goal : str or (x, y)
-        Names that memory knows, or metres of the map's frame.
-    map : str or Path, optional
-        YAML of the ROS map; None: the generated office of `seed`.
-    memory : str or Path, optional
-        SQLite file or URL; None: the user's own. It is only read.
-    cell, robot_radius : float, optional
-        Metres, as in the life or the runs from which memory learnt.
-    seed : int
-        Of the generated office.
-    **more
-        The other arguments of ``agent.way.way``, such as ``spacing`` and ``building``.
-
-    Returns
-    -------
-    Way
-        With its ``poses`` (n, 3): x, y in metres and the heading in radians; and its ``length``.
-
-    Raises
-    ------
-    NotFoundError
-        Memory knows not the building, or not the name.
-    InputError
-        A setting or the map breaks its rule, or a point is no free place.
-    StoreError
-        Memory cannot be read.
-
-    Examples
-    --------
-    >>> way("dock", (12.5, 3.0), map="depot.yaml", memory="depot.db").length  # doctest: +SKIP
-    36.5
-    """
-    from lifelore.agent.live.goals.destinations import Destination
-    from lifelore.agent.way import way as find
-    from lifelore.domains.worlds import WorldSettings
-
-    world = WorldSettings("building", _text(map), cell=cell, robot_radius=robot_radius, seed=seed)
-    return find(world, Destination.of(start), Destination.of(goal), _text(memory), **more)
 
 
 def learn_from(

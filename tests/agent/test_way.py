@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from lifelore.agent.live.buildings.recognition import recognised_place
+from lifelore.agent.live.buildings.remembered_moves import remembered_record
 from lifelore.agent.live.goals.destinations import Destination
 from lifelore.agent.live.goals.job_list import Job
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
-from lifelore.agent.live.transitions import model_table, to_record
+from lifelore.agent.live.transitions import from_record, model_table, to_record
 from lifelore.agent.travel import Travel
 from lifelore.agent.way import Way, path_message, poses_along, way, write_poses
 from lifelore.core.errors import InputError, NotFoundError, StoreError
@@ -56,22 +57,24 @@ MONDAY_8 = 1_704_096_000.0
 
 
 def observe(map: str, memory: str, clock: float, seconds: float, n=6, everywhere=False, below=2.0) -> None:
-    """Remember `n` moves, ten minutes apart, of the cells at the bottom door, x 5.5 to 6.5 m, or of all cells."""
+    """Remember `n` moves, ten minutes apart, of the cells at the bottom door, or between all known cells."""
     settings = WorldSettings(map=map)
     with open_memory(memory) as opened:
         occupancy = map_from_settings(settings)
         place = recognised_place(settings, world_from_settings(settings, occupancy), occupancy, opened)
         travel = Travel.recalled(place.world, place.grid, opened)
         x, y = place.world.positions(np.arange(place.world.n_states)).T
-        chosen = (x > 5.5) & (x < 6.5) & (y < below) | everywhere
-        state, action = np.nonzero(chosen[:, None] & (place.world.neighbour >= 0))
+        chosen, to = (x > 5.5) & (x < 6.5) & (y < below), place.world.neighbour
+        if everywhere:
+            chosen = from_record(place.world, remembered_record(place, opened)).percept >= 0
+        state, action = np.nonzero(chosen[:, None] & (to >= 0) & (chosen[to] | (not everywhere)))
         when = clock + 600 * np.repeat(np.arange(n), len(state))
         travel.observe(np.tile(state, n), np.tile(action, n), when, np.full(len(when), seconds))
         opened.contribute("robot", [*place.news, *travel.news()], process=str(clock), seq=1, task={})
 
 
 def find(map: str, memory: str, start=LEFT, goal=RIGHT, **options) -> Way:
-    return way(WorldSettings(map=map), start, goal, memory, **options)
+    return way(start, goal, map=map, memory=memory, **options)
 
 
 def test_a_way_leads_through_the_door(tmp_path):
@@ -93,7 +96,7 @@ def test_a_robot_of_another_radius_finds_a_way(tmp_path, lived, asks):
     rooms, memory = two_rooms(tmp_path, "rooms", (2,)), MemorySettings(str(tmp_path / "life.db"))
     settings = LifeSettings(WorldSettings(map=rooms, robot_radius=lived), memory=memory, tasks=6, compare=False)
     live(settings)
-    found = way(WorldSettings(map=rooms, robot_radius=asks), LEFT, RIGHT, memory.location)
+    found = way(LEFT, RIGHT, map=rooms, robot_radius=asks, memory=memory.location)
     assert np.abs(np.diff(found.poses[:, 0] > 6.05)).sum() == 1
     occupancy = read_occupancy_map(rooms)
     floor = floor_of(occupancy, world_from_settings(WorldSettings(map=rooms, robot_radius=asks), occupancy))
@@ -229,13 +232,11 @@ def test_another_building_or_no_memory(tmp_path):
     rooms = two_rooms(tmp_path, "rooms", (2,))
     memory = remember(tmp_path, rooms)
     with pytest.raises(NotFoundError, match=r"knows no moves of this building with cell 0.25, min_free"):
-        way(WorldSettings(map=rooms, cell=0.25), LEFT, RIGHT, memory)
+        way(LEFT, RIGHT, map=rooms, cell=0.25, memory=memory)
     with pytest.raises(NotFoundError, match="knows no moves of this building"):
-        way(WorldSettings(seed=3), LEFT, RIGHT, memory)
+        way(LEFT, RIGHT, seed=3, memory=memory)
     with pytest.raises(StoreError, match="does not exist"):
         find(rooms, str(tmp_path / "none.db"))
-    with pytest.raises(InputError, match="domain must be building"):
-        way(WorldSettings("lattice"), LEFT, RIGHT, memory)
 
 
 def test_poses_lie_on_the_path_at_equal_distances_and_look_ahead():

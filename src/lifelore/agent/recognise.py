@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lifelore.agent.live.buildings.building_record import Building, remembered_buildings
+from lifelore.agent.building_record import Building, remembered_buildings
 from lifelore.agent.live.buildings.recognition import (
     LEAST_MATCH,
     LEAST_NAMED_MATCH,

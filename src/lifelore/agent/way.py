@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from lifelore.agent.live import transitions
 from lifelore.agent.live.buildings.recognition import recognised_place
 from lifelore.agent.live.buildings.remembered_moves import contradicted_moves, remembered_record
-from lifelore.agent.live.goals.destinations import Destination, NamedPlaces
+from lifelore.agent.live.goals.destinations import Destination, NamedPlaces, Point
 from lifelore.agent.travel import Travel
 from lifelore.agent.travel.move_costs import DETOUR
 from lifelore.core.atomic_write import refused_writes
@@ -68,30 +68,39 @@ class Way:
 
 
 def way(
-    world: WorldSettings,
-    start: Destination,
-    goal: Destination,
+    start: Destination | Point | str,
+    goal: Destination | Point | str,
+    *,
+    map: str | Path | None = None,
     memory: str | Path | None = None,
+    cell: float | None = None,
+    robot_radius: float | None = None,
+    seed: int = 0,
     spacing: float | None = None,
     building: str | None = None,
     clock: float | None = None,
     footprint: Footprint | None = None,
 ) -> Way:
-    """The cheapest path over the map's free space that is clear by the robot's radius.
+    """The quickest path from one place of a building to another by what memory knows, clear of obstacles.
 
-    The path turns at any angle. It costs its length, and what memory knows about its moves: where they took
-    longer or were refused, the path leads around if that is expected to take less time (``MoveCosts.cost``).
-    A metre on ground that memory does not know costs `UNDRIVEN` metres more; such ground beside a place that is
-    probably blocked counts as blocked, too, since what blocks is often wider.
+    It leads over the map's free space, keeps the robot's radius from all else, and turns at any angle. It costs
+    its length, and what memory knows about its moves: where they took longer or were refused, the path leads
+    around if that is expected to take less time (``MoveCosts.cost``). A metre on ground that memory does not know
+    costs `UNDRIVEN` metres more; such ground beside a place that is probably blocked counts as blocked, too, since
+    what blocks is often wider.
 
     Parameters
     ----------
-    world : WorldSettings
-        A building, with the cell and the robot's radius with which the robot lived in it.
-    start, goal : Destination
-        Points, or names that memory knows.
+    start, goal : str, (x, y) or Destination
+        Names that memory knows, or metres of the map's frame.
+    map : str or Path, optional
+        YAML of the ROS map; None: the generated office of `seed`.
     memory : str or Path, optional
         SQLite file or URL; None: the user's own. It is only read.
+    cell, robot_radius : float, optional
+        Metres, as in the life or the runs from which memory learnt.
+    seed : int
+        Of the generated office.
     spacing : float, optional
         Metres: largest distance between two poses; None: only the corners of the path.
     building : str, optional
@@ -109,21 +118,26 @@ def way(
         A setting or the map breaks its rule, or a point is no free place.
     StoreError
         Memory cannot be read.
+
+    Examples
+    --------
+    >>> way("dock", (12.5, 3.0), map="depot.yaml", memory="depot.db").length  # doctest: +SKIP
+    36.5
     """
     if spacing is not None and not (math.isfinite(spacing) and spacing > 0):
         raise InputError(f"spacing must be a positive number of metres, got {spacing}")
-    if world.domain != "building":
-        raise InputError(f"domain must be building for a way in metres, got {world.domain!r}")
+    world = WorldSettings("building", map, cell=cell, robot_radius=robot_radius, seed=seed)
     occupancy = map_from_settings(world)
     with open_memory(memory, read_only=True) as opened:
         place = recognised_place(world, world_from_settings(world, occupancy), occupancy, opened, building)
         record, names = remembered_record(place, opened), NamedPlaces.of(place)
-        start, goal = names.located("from", start, opened), names.located("to", goal, opened)
+        begin = names.located("from", Destination.of(start), opened)
+        end = names.located("to", Destination.of(goal), opened)
         travel = Travel.recalled(place.world, place.grid, opened)
     floor = floor_of(place.occupancy or occupancy, place.world)
-    ends = start.located_point, goal.located_point
+    ends = begin.located_point, end.located_point
     first, last = floor.state_at("from", ends[0]), floor.state_at("to", ends[1])
-    known = transitions.from_record(place.world, record, place.grid.corner).percept >= 0
+    known = (transitions.from_record(place.world, record, place.grid.corner).percept >= 0) | travel.driven
     costs, cell = travel.costs(travel.newest if clock is None else clock), place.world.frame.cell
     unsure = ~known & place.world.around(costs.closed())
     cost = costs.cost + np.where(unsure[place.world.neighbour], DETOUR, 0.0)
@@ -133,7 +147,7 @@ def way(
     passed, seconds = _driven(path, floor, costs.seconds / cell)
     contradicted = contradicted_moves(place, record, first, last)
     poses = poses_along(path, spacing)
-    return Way(start, goal, poses, len(passed), int((~known[passed]).sum()), seconds, contradicted)
+    return Way(begin, end, poses, len(passed), int((~known[passed]).sum()), seconds, contradicted)
 
 
 def clock_from_text(text: str) -> float:

@@ -77,13 +77,15 @@ def merge(
     """Add the content of other memories or exported files, all or none.
 
     Use it to share the knowledge of several robots. The others are not changed. Contributions that are stored
-    already or were forgotten are skipped. The result does not depend on order and grouping.
+    already or were forgotten are skipped. The result does not depend on order and grouping. A building that is
+    new here is joined to a building that it shows; the frame of the building that was here before stays.
     """
+    from lifelore.agent.live.buildings.merged_buildings import described, merge_memories
     from lifelore.memory import open_memory
     from lifelore.memory.location import describe, locate
 
     with open_memory(where) as opened:
-        each = opened.merge_many(others)
+        each, buildings = merge_memories(opened, others)
     totals = {name: sum(counts[name] for counts in each) for name in each[0]}
     counts_text = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in totals.items())
     document: dict[str, Any] = dict(totals)
@@ -91,7 +93,9 @@ def merge(
         counts_text += f", from {len(others)} memories"
         named = zip(others, each, strict=True)
         document["sources"] = [{"source": describe(locate(other))} | counts for other, counts in named]
-    say(document, f"contributions: {counts_text}", as_json)
+    if buildings:
+        document["buildings"] = buildings
+    say(document, "\n".join([f"contributions: {counts_text}", *map(described, buildings)]), as_json)
 
 
 @memory.command()

@@ -49,13 +49,20 @@ def way(
     from lifelore.agent.way import way as find_way
     from lifelore.app.console import print_json
     from lifelore.domains.buildings.footprint import Footprint
-    from lifelore.domains.worlds import WorldSettings
 
-    settings = WorldSettings("building", map, cell=cell, robot_radius=robot_radius, seed=seed)
-    ends = destination_from_text("from", start), destination_from_text("to", goal)
-    clock = None if at is None else clock_from_text(at)
-    outline = None if footprint is None else Footprint.from_text(footprint)
-    found = find_way(settings, *ends, memory, spacing, building, clock, outline)
+    found = find_way(
+        destination_from_text("from", start),
+        destination_from_text("to", goal),
+        map=map,
+        memory=memory,
+        cell=cell,
+        robot_radius=robot_radius,
+        seed=seed,
+        spacing=spacing,
+        building=building,
+        clock=None if at is None else clock_from_text(at),
+        footprint=None if footprint is None else Footprint.from_text(footprint),
+    )
     if csv is not None:
         write_poses(csv, found.poses)
     if as_json:

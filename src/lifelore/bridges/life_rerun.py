@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from lifelore.bridges.scene_rerun import recording
 from lifelore.domains.buildings.occupancy_map import OCCUPIED
-from lifelore.domains.grids.grid_world import Frame
 
 if TYPE_CHECKING:
     from lifelore.domains.buildings.occupancy_map import OccupancyMap
@@ -45,21 +44,17 @@ def write_life_rrd(
     half = occupancy.resolution / 2
     with recording(path) as (rr, log):
         log.log("/", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
-        walls = _flat(_centres(occupancy, occupancy.state == OCCUPIED))
+        walls, places = (
+            _flat(occupancy.metres(np.argwhere(chosen))) for chosen in (occupancy.state == OCCUPIED, dear)
+        )
         log.log("map", rr.Points3D(walls, radii=half), static=True)
-        log.log("costs", rr.Points3D(_flat(_centres(occupancy, dear)), colors=heat, radii=half), static=True)
+        log.log("costs", rr.Points3D(places, colors=heat, radii=half), static=True)
         for name, seconds, points in ways:
             log.set_time("clock", timestamp=seconds)
             log.log("way", rr.LineStrips3D([_flat(points)], labels=[name]))
         for name, seconds, point in events:
             log.set_time("clock", timestamp=seconds)
             log.log("events", rr.Points3D(_flat(np.array([point])), labels=[name], radii=4 * half))
-
-
-def _centres(occupancy: "OccupancyMap", chosen: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Points (n, 2) in metres of the chosen pixels' centres."""
-    rows, columns = np.nonzero(chosen)
-    return Frame(occupancy.resolution, occupancy.origin).metres(columns + 0.5, len(chosen) - rows - 0.5)
 
 
 def _flat(points: NDArray[np.float64]) -> NDArray[np.float64]:

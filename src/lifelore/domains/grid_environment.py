@@ -54,7 +54,12 @@ class GridEnvironment(TaskEnvironment):
 
     def __init__(self, world: GridWorld, goal: Goal = None, seed: int = 0, render_mode: str | None = None) -> None:
         self.world = world
-        super().__init__(world.task(_goal_state(world, goal, seed)), render_mode)
+        state = self._drawn_goal(world, seed) if goal is None else _goal_state(world, goal)
+        super().__init__(world.task(state), render_mode)
+
+    def _drawn_goal(self, world: GridWorld, seed: int) -> int:
+        """The goal where none is given."""
+        return int(stream(seed, "goal").integers(world.n_states))
 
     def _picture(self) -> NDArray[np.uint8]:
         """The picture of the world, (height, width, 3) uint8."""
@@ -64,7 +69,19 @@ class GridEnvironment(TaskEnvironment):
         return super()._info(event) | {"percept": int(self.world.percepts[self._state])}
 
 
-class BuildingEnvironment(GridEnvironment):
+class NamedGridEnvironment(GridEnvironment):
+    """A world of `make_world` to find a goal in; its settings are further arguments."""
+
+    domain = ""
+    """Name of the world."""
+
+    def __init__(
+        self, *, goal: Goal = None, seed: int = 0, render_mode: str | None = None, **settings: Any
+    ) -> None:
+        super().__init__(make_world(self.domain, seed=seed, **settings), goal, seed, render_mode)
+
+
+class BuildingEnvironment(NamedGridEnvironment):
     """An office building to find a place in: a ROS map's, or an invented one.
 
     ## Action Space
@@ -88,20 +105,10 @@ class BuildingEnvironment(GridEnvironment):
     the goal. `render_mode`: None or ``"rgb_array"``.
     """
 
-    def __init__(
-        self,
-        map: str | None = None,
-        cell: float | None = None,
-        robot_radius: float | None = None,
-        goal: Goal = None,
-        seed: int = 0,
-        render_mode: str | None = None,
-    ) -> None:
-        world = make_world("building", map=map, cell=cell, robot_radius=robot_radius, seed=seed)
-        super().__init__(world, goal, seed, render_mode)
+    domain = "building"
 
 
-class LatticeEnvironment(GridEnvironment):
+class LatticeEnvironment(NamedGridEnvironment):
     """The thesis's lattice (§3.4.1): every second row and column of a walled square is passable.
 
     ## Action Space
@@ -124,13 +131,10 @@ class LatticeEnvironment(GridEnvironment):
     `seed`. `render_mode`: None or ``"rgb_array"``.
     """
 
-    def __init__(
-        self, size: int | None = None, goal: Goal = None, seed: int = 0, render_mode: str | None = None
-    ) -> None:
-        super().__init__(make_world("lattice", size=size), goal, seed, render_mode)
+    domain = "lattice"
 
 
-class NoiseMazeEnvironment(GridEnvironment):
+class NoiseMazeEnvironment(NamedGridEnvironment):
     """The thesis's noise maze (§3.4.1): 50–80 % of the cells are obstacles, the rest connected.
 
     ## Action Space
@@ -154,18 +158,10 @@ class NoiseMazeEnvironment(GridEnvironment):
     ``"rgb_array"``.
     """
 
-    def __init__(
-        self,
-        size: int | None = None,
-        density: float | None = None,
-        goal: Goal = None,
-        seed: int = 0,
-        render_mode: str | None = None,
-    ) -> None:
-        super().__init__(make_world("noise", size=size, density=density, seed=seed), goal, seed, render_mode)
+    domain = "noise"
 
 
-class AdviceMazeEnvironment(GridEnvironment):
+class AdviceMazeEnvironment(NamedGridEnvironment):
     """The thesis's advice maze (§3.7.2.1): 30 × 30 cells of corridors with some loops, and eight goals.
 
     ## Action Space
@@ -189,23 +185,13 @@ class AdviceMazeEnvironment(GridEnvironment):
     the goal. `render_mode`: None or ``"rgb_array"``.
     """
 
-    def __init__(
-        self,
-        size: int | None = None,
-        loops: float | None = None,
-        goal: Goal = None,
-        seed: int = 0,
-        render_mode: str | None = None,
-    ) -> None:
-        world = make_world("advice", size=size, loops=loops, seed=seed)
-        if goal is None:
-            goal = int(stream(seed, "goal").choice(maze_goals(world)))
-        super().__init__(world, goal, seed, render_mode)
+    domain = "advice"
+
+    def _drawn_goal(self, world: GridWorld, seed: int) -> int:
+        return int(stream(seed, "goal").choice(maze_goals(world)))
 
 
-def _goal_state(world: GridWorld, goal: Goal, seed: int) -> int:
-    if goal is None:
-        return int(stream(seed, "goal").integers(world.n_states))
+def _goal_state(world: GridWorld, goal: int | tuple[int, int]) -> int:
     if isinstance(goal, (int, np.integer)):
         return int(goal)
     row, column = goal

@@ -66,6 +66,8 @@ def test_no_offset_is_named_where_none_or_several_mend(reachable, points):
     assert mending_shift(points + noise, reachable) is None
     short = points[:3] + 60.0  # three poses lie inside almost everywhere
     assert mending_shift(short, reachable) is None
+    millimetres = 1000 * points  # a picture of them would not fit into main memory
+    assert mending_shift(millimetres, reachable) is None
 
 
 def test_a_turned_map_is_searched_in_its_own_frame(world, points):

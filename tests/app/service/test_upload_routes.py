@@ -201,7 +201,7 @@ def test_memories_travel_as_exports(serve, where, tmp_path):
     exported = first.get("/v1/memory/export")
     assert exported.headers["content-type"] == "application/vnd.sqlite3"
     assert second.post("/v1/memory/merge", content=exported.content, headers=FILE).json() == {
-        "added": 1, "already_there": 0, "forgotten": 0,
+        "added": 1, "already_there": 0, "forgotten": 0, "buildings": [],
     }  # fmt: skip
     shown = second.get("/v1/memory").json()
     assert [one["robot"] for one in shown["robots"]] == ["rosie"]

@@ -88,6 +88,15 @@ def test_outlines_are_free_on_paths_in_offices(seed):
         assert_free(floor, footprint_path(floor, *floor.metres(floor.anchors[pair]), outline), outline)
 
 
+def test_an_outline_that_does_not_fit_at_an_end_is_refused_at_once():
+    """As in centimetres in place of metres: no search over a floor that is all too narrow."""
+    floor = floor_with(slice(20, 60))
+    with pytest.raises(
+        NotFoundError, match=r"no room for the outline at 2\.00,3\.00: its inscribed circle has 20 m"
+    ):
+        footprint_path(floor, (2.0, 3.0), (6.0, 3.0), Footprint(np.array(LONG) * 100))
+
+
 def test_a_door_that_is_too_narrow_is_refused():
     floor = floor_with(slice(60, 72))  # 0.6 m
     ends = floor.metres([[66, 20], [66, 140]])

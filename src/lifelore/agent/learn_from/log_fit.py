@@ -72,6 +72,9 @@ def mending_shift(points: NDArray[np.float64], reachable: Reachable) -> tuple[Sh
         Metres of the log's frame.
     reachable : Reachable
     """
+    occupancy = reachable.floor.occupancy
+    if np.ptp(points, axis=0).max() > np.hypot(*occupancy.state.shape) * occupancy.resolution:
+        return None  # no turn lays poses that are farther apart than the corners of the map
     points = points[np.linspace(0, len(points) - 1, min(_POSES, len(points))).astype(int)]
     for turns in TURNS:
         candidates = [shift for turn in turns for shift in _candidates(points, turn, reachable)]

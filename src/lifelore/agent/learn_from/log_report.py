@@ -46,7 +46,7 @@ def checked_log(runs: Sequence[Run], reachable: Reachable, noise: float, cell: f
 
 def _advice(found: tuple[tuple[float, float, float], float] | None) -> str:
     if found is None:
-        return "no single offset mends it; give the map on which the robot drove, or its --robot-radius"
+        return "no single offset mends it; give the map on which the robot drove, metres, or its --robot-radius"
     (x, y, yaw), share = found
     return f"--shift={x:g},{y:g},{yaw:g} leaves {share:.1%}: add it if the log has another origin than the map"
 

@@ -11,14 +11,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lifelore.agent.building_record import Joined
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.domains.grids.cell_numbers import COLUMN_BITS, BuildingGrid, cells_in_building, states_in_building
-from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.domains.grids.grid_world import MOVES, GridWorld
 
 KIND, VERSION = "passes", 1
 UNIT = 2.0**-20
 """Value of 1 in a stored sum of logarithms."""
+_RING = np.array([0, 3, 1, 2])
+"""Actions in the order of left turns: north, west, south, east."""
 _COLUMNS, _MINUTES = 17, 26
 _LAST_MINUTE = 2**_MINUTES - 1
 N_ACTIONS = 4
@@ -117,8 +120,14 @@ def to_record(world: GridWorld, grid: BuildingGrid, passes: Passes) -> Record:
     return Record(KIND, key_of(world, grid), VERSION, "add", slots[sums != 0], sums[sums != 0], about)
 
 
-def from_record(world: GridWorld, grid: BuildingGrid, record: Record | None) -> Passes:
-    """The rows of a record, by state of `world`, without moves that its map does not have."""
+def from_record(
+    world: GridWorld, grid: BuildingGrid, record: Record | None, other: Joined | None = None
+) -> Passes:
+    """The rows of a record, by state of `world`, without moves that its map does not have.
+
+    If the record is of `other`, a building that was joined to that of `world`, a move into a cell counts as the
+    move into the cell at that place, in the nearest of the four directions.
+    """
     if record is None:
         return joined([])
     rows, where = np.unique(record.slots >> 2, return_inverse=True)
@@ -126,8 +135,15 @@ def from_record(world: GridWorld, grid: BuildingGrid, record: Record | None) -> 
     sums[where, record.slots & 3] = record.values
     place, minute = rows >> _MINUTES, rows & _LAST_MINUTE
     action, cell = place % N_ACTIONS, place // N_ACTIONS
-    cell = ((cell >> _COLUMNS) << COLUMN_BITS) | (cell & (2**_COLUMNS - 1))
-    state = states_in_building(world, cell, grid.corner)
+    row, column = cell >> _COLUMNS, cell & (2**_COLUMNS - 1)
+    if other is None:
+        state = states_in_building(world, (row << COLUMN_BITS) | column, grid.corner)
+    else:
+        down, right = MOVES[action].T
+        into = other.states(world, grid, row - down, column + right)
+        action = _RING[(np.argsort(_RING)[action] + round(other.motion[2] / (np.pi / 2))) % 4]
+        # The move back of an action differs in the last bit.
+        state = np.where(into >= 0, world.neighbour[into, action ^ 1], -1)
     known = (state >= 0) & (world.neighbour[state, action] >= 0)
     found = Passes._make((state * N_ACTIONS + action, minute, sums[:, 0], sums[:, 1] * UNIT, sums[:, 2]))
     return found.where(known)

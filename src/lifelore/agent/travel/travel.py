@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lifelore.agent.building_record import joined_buildings
 from lifelore.agent.travel import passes as records
 from lifelore.agent.travel.blocked_moves import blocked_probability
 from lifelore.agent.travel.edge_times import typical_seconds
@@ -43,8 +44,12 @@ class Travel:
     @classmethod
     def recalled(cls, world: GridWorld, grid: BuildingGrid, memory: Memory) -> "Travel":
         """The knowledge that memory holds of this building; moves that the map no longer has are left out."""
-        record = memory.recall(records.KIND, records.key_of(world, grid), records.VERSION)
-        return cls(world, grid, _parts=[records.from_record(world, grid, record)], _stored=1)
+        parts = [records.from_record(world, grid, _remembered(world, grid, memory))]
+        for key, one in joined_buildings(memory).items():
+            if one.home.key == grid.building:
+                record = _remembered(world, grid._replace(building=key), memory)
+                parts.append(records.from_record(world, grid, record, one))
+        return cls(world, grid, _parts=parts, _stored=len(parts))
 
     def observe(self, states: ArrayLike, actions: ArrayLike, clock: ArrayLike, seconds: ArrayLike) -> None:
         """Take in moves; those that the map does not have are left out.
@@ -101,6 +106,17 @@ class Travel:
         return MoveCosts(self.world, self.seconds(clock), self.blocked(clock))
 
     @property
+    def driven(self) -> NDArray[np.bool_]:
+        """(n_states,) places from which or into which a robot has moved."""
+        moves, driven = self.passes.move[self.passes.passes > 0], np.zeros(self.world.n_states, bool)
+        driven[moves // records.N_ACTIONS] = driven[self.world.neighbour.ravel()[moves]] = True
+        return driven
+
+    @property
     def newest(self) -> float:
         """Seconds since 1970 of the newest observation by the robot's clock; 0 if there is none."""
         return 60.0 * self.passes.minute.max(initial=0)
+
+
+def _remembered(world: GridWorld, grid: BuildingGrid, memory: Memory) -> Record | None:
+    return memory.recall(records.KIND, records.key_of(world, grid), records.VERSION)

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
 from lifelore.action.priors.action_prior import VERSION as PRIOR_VERSION
 from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.agent.building_record import remembered_buildings
 from lifelore.agent.live import transitions
-from lifelore.agent.live.buildings.building_record import remembered_buildings
 from lifelore.agent.live.goals.destinations import NamedPlaces
 from lifelore.agent.live.lore import observation_key
 from lifelore.core.protocols import Record

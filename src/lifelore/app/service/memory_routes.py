@@ -9,6 +9,7 @@ from starlette.concurrency import run_in_threadpool
 from typing_extensions import TypedDict
 
 from lifelore.agent.live.buildings.building_memory import buildings_in, forget_building
+from lifelore.agent.live.buildings.merged_buildings import merge_memories
 from lifelore.app.service.bodies import BYTES, SQLITE, body_of, file_of
 from lifelore.app.service.service_state import Service
 from lifelore.core.errors import InputError, StoreError
@@ -51,10 +52,20 @@ class Content(TypedDict):
     buildings: list[Building]
 
 
+class MergedBuilding(TypedDict):
+    building: str
+    joined: str | None
+    reason: str | None
+    walls: float | None
+    pose: list[float] | None
+    names: list[str]
+
+
 class Merged(TypedDict):
     added: int
     already_there: int
     forgotten: int
+    buildings: list[MergedBuilding]
 
 
 class ForgottenRobot(TypedDict):
@@ -92,7 +103,8 @@ def router(service: Service) -> APIRouter:
             path = Path(folder) / "upload.db"
             path.write_bytes(content)
             try:
-                return memory.merge_from(path)
+                (counts,), buildings = merge_memories(memory, [path])
+                return counts | {"buildings": buildings}
             except StoreError as error:
                 if str(path) not in str(error):
                     raise

@@ -68,24 +68,12 @@ class Floor:
         return np.asarray(ndimage.distance_transform_edt(~self.solid))
 
     def pixels(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Pixel coordinates (n, 2) of `points`, (n, 2) x and y in metres of the map's frame.
-
-        They are rounded to 1e-9, so that a point on a border lies in the same pixel in a map and in a part of it.
-        """
-        x0, y0, yaw = self.occupancy.origin
-        dx, dy = (np.asarray(points, float).reshape(-1, 2) - (x0, y0)).T / self.occupancy.resolution
-        right, up = np.cos(yaw) * dx + np.sin(yaw) * dy, np.cos(yaw) * dy - np.sin(yaw) * dx
-        return np.column_stack([self.state.shape[0] - 0.5 - up, right - 0.5]).round(9)
+        """Pixel coordinates (n, 2) of `points` (n, 2) in metres, see `OccupancyMap.pixels`."""
+        return self.occupancy.pixels(points)
 
     def metres(self, pixels: ArrayLike) -> NDArray[np.float64]:
         """Points (n, 2) in metres of the map's frame, of (n, 2) pixel coordinates; the inverse of `pixels`."""
-        x0, y0, yaw = self.occupancy.origin
-        row, column = np.asarray(pixels, float).reshape(-1, 2).T
-        right = (column + 0.5) * self.occupancy.resolution
-        up = (self.state.shape[0] - 0.5 - row) * self.occupancy.resolution
-        return np.column_stack(
-            [x0 + np.cos(yaw) * right - np.sin(yaw) * up, y0 + np.sin(yaw) * right + np.cos(yaw) * up]
-        )
+        return self.occupancy.metres(pixels)
 
     @cached_property
     def anchors(self) -> NDArray[np.int64]:
@@ -136,16 +124,10 @@ class Floor:
         return bool((np.hypot(*(near + np.array([top, left]) - pixel).T) > self.radius).all())
 
     def _nearest(self, pixel: NDArray[np.float64]) -> NDArray[np.int64]:
-        """The free pixel nearest to a pixel, looked for in growing squares around it."""
-        reach = 32
-        while True:
-            low = np.maximum(np.rint(pixel).astype(int) - reach, 0)
-            high = np.maximum(np.rint(pixel).astype(int) + reach + 1, 0)
-            free = np.argwhere(self.state[low[0] : high[0], low[1] : high[1]] >= 0) + low
-            away = np.hypot(*(free - pixel).T)
-            if away.size and (away.min() <= reach or away.size == np.count_nonzero(self.state >= 0)):
-                return free[away.argmin()]
-            reach *= 2
+        """The free pixel nearest to a pixel; the first of those in reading order."""
+        rows, columns = np.ogrid[: self.state.shape[0], : self.state.shape[1]]
+        away = np.where(self.state >= 0, (rows - pixel[0]) ** 2 + (columns - pixel[1]) ** 2, np.inf)
+        return np.array(np.unravel_index(away.argmin(), away.shape))
 
     def _why_not(self, at: tuple[int, int] | None) -> str:
         if at is None:

@@ -122,11 +122,17 @@ def footprint_path(
     Raises
     ------
     NotFoundError
-        The outline touches an obstacle on every path that was tried.
+        The outline touches an obstacle at an end in any heading, or on every path that was tried.
     """
-    contact = None
+    resolution, contact = floor.occupancy.resolution, None
+    for (x, y), pixel in zip((start, goal), floor.pixels([start, goal]), strict=True):
+        if (floor.distance[tuple(np.floor(pixel + 0.5).astype(int))] + 1) * resolution < footprint.inscribed:
+            raise NotFoundError(
+                f"footprint: there is no room for the outline at {x:.2f},{y:.2f}: its inscribed circle has "
+                f"{footprint.inscribed:g} m; give its corners in metres, or choose another place"
+            )
     for clearance in np.linspace(footprint.inscribed, footprint.circumscribed, BERTHS):
-        wanted = max(clearance, floor.robot_radius) + floor.occupancy.resolution * MARGIN
+        wanted = max(clearance, floor.robot_radius) + resolution * MARGIN
         path = clear_path(floor, start, goal, price, wanted)
         if path is None:
             return None

@@ -97,22 +97,21 @@ def line_cost(ground, row, column, last_row, last_column):
             columns_left -= 1
             next_row += 1 / abs(down)
             next_column += 1 / abs(right)
-        elif next_row < next_column:
-            at_row += one_down
-            there = ground.state[at_row, at_column]
-            if there < 0:
-                return np.inf
-            price += _move(ground, here, there, south)
-            rows_left -= 1
-            next_row += 1 / abs(down)
         else:
-            at_column += one_right
+            if next_row < next_column:
+                action = south
+                at_row += one_down
+                rows_left -= 1
+                next_row += 1 / abs(down)
+            else:
+                action = east
+                at_column += one_right
+                columns_left -= 1
+                next_column += 1 / abs(right)
             there = ground.state[at_row, at_column]
             if there < 0:
                 return np.inf
-            price += _move(ground, here, there, east)
-            columns_left -= 1
-            next_column += 1 / abs(right)
+            price += _move(ground, here, there, action)
         if rows_left == 0:
             next_row = np.inf
         if columns_left == 0:

@@ -7,7 +7,10 @@ from numpy.typing import NDArray
 
 from lifelore.domains.buildings.occupancy_map import UNKNOWN, OccupancyMap
 from lifelore.domains.buildings.registration import IDENTITY, Pose, composed, inverse, moved
+from lifelore.domains.grids.grid_world import Frame
 
+_ROWS = 512
+"""Rows that are computed at a time; more need more memory."""
 _RAGGED = 2
 """Pixels that may lie beyond the earlier map's picture without making the grid larger."""
 
@@ -70,13 +73,11 @@ def aligned_map(
         end = frame.size[axis] if high[axis] <= frame.size[axis] + slack else np.ceil(high[axis] / cell) * cell
         corner.append(first)
         shape.append(round((end - first * cell) / pixel))
-    x, y = (np.arange(n) + 0.5 for n in shape)
-    centres = np.stack(np.meshgrid(x * pixel + corner[0] * cell, y[::-1] * pixel + corner[1] * cell), axis=-1)
-    state = _sampled(new, moved(inverse(to_frame), centres.reshape(-1, 2))).reshape(shape[1], shape[0])
     here = composed(inverse(pose), frame.origin)
     origin = composed(here, (corner[0] * cell, corner[1] * cell, 0.0))
     if pose == IDENTITY and corner == [0, 0]:
         origin = frame.origin  # without rounding, so that the same world has the same fingerprint
+    state = resampled(new, new.state, UNKNOWN, Frame(pixel, origin), (shape[1], shape[0]))
     return OccupancyMap(state, pixel, origin, new.source), (corner[1], corner[0])
 
 
@@ -91,11 +92,26 @@ def axis_aligned(occupancy: OccupancyMap) -> OccupancyMap:
     pixel, frame = occupancy.resolution, MapFrame.of(occupancy)
     corners = moved(frame.origin, np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)]) * frame.size)
     low, high = corners.min(axis=0), corners.max(axis=0)
-    columns, rows = np.ceil((high - low) / pixel - 1e-9).astype(int)
-    x, y = low[0] + (np.arange(columns) + 0.5) * pixel, low[1] + (np.arange(rows) + 0.5)[::-1] * pixel
-    centres = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-    state = _sampled(occupancy, moved(inverse(frame.origin), centres)).reshape(rows, columns)
-    return OccupancyMap(state.astype(np.uint8), pixel, (float(low[0]), float(low[1]), 0.0), occupancy.source)
+    columns, rows = np.ceil((high - low) / pixel - 1e-9).astype(int).tolist()
+    origin = (float(low[0]), float(low[1]), 0.0)
+    state = resampled(occupancy, occupancy.state, UNKNOWN, Frame(pixel, origin), (rows, columns))
+    return OccupancyMap(state, pixel, origin, occupancy.source)
+
+
+def resampled(
+    occupancy: OccupancyMap, values: NDArray[np.uint8], outside: int, frame: Frame, shape: tuple[int, int]
+) -> NDArray[np.uint8]:
+    """Values of the pixels of a map at the pixel centres of a picture of this frame and shape.
+
+    `outside` stands where the map has no pixel.
+    """
+    found, columns = np.empty(shape, np.uint8), np.arange(shape[1]) + 0.5
+    for top in range(0, shape[0], _ROWS):
+        up = shape[0] - 0.5 - np.arange(top, min(top + _ROWS, shape[0]))
+        right, above = np.meshgrid(columns, up)
+        part = occupancy.values_at(frame.metres(right.ravel(), above.ravel()), values, outside)
+        found[top : top + _ROWS] = part.reshape(right.shape)
+    return found
 
 
 def _extent(new: OccupancyMap, to_frame: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -110,11 +126,3 @@ def _extent(new: OccupancyMap, to_frame: Pose) -> tuple[NDArray[np.float64], NDA
     centres = moved(to_frame, np.column_stack([column + 0.5, len(known) - row - 0.5]) * new.resolution)
     half = new.resolution / 2
     return centres.min(axis=0) - half, centres.max(axis=0) + half
-
-
-def _sampled(new: OccupancyMap, points: NDArray[np.float64]) -> NDArray[np.uint8]:
-    """The states of the pixels in which points of the picture's own frame lie; unknown outside it."""
-    column, row = np.floor(points.T / new.resolution).astype(np.int64)
-    row = len(new.state) - 1 - row
-    inside = (row >= 0) & (row < new.state.shape[0]) & (column >= 0) & (column < new.state.shape[1])
-    return np.where(inside, new.state[np.where(inside, row, 0), np.where(inside, column, 0)], UNKNOWN)

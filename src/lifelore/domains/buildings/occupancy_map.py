@@ -19,11 +19,12 @@ from pathlib import Path
 
 import numpy as np
 import yaml
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.atomic_write import refused_writes
 from lifelore.core.errors import InputError
 from lifelore.domains.buildings.map_image import brightness_levels
+from lifelore.domains.grids.grid_world import Frame
 
 FREE, OCCUPIED, UNKNOWN = 0, 1, 2
 """States of a pixel."""
@@ -68,22 +69,34 @@ class OccupancyMap:
             raise InputError(f"origin must be three numbers [x, y, yaw], got {list(self.origin)}")
 
     @property
+    def frame(self) -> Frame:
+        """The frame of the pixels."""
+        return Frame(self.resolution, self.origin)
+
+    def pixels(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Row and column (n, 2) of points (n, 2) in metres of the map's frame; pixel centres are whole.
+
+        They are rounded to 1e-9, so that a point on a border lies in the same pixel in a map and in a part of it.
+        """
+        right, up = self.frame.cells(points)
+        return np.column_stack([len(self.state) - 0.5 - up, right - 0.5]).round(9)
+
+    def metres(self, pixels: ArrayLike) -> NDArray[np.float64]:
+        """Points (n, 2) in metres of the map's frame, of rows and columns (n, 2); the inverse of `pixels`."""
+        row, column = np.asarray(pixels, float).reshape(-1, 2).T
+        return self.frame.metres(column + 0.5, len(self.state) - 0.5 - row)
+
+    def values_at(self, points: ArrayLike, values: NDArray[np.uint8], outside: int) -> NDArray[np.uint8]:
+        """The `values` (rows, columns) of the pixels in which points (n, 2) in metres lie; `outside` elsewhere."""
+        row, column = self.pixels(points).T
+        row, column = np.ceil(row - 0.5).astype(np.int64), np.floor(column + 0.5).astype(np.int64)
+        inside = (row >= 0) & (row < values.shape[0]) & (column >= 0) & (column < values.shape[1])
+        return np.where(inside, values[np.where(inside, row, 0), np.where(inside, column, 0)], np.uint8(outside))
+
+    @property
     def grey(self) -> NDArray[np.uint8]:
         """(rows, columns) uint8 picture as ROS's ``map_saver`` draws it: free 254, occupied 0, unknown 205."""
         return _GREY_OF_STATE[self.state]
-
-
-@dataclass(frozen=True)
-class _MapSettings:
-    """The YAML, checked."""
-
-    image: Path
-    resolution: float
-    origin: tuple[float, float, float]
-    negate: bool
-    occupied_thresh: float
-    free_thresh: float
-    mode: str
 
 
 def read_occupancy_map(path: str | Path) -> OccupancyMap:
@@ -110,26 +123,36 @@ def read_occupancy_map(path: str | Path) -> OccupancyMap:
     0.05
     """
     path = Path(path)
-    settings = _settings_from(path, _mapping_from(path))
-    sums, brightest, transparent = brightness_levels(settings.image, with_alpha=settings.mode == "trinary")
-    state = _state_of_level(settings, brightest)[sums]
-    if settings.mode == "scale" and transparent is not None:
+    mapping = _mapping_from(path)
+    free, occupied = (_number(path, mapping, key) for key in ("free_thresh", "occupied_thresh"))
+    if not 0 <= free < occupied <= 1:
+        raise InputError(
+            f"map: {path}: thresholds must satisfy 0 <= free_thresh < occupied_thresh <= 1, "
+            f"got free_thresh {free} and occupied_thresh {occupied}"
+        )
+    resolution = _number(path, mapping, "resolution")
+    if resolution <= 0:
+        raise InputError(f"map: {path}: resolution must be positive, in metres a pixel, got {resolution}")
+    mode = mapping.get("mode", "trinary")
+    if mode not in MODES:
+        raise InputError(f"map: {path}: mode must be one of {', '.join(MODES)}, got {mode!r}")
+    origin, negate = _origin(path, mapping["origin"]), _flag(path, mapping["negate"])
+    image = _image(path, mapping["image"])
+    sums, brightest, transparent = brightness_levels(image, with_alpha=mode == "trinary")
+    occupancy = _occupancy_of_level(brightest, mode, negate)
+    state = np.select([occupancy > occupied, occupancy < free], [OCCUPIED, FREE], UNKNOWN).astype(np.uint8)[sums]
+    if mode == "scale" and transparent is not None:
         state[transparent] = UNKNOWN
-    return OccupancyMap(state, settings.resolution, settings.origin, str(path))
+    return OccupancyMap(state, resolution, origin, str(path))
 
 
-def _state_of_level(settings: _MapSettings, brightest: int) -> NDArray[np.uint8]:
-    """The state of each possible brightness 0 … `brightest`."""
+def _occupancy_of_level(brightest: int, mode: str, negate: bool) -> NDArray[np.float64]:
+    """The occupancy in [0, 1] of each brightness 0 … `brightest`; NaN is on neither side of a threshold."""
     brightness = np.arange(brightest + 1) * 255.0 / brightest
-    if settings.mode == "raw":
-        percent = np.rint(255.0 - brightness if settings.negate else brightness)
-        occupancy = np.where(percent <= 100, percent / 100, np.nan)  # NaN is on neither side of a threshold
-    else:
-        occupancy = (brightness if settings.negate else 255.0 - brightness) / 255.0
-    state = np.full(brightest + 1, UNKNOWN, np.uint8)
-    state[occupancy > settings.occupied_thresh] = OCCUPIED
-    state[occupancy < settings.free_thresh] = FREE
-    return state
+    if mode == "raw":
+        percent = np.rint(255.0 - brightness if negate else brightness)
+        return np.where(percent <= 100, percent / 100, np.nan)
+    return (brightness if negate else 255.0 - brightness) / 255.0
 
 
 def _mapping_from(path: Path) -> dict:
@@ -146,27 +169,9 @@ def _mapping_from(path: Path) -> dict:
         raise InputError(f"map: cannot read {path}: {error.strerror}") from None
     if not isinstance(mapping, dict):
         raise InputError(f"map: {path} is not a map YAML: it must hold the keys {', '.join(_REQUIRED)}")
-    return mapping
-
-
-def _settings_from(path: Path, mapping: dict) -> _MapSettings:
-    missing = [key for key in _REQUIRED if mapping.get(key) is None]
-    if missing:
+    if missing := [key for key in _REQUIRED if mapping.get(key) is None]:
         raise InputError(f"map: {path} lacks {', '.join(missing)}; a ROS map has {', '.join(_REQUIRED)}")
-    free, occupied = (_number(path, mapping, key) for key in ("free_thresh", "occupied_thresh"))
-    if not 0 <= free < occupied <= 1:
-        raise InputError(
-            f"map: {path}: thresholds must satisfy 0 <= free_thresh < occupied_thresh <= 1, "
-            f"got free_thresh {free} and occupied_thresh {occupied}"
-        )
-    resolution = _number(path, mapping, "resolution")
-    if resolution <= 0:
-        raise InputError(f"map: {path}: resolution must be positive, in metres a pixel, got {resolution}")
-    mode = mapping.get("mode", "trinary")
-    if mode not in MODES:
-        raise InputError(f"map: {path}: mode must be one of {', '.join(MODES)}, got {mode!r}")
-    image, negate = _image(path, mapping["image"]), _flag(path, mapping["negate"])
-    return _MapSettings(image, resolution, _origin(path, mapping["origin"]), negate, occupied, free, mode)
+    return mapping
 
 
 def _number(path: Path, mapping: dict, key: str) -> float:

@@ -22,7 +22,7 @@ def furnish(
 ) -> list[Piece]:
     """Pieces of furniture for a room; `doors` are (from, to) along the corridor's side."""
     pieces = []
-    for u0, v0, u1, v1 in _FURNITURE[kind](length, depth, generator):
+    for u0, v0, u1, v1 in () if kind == "shaft" else _FURNITURE[kind](length, depth, generator):
         inside = u0 >= -1e-9 and v0 >= -1e-9 and u1 <= length + 1e-9 and v1 <= depth + 1e-9
         in_the_way = v0 < _DOOR_CLEARANCE and any(u0 < b + 0.2 and u1 > a - 0.2 for a, b in doors)
         if inside and not (in_the_way and kind != "open"):
@@ -47,11 +47,6 @@ def _table_with_chairs(u0: float, v0: float, u1: float, v1: float, generator) ->
                 yield _chair(at, edge) if along_u else _chair(edge, at)
 
 
-def _desks(u0: float, v0: float, columns: int, generator) -> Iterator[Piece]:
-    """A block of desks of 1.6 m × 0.8 m, two rows facing each other, chairs outside."""
-    yield from _table_with_chairs(u0, v0, u0 + 1.6 * columns, v0 + 1.6, generator)
-
-
 def _office(length: float, depth: float, generator) -> Iterator[Piece]:
     mirrored = generator.random() < 0.5
 
@@ -73,7 +68,7 @@ def _office(length: float, depth: float, generator) -> Iterator[Piece]:
 def _shared(length: float, depth: float, generator) -> Iterator[Piece]:
     columns = 2 if length >= 5.4 else 1
     u0, v0 = (length - 1.6 * columns) / 2, (depth - 1.6) / 2 + 0.3
-    yield from _desks(u0, v0, columns, generator)
+    yield from _table_with_chairs(u0, v0, u0 + 1.6 * columns, v0 + 1.6, generator)
     if generator.random() < 0.6:
         yield 0.0, depth - 0.4, float(generator.uniform(1.0, 1.8)), depth
     if generator.random() < 0.5:
@@ -132,15 +127,11 @@ def _open(length: float, depth: float, generator) -> Iterator[Piece]:
             v = 0.6 + (j + 0.5) * (depth - 0.6) / n_v - 0.8
             what = generator.random()
             if what < 0.8:
-                yield from _desks(u, v, columns, generator)
+                yield from _table_with_chairs(u, v, u + 1.6 * columns, v + 1.6, generator)
             elif what < 0.9:
                 yield u + 0.2, v + 0.4, u + 1.4, v + 0.9
     for u in np.arange(1, int(length / 5)) * length / int(length / 5 + 1):
         yield u, depth - 0.4, u + 1.2, depth
-
-
-def _nothing(length: float, depth: float, generator) -> Iterator[Piece]:
-    return iter(())
 
 
 _FURNITURE: dict[Kind, Callable[..., Iterator[Piece]]] = {
@@ -152,5 +143,4 @@ _FURNITURE: dict[Kind, Callable[..., Iterator[Piece]]] = {
     "storage": _storage,
     "washroom": _washroom,
     "open": _open,
-    "shaft": _nothing,
 }

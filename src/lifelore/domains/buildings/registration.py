@@ -109,8 +109,7 @@ class Walls:
         rows, columns = np.nonzero(self.edge)
         self.width = state.shape[1] + 1  # with an empty column, so that no row continues in the next one
         self.numbers = rows * self.width + columns
-        inner = np.column_stack([columns + 0.5, len(state) - rows - 0.5]) * self.pixel
-        self.points = moved(occupancy.origin, inner)
+        self.points = occupancy.metres(np.column_stack([rows, columns]))
         self.middle = self.points.mean(axis=0) if len(self.points) else np.zeros(2)
 
     @cached_property
@@ -125,25 +124,10 @@ class Walls:
         return np.minimum(away, _REACH).astype(np.float32)
 
     @cached_property
-    def near(self) -> NDArray[np.bool_]:
-        """Pixels within `WALL_TOLERANCE` of a wall."""
-        return inflate(self.edge, WALL_TOLERANCE / self.pixel)
-
-    @cached_property
-    def known(self) -> NDArray[np.bool_]:
-        """Pixels that are known, or lie by a known one."""
-        return inflate(self.map.state != UNKNOWN, np.ceil(2 * WALL_TOLERANCE / self.pixel))
-
-    def inner(self, points: NDArray[Any]) -> NDArray[np.float64]:
-        """World points as (row, column) of the picture, fractional: pixel centres are whole."""
-        x, y = moved(inverse(self.map.origin), points).T / self.pixel
-        return np.array([len(self.edge) - y - 0.5, x - 0.5])
-
-    def pixels(self, points: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """Flat numbers of the points' pixels, and which points lie within the picture."""
-        row, column = np.rint(self.inner(points)).astype(np.int64)
-        inside = (row >= 0) & (row < self.edge.shape[0]) & (column >= 0) & (column < self.edge.shape[1])
-        return np.where(inside, row * self.edge.shape[1] + column, 0), inside
+    def ground(self) -> NDArray[np.uint8]:
+        """2 within `WALL_TOLERANCE` of a wall, else 1 where a pixel is known or lies by a known one, else 0."""
+        known = inflate(self.map.state != UNKNOWN, np.ceil(2 * WALL_TOLERANCE / self.pixel))
+        return known + (known & inflate(self.edge, WALL_TOLERANCE / self.pixel)).astype(np.uint8)
 
 
 def moved(pose: Pose, points: NDArray[Any]) -> NDArray[np.float64]:
@@ -221,8 +205,8 @@ def _coarse_field(a: Walls, low: NDArray, shape: NDArray, pixel: float) -> NDArr
     cell = np.floor((a.points - low) / pixel).astype(np.int64)
     walls = np.bincount(cell[:, 0] * shape[1] + cell[:, 1], minlength=shape[0] * shape[1]).reshape(shape)
     blurred = ndimage.gaussian_filter(np.minimum(walls * a.pixel / pixel, 1.0), 1.0)
-    at, inside = a.pixels(low + (np.argwhere(np.ones(shape)) + 0.5) * pixel)
-    known = (inside & a.known.ravel()[at]).reshape(shape)
+    points = low + (np.argwhere(np.ones(shape)) + 0.5) * pixel
+    known = a.map.values_at(points, a.ground, 0).reshape(shape) > 0
     return np.where(known, blurred - blurred[known].mean(), 0.0).astype(np.float32)
 
 
@@ -250,7 +234,7 @@ def _searched(a: Walls, b: Walls, places: NDArray[np.float64]):
     best, value = places.copy(), np.full(len(places), -np.inf)
     for k, (x, y, yaw) in enumerate(places):
         for turn in FINE_TURNS:
-            row, column = np.rint(a.inner(moved((x, y, yaw + turn), points))).astype(np.int64)
+            row, column = np.rint(a.map.pixels(moved((x, y, yaw + turn), points))).T.astype(np.int64)
             inside = (row >= 0) & (row < a.edge.shape[0]) & (column >= 0) & (column < a.edge.shape[1])
             at = ((row + reach) * likely.shape[1] + column + reach)[inside]
             score = likely.ravel()[offsets[:, None] + at].sum(axis=1)
@@ -269,7 +253,7 @@ def _refined(a: Walls, b: Walls, place: NDArray[np.float64]) -> NDArray[np.float
 
     def residual(change: NDArray) -> NDArray:
         there = moved((place[0] + change[0], place[1] + change[1], place[2] + change[2] / arm), points)
-        return ndimage.map_coordinates(a.distance, a.inner(there), order=1, mode="nearest")
+        return ndimage.map_coordinates(a.distance, a.map.pixels(there).T, order=1, mode="nearest")
 
     change = np.zeros(3)
     for scale in (0.3, 0.05):
@@ -279,24 +263,19 @@ def _refined(a: Walls, b: Walls, place: NDArray[np.float64]) -> NDArray[np.float
 
 def _rough_match(a: Walls, b: Walls, pose: Pose) -> float:
     """Share of walls on walls, of few points of each map and with specks; without any, 0."""
-    hits, seen = 0, 0
-    for here, other, back in ((a, b, pose), (b, a, inverse(pose))):
-        at, inside = here.pixels(moved(back, other.few))
-        counted = inside & here.known.ravel()[at]
-        seen += int(counted.sum())
-        hits += int((counted & here.near.ravel()[at]).sum())
-    return hits / seen if seen else 0.0
+    ground = np.concatenate([
+        a.map.values_at(moved(pose, b.few), a.ground, 0), b.map.values_at(moved(inverse(pose), a.few), b.ground, 0)
+    ])  # fmt: skip
+    return float((ground == 2).sum() / max((ground > 0).sum(), 1))
 
 
 def _fit(a: Walls, b: Walls, pose: Pose) -> Fit:
     hits, seen, misses = 0, 0, 0
     for here, other, back in ((a, b, pose), (b, a, inverse(pose))):
-        at, inside = here.pixels(moved(back, other.points))
-        counted = inside & here.known.ravel()[at]
-        hit = counted & here.near.ravel()[at]
-        seen += int(counted.sum())
-        hits += int(hit.sum())
-        misses += _clustered(other, counted & ~hit)
+        ground = here.map.values_at(moved(back, other.points), here.ground, 0)
+        seen += int((ground > 0).sum())
+        hits += int((ground == 2).sum())
+        misses += _clustered(other, ground == 1)
     # Pixels of different sizes draw the same wall with different numbers of points.
     smaller = min(len(a.points), len(b.points))
     return Fit(pose, hits / (hits + misses) if hits else 0.0, min(seen / (2 * smaller), 1.0))

@@ -73,6 +73,12 @@ class Frame:
         cos, sin = np.cos(yaw), np.sin(yaw)
         return np.column_stack([x0 + cos * x - sin * y, y0 + sin * x + cos * y])
 
+    def cells(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Columns and rows (2, n) of points (n, 2) in metres; the inverse of `metres`."""
+        x0, y0, yaw = self.origin
+        dx, dy = (np.asarray(points, float).reshape(-1, 2) - (x0, y0)).T / self.cell
+        return np.array([np.cos(yaw) * dx + np.sin(yaw) * dy, np.cos(yaw) * dy - np.sin(yaw) * dx])
+
 
 @dataclass(frozen=True, eq=False)
 class GridWorld:
@@ -204,11 +210,9 @@ class GridWorld:
 
     def states_at(self, points: ArrayLike) -> NDArray[np.int32]:
         """The states (n,) int32 in whose cells `points` lie, (n, 2) x and y in metres; -1 where there is none."""
-        x0, y0, yaw = self.frame.origin
-        dx, dy = (np.asarray(points, float).reshape(-1, 2) - (x0, y0)).T / self.frame.cell
-        column = np.floor(np.cos(yaw) * dx + np.sin(yaw) * dy)
-        row = self.shape[0] - 1 - np.floor(np.cos(yaw) * dy - np.sin(yaw) * dx)
+        column, row = np.floor(self.frame.cells(points))
+        row = self.shape[0] - 1 - row
         inside = (row >= 0) & (row < self.shape[0]) & (column >= 0) & (column < self.shape[1])
-        states = np.full(len(dx), -1, np.int32)
+        states = np.full(len(row), -1, np.int32)
         states[inside] = self.state_of[row[inside].astype(int), column[inside].astype(int)]
         return states

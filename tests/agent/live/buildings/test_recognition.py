@@ -5,13 +5,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.agent.live.buildings.building_memory import buildings_in, forget_building
-from lifelore.agent.live.buildings.building_record import (
+from lifelore.agent.building_record import (
     Building,
     map_digest,
     remembered_buildings,
     remembered_map,
 )
+from lifelore.agent.live.buildings.building_memory import buildings_in, forget_building
 from lifelore.agent.live.life import Life, live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.core.errors import InputError, NotFoundError
@@ -101,6 +101,19 @@ def test_of_two_buildings_the_right_one_is_recognised(home):
     assert (again["name"], again["recognised"]) == ("home", True)
     other = life_on(home, padded(office_map(2, 14.0, 12.0)), "annex2").report["building"]
     assert (other["name"], other["recognised"]) == ("annex", True)
+
+
+def test_another_floor_of_the_same_outline_in_the_same_frame_is_another_building(tmp_path):
+    """Most places of two halls are open floor alike, and the outer walls agree: the goods stand elsewhere."""
+    report = {}
+    for floor in (1, 2):
+        draw, state = np.random.default_rng(floor), np.full((400, 600), FREE, np.uint8)
+        state[[0, 1, -2, -1]] = state[:, [0, 1, -2, -1]] = OCCUPIED
+        for row, column in draw.integers(20, (360, 560), (14, 2)):
+            state[row : row + 12, column : column + 16] = OCCUPIED
+        report[floor] = life_on(tmp_path, OccupancyMap(state, 0.05), f"floor{floor}").report["building"]
+    assert not report[2]["recognised"]
+    assert "of the walls match" in report[2]["reason"]
 
 
 def test_a_symmetric_building_is_refused_as_ambiguous(tmp_path):

@@ -49,7 +49,7 @@ def test_a_trip_is_driven_at_once_and_about_as_long_as_the_shortest_path(office,
     start, goal = (3.025, 7.525), (30.975, 17.025)
     report = life_in(office, tmp_path, goal=goal, start=start, tasks=2, compare=True).report
     assert report["how"] == "driven"
-    found = way(WorldSettings(map=office), Destination(start), Destination(goal), str(tmp_path / "life.db"))
+    found = way(start, goal, map=office, memory=str(tmp_path / "life.db"))
     assert found.length > 28
     for task in report["tasks"]:
         assert task["how"] == "driven"

@@ -1,8 +1,8 @@
 """Lists the remembered buildings, and forgets one."""
 
+from lifelore.agent import building_record
+from lifelore.agent.building_record import joined_buildings, remembered_buildings
 from lifelore.agent.live import transitions
-from lifelore.agent.live.buildings import building_record
-from lifelore.agent.live.buildings.building_record import remembered_buildings
 from lifelore.agent.live.driven import robot_clock
 from lifelore.agent.live.goals import destinations, goal_counts
 from lifelore.agent.travel import passes
@@ -22,8 +22,11 @@ _OF_A_BUILDING = (
 
 def buildings_in(memory: Memory) -> list[dict]:
     """One entry a building, by name: ``name``, ``key``, ``maps`` (files seen), ``grids`` (with transitions)."""
-    maps = [about["building"] for _, _, about in memory.keys(building_record.MAP_KIND)]
-    grids = [about.get("building") for _, _, about in memory.keys(transitions.KIND)]
+    home = {key: joined.home.key for key, joined in joined_buildings(memory).items()}
+    maps, grids = (
+        [home.get(key := about.get("building", ""), key) for _, _, about in memory.keys(kind)]
+        for kind in (building_record.MAP_KIND, transitions.KIND)
+    )
     return [
         {"name": one.name, "key": one.key, "maps": maps.count(one.key), "grids": grids.count(one.key)}
         for one in remembered_buildings(memory)
@@ -52,9 +55,10 @@ def forget_building(memory: Memory, name: str) -> dict:
         raise NotFoundError(f"building {name!r} is not remembered here; known buildings: {known}")
     if len(keys) > 1:
         raise InputError(f"building {name!r} is the name of {len(keys)} buildings; give a key: {', '.join(keys)}")
-    names = [(building_record.KIND, keys[0], building_record.VERSION)]
+    keys += [key for key, joined in joined_buildings(memory).items() if joined.home.key == keys[0]]
+    names = [(building_record.KIND, key, building_record.VERSION) for key in keys]
     for kind in _OF_A_BUILDING:
         names += [
-            (kind, key, version) for key, version, about in memory.keys(kind) if about.get("building") == keys[0]
+            (kind, key, version) for key, version, about in memory.keys(kind) if about.get("building") in keys
         ]
     return {"building": name, "records": len(names), "contributions": memory.forget_records(names)}

@@ -3,11 +3,12 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from lifelore.agent.live.buildings.building_record import (
+from lifelore.agent.building_record import (
     KIND,
     MAP_KIND,
     VERSION,
     Building,
+    joined_buildings,
     map_digest,
     map_record,
     remembered_buildings,
@@ -19,7 +20,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.domains.buildings.map_alignment import aligned_map
 from lifelore.domains.buildings.occupancy_map import OccupancyMap
-from lifelore.domains.buildings.registration import IDENTITY, Fit, Pose, Walls, register, register_near
+from lifelore.domains.buildings.registration import IDENTITY, Fit, Pose, Walls, composed, register, register_near
 from lifelore.domains.grids.grid_world import Frame, GridWorld
 from lifelore.domains.worlds import WorldSettings, world_from_settings
 from lifelore.memory import Memory
@@ -27,6 +28,9 @@ from lifelore.memory import Memory
 LEAST_MATCH, LEAST_NAMED_MATCH = 0.96, 0.75
 """Least share of walls on walls for a recognition; the second where the user names the building. A floor with the
 same walls and other furniture reaches 0.95, another building 0.6 (generated offices, see docs/courier.md)."""
+LEAST_IN_FRAME = 0.85
+"""The same for a map in the frame of the building whose places are mostly unchanged: other furniture leaves more,
+other floors of one outline leave less."""
 LEAST_MARGIN = 0.15
 """Least lead over the best clearly different pose, and over every other building."""
 SAME_FRAME = 0.05, 0.002
@@ -121,7 +125,7 @@ def recognised_place(
     if memory.recall(MAP_KIND, map_digest(occupancy), VERSION) is None:
         news = [
             building.record(occupancy, found.pose, memory.recall(KIND, building.key, VERSION)),
-            map_record(occupancy, building, found.pose, found.walls),
+            map_record(map_digest(occupancy), building, found.pose, found.walls),
         ]
     return Place(world, grid, report, [record for record in news if len(record.slots)], laid, earlier)
 
@@ -142,37 +146,47 @@ def recognised_building(
     buildings = remembered_buildings(memory)
     by_key = {building.key: building for building in buildings}
     seen = memory.recall(MAP_KIND, map_digest(occupancy), VERSION)
-    if seen is not None and seen.about["building"] in by_key:
-        building = by_key[seen.about["building"]]
+    key, pose = (seen.about["building"], tuple(seen.about["pose"])) if seen else (None, IDENTITY)
+    if joined := joined_buildings(memory).get(key or ""):
+        key, pose = joined.home.key, composed(joined.pose, pose)
+    if seen is not None and key in by_key:
+        building = by_key[key]
         if name not in (None, building.name):
             raise InputError(
                 f"building of this map is remembered as {building.name!r}, got {name!r}; leave it out, or forget "
                 f"that building with: lifelore memory forget --building '{building.name}'"
             )
-        return Recognised(building, tuple(seen.about["pose"]), seen.about["walls"]), None
+        return Recognised(building, pose, seen.about["walls"]), None
     named = [building for building in buildings if building.name == name]
     if name is not None and not named:
         return None, "no building of this name is remembered"
     if name is None and (by_frame := _in_frame(occupancy, world, by_key, memory)):
         return by_frame, None
     return fitting_building(
-        occupancy, {building: _map_of(building, memory) for building in named or buildings}, name
+        occupancy, {building: map_of(building, memory) for building in named or buildings}, name
     )
 
 
 def _in_frame(
     occupancy: OccupancyMap, world: GridWorld, by_key: dict[str, Building], memory: Memory
 ) -> Recognised | None:
-    """A map on the same grid whose percepts are mostly unchanged."""
+    """A map on the same grid whose percepts and walls are mostly unchanged."""
     earlier = same_place(world, memory, BuildingGrid(frame_key(world)))
     building = by_key.get(earlier.record.about.get("building", "")) if earlier else None
     if building is None or building.frame.origin != occupancy.origin:
         return None
-    fit = register_near(Walls(_map_of(building, memory)), Walls(occupancy))
-    return Recognised(building, IDENTITY, fit.match if fit else 0.0)
+    fit = register_near(Walls(map_of(building, memory)), Walls(occupancy))
+    return Recognised(building, IDENTITY, fit.match) if fit and fit.match >= LEAST_IN_FRAME else None
 
 
-def _map_of(building: Building, memory: Memory) -> OccupancyMap:
+def map_of(building: Building, memory: Memory) -> OccupancyMap:
+    """The map of a building as memory holds it.
+
+    Raises
+    ------
+    InputError
+        Another process has forgotten the building.
+    """
     record = memory.recall(KIND, building.key, VERSION)
     if record is None:
         raise InputError(f"building {building.name!r} has been forgotten by another process; try again")

@@ -9,10 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from lifelore.agent.building_record import joined_buildings
 from lifelore.agent.live.buildings.recognition import Place
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Record
-from lifelore.domains.buildings.registration import IDENTITY, Pose, inverse, moved
+from lifelore.domains.buildings.registration import IDENTITY, Pose, composed, inverse, moved
 from lifelore.memory import Memory
 
 KIND, VERSION = "destination", 1
@@ -57,8 +58,10 @@ class Destination:
             )
 
     @classmethod
-    def of(cls, place: "Point | str") -> "Destination":
-        """A name, or a point of any two numbers."""
+    def of(cls, place: "Destination | Point | str") -> "Destination":
+        """A destination as it is, a name, or a point of any two numbers."""
+        if isinstance(place, Destination):
+            return place
         return cls(name=place) if isinstance(place, str) else cls((float(place[0]), float(place[1])))
 
     @property
@@ -132,18 +135,24 @@ class NamedPlaces:
 
     def remembered(self, name: str, memory: Memory) -> Point | None:
         """The point in the map's frame that memory knows by a name; None if it does not know the name."""
-        record = memory.recall(KIND, f"{self.key}/{name}", VERSION)
-        if record is None:
-            return None
-        x, y = moved(inverse(self.pose), record.values[None] / _MICROMETRES)[0].round(6).tolist()
-        return x, y
+        for key, pose in self._frames(memory).items():
+            if record := memory.recall(KIND, f"{key}/{name}", VERSION):
+                there = composed(inverse(self.pose), pose)
+                x, y = moved(there, record.values[None] / _MICROMETRES)[0].round(6).tolist()
+                return x, y
+        return None
 
     def names(self, memory: Memory) -> list[str]:
         """The names that memory knows, sorted."""
-        start = self.key + "/"
-        return sorted(key.removeprefix(start) for key, _, _ in memory.keys(KIND) if key.startswith(start))
+        frames, keys = self._frames(memory), (key.split("/", 1) for key, _, _ in memory.keys(KIND))
+        return sorted({name for key, name in keys if key in frames})
 
     def points(self, memory: Memory) -> dict[str, Point]:
         """The points in the map's frame that memory knows, by name."""
         found = ((name, self.remembered(name, memory)) for name in self.names(memory))
         return {name: point for name, point in found if point is not None}
+
+    def _frames(self, memory: Memory) -> dict[str, Pose]:
+        """Poses in the frame of the building, of it and of those that were joined to it, by key."""
+        joined = joined_buildings(memory).items()
+        return {self.key: IDENTITY} | {key: one.pose for key, one in joined if one.home.key == self.key}

@@ -12,9 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.agent.building_record import joined_buildings
 from lifelore.core.planning.destination_order import MOST_EXACT, by_exact_search, by_rate
 from lifelore.core.protocols import Record
-from lifelore.domains.grids.cell_numbers import BuildingGrid, cells_in_building
+from lifelore.domains.grids.cell_numbers import COLUMN_BITS, BuildingGrid, cells_in_building, states_in_building
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.memory import Memory
 
@@ -40,9 +41,16 @@ class GoalCounts:
         counts = cls(world, grid, np.zeros(world.n_states, np.int64))
         record = memory.recall(KIND, counts.key, VERSION)
         if record is not None:
-            value = dict(zip(record.slots.tolist(), record.values.tolist(), strict=True))
-            counts.count[:] = [value.get(cell, 0) if cell >= 0 else 0 for cell in counts._cells().tolist()]
+            counts._add(states_in_building(world, record.slots, grid.corner), record.values)
+        for key, joined in joined_buildings(memory).items():
+            record = memory.recall(KIND, key, VERSION) if joined.home.key == grid.building else None
+            if record is not None:
+                row, column = record.slots >> COLUMN_BITS, record.slots & (2**COLUMN_BITS - 1)
+                counts._add(joined.states(world, grid, row, column), record.values)
         return counts
+
+    def _add(self, states: NDArray[np.int64], count: NDArray[np.int64]) -> None:
+        np.add.at(self.count, states[states >= 0], count[states >= 0])
 
     @property
     def key(self) -> str:

@@ -48,13 +48,15 @@ class KnownBuilding:
     @classmethod
     def recalled(cls, place: Place, given: OccupancyMap, memory: Memory, model: WorldModel | None = None) -> Self:
         """What memory knows; `model` in place of the remembered moves, for an agent that does not share them."""
-        if model is None:
-            model = Lore.recalled(
-                place.world, prior_scope(place.world, "observation"), 1.0, memory, place.grid
-            ).model
         travel = Travel.recalled(place.world, place.grid, memory)
+        if model is None:
+            scope = prior_scope(place.world, "observation")
+            known = Lore.recalled(place.world, scope, 1.0, memory, place.grid).model.percept >= 0
+            known |= travel.driven
+        else:
+            known = model.percept >= 0
         places = NamedPlaces.of(place).points(memory)
-        return cls(place.occupancy or given, given, model.percept >= 0, travel, places)
+        return cls(place.occupancy or given, given, known, travel, places)
 
     @cached_property
     def floor(self) -> Floor:

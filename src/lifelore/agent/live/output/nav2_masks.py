@@ -14,7 +14,7 @@ from scipy import ndimage
 from lifelore.agent.travel.move_costs import MoveCosts
 from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.buildings.inflation import inflate
-from lifelore.domains.buildings.map_alignment import axis_aligned
+from lifelore.domains.buildings.map_alignment import axis_aligned, resampled
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap, write_occupancy_map
 
 NO_OPINION, KEEP_OUT = 255, 100
@@ -27,8 +27,6 @@ SLOWEST = 10
 """Least percent of full speed in a speed mask; a robot that obeys a smaller one seems to stand still."""
 LEAST = 10
 """Smallest cost, and smallest loss of speed in percent, that a mask shows; less is noise of what was observed."""
-_ROWS = 512
-"""Rows of a mask that are computed at a time; more need more memory."""
 _MEANINGS = {
     "costs": "Time and risk of driving here, 0 to 90: 100 · (1 - cost of a usual place / cost of this place).\n"
     "# 255: no experience. A mask for nav2's KeepoutFilter",
@@ -97,25 +95,9 @@ def keepout_mask(floor: Floor, known: NDArray[np.bool_]) -> NDArray[np.uint8]:
 
 def on_map(mask: NDArray[np.uint8], floor: Floor, occupancy: OccupancyMap, outside: int) -> NDArray[np.uint8]:
     """A mask of the floor's pixels on those of another map of the ground; `outside` where the floor has none."""
-    rows, columns = occupancy.state.shape
-    if mask.shape == (rows, columns) and occupancy.origin == floor.occupancy.origin:
+    if mask.shape == occupancy.state.shape and occupancy.origin == floor.occupancy.origin:
         return mask.copy()
-    own = _pixels_of(occupancy)
-    found = np.full((rows, columns), outside, np.uint8)
-    for top in range(0, rows, _ROWS):
-        row, column = np.mgrid[top : min(top + _ROWS, rows), 0:columns]
-        at = np.rint(floor.pixels(own.metres(np.column_stack([row.ravel(), column.ravel()])))).astype(np.int64)
-        inside = ((at >= 0) & (at < mask.shape)).all(axis=1)
-        part = np.full(len(at), outside, np.uint8)
-        part[inside] = mask[tuple(at[inside].T)]
-        found[top : top + _ROWS] = part.reshape(row.shape)
-    return found
-
-
-def _pixels_of(occupancy: OccupancyMap) -> Floor:
-    """A floor without places: the conversion between metres and pixels of a map."""
-    state, moves = np.full(occupancy.state.shape, -1, np.int32), np.empty((0, 4), np.int32)
-    return Floor(occupancy, state, occupancy.state == OCCUPIED, 0.0, moves)
+    return resampled(floor.occupancy, mask, outside, occupancy.frame, occupancy.state.shape)
 
 
 def write_masks(
@@ -144,8 +126,8 @@ def write_masks(
         path = folder / f"{name}.yaml"
         grey = on_map(mask, floor, target, outside)
         if name == "keepout":
-            walls = _pixels_of(given).metres(np.argwhere(given.state == OCCUPIED))
-            grey[tuple(np.rint(_pixels_of(target).pixels(walls)).astype(np.int64).T)] = KEEP_OUT
+            walls = target.pixels(given.metres(np.argwhere(given.state == OCCUPIED)))
+            grey[tuple(np.rint(walls).astype(np.int64).T)] = KEEP_OUT
         write_occupancy_map(path, grey, target.resolution, target.origin, mode="raw")
         text = f"# {_MEANINGS[name]}, see docs/nav2.md.\n"
         path.write_text(text + path.read_text(encoding="utf-8"), encoding="utf-8")

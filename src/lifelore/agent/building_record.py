@@ -3,17 +3,23 @@
 The record of the map has a slot for each run of 30 pixels on the grid of the building's first map, with two bits a
 pixel. The newest map counts, run by run, so that the memory follows a building that changes. The record of a map
 file has the file's digest as key, and the pose of the file on the building, so that no map is compared twice.
+
+A building's key is the digest of its first map. If the record of that map names another building, the two were
+joined: they are one building in the frame of the other. What was learnt in the old frame is read through the pose.
 """
 
 import hashlib
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.core.protocols import Record
 from lifelore.domains.buildings.map_alignment import MapFrame, aligned_map
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
-from lifelore.domains.buildings.registration import IDENTITY, Pose, composed
+from lifelore.domains.buildings.registration import IDENTITY, Pose, composed, inverse, moved
+from lifelore.domains.grids.cell_numbers import COLUMN_BITS, BuildingGrid, states_in
+from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.memory import Memory
 
 KIND, MAP_KIND, VERSION = "building", "building_map", 1
@@ -75,10 +81,65 @@ class Building:
         return Record(KIND, self.key, VERSION, "newest", slots[news], values[news], about)
 
 
+@dataclass(frozen=True)
+class Joined:
+    """A building that was joined to another one.
+
+    building : as it was before
+    home : the building of which it is a part
+    pose : from the frame of `building` to that of `home`
+    """
+
+    building: Building
+    home: Building
+    pose: Pose
+
+    @property
+    def motion(self) -> Pose:
+        """From the lower left corner of the first map of `building` to that of `home`."""
+        return composed(inverse(self.home.frame.origin), composed(self.pose, self.building.frame.origin))
+
+    def states(
+        self, world: GridWorld, grid: BuildingGrid, row: NDArray[np.int64], column: NDArray[np.int64]
+    ) -> NDArray[np.int64]:
+        """The states (n,) of a world of `home` at the middles of cells of `building`; -1 where there is none."""
+        side, centres = world.frame.cell, np.column_stack([column, row]) + 0.5
+        x, y = np.floor(moved(self.motion, centres * side) / side).astype(np.int64).T
+        x, y = x - grid.corner[1], y - grid.corner[0]
+        return states_in(world, np.where((x >= 0) & (y >= 0), (y << COLUMN_BITS) | x, -1))
+
+
 def remembered_buildings(memory: Memory) -> list[Building]:
-    """All buildings in memory, by name and key."""
-    found = [_building(key, about) for key, version, about in memory.keys(KIND) if version == VERSION]
+    """All buildings in memory that are not joined to another, by name and key."""
+    joined = joined_buildings(memory)
+    found = [building for key, building in _all_buildings(memory).items() if key not in joined]
     return sorted(found, key=lambda building: (building.name, building.key))
+
+
+def joined_buildings(memory: Memory) -> dict[str, Joined]:
+    """The buildings that were joined to another one, by key."""
+    every = _all_buildings(memory)
+    maps = ((key, about) for key, version, about in memory.keys(MAP_KIND) if version == VERSION)
+    link = {key: about for key, about in maps if key in every and about["building"] in every.keys() - {key}}
+    for key in sorted(link):
+        # Two memories may have joined the same buildings in opposite directions: the smallest key of a ring stays.
+        ring = [key]
+        while ring[-1] in link and (following := link[ring[-1]]["building"]) not in ring:
+            ring.append(following)
+        if ring[-1] in link and link[ring[-1]]["building"] == key:
+            del link[key]
+    return {key: _joined(every[key], link, every) for key in link}
+
+
+def _joined(building: Building, link: dict[str, dict], every: dict[str, Building]) -> Joined:
+    key, pose = building.key, IDENTITY
+    while key in link:
+        key, pose = link[key]["building"], composed(tuple(link[key]["pose"]), pose)
+    return Joined(building, every[key], pose)
+
+
+def _all_buildings(memory: Memory) -> dict[str, Building]:
+    return {key: _building(key, about) for key, version, about in memory.keys(KIND) if version == VERSION}
 
 
 def _building(key: str, about: dict) -> Building:
@@ -107,9 +168,7 @@ def map_digest(occupancy: OccupancyMap) -> str:
     return digest.hexdigest()[:32]
 
 
-def map_record(occupancy: OccupancyMap, building: Building, pose: Pose = IDENTITY, walls: float = 1.0) -> Record:
-    """That this map shows this building at this pose; `walls` is the share of walls that match."""
+def map_record(digest: str, building: Building, pose: Pose = IDENTITY, walls: float = 1.0) -> Record:
+    """That the map of this digest shows this building at this pose; `walls` is the share of walls that match."""
     about = {"building": building.key, "pose": list(pose), "walls": round(walls, 4)}
-    return Record(
-        MAP_KIND, map_digest(occupancy), VERSION, "newest", np.zeros(1, np.int64), np.ones(1, np.int64), about
-    )
+    return Record(MAP_KIND, digest, VERSION, "newest", np.zeros(1, np.int64), np.ones(1, np.int64), about)
