@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.perception.segmentation.supervoxels import supervoxels
+from lifelore.perception.segmentation.supervoxels import step_costs, supervoxels
 from lifelore.perception.segmentation.surface_voxels import SurfaceVoxels, surface_voxels
 from reproduction.chapter5.c5_07_poking.motion_labels import motion_labels
 from reproduction.chapter5.c5_07_poking.moved_surface import NEAR, VOXEL, ViewAfter
@@ -92,7 +92,8 @@ class PokedPatches:
         of_voxel = _majority(surface.inverse, labels, len(surface.points))
         inner = of_voxel[surface.pairs[:, 0]] == of_voxel[surface.pairs[:, 1]]
         cut = SurfaceVoxels(surface.points, surface.normals, surface.pairs[inner], surface.inverse, surface.size)
-        patches = supervoxels(cut, PATCH * surface.size / VOXEL)
+        spacing = PATCH * surface.size / VOXEL
+        patches = supervoxels(cut, step_costs(cut, spacing), spacing)
         mixed = patches.of_voxel * (of_voxel.max() + 1) + of_voxel
         self._patch = np.unique(mixed, return_inverse=True)[1].reshape(-1)
         self._counts = np.bincount(self._patch)

@@ -181,7 +181,7 @@ class RareSettings:
 
     Parameters
     ----------
-    segment : {"convexity", "clusters", "curvature", "colour"}
+    segment : {"convexity", "clusters", "colour"}
         Segmentation of a cloud without labels.
     colours : int
         With segment=colour: clusters of colour; the smallest is background.

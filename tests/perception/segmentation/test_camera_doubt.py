@@ -9,7 +9,7 @@ import pytest
 
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.segmentation.camera_doubt import camera_doubt, share_behind
+from lifelore.perception.segmentation.camera_doubt import camera_at_origin, camera_doubt, share_behind
 from lifelore.perception.segmentation.scene_warnings import scene_warnings
 from lifelore.perception.segmentation.table_frame import segmented_scene
 
@@ -66,6 +66,26 @@ def test_no_true_camera_is_doubted():
         cloud = read_cloud(path)
         assert cloud.camera is not None
         assert camera_doubt(cloud.points[cloud.measured].astype(float), cloud.camera) is None, path.name
+
+
+@needs_data
+def test_points_in_a_cameras_own_frame_are_seen_from_the_origin():
+    """Without pixels and without a camera, as in many PLY files, a cloud is cut as with its camera."""
+    cloud = read_cloud(DATA / "osd" / "learn21.pcd")
+    points = cloud.points[cloud.measured]
+    unknown = segmented_scene(PointCloud(points))
+    known = segmented_scene(PointCloud(points, camera=np.zeros(3)))
+    np.testing.assert_array_equal(unknown.cloud.labels, known.cloud.labels)
+    assert unknown.camera_doubt is None
+
+
+def test_a_cloud_that_cannot_be_seen_from_the_origin_has_no_camera_there():
+    hidden = np.concatenate([wall(1.0), wall(1.5)])
+    below_the_table = np.concatenate([wall(1.0, step=0.008), wall(1.1, 0.05) + np.array([0.2, 0, 0])])
+    assert camera_at_origin(wall(1.0)) is not None
+    assert camera_at_origin(hidden) is None
+    assert camera_at_origin(wall(1.0) - np.array([2.0, 0, 0])) is None
+    assert segmented_scene(PointCloud(below_the_table), up="z").cloud.camera is None
 
 
 def in_base_frame(cloud, base):

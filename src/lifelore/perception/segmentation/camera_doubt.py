@@ -19,6 +19,8 @@ MOST_BEHIND = 0.02
 NEAREST = 0.15
 """Metres: depth cameras see nothing nearer."""
 _MOST_NEAR = 0.01
+_FIELD, _IN_FIELD = 1.2, 0.99
+"""Tangent of half the widest field of view, and the share of the points within it."""
 _ONE_IN = 8
 """One column of cells of so many, a power of two, is looked at; more is faster, and less sure on small clouds."""
 
@@ -33,6 +35,21 @@ def camera_doubt(points: NDArray[np.float64], camera: NDArray[np.float64]) -> st
         return f"{100 * near:.0f} % of the points lie within {100 * NEAREST:.0f} cm of it"
     share = share_behind(rays, ranges)
     return f"{100 * share:.0f} % of the points would lie behind others" if share > MOST_BEHIND else None
+
+
+def is_camera_frame(points: NDArray[np.float64]) -> bool:
+    """Whether points (n, 3) may be in the frame of a camera, z forward: nearly all lie in its field of view."""
+    x, y, z = points.T
+    return float(np.mean((z > 0) & (np.abs(x) < _FIELD * z) & (np.abs(y) < _FIELD * z))) >= _IN_FIELD
+
+
+def camera_at_origin(points: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """The origin, (3,), where points (n, 3) of an unknown camera may have been seen from there; else None.
+
+    Depth cameras write points in their own frame, and many files do not say so.
+    """
+    camera = np.zeros(3)
+    return camera if is_camera_frame(points) and camera_doubt(points, camera) is None else None
 
 
 def share_behind(rays: NDArray[np.float32], ranges: NDArray[np.float32]) -> float:

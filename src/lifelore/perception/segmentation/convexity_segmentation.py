@@ -2,8 +2,11 @@
 
 After Stein et al. (2014), locally convex connected patches (LCCP): supervoxels, the angle at each of their
 borders, and regions of patches that bend outwards. Here regions grow by the mean evidence along their whole
-border.
+border, and cuts from several lattices of supervoxels vote.
 """
+
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,8 +19,8 @@ from lifelore.perception.segmentation.patch_convexity import beyond_bend, eviden
 from lifelore.perception.segmentation.patch_merging import absorbed, merged
 from lifelore.perception.segmentation.plane import NEAR
 from lifelore.perception.segmentation.range_noise import band
-from lifelore.perception.segmentation.supervoxels import Supervoxels, supervoxels
-from lifelore.perception.segmentation.surface_voxels import surface_voxels
+from lifelore.perception.segmentation.supervoxels import Supervoxels, step_costs, supervoxels
+from lifelore.perception.segmentation.surface_voxels import SurfaceVoxels, surface_voxels
 
 VOXEL = 0.005
 """Metres, where the noise is that of the near range; voxels and patches grow with the noise of the objects' median
@@ -32,6 +35,11 @@ slivers at creases, more swallows small objects that touch others."""
 LEAST_SURE = 0.05
 """Probability of a true object (`cut_confidence`); a less sure region joins the neighbour of the longest border.
 More removes more false objects, and swallows small true ones."""
+_STARTS = (0.0, 1 / 3, 2 / 3)
+"""Where the lattices of seeds begin. One cut depends on where its seeds fall, by which a crease of few patches is
+found or missed; of three, the one that agrees most with the others is taken. More cost time, and gain little."""
+_SAME = 0.98
+"""Agreement of the first two cuts from which no third is made; it costs a tenth of the time of a scene."""
 _MOST_VOXELS = 100_000
 _SPARSE = 3 * VOXEL
 """Size to which the voxels of sparse points grow."""
@@ -61,7 +69,26 @@ def convex_objects(
     # Voxels of less than the noise would be layers of a surface, and not its surface.
     noisier = min(float(np.median(band(points, camera))) / NEAR, NOISIEST)
     surface = surface_voxels(points, camera, VOXEL * noisier, _MOST_VOXELS, _SPARSE)
-    patches = supervoxels(surface, PATCH * surface.size / VOXEL)
+    seen = points if seen is None else seen
+    spacing = PATCH * surface.size / VOXEL
+    costs = step_costs(surface, spacing)
+    cuts: list[CutCloud] = []
+    for start in _STARTS:
+        cuts.append(_cut(surface, supervoxels(surface, costs, spacing, start), camera, seen, min_area))
+        if len(cuts) == 2 and agreement(cuts[0].labels, cuts[1].labels) >= _SAME:
+            break
+    cut = most_agreed(cuts)
+    return replace(cut, labels=cut.labels[surface.inverse])
+
+
+def _cut(
+    surface: SurfaceVoxels,
+    patches: Supervoxels,
+    camera: NDArray[np.float64] | None,
+    seen: NDArray[np.float64],
+    min_area: float,
+) -> CutCloud:
+    """Labels of the voxels of a surface, whose patches join into objects."""
     odds = evidence(beyond_bend(patches, signed_angles(patches)))
     regions = merged(len(patches.counts), patches.pairs, patches.borders, odds)
     fragment = round(FRAGMENT * (VOXEL / surface.size) ** 2)
@@ -70,7 +97,7 @@ def convex_objects(
     )
     pairs = list(hollow_pairs(surface, patches, regions, fragment))
     if camera is not None:
-        pairs += parted_pairs(patches, regions, fragment, camera, points if seen is None else seen)
+        pairs += parted_pairs(patches, regions, fragment, camera, seen)
     joined = connected_parts(np.array(pairs, np.int64).reshape(-1, 2), int(regions.max()) + 1)
     regions = joined[regions]
     n_cut = int((_voxels(patches, regions) * surface.size**2 >= min_area).sum())
@@ -83,7 +110,28 @@ def convex_objects(
     label = labels_by_size(_voxels(patches, regions) * surface.size**2, min_area)
     sure = cut_confidence(patches, odds, regions)
     confidence = {int(label[region]): float(sure[region]) for region in np.argsort(label) if label[region]}
-    return CutCloud(label[regions][patches.of_voxel][surface.inverse], confidence, n_cut)
+    return CutCloud(label[regions][patches.of_voxel], confidence, n_cut)
+
+
+def most_agreed(cuts: Sequence[CutCloud]) -> CutCloud:
+    """The cut that agrees most with all others; of equal ones the first."""
+    return max(cuts, key=lambda cut: sum(round(agreement(cut.labels, other.labels), 9) for other in cuts))
+
+
+def agreement(first: NDArray[np.int64], second: NDArray[np.int64]) -> float:
+    """Mean intersection over union, 0 to 1, of each point's object in one cut with its best match in the other.
+
+    Examples
+    --------
+    >>> agreement(np.array([2, 2, 3, 3]), np.array([3, 3, 2, 2])), agreement(np.array([2, 2]), np.array([2, 3]))
+    (1.0, 0.5)
+    """
+    both = np.zeros((first.max() + 1, second.max() + 1))
+    np.add.at(both, (first, second), 1.0)
+    sizes = both.sum(axis=1, keepdims=True), both.sum(axis=0, keepdims=True)
+    shares = both / np.maximum(sizes[0] + sizes[1] - both, 1.0)
+    mine, theirs = (shares.max(axis=axis, keepdims=True) for axis in (1, 0))
+    return float(((mine * sizes[0]).sum() + (theirs * sizes[1]).sum()) / (2 * len(first)))
 
 
 def _voxels(patches: Supervoxels, regions: NDArray[np.int64]) -> NDArray[np.float64]:

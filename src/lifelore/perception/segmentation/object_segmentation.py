@@ -1,7 +1,6 @@
 """Objects of a cloud without labels: the settings of a segmentation, and the labels that its method gives.
 
-The methods have modules of their own: `convexity_segmentation`, `distance_segmentation`,
-`curvature_segmentation`, `colour_segmentation`.
+The methods have modules of their own: `convexity_segmentation`, `distance_segmentation`, `colour_segmentation`.
 """
 
 from collections.abc import Iterable
@@ -18,7 +17,7 @@ from lifelore.perception.segmentation.outline import over_outline
 from lifelore.perception.segmentation.range_noise import noise
 from lifelore.perception.segmentation.table_evidence import REACH
 
-METHODS = ("convexity", "clusters", "curvature", "colour")
+METHODS = ("convexity", "clusters", "colour")
 TABLE_BAND = 0.010
 """Metres; points no higher than this above the table, and no deeper below it, are the table."""
 TOLERANCE = 0.012
@@ -40,14 +39,14 @@ class SegmentationSettings:
 
     Parameters
     ----------
-    method : {"convexity", "clusters", "curvature", "colour"}
-        Surfaces that meet in creases are cut apart; Euclidean clusters; surfaces are cut at every sharp bend; or
-        the thesis's colour histogram (§2.3.3).
+    method : {"convexity", "clusters", "colour"}
+        Surfaces that meet in creases are cut apart; Euclidean clusters; or the thesis's colour histogram
+        (§2.3.3).
     colours : int
         Clusters of colour under ``"colour"``; the smallest is the background.
     """
 
-    method: Literal["convexity", "clusters", "curvature", "colour"] = "convexity"
+    method: Literal["convexity", "clusters", "colour"] = "convexity"
     colours: int = 3
 
     def __post_init__(self) -> None:
@@ -106,10 +105,6 @@ def _objects(
         from lifelore.perception.segmentation.distance_segmentation import euclidean_clusters
 
         return CutCloud(euclidean_clusters(points, TOLERANCE, MIN_AREA))
-    if settings.method == "curvature":
-        from lifelore.perception.segmentation.curvature_segmentation import smooth_surfaces
-
-        return CutCloud(smooth_surfaces(points, camera, MIN_AREA))
     from lifelore.perception.segmentation.convexity_segmentation import convex_objects
 
     return convex_objects(points, camera, MIN_AREA, seen)

@@ -175,9 +175,10 @@ def _objects(scene: SegmentedScene) -> list[tuple[str, str]]:
 
 def _automatic(n: int, scene: SegmentedScene) -> str:
     doubtful = [label for label, confidence in scene.confidence.items() if confidence < SURE]
+    were_cut = f"{n} object{' was' if n == 1 else 's were'} cut automatically"
     if not scene.confidence:
-        return f"{n} objects were cut automatically; objects that touch may be merged: labels are surer"
+        return f"{were_cut}; objects that touch may be merged: labels are surer"
     if not doubtful:
-        return f"{n} objects were cut automatically, each with a confidence of at least {SURE:g}"
+        return f"{were_cut}, each with a confidence of at least {SURE:g}"
     named = ", ".join(map(str, doubtful))
-    return f"{n} objects were cut automatically; {len(doubtful)} of them with a confidence below {SURE:g}: {named}"
+    return f"{were_cut}; {len(doubtful)} of them with a confidence below {SURE:g}: {named}"

@@ -5,12 +5,16 @@ costs its length and the turn of the normal. So patches end at creases rather th
 """
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.segmentation.surface_voxels import SurfaceVoxels
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,9 +42,25 @@ class Supervoxels:
     borders: NDArray[np.int64]
 
 
-def supervoxels(surface: SurfaceVoxels, spacing: float) -> Supervoxels:
-    """Patches that grow from seeds about `spacing` metres apart."""
-    of_voxel = _grown(surface, spacing)
+def step_costs(surface: SurfaceVoxels, spacing: float) -> "csr_array":
+    """(m, m) cost of a step between neighbouring voxels: its length in `spacing`, and the turn of the normal."""
+    from scipy.sparse import coo_array
+
+    a, b = surface.pairs.T
+    length = np.linalg.norm(surface.points[a] - surface.points[b], axis=1)
+    turn = 1.0 - np.einsum("ij,ij->i", surface.normals[a], surface.normals[b])
+    # A cost of exactly zero would be no edge.
+    cost = length / spacing + np.clip(turn, 0.0, 2.0) + 1e-6
+    m = len(surface.points)
+    return coo_array((np.r_[cost, cost], (np.r_[a, b], np.r_[b, a])), shape=(m, m)).tocsr()
+
+
+def supervoxels(surface: SurfaceVoxels, costs: "csr_array", spacing: float, start: float = 0.0) -> Supervoxels:
+    """Patches that grow from seeds about `spacing` metres apart, on a lattice that begins `start` of it lower.
+
+    `costs` are the `step_costs` of the surface.
+    """
+    of_voxel = _grown(surface, costs, _seeds(surface, spacing, start))
     counts = np.bincount(of_voxel)
     middles = _sums(of_voxel, surface.points) / counts[:, None]
     normals = _sums(of_voxel, surface.normals)
@@ -52,26 +72,22 @@ def supervoxels(surface: SurfaceVoxels, spacing: float) -> Supervoxels:
     return Supervoxels(of_voxel, counts, middles, normals, pairs, borders)
 
 
-def _grown(surface: SurfaceVoxels, spacing: float) -> NDArray[np.int64]:
+def _grown(surface: SurfaceVoxels, costs: "csr_array", seeds: NDArray[np.int64]) -> NDArray[np.int64]:
     """(m,) int64: number of each voxel's patch; surfaces without a seed are patches of their own voxels."""
-    from scipy.sparse import coo_array
     from scipy.sparse.csgraph import dijkstra
 
-    a, b = surface.pairs.T
-    length = np.linalg.norm(surface.points[a] - surface.points[b], axis=1)
-    turn = 1.0 - np.einsum("ij,ij->i", surface.normals[a], surface.normals[b])
-    # A cost of exactly zero would be no edge.
-    cost = length / spacing + np.clip(turn, 0.0, 2.0) + 1e-6
+    _, _, source = dijkstra(costs, indices=seeds, min_only=True, return_predecessors=True)
     m = len(surface.points)
-    graph = coo_array((np.r_[cost, cost], (np.r_[a, b], np.r_[b, a])), shape=(m, m)).tocsr()
-    _, _, source = dijkstra(graph, indices=_seeds(surface, spacing), min_only=True, return_predecessors=True)
-    owner = np.where(source >= 0, source, m + connected_parts(surface.pairs, m))
-    return np.unique(owner, return_inverse=True)[1].reshape(-1).astype(np.int64)
+    owner = source.astype(np.int64)
+    if (owner < 0).any():
+        owner = np.where(owner >= 0, owner, m + connected_parts(surface.pairs, m))
+    used = np.bincount(owner) > 0
+    return (np.cumsum(used) - 1)[owner]
 
 
-def _seeds(surface: SurfaceVoxels, spacing: float) -> NDArray[np.int64]:
+def _seeds(surface: SurfaceVoxels, spacing: float, start: float) -> NDArray[np.int64]:
     """The voxel of each occupied cell of the lattice that is nearest to the mean of the cell's voxels."""
-    cells = np.floor((surface.points - surface.points.min(axis=0)) / spacing).astype(np.int64)
+    cells = np.floor((surface.points - surface.points.min(axis=0)) / spacing + start).astype(np.int64)
     sides = tuple(cells.max(axis=0) + 1)
     _, cell = np.unique(np.ravel_multi_index(tuple(cells.T), sides), return_inverse=True)
     away = surface.points - (_sums(cell, surface.points) / np.bincount(cell)[:, None])[cell]

@@ -14,7 +14,7 @@ from lifelore.perception.clouds.cloud_scale import FAR, unit_hint
 from lifelore.perception.clouds.pixel_camera import camera_from_pixels
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.clouds.voxel import thinned
-from lifelore.perception.segmentation.camera_doubt import camera_doubt
+from lifelore.perception.segmentation.camera_doubt import camera_at_origin, camera_doubt
 from lifelore.perception.segmentation.cut_confidence import CutCloud
 from lifelore.perception.segmentation.object_feet import with_feet
 from lifelore.perception.segmentation.object_segmentation import TABLE_BAND, SegmentationSettings, cut_cloud
@@ -107,7 +107,8 @@ def segmented_scene(
         the frame of the cloud. Under ``up="table"`` and a vector, x is the camera's right seen from above and y
         leads away from it; under ``"z"`` x and y stay. Without a visible table, z = 0 is the lowest point but for
         1 % (a vector), or stays as it is (``"z"``). Where the camera is not given, or its position is impossible
-        (see `camera_doubt`), the pixels of an organised cloud tell it (`pixel_camera`); else it is unknown.
+        (see `camera_doubt`), the pixels of an organised cloud tell it (`pixel_camera`). Where it is not given
+        and has no pixels, it is the origin if the points can be seen from there; else it is unknown.
 
     Raises
     ------
@@ -124,7 +125,7 @@ def segmented_scene(
     cloud = cloud.only(measured)
     points = cloud.points.astype(np.float64)
     given = cloud.camera is not None
-    seen = cloud if given else replace(cloud, camera=camera_from_pixels(cloud))
+    seen = cloud if given else replace(cloud, camera=_likely_camera(points, cloud))
     scene, doubt = _seen_scene(points, seen, up, segmentation)
     if given and doubt is not None:
         seen = replace(cloud, camera=camera_from_pixels(cloud), other_cameras=None)
@@ -133,6 +134,12 @@ def segmented_scene(
         unseen = replace(cloud, camera=None, other_cameras=None)
         scene = _upright_scene(points, unseen, up, segmentation)
     return replace(scene, camera_doubt=doubt if given else None)
+
+
+def _likely_camera(points: NDArray[np.float64], cloud: PointCloud) -> NDArray[np.float64] | None:
+    """Where a camera that is not given must have been, or may have been; None where nothing tells."""
+    found = camera_from_pixels(cloud)
+    return camera_at_origin(points) if found is None else found
 
 
 def _seen_scene(

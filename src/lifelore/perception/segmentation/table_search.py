@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
+from lifelore.perception.segmentation.camera_doubt import is_camera_frame
 from lifelore.perception.segmentation.plane import Plane
 from lifelore.perception.segmentation.surface_patches import (
     OrientedVoxels,
@@ -178,10 +179,7 @@ def _is_likely_up(normal: NDArray[np.float64], voxels: OrientedVoxels, camera: N
 
     A camera looks at a table from above, and rolls little about its axis. Any other frame allows every normal.
     """
-    if camera is None or np.abs(camera).max() > 1e-6:
-        return True
-    x, y, z = voxels.points.T
-    if np.mean((z > 0) & (np.abs(x) < 1.2 * z) & (np.abs(y) < 1.2 * z)) < 0.99:
+    if camera is None or np.abs(camera).max() > 1e-6 or not is_camera_frame(voxels.points):
         return True
     return bool(abs(normal[0]) <= 0.5 and normal[1] <= 0.1 and normal[2] <= 0.1)
 
