@@ -541,6 +541,10 @@ def _print_report(document: dict[str, Any]) -> None:
     for label, name in (("quantiles of outcomes", "outcomes"), ("probabilities of types", "types")):
         if found := document["calibration"][name]:
             print(f"  calibration, {label}: mean distance {found['error']:.3f}, {found['groups']} users")
+    if strangers := document["strangers"]:
+        print(
+            f"  users whom probably no known type fits: {strangers['users']} of {strangers['n']} with an outcome"
+        )
     rows = [row for row in document["policies"] if row["outcome"]]
     if rows:
         print("  each policy in the control group:")

@@ -290,3 +290,20 @@ def test_periods_are_each_compared_by_users_means(where, clock, by, starts):
         assert one["uplift"]["ci95"] == pytest.approx([welch.low, welch.high], abs=1e-6)
         mean = stats.ttest_1samp(control, 0).confidence_interval()
         assert one["control"]["ci95"] == pytest.approx([mean.low, mean.high], abs=1e-6)
+
+
+def test_users_of_no_known_type_are_counted(memory):
+    library = PolicyLibrary.from_means([[8.0, 2.0], [2.0, 8.0]], 1.0, policies=["x", "y"], count=40)
+    study = Study("s", library, dict.fromkeys(library.policies, "active"), control=0.0).keep(memory)
+    assert report(memory, study)["strangers"] is None
+    for user, outcome in (("known", 8.0), ("stranger", 5.0), ("silent", None)):
+        for _ in range(6):
+            made = choose(memory, study, user)
+            if outcome is not None:
+                value = outcome if user == "stranger" or made["policy"] == "x" else 2.0
+                update(memory, study, made["decision"], value)
+    assert report(memory, study)["strangers"] == {"users": 1, "n": 2}
+    exact = PolicyLibrary.from_means([[8.0, 2.0]], 1.0, policies=["x", "y"])
+    alone = Study("alone", exact, study.states, control=0.0).keep(memory)
+    update(memory, alone, choose(memory, alone, "known")["decision"], 8.0)
+    assert report(memory, alone)["strangers"] is None

@@ -83,7 +83,9 @@ def report(
         personal less it (None where the control group never got it); ``incumbent`` is None without one;
         ``split``; ``policies``: in the control group each policy's mean outcome over users, fair where it draws
         at random; ``regret``: what the policy of the largest expectation under the user's last belief would have
-        brought more, for each group, by the library and not measured; ``by_decision``: both groups' mean outcome
+        brought more, for each group, by the library and not measured; ``strangers``: number of ``users`` who are
+        of no known type with a probability above a half, of ``n`` in the sample with an outcome (None where
+        beliefs do not tell: one type, categories, or exact models); ``by_decision``: both groups' mean outcome
         at each decision; ``by_time``: for each period with a decision its start, ``time`` in seconds since 1970,
         ``users``, ``decisions``, and ``personal``, ``control`` and ``uplift`` by the users' mean outcomes in the
         period (None without `by`); ``calibration`` of ``outcomes`` and of ``types``, see `calibration`.
@@ -166,6 +168,7 @@ def _document(
             for policy, state in sorted(study.states.items())
         ],
         "regret": _regret(study, histories, algorithm),
+        "strangers": _strangers(histories, algorithm),
         "by_decision": _by_decision(histories),
         "by_time": by_time,
         "calibration": {"outcomes": of_outcomes, "types": type_probabilities(study, histories)},
@@ -262,6 +265,14 @@ def _regret(study: Study, histories: Sequence[History], algorithm: ReuseAlgorith
                 if own:
                     lost[name].append(float(np.mean(best[row] - expected[row, known])) if known else 0.0)
     return {name: _estimate(values) for name, values in lost.items()}
+
+
+def _strangers(histories: Sequence[History], algorithm: ReuseAlgorithm) -> dict[str, int] | None:
+    """Users of the sample with an outcome who are probably of no known type; None where beliefs do not tell."""
+    ended = [row for row, history in enumerate(histories) if history.ended]
+    if algorithm.unknown is None or not ended:
+        return None
+    return {"users": int((algorithm.unknown.probability(np.array(ended)) > 0.5).sum()), "n": len(ended)}
 
 
 def _by_decision(histories: Sequence[History]) -> list[dict[str, Any]]:

@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from lifelore.agent.personalise.fitting.choice_bias import choice_bias
 from lifelore.agent.personalise.fitting.library_from_log import TypedRows
 from lifelore.agent.personalise.fitting.model_choice import LEAST_USERS
 from lifelore.agent.personalise.log.log import ReuseLog
@@ -101,7 +102,42 @@ def _warnings(document: Mapping[str, Any], log: ReuseLog, model: str) -> list[st
         found.append(
             f"outcomes have two values, which model {model} reads as amounts; --model categorical counts them"
         )
+    context = document["context"]
+    found += _bias(log, contexts=bool(context and context["differ"] and not context["types_of"]))
+    found += _equal_lines(log)
     return found + _spelt_twice("users", log.user.names) + _spelt_twice("policies", log.policy.names)
+
+
+def _bias(log: ReuseLog, *, contexts: bool) -> list[str]:
+    """Whether the choices of the log suited the users, and what to do."""
+    bias = choice_bias(log, contexts=contexts)
+    if bias is None:
+        return []
+    users = f"earlier outcomes of {bias.policy or 'a policy'} were above its mean"
+    if bias.context is not None:
+        users = f"the context is {bias.context}"
+    return [
+        f"the log's choices depend on the user: where {users}, {bias.policy or 'the policy'} was chosen in "
+        f"{100 * bias.share:.0f} % of the lines, else in {100 * bias.others:.0f} %. Mean outcomes are then "
+        "biased, and a wrong policy may look best: give each line the weight 1 / (probability of its choice) by "
+        "--columns weight=NAME, or fit to lines that were chosen at random"
+    ]
+
+
+def _equal_lines(log: ReuseLog) -> list[str]:
+    """How many lines equal another one, where neither a time nor an identifier tells them apart."""
+    lines = np.flatnonzero(
+        [not (time or given) for time, given in zip(log.time.words, log.decision.words, strict=True)]
+    )
+    same = np.zeros(len(lines), np.int64)
+    _, outcomes = np.unique(log.outcomes, return_inverse=True)
+    for codes in (log.user.codes, log.policy.codes, outcomes, log.context.codes, log.type.codes):
+        _, same = np.unique(same * (codes.max() + 1) + codes[lines], return_inverse=True)
+    n = len(lines) - len(np.unique(same))
+    return [
+        f"{n} lines equal an earlier one, and each counts: if an export wrote lines twice, leave them out, or add "
+        "a column time"
+    ] * (n > 0)
 
 
 def _spelt_twice(what: str, names: Sequence[str]) -> list[str]:
