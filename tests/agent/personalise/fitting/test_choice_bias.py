@@ -15,7 +15,7 @@ MEANS = np.array([[7.0, 3.0, 5.0], [3.0, 7.0, 5.0]])
 def simulated(seed, suits=0.0, n_users=300, *, leaves=False):
     """A log of users of two types; `suits` is the share of choices of the type's best policy."""
     random = np.random.default_rng(seed)
-    log = {"user": [], "policy": [], "outcome": [], "context": [], "weight": []}
+    log = {"user": [], "policy": [], "outcome": [], "weight": []}
     for user in range(n_users):
         kind = user % 2
         probs = np.full(3, (1 - suits) / 3)
@@ -23,7 +23,7 @@ def simulated(seed, suits=0.0, n_users=300, *, leaves=False):
         for _ in range(8):
             policy = random.choice(3, p=probs)
             outcome = random.normal(MEANS[kind, policy], 2)
-            line = (f"u{user}", f"p{policy}", outcome, "phone" if kind else "desk", 1 / probs[policy])
+            line = (f"u{user}", f"p{policy}", outcome, 1 / probs[policy])
             for column, value in zip(log.values(), line, strict=True):
                 column.append(value)
             if leaves and outcome < 5 and random.random() < 0.6:
@@ -39,9 +39,8 @@ def test_choices_at_random_are_no_bias(leaves):
 
 def test_choices_that_suited_the_users_are_noticed():
     for seed in range(10):
-        found = choice_bias(read_log(simulated(seed, 0.5)), contexts=False)
+        found = choice_bias(read_log(simulated(seed, 0.5)))
         assert found is not None
-        assert found.context is None
         assert found.share > found.others + 0.1
 
 
@@ -53,16 +52,6 @@ def test_by_hand():
     found = choice_bias(read_log({"user": user, "policy": policy, "outcome": outcome}))
     assert found is not None
     assert (found.policy, found.share, found.others) == ("x", 1.0, 0.0)
-
-
-def test_contexts_are_compared_where_a_user_has_one_line():
-    log = simulated(0, 0.5, 900)
-    first = np.unique(log["user"], return_index=True)[1]
-    log = read_log({name: [values[row] for row in first] for name, values in log.items()})
-    assert choice_bias(log, contexts=False) is None
-    found = choice_bias(log)
-    assert found is not None
-    assert (found.policy, found.context) in {("p0", "desk"), ("p1", "phone"), ("p0", "phone"), ("p1", "desk")}
 
 
 def test_weights_say_that_the_log_is_mended():

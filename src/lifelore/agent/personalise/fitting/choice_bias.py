@@ -7,8 +7,7 @@ the line chose it again. Choices that do not depend on the user give
     z = Σ_u s_u / √(Σ_u s_u²),    s_u = Σ_lines (x − mean x) (c − mean c)
 
 a normal distribution, also where users leave after bad outcomes, and where each user has own shares of policies.
-All policies together are a comparison too, the clearest one where each is chosen a little too often. Contexts are
-compared in the same way, with x = 1 for the users of one.
+All policies together are a comparison too, the clearest one where each is chosen a little too often.
 """
 
 from typing import NamedTuple
@@ -19,7 +18,6 @@ from numpy.typing import NDArray
 from lifelore.agent.personalise.log.log import ReuseLog
 
 Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 CHANCE = 1e-3
 """Probability of a warning where choices do not depend on the user."""
@@ -28,87 +26,63 @@ LEAST_DIFFERENCE = 0.05
 
 
 class ChoiceBias(NamedTuple):
-    """A choice that depends on the user.
+    """How often a policy came again after outcomes of it above its mean, and else.
 
-    policy : that is chosen; None: all policies together
-    context : the one whose users differ from the others; None: users differ by their outcomes of the policy
-    share, others : of lines that chose the policy, among users of the context or with better outcomes, and others
+    policy : None: any
+    share, others : of lines
+    z : of their difference
     """
 
     policy: str | None
-    context: str | None
     share: float
     others: float
+    z: float
 
 
-def choice_bias(log: ReuseLog, *, contexts: bool = True) -> ChoiceBias | None:
+def choice_bias(log: ReuseLog) -> ChoiceBias | None:
     """The largest clear dependence of a choice on the user; None where there is none, or lines have weights.
 
     Parameters
     ----------
     log : ReuseLog
         A user's lines in order of time. Where it names types, outcomes are compared within them.
-    contexts : bool
-        Whether to look at contexts too.
     """
     if log.weights is not None:
         return None
-    users, codes, names = log.user.codes, log.policy.codes, log.policy.names
+    order, names = np.argsort(log.user.codes, kind="stable"), log.policy.names
+    users, codes, outcomes = log.user.codes[order], log.policy.codes[order], log.outcomes[order]
     pair = (log.type_of_user[users] + 1) * len(names) + codes
-    gain = log.outcomes - (np.bincount(pair, log.outcomes) / np.maximum(np.bincount(pair), 1))[pair]
-    order = np.argsort(users, kind="stable")
-    of_context = log.context_of_user[users]
-    again, found = [], []
+    gain = outcomes - (np.bincount(pair, outcomes) / np.maximum(np.bincount(pair), 1))[pair]
+    parts, found = [], []
     for place, policy in enumerate(names):
-        chosen = codes[order] == place
-        x = _mean_before(users[order], chosen, gain[order])
+        x = _mean_before(users, codes == place, gain)
         later = ~np.isnan(x)
         if later.any():
-            again.append(_Lines.of(users[order][later], x[later], chosen[later]))
-            found.append(again[-1].compared(policy))
-        for context in np.unique(of_context[of_context >= 0]).tolist() if contexts else ():
-            lines = _Lines.of(users, (of_context == context).astype(np.float64), codes == place)
-            found.append(lines.compared(policy, log.context.names[context]))
-    if again:
-        found.append(_Lines(*(np.concatenate(column) for column in zip(*again, strict=True))).compared(None))
+            x, chosen = x[later] - x[later].mean(), codes[later] == place
+            share = np.full(len(x), chosen.mean())
+            parts.append((users[later], x / (x.std() or 1.0), chosen - share, share))
+            found.append(_compared(policy, *parts[-1]))
+    if parts:
+        found.append(_compared(None, *(np.concatenate(column) for column in zip(*parts, strict=True))))
     from scipy.stats import norm
 
     least = norm.isf(CHANCE / 2 / max(1, len(found)))
-    clear = [bias for bias, z in found if abs(z) > least and abs(bias.share - bias.others) > LEAST_DIFFERENCE]
+    clear = [one for one in found if abs(one.z) > least and abs(one.share - one.others) > LEAST_DIFFERENCE]
     return max(clear, key=lambda one: abs(one.share - one.others), default=None)
 
 
-class _Lines(NamedTuple):
-    """Lines to compare, (n,) each.
-
-    x : of the user before the line, with mean 0 and deviation 1
-    chosen : 1 or 0, less its mean
-    share : that mean
-    """
-
-    users: Ints
-    x: Array
-    chosen: Array
-    share: Array
-
-    @classmethod
-    def of(cls, users: Ints, x: Array, chosen: NDArray[np.bool_]) -> "_Lines":
-        share = chosen.mean()
-        return cls(users, (x - x.mean()) / (x.std() or 1.0), chosen - share, np.full(len(x), share))
-
-    def compared(self, policy: str | None, context: str | None = None) -> tuple[ChoiceBias, float]:
-        """The shares of lines of either sign of x, and z of their difference."""
-        high, score = self.x > 0, np.bincount(self.users, self.x * self.chosen)
-        if not high.any() or not score.any():
-            return ChoiceBias(policy, context, 0.0, 0.0), 0.0
-        share = self.share.mean()
-        shares = (float(share + self.chosen[side].mean()) for side in (high, ~high))
-        return ChoiceBias(policy, context, *shares), float(score.sum() / np.sqrt((score**2).sum()))
-
-
-def _mean_before(users: Ints, chosen: NDArray[np.bool_], gain: Array) -> Array:
+def _mean_before(users: NDArray[np.int64], chosen: NDArray[np.bool_], gain: Array) -> Array:
     """Mean gain of each user's chosen lines before each line, NaN before the first; users' lines are together."""
     number, total = np.cumsum(chosen) - chosen, np.cumsum(chosen * gain) - chosen * gain
     first = np.searchsorted(users, users)
     number, total = number - number[first], total - total[first]
     return np.where(number > 0, total / np.maximum(number, 1), np.nan)
+
+
+def _compared(policy: str | None, users: NDArray[np.int64], x: Array, chosen: Array, share: Array) -> ChoiceBias:
+    """The comparison of lines with x above 0 and others; x and `chosen` have mean 0, as `share` was taken off."""
+    high, score = x > 0, np.bincount(users, x * chosen)
+    if not high.any() or not score.any():
+        return ChoiceBias(policy, 0.0, 0.0, 0.0)
+    more, less = (float(share.mean() + chosen[side].mean()) for side in (high, ~high))
+    return ChoiceBias(policy, more, less, float(score.sum() / np.sqrt((score**2).sum())))

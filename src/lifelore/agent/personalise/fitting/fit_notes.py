@@ -102,23 +102,17 @@ def _warnings(document: Mapping[str, Any], log: ReuseLog, model: str) -> list[st
         found.append(
             f"outcomes have two values, which model {model} reads as amounts; --model categorical counts them"
         )
-    context = document["context"]
-    found += _bias(log, contexts=bool(context and context["differ"] and not context["types_of"]))
-    found += _equal_lines(log)
+    found += _bias(log) + _equal_lines(log)
     return found + _spelt_twice("users", log.user.names) + _spelt_twice("policies", log.policy.names)
 
 
-def _bias(log: ReuseLog, *, contexts: bool) -> list[str]:
+def _bias(log: ReuseLog) -> list[str]:
     """Whether the choices of the log suited the users, and what to do."""
-    bias = choice_bias(log, contexts=contexts)
-    if bias is None:
+    if (bias := choice_bias(log)) is None:
         return []
-    users = f"earlier outcomes of {bias.policy or 'a policy'} were above its mean"
-    if bias.context is not None:
-        users = f"the context is {bias.context}"
     return [
-        f"the log's choices depend on the user: where {users}, {bias.policy or 'the policy'} was chosen in "
-        f"{100 * bias.share:.0f} % of the lines, else in {100 * bias.others:.0f} %. Mean outcomes are then "
+        f"the log's choices depend on the user: after outcomes of {bias.policy or 'a policy'} above its mean it "
+        f"came again in {100 * bias.share:.0f} % of the lines, else in {100 * bias.others:.0f} %. Means are then "
         "biased, and a wrong policy may look best: give each line the weight 1 / (probability of its choice) by "
         "--columns weight=NAME, or fit to lines that were chosen at random"
     ]
