@@ -499,6 +499,7 @@ def _print_warm(document: dict[str, Any]) -> None:
         ("are decisions in memory and are not counted again", "decisions"),
         *LEFT_OUT,
         ("have a policy that the study does not know; they give no evidence", "unknown_policies"),
+        ("have a time that cannot be read and only tells lines apart (write ISO dates)", "unread_times"),
     )
     if not document["by_time"]:
         print("  lines have no time: equal lines of a user count as often as one log has them (add a column time)")

@@ -125,7 +125,8 @@ def test_a_time_that_is_no_time_tells_lines_apart(memory, study, tmp_path):
     head = "user,policy,outcome,time\n"
     lines = ["w,b0,1,monday", "w,b0,1,tuesday", "w,b0,0,monday"]
     assert warm(written(tmp_path / "w.csv", lines, head), memory, study)["rows"] == 3
-    assert warm(written(tmp_path / "w.csv", ["w,b0,1,wednesday", *lines], head), memory, study)["rows"] == 1
+    document = warm(written(tmp_path / "w.csv", ["w,b0,1,wednesday", "w,b0,1,7", *lines], head), memory, study)
+    assert (document["rows"], document["unread_times"]) == (2, 4)
 
 
 @pytest.mark.parametrize(

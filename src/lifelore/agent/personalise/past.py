@@ -57,8 +57,9 @@ def warm(sources: Any, memory: Memory, study: Study, form: LogFormat | None = No
         ``study``; ``rows`` added, of ``users``; ``known``: rows that are in the past already; ``decisions``:
         rows left out because memory has them as decisions; ``unknown_policies``: rows whose policy the
         library does not know, which give no evidence; ``unknown_types``: types of users that it does not know;
-        ``by_time``: whether every line has a time or an identifier; ``pending``,
-        ``filled_outcomes``, ``filled_policies``, ``without_policy`` (see `ReuseLog`).
+        ``by_time``: whether every line has a time or an identifier; ``unread_times``: rows whose time is no date
+        or number, and only tells lines apart; ``pending``, ``filled_outcomes``, ``filled_policies``,
+        ``without_policy`` (see `ReuseLog`).
 
     Raises
     ------
@@ -66,7 +67,7 @@ def warm(sources: Any, memory: Memory, study: Study, form: LogFormat | None = No
         A log breaks a rule; memory is as it was.
     """
     log = read_log(sources, form)
-    return add_lines(memory, study, lines_of(log)) | log.counts
+    return add_lines(memory, study, lines_of(log)) | {"unread_times": len(unread_times(log))} | log.counts
 
 
 def add_lines(memory: Memory, study: Study, lines: Sequence[Line]) -> dict[str, Any]:
@@ -180,7 +181,7 @@ def lines_of(log: ReuseLog) -> list[Line]:
     lines, seen = [], Counter[tuple[str, str, str]]()
     for row, outcome in enumerate(log.outcomes.tolist()):
         time, identifier = at[times[row]], given[row]
-        if time is None:  # not a time that we can read, but it tells lines apart
+        if time is None:
             # A word that is no time tells lines apart all the same; equal lines by their number.
             which = users[row], policies[row], times[row]
             if not identifier:
@@ -191,6 +192,12 @@ def lines_of(log: ReuseLog) -> list[Line]:
         context, type_ = contexts[row] or None, types[row] or None
         lines.append(Line(users[row], policies[row], outcome, time, identifier, context, features, type_))
     return lines
+
+
+def unread_times(log: ReuseLog) -> list[str]:
+    """The time of each row where it is a word that is no time."""
+    unread = {word for word in log.time.names if parse_time(word) is None}
+    return [word for word in log.time.words if word in unread]
 
 
 def parse_time(word: str) -> int | None:

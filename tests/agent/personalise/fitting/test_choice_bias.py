@@ -72,4 +72,8 @@ def test_fit_says_so(tmp_path):
         assert any(note.startswith(f"{len(log['user'])} lines equal an earlier one") for note in twice["notes"])
         timed = {name: values * 2 for name, values in log.items()} | {"time": list(range(2 * len(log["user"])))}
         timed = fit(timed, memory, FitSettings(types=2, model="gaussian"))
-        assert not any("equal an earlier one" in note for note in timed["notes"])
+        assert not any("equal an earlier one" in note or "cannot be read" in note for note in timed["notes"])
+        days = fit(
+            log | {"time": ["14.11.2023"] * len(log["user"])}, memory, FitSettings(types=2, model="gaussian")
+        )
+        assert sum("such as '14.11.2023'" in note for note in days["notes"]) == 1

@@ -9,6 +9,7 @@ from lifelore.agent.personalise.fitting.choice_bias import choice_bias
 from lifelore.agent.personalise.fitting.library_from_log import TypedRows
 from lifelore.agent.personalise.fitting.model_choice import LEAST_USERS
 from lifelore.agent.personalise.log.log import ReuseLog
+from lifelore.agent.personalise.past import unread_times
 from lifelore.agent.personalise.study import Study
 
 FEW_USERS = 10
@@ -101,6 +102,11 @@ def _warnings(document: Mapping[str, Any], log: ReuseLog, model: str) -> list[st
     if model not in ("auto", "categorical") and len(np.unique(log.outcomes)) == 2:
         found.append(
             f"outcomes have two values, which model {model} reads as amounts; --model categorical counts them"
+        )
+    if words := unread_times(log):
+        found.append(
+            f"the time of {len(words)} lines cannot be read, such as {words[0]!r}, and only tells lines apart: an "
+            "export with other words would count them again; write ISO dates or seconds since 1970"
         )
     found += _bias(log) + _equal_lines(log)
     return found + _spelt_twice("users", log.user.names) + _spelt_twice("policies", log.policy.names)
