@@ -269,3 +269,9 @@ def test_poses_as_csv(tmp_path):
         ]  # fmt: skip
     with pytest.raises(StoreError, match="csv cannot be written"):
         write_poses(tmp_path / "no" / "way.csv", np.empty((0, 3)))
+
+
+@pytest.mark.parametrize("place", [3, None, (1.0,), (1.0, 2.0, 3.0), ("a", "b")])
+def test_a_place_is_a_name_or_two_numbers(place):
+    with pytest.raises(InputError, match="a place must be a name or two numbers"):
+        way(place, LEFT, memory="none.db")

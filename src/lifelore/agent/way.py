@@ -126,13 +126,14 @@ def way(
     """
     if spacing is not None and not (math.isfinite(spacing) and spacing > 0):
         raise InputError(f"spacing must be a positive number of metres, got {spacing}")
+    begin, end = Destination.of(start), Destination.of(goal)
     world = WorldSettings("building", map, cell=cell, robot_radius=robot_radius, seed=seed)
     occupancy = map_from_settings(world)
     with open_memory(memory, read_only=True) as opened:
         place = recognised_place(world, world_from_settings(world, occupancy), occupancy, opened, building)
         record, names = remembered_record(place, opened), NamedPlaces.of(place)
-        begin = names.located("from", Destination.of(start), opened)
-        end = names.located("to", Destination.of(goal), opened)
+        begin = names.located("from", begin, opened)
+        end = names.located("to", end, opened)
         travel = Travel.recalled(place.world, place.grid, opened)
     floor = floor_of(place.occupancy or occupancy, place.world)
     ends = begin.located_point, end.located_point

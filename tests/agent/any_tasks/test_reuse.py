@@ -11,6 +11,7 @@ from lifelore.agent.any_tasks.experience import Experience, TaskNews, TypeExperi
 from lifelore.agent.any_tasks.known_types import KnownTypes
 from lifelore.agent.any_tasks.one_task import SHORT
 from lifelore.agent.any_tasks.reuse import TaskReuse
+from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
 
 
 def sums(*values):
@@ -75,3 +76,27 @@ def test_the_policy_of_the_most_believed_type_runs_unless_it_is_hopeless(experie
     known = replace_types(experience, a=other)
     reuse = TaskReuse(known, KnownTypes(known), np.array([0.6, 0.4]), LongLivedAgent(key="key").settings)
     assert reuse.policy == runs
+
+
+def test_types_known_by_returns_alone_have_no_moves_to_judge():
+    made = Experience("key", 2)
+    for name in ("a", "b"):
+        made.types[name] = TypeExperience(Counter(), Counter(), {name: sums(9.9, 10.1)}, {})
+    made.n_tasks = 2
+    reuse = TaskReuse(made, KnownTypes(made), np.array([0.5, 0.5]), LongLivedAgent(key="key").settings)
+    assert not reuse.alarmed
+
+
+def test_alarms_by_returns_cost_no_more_tasks_where_they_were_often_false(experience, monkeypatch):
+    asked = []
+
+    def calibrate(*args, n_tasks, false_alarm, **settings):
+        asked.append((n_tasks, false_alarm))
+
+    monkeypatch.setattr(NoveltyDetector, "calibrate", calibrate)
+    often = copy(experience)
+    often.alarms = np.array([200.0, 100.0])
+    for false_alarm in (0.05, 0.01, 0.001):
+        settings = LongLivedAgent(key="key", signals="returns", false_alarm=false_alarm).settings
+        TaskReuse(often, KnownTypes(often), np.array([0.5, 0.5]), settings)
+    assert asked == [(3673, pytest.approx(0.05 * 11 / 101)), (8000, 0.0025), (20000, 0.001)]

@@ -3,6 +3,7 @@ import pytest
 from sklearn.gaussian_process import GaussianProcessRegressor
 from sklearn.gaussian_process.kernels import RBF
 
+from lifelore.core.errors import InputError
 from lifelore.interaction.baselines import GPUCB
 
 PLACES = np.random.default_rng(0).random((12, 2))
@@ -58,3 +59,5 @@ def test_from_library(library):
     # The deviation of a covariance of 200,000 draws of values in [0, 1] is below 0.0006.
     assert player.kernel == pytest.approx(drawn, abs=0.003)
     assert GPUCB.from_library(library, kernel=np.eye(4)).kernel.tolist() == np.eye(4).tolist()
+    with pytest.raises(InputError, match="kernel must be 4 × 4 and finite, got 'performance'"):
+        GPUCB.from_library(library, kernel="performance")

@@ -29,6 +29,8 @@ Array = NDArray[np.float64]
 
 MOST_AGAINST = 1.0, 3.0
 """Most nats by which the return of one episode speaks for or against another type."""
+MOST_TASKS = 8000
+"""Most simulated tasks behind an alarm by returns, unless the stated rate itself needs more."""
 SIGNALS = ("moves", "returns")
 """What recognition goes by."""
 
@@ -67,6 +69,8 @@ class TaskReuse:
         if self.by_moves:
             self.alarm = known.moves.alarm(prior, known.frequency, experience.n_tasks, false_alarm, generator)
         else:
+            # A rarer alarm would need more simulated tasks than it is worth.
+            false_alarm = max(false_alarm, min(settings.false_alarm, LEAST_ALARMS / MOST_TASKS))
             n_tasks = max(1000, int(np.ceil(LEAST_ALARMS / false_alarm)))
             self.alarm = NoveltyDetector.calibrate(
                 library, false_alarm=false_alarm, horizon=settings.learning.episode_cap, n_tasks=n_tasks,

@@ -98,7 +98,7 @@ class NoveltyAlarm:
         self.horizon = int(np.clip(round(horizon), 1, min(MOST_CAUSES, len(broad))))
         self._belief = np.log(np.maximum(prior, LEAST))
         self._kinds, self._shares = kinds, shares(apart)
-        self._odds = np.zeros((int(kinds.max()) + 1, len(SHARES)))
+        self._odds = np.zeros((int(kinds.max(initial=0)) + 1, len(SHARES)))
         self._judged: set[int] = set()
         self.alarm, self.score = False, 0.0
         highest = self._simulated(laws, prior, frequency, generator)
@@ -140,4 +140,4 @@ class NoveltyAlarm:
         for kind in range(len(self._odds)):
             own = np.where(self._kinds[order] == kind, terms, 0.0).cumsum(axis=2)
             odds += logsumexp(own, axis=0) - np.log(len(SHARES))
-        return odds.max(axis=1)
+        return odds.max(axis=1, initial=-np.inf)

@@ -100,7 +100,10 @@ class GPUCB(Baseline):
 
 
 def _checked_kernel(kernel: ArrayLike, n_policies: int) -> NDArray[np.float64]:
-    matrix = np.array(kernel, np.float64)
+    try:
+        matrix = np.array(kernel, np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"kernel must be {n_policies} × {n_policies} and finite, got {kernel!r:.60}") from None
     if matrix.shape != (n_policies, n_policies) or not np.isfinite(matrix).all():
         raise InputError(f"kernel must be {n_policies} × {n_policies} and finite, got shape {matrix.shape}")
     if not np.allclose(matrix, matrix.T, rtol=1e-9, atol=1e-12 * np.abs(matrix).max()):

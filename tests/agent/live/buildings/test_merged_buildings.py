@@ -163,3 +163,11 @@ def test_the_real_map_turned_and_cropped(tmp_path):
         assert abs(abs(entry["pose"][2]) - np.radians(3.0)) < np.radians(0.2)
         assert place_on(part, memory).report["name"] == "home"
         assert len(buildings_in(memory)) == 1
+
+
+def test_an_own_building_that_the_other_memory_has_joined_is_reported(tmp_path, merged):
+    with open_memory(tmp_path / "karl.db") as memory:
+        _, report = merge_memories(memory, [merged])
+        assert [one["joined"] for one in report] == [buildings_in(memory)[0]["name"], None]
+        assert report[0]["walls"] > 0.95
+        assert merge_memories(memory, [merged])[1] == []

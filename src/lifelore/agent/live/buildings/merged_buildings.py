@@ -9,7 +9,15 @@ from math import dist
 from pathlib import Path
 from typing import Any
 
-from lifelore.agent.building_record import KIND, VERSION, Building, map_record, remembered_buildings
+from lifelore.agent.building_record import (
+    KIND,
+    MAP_KIND,
+    VERSION,
+    Building,
+    joined_buildings,
+    map_record,
+    remembered_buildings,
+)
 from lifelore.agent.live.buildings.recognition import Recognised, fitting_building, map_of
 from lifelore.agent.live.goals.destinations import NamedPlaces
 from lifelore.domains.buildings.registration import inverse
@@ -29,9 +37,10 @@ def merge_memories(memory: Memory, others: Sequence[str | Path]) -> tuple[list[d
     counts : list of dict
         For each of `others`, as of `Memory.merge_from`.
     buildings : list of dict
-        For each building that comes in: its name ``building``; ``joined``, the name of the building to which it
-        was joined, or None; ``reason`` for that, None if it is the first building; ``walls``, the share of walls
-        that match, and ``pose`` [dx, dy, dyaw] from its frame to that of the other, None where it was not joined;
+        For each building that comes in, and each of the memory's own that one of `others` had joined to another:
+        its name ``building``; ``joined``, the name of the building to which it was joined, or None; ``reason`` for
+        that, None if it is the first building; ``walls``, the share of walls that match, and ``pose``
+        [dx, dy, dyaw] from its frame to that of the other, None where it was not joined;
         ``names`` of places that the two know at different points.
 
     Raises
@@ -47,6 +56,10 @@ def merge_memories(memory: Memory, others: Sequence[str | Path]) -> tuple[list[d
     order = {key: number for number, key in reversed(list(enumerate(own + incoming)))}
     found = sorted(remembered_buildings(memory), key=lambda one: order.get(one.key, -1))
     maps, report = {one: map_of(one, memory) for one in found if one.key in own}, []
+    for key, joined in joined_buildings(memory).items():
+        if key in own and (record := memory.recall(MAP_KIND, key, VERSION)):
+            to = Recognised(joined.home, joined.pose, record.about["walls"])
+            report.append(_entry(joined.building, to, None, memory))
     for one in found:
         if one not in maps:
             occupancy = map_of(one, memory)

@@ -62,7 +62,13 @@ class Destination:
         """A destination as it is, a name, or a point of any two numbers."""
         if isinstance(place, Destination):
             return place
-        return cls(name=place) if isinstance(place, str) else cls((float(place[0]), float(place[1])))
+        if isinstance(place, str):
+            return cls(name=place)
+        try:
+            x, y = map(float, place)
+        except (TypeError, ValueError):
+            raise InputError(f"a place must be a name or two numbers, got {place!r:.60}") from None
+        return cls((x, y))
 
     @property
     def located_point(self) -> Point:
