@@ -206,7 +206,7 @@ def test_a_claim_from_the_command_line(name, as_json, ask, tmp_path):
         assert f": {result['verdict']}; a small run, no evidence" in words
         shown = re.findall(r"^  ([✓½✗–]{3}) ", said.out, flags=re.M)
         assert shown == ["".join(marks) for marks in result["marks"].values()]
-        assert said.out.endswith("results/C3.1/figure.png\n\n")
+        assert "results/C3.1/figure.png\n" in said.out
 
 
 @pytest.mark.parametrize("arguments", [[], ["3.7", "--full"], ["--list"]], ids=" ".join)

@@ -40,7 +40,7 @@ RESAMPLES = 1000
 """Resamples of an interval; more costs time, not accuracy."""
 SIGNS = ("spread at the end", "mean spread", "alarm")
 """Signs of a new type in a task: entropy of the belief in the known types after the task, its mean over the task's
-decisions, and the largest log odds of an unknown type."""
+decisions, and the largest score of the detector."""
 
 
 def cells(settings: Mapping) -> list[dict]:

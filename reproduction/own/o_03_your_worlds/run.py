@@ -87,3 +87,8 @@ def _certainly_below(results: Sequence[Mapping], world: str, key: str) -> bool:
 def _number(found: Sequence[bool]) -> Estimate:
     """How many worlds; a count has no interval."""
     return Estimate(float(sum(found)), float(sum(found)), None, len(found))
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Returns of each life, by world and agent."""
+    return [dict(result) for result in results]

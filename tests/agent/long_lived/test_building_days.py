@@ -135,7 +135,7 @@ def test_types_are_told_apart_by_regions_alone():
     counts = effect_counts(RING, [(1, REFUSED), (RING.n_cells, REFUSED)])
     known = KnownTypes.joined(RING, ["a"], counts.counts(range(RING.n_causes))[None])
     assert known.judged.tolist() == [RING.n_cells]
-    assert known.telling.n_causes == 1
+    assert known.library(np.ones(1)).n_policies == 1
 
 
 def test_the_day_is_not_read():

@@ -18,7 +18,7 @@ def test_a_cause_tells_of_the_type_once_and_is_counted_each_time():
     for number in range(20):
         two.learn(live_task(two, *family.meet(number, FULL), FULL, f"r.{number}", n_episodes=4)[1])
     assert len(two.known_types()) == 2
-    recognition = Recognition(two, np.array([0.6, 0.4]), 0.05, 0)
+    recognition = Recognition(two, np.array([0.6, 0.4]), 0.05, 0.05, 0)
     assert recognition.belief == pytest.approx([0.95 * 0.6, 0.95 * 0.4, 0.05])
     recognition.observe(((0, 0),))
     belief = recognition.belief

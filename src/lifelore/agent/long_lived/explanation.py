@@ -92,9 +92,7 @@ def explained(document: dict[str, Any]) -> list[str]:
             )
     fitted = "no known type fitted" if document["alarm"] else "known types were not ruled out"
     taught = "it became the new type" if document["new_type"] else "it taught most to"
-    lines.append(
-        f"  {fitted} (log odds of another type up to {document['alarm_score']:.1f}); {taught} {document['learnt']}"
-    )
+    lines.append(f"  {fitted} (surprise {document['alarm_score']:.1f} deviations); {taught} {document['learnt']}")
     return lines
 
 

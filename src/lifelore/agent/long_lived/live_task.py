@@ -26,6 +26,9 @@ from lifelore.domains.task_stream import DrawnTask
 
 Array = NDArray[np.float64]
 
+UNKNOWN = 0.05
+"""Prior probability that no known type fits."""
+
 
 def live_task(
     knowledge: Knowledge,
@@ -68,7 +71,7 @@ def live_task(
     lived.prior = np.full(len(known), 1 / max(len(known), 1))
     if abilities.prior and len(known):
         lived.prior = knowledge.sightings().type_prior().prior(drawn.context, drawn.number)
-    recognition = Recognition(knowledge, lived.prior, false_alarm, seed)
+    recognition = Recognition(knowledge, lived.prior, false_alarm, UNKNOWN, seed)
     shared.guided = abilities.prior
 
     # Act: perceive, reuse the behaviours of the known types, and let every effect tell more of the type.

@@ -51,7 +51,7 @@ class TaskLog:
     alarm : bool
         Whether no known type fitted.
     alarm_score : float
-        Largest log odds of an unknown type.
+        Largest score of the detector, in deviations of known tasks.
     learnt : str
         Name of the type that learnt most from the task.
     """

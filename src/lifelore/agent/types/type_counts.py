@@ -126,13 +126,6 @@ class TypeCounts:
         q = self.apart[causes, None]
         return (1 - q) * alike / alike.sum(axis=1, keepdims=True) + q * each / each.sum(axis=2, keepdims=True)
 
-    def drawn_laws(self, generator: np.random.Generator) -> Array:
-        """Laws drawn from what the counts leave possible, (n_types, n_causes, n_effects)."""
-        each, alike = self.counts + self.own_base, self.pooled + self.base
-        drawn = np.where(generator.random(self.n_causes)[:, None] < self.apart[:, None], each, alike)
-        drawn = generator.standard_gamma(drawn) + 1e-12 * drawn
-        return drawn / drawn.sum(axis=2, keepdims=True)
-
     # ---- types that are one, or another -----------------------------------------------------------------
 
     def alarm(

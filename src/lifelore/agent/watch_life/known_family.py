@@ -82,11 +82,11 @@ def _contexts(knowledge: Knowledge) -> list[dict[str, Any]]:
 def _telling(knowledge: Knowledge) -> dict[str, list[str]]:
     """Lines about the causes in which a type differs most from what all types have in common."""
     known, family = knowledge.known_types(), knowledge.family
-    judged, usual = known.judged, known.telling.pooled + known.telling.base
-    usual = usual / usual.sum(axis=1, keepdims=True)
+    laws = known.laws(np.zeros((family.n_causes, family.n_effects)))[:-1]
+    judged = known.judged
     lines = {}
-    for one, law in zip(known.types, known.all.laws[:-1], strict=True):
-        apart = np.abs(law[judged] - usual).max(axis=1, initial=0.0)
+    for one, law in zip(known.types, laws, strict=True):
+        apart = np.abs(law[judged] - known.pooled[judged]).max(axis=1, initial=0.0)
         most = judged[np.argsort(-apart, kind="stable")[:TELLING_CAUSES]]
         lines[one.name] = [
             f"{family.cause_name(cause)}: {family.effect_name(cause, effect)} ({100 * law[cause, effect]:.0f} %)"
