@@ -55,12 +55,15 @@ def choice_bias(log: ReuseLog) -> ChoiceBias | None:
     gain = outcomes - (np.bincount(pair, outcomes) / np.maximum(np.bincount(pair), 1))[pair]
     parts, found = [], []
     for place, policy in enumerate(names):
-        x = _mean_before(users, codes == place, gain)
-        later = ~np.isnan(x)
-        if later.any():
-            x, chosen = x[later] - x[later].mean(), codes[later] == place
+        who = np.zeros(len(log.user.names), np.bool_)
+        who[users[codes == place]] = True
+        rows = np.flatnonzero(who[users])  # of many policies, a user has few
+        x = _mean_before(users[rows], codes[rows] == place, gain[rows])
+        rows, x = rows[~np.isnan(x)], x[~np.isnan(x)]
+        if len(rows):
+            x, chosen = x - x.mean(), codes[rows] == place
             share = np.full(len(x), chosen.mean())
-            parts.append((users[later], x / (x.std() or 1.0), chosen - share, share))
+            parts.append((users[rows], x / (x.std() or 1.0), chosen - share, share))
             found.append(_compared(policy, *parts[-1]))
     if parts:
         found.append(_compared(None, *(np.concatenate(column) for column in zip(*parts, strict=True))))
