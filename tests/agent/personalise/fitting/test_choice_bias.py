@@ -37,6 +37,17 @@ def test_choices_at_random_are_no_bias(leaves):
     assert sum(choice_bias(read_log(simulated(seed, leaves=leaves))) is not None for seed in range(40)) <= 1
 
 
+def test_a_policy_that_gets_better_and_more_frequent_is_no_bias():
+    random = np.random.default_rng(0)
+    lines = []
+    for when in np.linspace(0, 1, 20):
+        chosen = random.random(200) < 0.25 + 0.6 * when
+        outcomes = random.normal(2 * when * chosen)
+        lines += [(f"u{user}", "xy"[first], outcomes[user]) for user, first in enumerate(chosen.tolist())]
+    user, policy, outcome = zip(*lines, strict=True)
+    assert choice_bias(read_log({"user": user, "policy": policy, "outcome": outcome})) is None
+
+
 def test_choices_that_suited_the_users_are_noticed():
     for seed in range(10):
         found = choice_bias(read_log(simulated(seed, 0.5)))

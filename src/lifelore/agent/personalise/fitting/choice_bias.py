@@ -7,10 +7,11 @@ the line chose it again. Choices that do not depend on the user give
     z = Σ_u s_u / √(Σ_u s_u²),    s_u = Σ_lines (x − mean x) (c − mean c)
 
 a normal distribution, also where users leave after bad outcomes, and where each user has own shares of policies.
+Means are those of the users' lines of the same number, since shares and outcomes may both change in time.
 All policies together are a comparison too, the clearest one where each is chosen a little too often.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,15 +53,19 @@ def choice_bias(log: ReuseLog) -> ChoiceBias | None:
     order, names = np.argsort(log.user.codes, kind="stable"), log.policy.names
     users, codes, outcomes = log.user.codes[order], log.policy.codes[order], log.outcomes[order]
     pair = (log.type_of_user[users] + 1) * len(names) + codes
+    number = np.arange(len(users)) - np.searchsorted(users, users)
     gain = outcomes - (np.bincount(pair, outcomes) / np.maximum(np.bincount(pair), 1))[pair]
     parts, found = [], []
     for place, policy in enumerate(names):
-        x = _mean_before(users, codes == place, gain)
-        later = ~np.isnan(x)
-        if later.any():
-            x, chosen = x[later] - x[later].mean(), codes[later] == place
-            share = np.full(len(x), chosen.mean())
-            parts.append((users[later], x / (x.std() or 1.0), chosen - share, share))
+        who = np.zeros(len(log.user.names), np.bool_)
+        who[users[codes == place]] = True
+        rows = np.flatnonzero(who[users])  # of many policies, a user has few
+        x = _mean_before(users[rows], codes[rows] == place, gain[rows])
+        rows, x = rows[~np.isnan(x)], x[~np.isnan(x)]
+        if len(rows):
+            x, share = x - _means(number[rows], x), _means(number[rows], codes[rows] == place)
+            chosen = codes[rows] == place
+            parts.append((users[rows], x / (x.std() or 1.0), chosen - share, share))
             found.append(_compared(policy, *parts[-1]))
     if parts:
         found.append(_compared(None, *(np.concatenate(column) for column in zip(*parts, strict=True))))
@@ -77,6 +82,11 @@ def _mean_before(users: NDArray[np.int64], chosen: NDArray[np.bool_], gain: Arra
     first = np.searchsorted(users, users)
     number, total = number - number[first], total - total[first]
     return np.where(number > 0, total / np.maximum(number, 1), np.nan)
+
+
+def _means(groups: NDArray[np.int64], values: NDArray[Any]) -> Array:
+    """(n,) mean of the values of each one's group."""
+    return (np.bincount(groups, values) / np.maximum(np.bincount(groups), 1))[groups]
 
 
 def _compared(policy: str | None, users: NDArray[np.int64], x: Array, chosen: Array, share: Array) -> ChoiceBias:
