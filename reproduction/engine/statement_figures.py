@@ -28,7 +28,7 @@ def draw_numbers(claim: Claim, result: Mapping) -> Figure:
             axes.plot(number["value"], 0, "o", color=colour, ms=6)
         _draw_bound(axes, statement)
         axes.set(ylim=(-1, 1), yticks=[])
-        axes.set_title(f"{statement.says}: {number_in_words(number)}", loc="left", fontsize=9)
+        axes.set_title(f"{_plain(statement.says)}: {number_in_words(number)}", loc="left", fontsize=9)
     _draw_legend(figure)
     return figure
 
@@ -48,6 +48,11 @@ def draw_readings(claim: Claim, result: Mapping) -> Figure:
     _draw_legend(figure, default=True)
     figure.suptitle(f"{claim.id}: every reading of the choices left open, a dot each", x=0.01, ha="left")
     return figure
+
+
+def _plain(says: str) -> str:
+    """A statement without the marks of emphasis that its page has."""
+    return says.replace("*", "")
 
 
 def _draw_legend(figure: Figure, default: bool = False) -> None:
@@ -108,7 +113,7 @@ def _draw_strip(
     _draw_bound(axes, statement)
     axes.set(ylim=(len(rows) - 0.5, -0.5), yticks=range(len(rows)), yticklabels=rows, ylabel=key.replace("_", " "))
     share = sum(statement.mark(reading) == YES for reading in readings)
-    axes.set_title(f"{statement.says}: {share} of {len(readings)}", loc="left", fontsize=9)
+    axes.set_title(f"{_plain(statement.says)}: {share} of {len(readings)}", loc="left", fontsize=9)
     values = np.array(
         [r[statement.measure]["value"] for r in readings if r[statement.measure]["value"] is not None]
     )
