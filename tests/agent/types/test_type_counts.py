@@ -35,11 +35,3 @@ def test_a_type_that_has_shown_nothing_is_as_others_where_these_agree():
     laws = of((8, 0), rows, (0, 0)).laws[2]
     assert laws[:3, 0].min() > 0.75 > laws[3:, 0].max()
     assert laws[3:] == pytest.approx(np.full((3, 2), 0.5), abs=0.1)
-
-
-def test_drawn_laws_have_the_mean_of_the_laws():
-    known = of((8, 0), (2, 6))
-    generator = np.random.default_rng(0)
-    drawn = np.mean([known.drawn_laws(generator) for _ in range(2000)], axis=0)
-    # The deviation of a drawn probability is at most 1/2: that of the mean of 2000 at most 0.012.
-    assert drawn == pytest.approx(known.laws, abs=0.05)
