@@ -10,32 +10,30 @@ MOSTLY_NEW = 0.95
 LEAST_MOVES = 200
 """Moves of a task below which new states say nothing: each first episode has new ones."""
 HARDLY_REPEAT = 0.9
-"""Share of a task's moves that begin in a state not met before, from which nothing is learnt of a state."""
+"""Share of a task's moves that begin in a state, or pay a reward, not met before, from which nothing is learnt."""
 LEAST_REWARDS = 30
 """Moves of a task below which new rewards say nothing."""
 
 
 def new_states(world: str, states: Sequence[int]) -> list[str]:
     """A sentence if the states in which a task's moves began hardly repeat, else none."""
-    share = len(set(states)) / len(states) if len(states) >= LEAST_MOVES else 0.0
-    if share < HARDLY_REPEAT:
-        return []
-    return [
-        f"Of {len(states):,} moves in a task of {world}, {share:.0%} began in a state that the task had not met "
-        "before, so hardly anything can be learnt. Pass state= to bin continuous observations."
-    ]
+    says = "began in a state that the task had not met before, so hardly anything can be learnt. "
+    return _hardly_repeat(world, states, LEAST_MOVES, says + "Pass state= to bin continuous observations.")
 
 
 def new_rewards(world: str, rewards: Sequence[float]) -> list[str]:
     """A sentence if the rewards of a task's moves hardly repeat, else none."""
-    share = len(set(rewards)) / len(rewards) if len(rewards) >= LEAST_REWARDS else 0.0
-    if share < HARDLY_REPEAT:
-        return []
-    return [
-        f"Of {len(rewards):,} moves in a task of {world}, {share:.0%} paid a reward that no move had paid before, "
-        "so known types look new. Round noisy rewards with gymnasium.wrappers.TransformReward, or pass "
-        'signals="returns".'
-    ]
+    says = (
+        "paid a reward that no move had paid before, so known types look new. Round noisy rewards with "
+        'gymnasium.wrappers.TransformReward, or pass signals="returns".'
+    )
+    return _hardly_repeat(world, rewards, LEAST_REWARDS, says)
+
+
+def _hardly_repeat(world: str, values: Sequence[float], least: int, says: str) -> list[str]:
+    """A sentence if at least `least` values of a task's moves hardly repeat, else none."""
+    share = len(set(values)) / len(values) if len(values) >= least else 0.0
+    return [f"Of {len(values):,} moves in a task of {world}, {share:.0%} {says}"] if share >= HARDLY_REPEAT else []
 
 
 class ContextNovelty:

@@ -50,7 +50,7 @@ class BayesianPolicyReuse:
         Not copied. With plug-in models the agent uses what the library's models learn in place; with uncertain
         models it reads them once, at its start.
     rule : SelectionRule or str, optional
-        A rule or its name; by default `InformationDirected`, or `ExpectedImprovement` where the signals have no
+        A rule or its name; by default `InformationDirected`, or `Greedy` where the signals have no
         table.
     prior : (n_types,) float, optional
         At least 0, sums to 1 to 1e-9; the library's prior by default.
