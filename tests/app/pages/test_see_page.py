@@ -149,7 +149,7 @@ def test_a_range_and_a_box_cut_the_cloud(address: str, open_page: Opened):
     page.get_by_label("Only in the box").fill("")
     page.get_by_label("Only in the box").press("Enter")
     shown(page, "6 objects")
-    # The labelled table of the crowded scene is not level under z: only once the next cloud is shown may z be asked.
+    # Under z the labelled table of the crowded scene is refused: first the next cloud has to be shown.
     plain = perceive(str(EXAMPLES / "without_labels.pcd"))
     assert len(plain["objects"]) != 6
     page.select_option("#example", "without_labels")
