@@ -15,7 +15,6 @@ import pytest
 
 from lifelore import ActionPrior, LongLivedAgent, compare_agents, open_memory
 from lifelore.agent.any_tasks.experience import Experience, TaskNews
-from lifelore.agent.any_tasks.one_task import SETTLED
 from lifelore.agent.any_tasks.reuse import TaskReuse
 from lifelore.agent.external_world.context_labels import ContextLabels
 from lifelore.agent.life.loop import Stopped
@@ -106,7 +105,7 @@ def test_an_alarm_in_a_task_that_a_known_type_explains_adds_no_type(monkeypatch)
     assert result.type == found[-1][1].type
 
 
-def test_a_settled_policy_is_explored_again_in_states_that_it_does_not_know():
+def test_a_policy_is_explored_ever_more_rarely_and_again_in_states_that_it_does_not_know():
     """In the second wing it earns as much as it promises, and the other action pays more."""
 
     class Wing(gymnasium.Env):
@@ -128,11 +127,12 @@ def test_a_settled_policy_is_explored_again_in_states_that_it_does_not_know():
 
     agent = LongLivedAgent(key="wings", state=lambda seen: tuple(seen.tolist()), features=lambda seen: 0)
     agent.live(Wing(0))
-    agent._experience.types["robot.0"].idle = SETTLED
+    assert set(agent.live(Wing(0)).policies) == {"robot.0", "learner"}
+    agent._experience.types["robot.0"].rounds["robot.0"] = 10**6
     assert set(agent.live(Wing(0)).policies) == {"robot.0"}
     result = agent.live(Wing(1))
-    assert result.policies[0] == "robot.0"
-    assert result.policies[-1] == "learner"
+    assert result.policies[:2] == ["robot.0", "learner"]
+    assert result.returns[-1] > result.returns[0]
 
 
 # ---- memory ----------------------------------------------------------------------------------------------
