@@ -105,7 +105,7 @@ def test_an_alarm_in_a_task_that_a_known_type_explains_adds_no_type(monkeypatch)
     assert result.type == found[-1][1].type
 
 
-def test_a_policy_is_explored_ever_more_rarely_and_again_in_states_that_it_does_not_know():
+def test_a_policy_is_explored_ever_more_rarely_and_again_in_states_that_it_does_not_know(monkeypatch):
     """In the second wing it earns as much as it promises, and the other action pays more."""
 
     class Wing(gymnasium.Env):
@@ -128,6 +128,8 @@ def test_a_policy_is_explored_ever_more_rarely_and_again_in_states_that_it_does_
     agent = LongLivedAgent(key="wings", state=lambda seen: tuple(seen.tolist()), features=lambda seen: 0)
     agent.live(Wing(0))
     assert set(agent.live(Wing(0)).policies) == {"robot.0", "learner"}
+    # The only policy of a life is the best and the worst that it has seen.
+    monkeypatch.setattr(Experience, "is_hopeless", lambda self, name: False)
     agent._experience.types["robot.0"].rounds["robot.0"] = 10**6
     assert set(agent.live(Wing(0)).policies) == {"robot.0"}
     result = agent.live(Wing(1))
@@ -380,10 +382,15 @@ def test_returns_alone_tell_types_apart_too():
             return self.np_random.random(1), reward, True, False, {}
 
     settings = {"key": "arms", "state": lambda seen: 0, "signals": "returns", "episodes": 20}
-    agent = LongLivedAgent(**settings)
-    results = [agent.live(Paid(arm)) for arm in (0, 1, 0, 1, 0, 1)]
-    assert 2 <= len(agent.types) <= 3  # a type that was met while it was hardly known may stay as two
-    assert np.mean([np.mean(result.returns[3:]) for result in results[2:]]) > 8
+    found = []
+    for seed in range(6):
+        agent = LongLivedAgent(**settings, seed=seed)
+        results = [agent.live(Paid(arm)) for arm in (0, 1, 0, 1, 0, 1)]
+        found.append(len(agent.types))
+        assert np.mean([np.mean(result.returns[3:]) for result in results[2:]]) > 8
+    assert min(found) == 2
+    # Each of 24 tasks of known types adds one by a false alarm at 5 %: more than 4 in 0.6 % of such tests.
+    assert sum(found) - 2 * len(found) <= 4
 
 
 # ---- mistakes --------------------------------------------------------------------------------------------

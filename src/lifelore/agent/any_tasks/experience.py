@@ -127,7 +127,7 @@ class Experience:
         return tuple(name for name in sorted(self.types) if self.types[name].policy is not None)
 
     def is_hopeless(self, name: str) -> bool:
-        """Whether the policy of a type earns about the least of the returns of this life, where they differ."""
+        """Whether the policy of a type earns about the least that this life has seen: nothing can be lost."""
         means = {
             (type_, policy): sums[1] / sums[0]
             for type_, one in self.types.items()
@@ -135,7 +135,7 @@ class Experience:
             if sums[0] > 0
         }
         low, high = min(means.values(), default=0.0), max(means.values(), default=0.0)
-        return low < high and means.get((name, name), low) <= low + HOPELESS * (high - low)
+        return means.get((name, name), low) <= low + HOPELESS * (high - low)
 
     def alarm_level(self, stated: float) -> float:
         """The level at which alarms in tasks of known types are as frequent as stated, by how often they were.

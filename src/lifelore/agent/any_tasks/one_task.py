@@ -86,7 +86,7 @@ class OneTask:
         self.players: dict[str, Player] = {}  # policies that ran; each learns from the moves that it makes
         self.learner: Player | None = None  # explores in episodes that are worth it
         self.exploring = False
-        self.draw = float(self.generator.random())  # decides whether the user's learner goes on with a policy
+        self.draw: float | None = None  # decides whether a known policy is explored
         self.goes_on_with: str | None = None  # whose policy the learner goes on with
         self.steps: list[Step] = []
         self.ran: dict[str, list[float]] = {}  # returns of policies that ran from begin to end of an episode
@@ -200,8 +200,9 @@ class OneTask:
             return False
         strange = self.strange > STRANGE * max(len(self.steps), 1)
         n_tasks = 1 + self.experience.types[own].rounds.get(own, 0)
-        draw = self.draw if taught else self.generator.random()
-        return strange or self.experience.is_hopeless(own) or draw < 1 / (n_tasks + 1)
+        if self.draw is None or not taught:  # the user's learner is asked once a task
+            self.draw = float(self.generator.random())
+        return strange or self.experience.is_hopeless(own) or self.draw < 1 / (n_tasks + 1)
 
     def begin_learning(self) -> None:
         """Explore from here on: the policy that still improves, or one of its own from the policy in reuse."""
