@@ -303,7 +303,8 @@ class OneTask:
             news = news._replace(alarm=self.alarmed)
         if not belief or own is None:
             return news
-        if self.learner is not None and (result.new or self.goes_on_with == own or self.gained_on(own)):
+        # A learner that began elsewhere does not replace a known policy: its few returns may be luck.
+        if self.learner is not None and (result.new or self.goes_on_with == own):
             return self.with_learnt(news, own)
         if own in self.players:
             return news._replace(learner=own, policy=self.players[own].policy())
@@ -313,11 +314,6 @@ class OneTask:
         """Returns of the learner's episodes."""
         result = self.result
         return [value for value, by in zip(result.returns, result.policies, strict=True) if by == LEARNER]
-
-    def gained_on(self, own: str) -> bool:
-        """Whether the learner has come above what the policy of a type has earned on it before."""
-        known = self.experience.types.get(own)
-        return gained(last_half(self.learnt()), None if known is None else known.returns.get(own))
 
     def with_learnt(self, news: TaskNews, own: str) -> TaskNews:
         """What a task has taught in which the policy of a type, `own`, was learnt."""
@@ -345,17 +341,3 @@ def episode_seed(seed: int, task: int, episode: int) -> int:
 def last_half(returns: Sequence[float]) -> Sequence[float]:
     """The second half of returns."""
     return returns[len(returns) // 2 :]
-
-
-def gained(late: Sequence[float], before: Any) -> bool:
-    """Whether last returns are above those of a policy before, by more than the error of their mean.
-
-    Parameters
-    ----------
-    late : sequence of float
-    before : (3,) float64, optional
-        Number, sum and sum of squares of the returns before.
-    """
-    if before is None or not before[0] or len(late) < 2:
-        return len(late) > 0
-    return float(np.mean(late)) - before[1] / before[0] > float(np.std(late, ddof=1)) / np.sqrt(len(late))
