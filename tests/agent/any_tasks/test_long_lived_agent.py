@@ -96,13 +96,19 @@ def test_ablations_keep_what_they_lack():
         assert life(2, learner=learner)[1][0][1].new
 
 
-def test_an_alarm_in_a_task_that_a_known_type_explains_adds_no_type(monkeypatch):
+def test_an_alarm_in_a_task_that_a_known_type_explains_adds_no_type_and_replaces_no_policy(monkeypatch):
+    """Whatever the learner earned that began elsewhere: here it is said to have earned a thousand."""
     agent, found = life(2)
+    known = found[-1][1].type
+    before = {state: row.copy() for state, row in agent._experience.types[known].policy.items()}
     monkeypatch.setattr(TaskReuse, "alarmed", property(lambda self: True))
+    monkeypatch.setattr("lifelore.agent.any_tasks.one_task.discounted", lambda steps, discount: 1000.0)
     result = agent.live(WindyGrid(found[-1][0]))
     assert result.alarm
     assert not result.new
-    assert result.type == found[-1][1].type
+    assert result.type == known
+    after = agent._experience.types[known].policy
+    assert all(np.array_equal(after[state], row) for state, row in before.items())
 
 
 def test_a_policy_is_explored_ever_more_rarely_and_again_in_states_that_it_does_not_know(monkeypatch):
