@@ -15,7 +15,6 @@ import pytest
 
 from lifelore import ActionPrior, LongLivedAgent, compare_agents, open_memory
 from lifelore.agent.any_tasks.experience import Experience, TaskNews
-from lifelore.agent.any_tasks.one_task import SETTLED
 from lifelore.agent.any_tasks.reuse import TaskReuse
 from lifelore.agent.external_world.context_labels import ContextLabels
 from lifelore.agent.life.loop import Stopped
@@ -97,16 +96,22 @@ def test_ablations_keep_what_they_lack():
         assert life(2, learner=learner)[1][0][1].new
 
 
-def test_an_alarm_in_a_task_that_a_known_type_explains_adds_no_type(monkeypatch):
+def test_an_alarm_in_a_task_that_a_known_type_explains_adds_no_type_and_replaces_no_policy(monkeypatch):
+    """Whatever the learner earned that began elsewhere: here it is said to have earned a thousand."""
     agent, found = life(2)
+    known = found[-1][1].type
+    before = {state: row.copy() for state, row in agent._experience.types[known].policy.items()}
     monkeypatch.setattr(TaskReuse, "alarmed", property(lambda self: True))
+    monkeypatch.setattr("lifelore.agent.any_tasks.one_task.discounted", lambda steps, discount: 1000.0)
     result = agent.live(WindyGrid(found[-1][0]))
     assert result.alarm
     assert not result.new
-    assert result.type == found[-1][1].type
+    assert result.type == known
+    after = agent._experience.types[known].policy
+    assert all(np.array_equal(after[state], row) for state, row in before.items())
 
 
-def test_a_settled_policy_is_explored_again_in_states_that_it_does_not_know():
+def test_a_policy_is_explored_ever_more_rarely_and_again_in_states_that_it_does_not_know(monkeypatch):
     """In the second wing it earns as much as it promises, and the other action pays more."""
 
     class Wing(gymnasium.Env):
@@ -128,11 +133,14 @@ def test_a_settled_policy_is_explored_again_in_states_that_it_does_not_know():
 
     agent = LongLivedAgent(key="wings", state=lambda seen: tuple(seen.tolist()), features=lambda seen: 0)
     agent.live(Wing(0))
-    agent._experience.types["robot.0"].idle = SETTLED
+    assert set(agent.live(Wing(0)).policies) == {"robot.0", "learner"}
+    # The only policy of a life is the best and the worst that it has seen.
+    monkeypatch.setattr(Experience, "is_hopeless", lambda self, name: False)
+    agent._experience.types["robot.0"].rounds["robot.0"] = 10**6
     assert set(agent.live(Wing(0)).policies) == {"robot.0"}
     result = agent.live(Wing(1))
-    assert result.policies[0] == "robot.0"
-    assert result.policies[-1] == "learner"
+    assert result.policies[:2] == ["robot.0", "learner"]
+    assert result.returns[-1] > result.returns[0]
 
 
 # ---- memory ----------------------------------------------------------------------------------------------
@@ -380,10 +388,15 @@ def test_returns_alone_tell_types_apart_too():
             return self.np_random.random(1), reward, True, False, {}
 
     settings = {"key": "arms", "state": lambda seen: 0, "signals": "returns", "episodes": 20}
-    agent = LongLivedAgent(**settings)
-    results = [agent.live(Paid(arm)) for arm in (0, 1, 0, 1, 0, 1)]
-    assert 2 <= len(agent.types) <= 3  # a type that was met while it was hardly known may stay as two
-    assert np.mean([np.mean(result.returns[3:]) for result in results[2:]]) > 8
+    found = []
+    for seed in range(6):
+        agent = LongLivedAgent(**settings, seed=seed)
+        results = [agent.live(Paid(arm)) for arm in (0, 1, 0, 1, 0, 1)]
+        found.append(len(agent.types))
+        assert np.mean([np.mean(result.returns[3:]) for result in results[2:]]) > 8
+    assert min(found) == 2
+    # Each of 24 tasks of known types adds one by a false alarm at 5 %: more than 4 in 0.6 % of such tests.
+    assert sum(found) - 2 * len(found) <= 4
 
 
 # ---- mistakes --------------------------------------------------------------------------------------------

@@ -5,7 +5,7 @@ that nothing tells apart are joined when experience is read, never in memory.
 """
 
 from collections import ChainMap, Counter
-from collections.abc import Hashable, Iterable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -55,15 +55,12 @@ class TypeExperience:
         How often each policy was learnt further.
     policy : QTable, StoredPolicy or callable, optional
         Learnt in tasks of this type, under its name.
-    idle : int
-        Tasks in a row in which learning brought no gain.
     """
 
     moves: Counts = field(default_factory=Counter)
     sightings: Counts = field(default_factory=Counter)
     returns: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     policy: Any = None
-    idle: int = 0
     rounds: dict[str, int] = field(default_factory=dict)
 
     def add_returns(self, policy: str, record: Record) -> None:
@@ -85,8 +82,6 @@ class TaskNews(NamedTuple):
     prior : counts of useful actions; its labels are the features behind their contexts
     label : the task's context as it was given
     learner, policy : the type whose policy was learnt, by name, and the policy; None where none was
-    idle : tasks in a row in which exploring this policy brought no gain
-    fresh : last returns of a learner that began with nothing
     alarm : whether the alarm was raised although a known type fits; None where none fits
     """
 
@@ -99,8 +94,6 @@ class TaskNews(NamedTuple):
     label: Hashable = None
     learner: str | None = None
     policy: Any = None
-    idle: int = 0
-    fresh: Sequence[float] = ()
     alarm: bool | None = None
 
 
@@ -124,7 +117,6 @@ class Experience:
         self.causes: Counts = Counter()  # tasks that showed each cause, with outcome 0
         self.labels: dict[int, Any] = {}  # contexts of tasks as they were given, by code
         self.n_tasks = 0
-        self.fresh = np.zeros(2)  # number and sum of last returns of learners that began with nothing
         self.alarms = np.zeros(2)  # number of tasks of known types, and of those with an alarm
 
     # ---- reading -----------------------------------------------------------------------------------
@@ -144,11 +136,6 @@ class Experience:
         }
         low, high = min(means.values(), default=0.0), max(means.values(), default=0.0)
         return means.get((name, name), low) <= low + HOPELESS * (high - low)
-
-    @property
-    def hope(self) -> float:
-        """Return that a learner from nothing usually reaches in the end; infinity where none was seen."""
-        return float(self.fresh[1] / self.fresh[0]) if self.fresh[0] else np.inf
 
     def alarm_level(self, stated: float) -> float:
         """The level at which alarms in tasks of known types are as frequent as stated, by how often they were.
@@ -180,14 +167,7 @@ class Experience:
                 round_ = 0 if known is None else known.rounds.get(policy, 0) + (policy == news.learner)
                 yield _sums_record(f"{self.key}/returns/{name}/{policy}", round_, sums)
         if news.learner is not None:
-            idle = np.array([news.idle], np.int64)
-            yield Record(
-                POLICIES, f"{self.key}/idle/{news.learner}", VERSION, "newest", np.zeros(1, np.int64), idle
-            )
             yield from self._policy_records(news.learner, news.policy)
-        if len(news.fresh):
-            sums = np.rint(np.array([len(news.fresh), np.sum(news.fresh)]) * ONE).astype(np.int64)
-            yield Record(COUNTS, f"{self.key}/fresh", VERSION, "add", np.arange(2), sums)
         if news.alarm is not None:
             seen = np.array([1, news.alarm], np.int64)
             yield Record(COUNTS, f"{self.key}/alarms", VERSION, "add", np.arange(2), seen)
@@ -230,8 +210,6 @@ class Experience:
         match part:
             case "tasks":
                 self.n_tasks += values[0]
-            case "fresh":
-                self.fresh += record.values / ONE
             case "alarms":
                 self.alarms += record.values
             case "causes":
@@ -242,8 +220,6 @@ class Experience:
                 self._type(name).sightings.update(counts_of(record, DATE_BITS))
             case "returns":
                 self._type(name).add_returns(policy, record)
-            case "idle":
-                self._type(name).idle = values[0]
             case "table":
                 if not isinstance(self._type(name).policy, dict):
                     self._type(name).policy = {}

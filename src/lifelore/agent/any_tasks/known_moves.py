@@ -7,15 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.any_tasks.moves import Counts
-from lifelore.agent.types.type_counts import ALPHAS, TypeCounts, Usual
+from lifelore.agent.types.type_counts import TypeCounts
 
 Array = NDArray[np.float64]
 
 MOST_EFFECTS = 12
 """Most outcomes of a cause that are told apart; the rest counts as never shown."""
-
-USUAL = Usual(0.1, 10.0, ALPHAS / ALPHAS.sum())
-"""Types mostly agree in what a move does, and a few outcomes alike do not make a law certain."""
 
 
 class KnownMoves(TypeCounts):
@@ -45,7 +42,7 @@ class KnownMoves(TypeCounts):
         known = (effects < shown) | (effects == effects[-1])
         broad: Array = known / (shown + 1)
         counts = np.array([self._counted(one, broad.shape) for one in types]).reshape(len(types), *broad.shape)
-        super().__init__(counts, broad, np.array(self.codes, np.int64) & 1, USUAL, rest=True)
+        super().__init__(counts, broad, np.array(self.codes, np.int64) & 1)
 
     def place(self, cause: int, outcome: int) -> tuple[int, int] | None:
         """Numbers of a cause and its effect, by their codes; None for a cause that no type has shown."""

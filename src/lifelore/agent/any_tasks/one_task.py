@@ -6,7 +6,7 @@ for each episode:
     until the episode ends:
         act by π, or by the learner; each move teaches what acted
         β, alarm ← the outcome of the move                                             notice
-    explore, if no type fits or the policy of the type that fits still improves        learn
+    explore, if no type fits, returns fall short, or now and then, ever more rarely    learn
 a new type, if all moves of the task say so; else the most believed type learns:
 moves, returns, useful actions, and the belief in this context                         remember
 """
@@ -20,7 +20,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.agent.any_tasks.contest import Contest
 from lifelore.agent.any_tasks.experience import Experience, TaskNews
 from lifelore.agent.any_tasks.known_types import KnownTypes
 from lifelore.agent.any_tasks.learners import FixedPolicy, Player
@@ -41,14 +40,8 @@ NOWHERE = -1
 """A context that no task has."""
 SURE = 0.9
 """Least belief in a type whose policy a task goes on to learn."""
-PATIENCE = 3
-"""Part of a task's episodes for which one that learns from nothing may play on hope."""
 SHORT = 2.0
 """Deviations by which returns fall short of what a policy usually gets, from where the task is worth learning."""
-SETTLED = 3
-"""Tasks in a row without a gain after which a policy is no longer explored."""
-LEAST_FRESH = 6
-"""Episodes from which on the end of learning from nothing counts as what it reaches."""
 STRANGE = 0.1
 """Share of steps in states that a policy does not know, above which it is explored again."""
 
@@ -91,7 +84,9 @@ class OneTask:
         self.generator = stream(settings.seed, "task", result.number, "own")
         self.reuse: TaskReuse | None = None
         self.players: dict[str, Player] = {}  # policies that ran; each learns from the moves that it makes
-        self.learner: Player | None = None  # explores, once the task is worth learning
+        self.learner: Player | None = None  # explores in episodes that are worth it
+        self.exploring = False
+        self.draw: float | None = None  # decides whether a known policy is explored
         self.goes_on_with: str | None = None  # whose policy the learner goes on with
         self.steps: list[Step] = []
         self.ran: dict[str, list[float]] = {}  # returns of policies that ran from begin to end of an episode
@@ -102,7 +97,8 @@ class OneTask:
         """Live the task; `name` is that of the new type, if it has one."""
         self.recognise()
         while len(self.result.returns) < self.settings.learning.episode_cap:
-            if self.learner is None and self.worth_learning():
+            self.exploring = self.worth_learning()
+            if self.exploring and self.learner is None:
                 self.begin_learning()
             self.live_episode()
         return self.remember(name)
@@ -137,7 +133,7 @@ class OneTask:
         # A learner of the user may have played more episodes than the task has.
         known = episode < len(self.seeds)
         seed = self.seeds[episode] if known else episode_seed(self.settings.seed, number, episode)
-        began = self.reuse.begin_episode() if self.learner is None and self.reuse is not None else LEARNER
+        began = LEARNER if self.exploring or self.reuse is None else self.reuse.begin_episode()
         self.whole = True
         most = self.settings.learning.step_cap
         steps = play(self.world, number, seed, self.codes.states, most, self.stop, self.act, self.take_in)
@@ -153,12 +149,12 @@ class OneTask:
     @property
     def running(self) -> Player:
         """What acts now: the learner, or the policy in reuse."""
-        return self.learner if self.learner is not None else self.player(str(self.policy))
+        return self.learner if self.exploring and self.learner is not None else self.player(str(self.policy))
 
     def act(self, state: int, context: int) -> int:
         """The action of what acts now."""
         self.strange += not self.running.knows(state)
-        return self.running.act(state, context, explore=self.learner is not None)
+        return self.running.act(state, context, explore=self.exploring)
 
     def take_in(self, step: Step) -> None:
         """Learn from a move: its value, the belief in types, and whether any known type fits."""
@@ -166,8 +162,10 @@ class OneTask:
         before.observe(step)
         if self.reuse is not None:
             self.reuse.observe(self.codes.pairs(step))
-            if self.learner is None and self.alarmed and not callable(self.settings.learner):
-                self.begin_learning()
+            if self.alarmed and not self.exploring and not callable(self.settings.learner):
+                self.exploring = True
+                if self.learner is None:
+                    self.begin_learning()
             self.whole = self.whole and self.running is before
 
     def end_episode(self, steps: list[Step], earned: float, began: str) -> None:
@@ -189,14 +187,22 @@ class OneTask:
     # ---- learn -------------------------------------------------------------------------------------
 
     def worth_learning(self) -> bool:
-        """Whether no type fits, or the policy of the type that surely fits still improves."""
-        if self.reuse is None or self.alarmed or self.reuse.shortfall > SHORT:
+        """Whether to explore: no type fits, returns fall short, or the policy of the type may still improve.
+
+        A policy that n tasks have taught is explored in 1 / (n + 1) of the episodes: it is played greedily in the
+        limit, and explored without end (Singh et al. 2000).
+        """
+        taught = callable(self.settings.learner)
+        if self.reuse is None or self.alarmed or self.reuse.shortfall > SHORT or (taught and self.learner):
             return True
-        if not self.result.returns or self.reuse.belief.max() < SURE:
-            return False
         own = self.reuse.own_policy()
+        if not self.result.returns or self.reuse.belief.max() < SURE or own is None:
+            return False
         strange = self.strange > STRANGE * max(len(self.steps), 1)
-        return own is not None and (self.experience.types[own].idle < SETTLED or strange)
+        n_tasks = 1 + self.experience.types[own].rounds.get(own, 0)
+        if self.draw is None or not taught:  # the user's learner is asked once a task
+            self.draw = float(self.generator.random())
+        return strange or self.experience.is_hopeless(own) or self.draw < 1 / (n_tasks + 1)
 
     def begin_learning(self) -> None:
         """Explore from here on: the policy that still improves, or one of its own from the policy in reuse."""
@@ -205,18 +211,12 @@ class OneTask:
         start, self.goes_on_with = own or self.policy, own
         if callable(self.settings.learner) and self.abilities.learner is None:
             self.learner = self.taught(self.settings.learner, None if start is None else self.known_policy(start))
-            return
-        fresh = self.table({}, Counter())
-        fresh.take_over(self.steps)
-        if start is None:
-            self.learner = fresh
-            return
-        seeded = self.player(start)
-        if own is None:
-            seeded = self.table(self.experience.types[start].policy, Counter())
-            seeded.take_over(self.steps)
-        patience = self.settings.learning.episode_cap // PATIENCE
-        self.learner = Contest(seeded, fresh, self.experience.hope, patience)
+        elif own is not None:
+            self.learner = self.player(own)
+        else:
+            learner = self.table({} if start is None else self.experience.types[start].policy, Counter())
+            learner.take_over(self.steps)
+            self.learner = learner
 
     def player(self, name: str) -> Player:
         """The policy of a name, which learns in this task from the moves that it makes."""
@@ -303,10 +303,11 @@ class OneTask:
             news = news._replace(alarm=self.alarmed)
         if not belief or own is None:
             return news
-        if self.learner is not None and (result.new or self.goes_on_with == own or self.gained_on(own)):
+        # A learner that began elsewhere does not replace a known policy: its few returns may be luck.
+        if self.learner is not None and (result.new or self.goes_on_with == own):
             return self.with_learnt(news, own)
         if own in self.players:
-            return news._replace(learner=own, policy=self.players[own].policy(), idle=experience.types[own].idle)
+            return news._replace(learner=own, policy=self.players[own].policy())
         return news
 
     def learnt(self) -> list[float]:
@@ -314,23 +315,12 @@ class OneTask:
         result = self.result
         return [value for value, by in zip(result.returns, result.policies, strict=True) if by == LEARNER]
 
-    def gained_on(self, own: str) -> bool:
-        """Whether the learner has come above what the policy of a type has earned on it before."""
-        known = self.experience.types.get(own)
-        return gained(last_half(self.learnt()), None if known is None else known.returns.get(own))
-
     def with_learnt(self, news: TaskNews, own: str) -> TaskNews:
         """What a task has taught in which the policy of a type, `own`, was learnt."""
         assert self.learner is not None, "a policy was learnt"
         learnt = self.learnt()
         returns = dict(news.returns) | {own: [*self.ran.get(own, []), *last_half(learnt)]}
-        known, idle = self.experience.types.get(own), 0
-        if known is not None and not self.experience.is_hopeless(own) and not self.gained_on(own):
-            idle = known.idle + 1
-        fresh = self.learner.fresh_returns if isinstance(self.learner, Contest) else learnt
-        reached = last_half(fresh) if len(fresh) >= LEAST_FRESH else []
-        policy = self.learner.policy()
-        return news._replace(returns=returns, learner=own, policy=policy, idle=idle, fresh=reached)
+        return news._replace(returns=returns, learner=own, policy=self.learner.policy())
 
     def learning_types(self, name: str, moves: Counts) -> dict[str, float]:
         """How much each type learns from the task; a new one has the given name."""
@@ -351,17 +341,3 @@ def episode_seed(seed: int, task: int, episode: int) -> int:
 def last_half(returns: Sequence[float]) -> Sequence[float]:
     """The second half of returns."""
     return returns[len(returns) // 2 :]
-
-
-def gained(late: Sequence[float], before: Any) -> bool:
-    """Whether last returns are above those of a policy before, by more than the error of their mean.
-
-    Parameters
-    ----------
-    late : sequence of float
-    before : (3,) float64, optional
-        Number, sum and sum of squares of the returns before.
-    """
-    if before is None or not before[0] or len(late) < 2:
-        return len(late) > 0
-    return float(np.mean(late)) - before[1] / before[0] > float(np.std(late, ddof=1)) / np.sqrt(len(late))

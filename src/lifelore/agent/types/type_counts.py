@@ -8,14 +8,13 @@ In most causes types are alike, in some they differ. For each cause c with count
     P_i(o | c)   (1 − q_c) (Σ_j n_j + own + b) / … + q_c (n_i + own + b_i) / …
 
 DM is the Dirichlet-multinomial law with pseudo-observations b: α spread over the outcomes that the cause may have,
-and θ of outcomes never shown, where these have a place. Each cause has an α of its own: one that was noisy within
-types stays noisy. How frequent each α is, θ and ρ are learnt for each kind of cause. b_i is learnt from type i,
-beginning with what all types teach. ``own`` are the outcomes of the present task. So a cause that a type has not
-shown is expected to be as in other types, as far as causes are usually alike.
+and θ of outcomes never shown. Each cause has an α of its own: one that was noisy within types stays noisy. How
+frequent each α is, θ and ρ are learnt for each kind of cause. b_i is learnt from type i, beginning with what all
+types teach. ``own`` are the outcomes of the present task. So a cause that a type has not shown is expected to be
+as in other types, as far as causes are usually alike.
 """
 
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,21 +30,11 @@ ALIKE = -1.0
 """Log odds below which two types are joined: to keep one type as two costs less than to mix two in one."""
 ROUNDS = 20
 """Rounds of expectation and maximisation."""
+SHARE, WEIGHT, NOISE = 0.1, 10.0, ALPHAS / ALPHAS.sum()
+"""Expected before anything was seen: ρ, causes that ρ counts as, and causes of each α. Types mostly agree in what
+a move does, and a few outcomes alike do not make a law certain."""
 NEAR = 1e-9
 """Distance of q from 0 and 1."""
-
-
-class Usual(NamedTuple):
-    """What is expected of causes before anything was seen.
-
-    share : ρ, the share of causes in which types differ
-    weight : number of causes that the share counts as
-    noise : (n_alphas,) causes of each α, one in all
-    """
-
-    share: float
-    weight: float
-    noise: Array
 
 
 class TypeCounts:
@@ -54,13 +43,11 @@ class TypeCounts:
     Parameters
     ----------
     counts : (n_types, n_causes, n_effects) float64
+        The last effect stands for all outcomes that no type has shown.
     broad : (n_causes, n_effects) float64
         The law of a cause of which nothing is known.
     kinds : (n_causes,) int64
         Types differ about as often, and outcomes are about as noisy, in all causes of a kind.
-    usual : Usual
-    rest : bool
-        Whether the last effect stands for all outcomes that no type has shown.
 
     Attributes
     ----------
@@ -72,9 +59,7 @@ class TypeCounts:
         q, the probability that types differ in a cause.
     """
 
-    def __init__(
-        self, counts: Array, broad: Array, kinds: NDArray[np.int64], usual: Usual, rest: bool = False
-    ) -> None:
+    def __init__(self, counts: Array, broad: Array, kinds: NDArray[np.int64]) -> None:
         self.counts, self.broad, self.kinds = counts, broad, kinds
         self.base, self.own_base = broad.copy(), np.tile(broad, (len(counts), 1, 1))
         self.apart: Array = np.zeros(len(broad))
@@ -84,10 +69,10 @@ class TypeCounts:
         for kind in np.unique(kinds).tolist():
             own = kinds == kind
             several, often = self._several[own], self.pooled[own].sum(axis=1) > 1
-            self.apart[own], noise = learnt_apart(alike[:, own], apart[:, own], several, often, usual)
-            _add_noise(self.base, self.pooled, own, apart, noise, rest)
+            self.apart[own], noise = learnt_apart(alike[:, own], apart[:, own], several, often)
+            _add_noise(self.base, self.pooled, own, apart, noise)
             for number, base in enumerate(self.own_base):
-                _add_noise(base, counts[number], own, each[:, number], noise, rest)
+                _add_noise(base, counts[number], own, each[:, number], noise)
 
     @property
     def n_causes(self) -> int:
@@ -154,9 +139,9 @@ class TypeCounts:
         known = np.logaddexp(np.log1p(-self.apart) + alike, np.log(self.apart) + each)
         return float(log_odds(self._log_dm(own) - known, self.kinds, self.known_apart))
 
-    def joined(self, least: float = ALIKE) -> list[list[int]]:
+    def joined(self) -> list[list[int]]:
         """Groups of types that nothing tells apart, by number; each type is in one."""
-        return joined_types(self.counts, self.base, self._log_odds, least)
+        return joined_types(self.counts, self.base, self._log_odds, ALIKE)
 
     def _log_odds(self, evidence: Array) -> Array:
         """Log odds of two types, (n,), from the evidence of causes, (n, n_causes)."""
@@ -167,7 +152,7 @@ class TypeCounts:
 
 
 def learnt_apart(
-    alike: Array, apart: Array, several: NDArray[np.bool_], often: NDArray[np.bool_], usual: Usual
+    alike: Array, apart: Array, several: NDArray[np.bool_], often: NDArray[np.bool_]
 ) -> tuple[Array, Array]:
     """q of causes of one kind, (n_causes,), and how frequent each α is, (n_alphas,), one in all.
 
@@ -178,25 +163,21 @@ def learnt_apart(
     several, often : (n_causes,) bool
         Causes that more than one type has shown, and those with more than one outcome: others tell nothing of ρ,
         or of α.
-    usual : Usual
     """
-    share, noise, q = usual.share, usual.noise, np.zeros(alike.shape[1])
+    share, noise, q = SHARE, NOISE, np.zeros(alike.shape[1])
     for _ in range(ROUNDS):
         joint = np.array([np.log(1 - share) + alike, np.log(share) + apart]) + np.log(noise / noise.sum())[:, None]
         belief = np.exp(joint - logsumexp(logsumexp(joint, axis=0), axis=0))
         q = belief[1].sum(axis=0)
-        noise = belief.sum(axis=0)[:, often].sum(axis=1) + usual.noise
-        share = (q[several].sum() + usual.share * usual.weight) / (several.sum() + usual.weight)
+        noise = belief.sum(axis=0)[:, often].sum(axis=1) + NOISE
+        share = (q[several].sum() + SHARE * WEIGHT) / (several.sum() + WEIGHT)
     return np.clip(q, NEAR, 1 - NEAR), noise / noise.sum()
 
 
-def _add_noise(
-    base: Array, counts: Array, own: NDArray[np.bool_], evidence: Array, noise: Array, rest: bool
-) -> None:
+def _add_noise(base: Array, counts: Array, own: NDArray[np.bool_], evidence: Array, noise: Array) -> None:
     """Make pseudo-observations of the laws `base` of a kind's causes, `own`; the rest as of `TypeCounts`."""
     base[own] *= learnt_noise(evidence[:, own], counts[own].sum(axis=1) > 1, noise)[:, None]
-    if rest:
-        base[own, -1] += learnt_rest(counts[own], base[own])
+    base[own, -1] += learnt_rest(counts[own], base[own])
 
 
 def learnt_noise(evidence: Array, often: NDArray[np.bool_], usual: Array) -> Array:
