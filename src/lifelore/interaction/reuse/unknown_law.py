@@ -16,7 +16,6 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.outcomes.counted_law import CountedLaw
-from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomeLaw
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.normal_law import EXACT, NormalLaw
@@ -50,7 +49,7 @@ def unknown_law(library: PolicyLibrary, dtype: str = "f8") -> NormalLaw | Counte
     if isinstance(model, CategorySignal):
         return CountedLaw(broad_counts(model.probs, prior), spread, model.places_of, dtype=dtype)
     if isinstance(model, CategoricalOutcomes):
-        return CountedOutcomeLaw(model.cells, broad_counts(model.probs, prior), spread, dtype)
+        return CountedLaw(broad_counts(model.probs, prior), spread, model.cells.of, model.cells, dtype)
     if isinstance(model, GaussianOutcomes):
         known = model.moments
         deviation = np.sqrt(known.variance)

@@ -75,8 +75,7 @@ class UnknownUsers(UserModel):
 
     def bounds(self, users: Numbers) -> Array:
         """m + 2 s of each policy's mean pay on `users` (...), (..., n_policies)."""
-        law: Any = self.law
-        pay = law.prediction(self.shown, users, self.log_weights[users])
+        pay = self.prediction(users)
         return (pay.mean + DEVIATIONS * np.sqrt(pay.mean_variance))[..., 0, :]
 
     def tried(self, users: Numbers, bounds: Array, known: Array) -> Any:

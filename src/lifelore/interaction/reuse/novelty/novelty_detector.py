@@ -205,8 +205,8 @@ class NoveltyDetector:
         """What the task has shown, as small arrays; policies that were not tried take no room.
 
         ``numbers`` (mass, log odds without a prior), ``log_belief`` and ``task.*`` of the known types, ``places``,
-        ``shown`` and ``log_odds`` of the broad type. With a calibration its arrays, ``misfit`` (signals, shortfall,
-        degrees of freedom, and the signal of the alarm or -1) and ``misfit_by_type``.
+        ``shown`` and ``log_odds`` of the broad type. With a calibration its arrays, ``misfit`` (signals,
+        shortfall, degrees of freedom, and the signal of the alarm or -1) and ``misfit_by_type``.
         """
         task = self._rows.state(0)
         state = {f"task.{name}": array for name, array in task.items() if not name.startswith("unknown.")} | {
