@@ -229,4 +229,3 @@ def _improve(tour, near):
                 _wait(tour, v)
             return gain
     return 0
-
