@@ -73,15 +73,11 @@ class Tables(NamedTuple):
     def checked(self) -> "Tables":
         """The same tables; InputError where kernels would read foreign memory, or answer with wrong numbers."""
         states, cumulative = np.r_[self.next_state.ravel(), self.starts], self.outcome_cum
-        if not (
-            states.dtype.kind in "iu" and 0 <= states.min(initial=0) <= states.max(initial=-1) < self.n_states
-        ):
+        if states.dtype.kind not in "iu" or not ((states >= 0) & (states < self.n_states)).all():
             raise InputError(f"next_state and starts must be whole numbers from 0 to {self.n_states - 1}")
-        if (
-            not self.next_state.shape == self.reward.shape == self.event.shape
-            or not np.isfinite(self.reward).all()
-        ):
-            raise InputError(f"reward and event must be of shape {self.next_state.shape}, rewards finite")
+        shape = self.next_state.shape
+        if not (shape == self.reward.shape == self.event.shape and np.isfinite(self.reward).all()):
+            raise InputError(f"reward and event must be of shape {shape}, rewards finite")
         rises = (np.diff(cumulative, axis=-1, prepend=0.0) >= -1e-12).all()
         if not (rises and (np.abs(cumulative[..., -1] - 1) <= 1e-9).all()):
             raise InputError("outcome_cum must rise to 1: it holds cumulative probabilities of the outcomes")
