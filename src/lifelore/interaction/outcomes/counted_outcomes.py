@@ -11,11 +11,10 @@ from lifelore.interaction.finite_signals.signal_bins import joined_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.cells import Cells
 from lifelore.interaction.outcomes.counted_law import CountedLaw, spread_of_counts
-from lifelore.interaction.outcomes.log_probability import log_of
+from lifelore.interaction.outcomes.log_probability import checked_pseudo_count, log_of
 from lifelore.interaction.outcomes.outcome_model import OutcomeModel, stored_spread
 from lifelore.interaction.outcomes.outcome_rows import OutcomeRows, chosen_of
 from lifelore.interaction.outcomes.prediction import CountedPrediction
-from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
 from lifelore.interaction.outcomes.spread import Spread
 
 Array = NDArray[np.float64]
@@ -94,11 +93,10 @@ class CountedOutcomes(OutcomeModel, CountedPrediction):
         return model
 
     @classmethod
-    def fitted(cls, cells: Cells, rows: OutcomeRows, pseudo_count: PseudoCount) -> Self:
+    def fitted(cls, cells: Cells, rows: OutcomeRows, pseudo_count: float) -> Self:
         """The model fitted to rows of outcomes."""
         counts = _counted(cells, rows)
-        number = checked_pseudo_count(pseudo_count, counts)
-        return cls.of(cells, counts + number, number)
+        return cls.of(cells, counts + checked_pseudo_count(pseudo_count), pseudo_count)
 
     def _estimated_spread(self) -> Spread:
         return Spread.known(0.0) if self.exact else spread_of_counts(self.counts, self.pseudo_count)
