@@ -45,6 +45,9 @@ def test_categories_by_hand():
 def test_every_kind_of_outcome_has_an_unknown_law():
     random = np.random.default_rng(0)
     library = PolicyLibrary(HistogramOutcomes.from_samples(random.normal(0, 1, (2, 2, 80)), 10))
-    assert log_density(library, 1, 1e3) > -np.inf
+    cells = library.performance.cells  # pyright: ignore[reportAttributeAccessIssue]
+    density = [np.exp(log_density(library, 1, value)) for value in cells.means]
+    assert np.array(density) @ cells.sizes == pytest.approx(1)
+    assert log_density(library, 1, 1e3) == -np.inf
     library = PolicyLibrary(CategoricalOutcomes([0.0, 1.0], [[[1.0, 0.0]], [[0.9, 0.1]]]))
     assert np.exp(log_density(library, 0, 1.0)) == pytest.approx((1 - UNIFORM) * 0.05 + UNIFORM / 2)

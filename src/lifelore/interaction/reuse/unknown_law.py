@@ -1,8 +1,8 @@
 """The law of a type that is not known: as broad as all types of a library together.
 
 Outcomes: mean and variance of a policy have a normal-inverse-χ² law around the pooled mean of the types, as wide
-as the types differ. Categories: a Dirichlet law around the pooled probabilities, whose weight follows from how
-much the types differ. An unknown type may differ from the known types where these agree, so every policy is at
+as the types differ. Cells: a Dirichlet law around the pooled probabilities, whose weight follows from how much the
+types differ. An unknown type may differ from the known types where these agree, so every policy is at
 least as broad as all policies are on average. What a task shows teaches the law, as it teaches those of known
 types.
 """
@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.outcomes.counted_law import CountedLaw
+from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
-from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.normal_law import EXACT, NormalLaw
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
 from lifelore.interaction.outcomes.spread import Spread
@@ -26,8 +25,6 @@ from lifelore.interaction.signals.return_signal import ReturnSignal
 
 Array = NDArray[np.float64]
 
-FREEDOM = 5.0
-"""Degrees of freedom of a histogram's variance: the number of outcomes that the types' mean variance counts as."""
 LEAST_SPREAD = 0.1
 """Least spread over types, in deviations of an outcome, for types that agree on all policies."""
 UNIFORM = 0.25
@@ -48,31 +45,26 @@ def unknown_law(library: PolicyLibrary, dtype: str = "f8") -> NormalLaw | Counte
     model: Any = signal.outcomes if isinstance(signal, ReturnSignal) else signal
     if isinstance(model, CategorySignal):
         return CountedLaw(broad_counts(model.probs, prior), spread, model.places_of, dtype=dtype)
-    if isinstance(model, CategoricalOutcomes):
+    if isinstance(model, CountedOutcomes):
         return CountedLaw(broad_counts(model.probs, prior), spread, model.cells.of, model.cells, dtype)
     if isinstance(model, GaussianOutcomes):
-        known = model.moments
-        deviation = np.sqrt(known.variance)
-        return NormalLaw(broad_moments(known.mean, deviation, known.freedom, prior), spread, dtype)
-    if isinstance(model, HistogramOutcomes):
-        freedom = np.full_like(model.mean, FREEDOM)
-        return NormalLaw(broad_moments(model.mean, model.deviation, freedom, prior), spread, dtype)
+        return NormalLaw(broad_moments(model.moments, prior), spread, dtype)
     raise InputError(
         f"novelty is computed from outcomes or categories, got {type(signal).__name__}; build a second library "
         "whose signals are outcomes, and let a detector observe those"
     )
 
 
-def broad_moments(mean: Array, deviation: Array, freedom: Array, prior: Array) -> OutcomeMoments:
-    """The moments of one type from those of types (n_types, n_policies) and the types' prior (n_types,).
+def broad_moments(known: OutcomeMoments, prior: Array) -> OutcomeMoments:
+    """The moments of one type from those of the types and the types' prior (n_types,).
 
     The variances are as well known as those of the known types: only the mean pays shall tell a task from these.
     """
-    centre, variance = prior @ mean, np.maximum(prior @ deviation**2, 1e-300)
-    spread = prior @ (mean - centre) ** 2
+    centre, variance = prior @ known.mean, np.maximum(prior @ known.variance, 1e-300)
+    spread = prior @ (known.mean - centre) ** 2
     spread = np.maximum(np.maximum(spread, spread.mean()), LEAST_SPREAD**2 * variance)
-    fields = (centre, variance, variance / spread, prior @ np.minimum(freedom, EXACT))
-    return OutcomeMoments(*(field[None] for field in fields), pooled=float(variance.mean()), shrinkage=FREEDOM)
+    fields = (centre, variance, variance / spread, prior @ np.minimum(known.freedom, EXACT))
+    return OutcomeMoments(*(field[None] for field in fields), pooled=known.pooled, shrinkage=known.shrinkage)
 
 
 def broad_counts(probs: Array, prior: Array) -> Array:

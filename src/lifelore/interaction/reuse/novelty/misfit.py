@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
-from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.law import Numbers
 from lifelore.interaction.outcomes.log_probability import log_of
 from lifelore.interaction.outcomes.special_functions import gammaln
@@ -150,10 +149,7 @@ def pairs_of(signal: Any) -> MeanPairs | CountedPairs:
     if isinstance(model, GaussianOutcomes):
         doubt = 1 / model.moments.count + model.spread.least.values[0]
         return MeanPairs(model.moments.mean, model.moments.variance, doubt)
-    weight = weight_of_runs(model)
-    if isinstance(model, HistogramOutcomes):
-        return MeanPairs(model.mean, model.deviation**2, 0.0 if weight is None else 1 / weight)
-    return CountedPairs(model.probs, weight)
+    return CountedPairs(model.probs, weight_of_runs(model))
 
 
 def weight_of_runs(model: Any) -> Array | None:

@@ -238,6 +238,10 @@ class NoveltyDetector:
             mass, log_odds = np.asarray(state["numbers"], np.float64).tolist()
             detector = cls(library, mass, None, dynamics, models, known)
             task = {name: state[name] for name in ("places", "policies", "shown") if name in state}
+            n_numbers = detector._rows.unknown.shown.shape[-1]
+            if "log_odds" not in state and np.shape(task["shown"])[1:] != (n_numbers,):
+                # Earlier sessions took outcomes in bins for normal: the statistics begin anew.
+                task = {"places": np.empty((0, 1), np.int64), "shown": np.empty((0, n_numbers))}
             unknown = {f"unknown.{name}": array for name, array in task.items()}
             # Earlier sessions have the log odds without their prior alone, where a bit may differ.
             unknown["unknown.log_odds"] = state.get("log_odds", np.array(log_odds + FIRST))
