@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL, Domain, Task
+from lifelore.core.learning.q_learner import QLearning
+from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL, Domain, Tables, Task
+from lifelore.core.planning.planning import optimal_q, policy_values
 
 
 def slippery(params, s, a, u):
@@ -71,3 +73,28 @@ def test_domains_that_break_a_rule(settings, message):
     given = {"name": "row", "n_states": 3, "n_actions": 1, "step": slippery, "discount": 0.9} | settings
     with pytest.raises(InputError, match=message):
         Domain(**given)
+
+
+HAND = Tables.from_matrices(np.eye(3)[[[0, 1], [0, 2], [1, 2]]], [0.0, 0.0, 1.0], terminal=2)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"next_state": HAND.next_state + 1}, "next_state and starts must be whole numbers from 0 to 2"),
+        ({"starts": np.array([-1])}, "next_state and starts must be"),
+        ({"next_state": HAND.next_state.astype(float)}, "next_state and starts must be"),
+        ({"reward": HAND.reward[:2]}, "reward and event must be of shape"),
+        ({"reward": HAND.reward * np.nan}, "reward and event must be of shape .* rewards finite"),
+        ({"outcome_cum": np.array([0.5])}, "outcome_cum must rise to 1"),
+    ],
+)
+def test_tables_made_by_hand_are_checked_where_planning_and_learning_begin(change, message):
+    tables = HAND._replace(**change)
+    for begin in (
+        lambda: optimal_q(tables, 0.9),
+        lambda: policy_values(tables, np.zeros(3, np.int32), 0.9),
+        lambda: QLearning(episodes=2).learn(tables, 0.9),
+    ):
+        with pytest.raises(InputError, match=message):
+            begin()

@@ -23,6 +23,8 @@ Step = Callable[[tuple, int, int, float], tuple[int, float, int]]
 class Tables(NamedTuple):
     """All transitions of a task as arrays, which kernels, the exact solver and checks read.
 
+    Tables made by hand are checked where planning and learning begin, see `checked`.
+
     Parameters
     ----------
     next_state : (n_states, n_actions, n_outcomes) int32
@@ -67,6 +69,19 @@ class Tables(NamedTuple):
     def by_pair(self) -> "Tables":
         """The same task with ``outcome_cum`` by state and action, without a copy."""
         return self._replace(outcome_cum=np.broadcast_to(self.outcome_cum, self.next_state.shape))
+
+    def checked(self) -> "Tables":
+        """The same tables; InputError where kernels would read foreign memory, or answer with wrong numbers."""
+        states, cumulative = np.r_[self.next_state.ravel(), self.starts], self.outcome_cum
+        if states.dtype.kind not in "iu" or not ((states >= 0) & (states < self.n_states)).all():
+            raise InputError(f"next_state and starts must be whole numbers from 0 to {self.n_states - 1}")
+        shape = self.next_state.shape
+        if not (shape == self.reward.shape == self.event.shape and np.isfinite(self.reward).all()):
+            raise InputError(f"reward and event must be of shape {shape}, rewards finite")
+        rises = (np.diff(cumulative, axis=-1, prepend=0.0) >= -1e-12).all()
+        if not (rises and (np.abs(cumulative[..., -1] - 1) <= 1e-9).all()):
+            raise InputError("outcome_cum must rise to 1: it holds cumulative probabilities of the outcomes")
+        return self
 
     @classmethod
     def from_matrices(

@@ -26,10 +26,3 @@ def test_a_naive_window_chooses_the_same():
         assert policy == bounds.index(max(bounds))
         history.append((policy, float(row[policy])))
         player.update(*history[-1])
-
-
-def test_the_window_of_a_horizon():
-    # 2 √(200 ln 200 / 3) = 37.6
-    assert SlidingWindowUCB(2, horizon=200, changes=3).window == 38
-    assert SlidingWindowUCB(2, horizon=1).window == 1
-    assert SlidingWindowUCB(2).window == 100

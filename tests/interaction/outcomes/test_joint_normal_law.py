@@ -97,11 +97,11 @@ def test_fading_counts_outcomes_by_a_share():
 def test_tables_are_probabilities_of_bins_that_all_users_share():
     shown, each = users_of(law())
     own = law()
-    found = own.table(5, shown, np.arange(3), np.zeros((3, 1)))
-    single = own.table(5, shown, 0, np.zeros(1))
+    found = own.prediction(shown, np.arange(3), np.zeros((3, 1))).table(5)
+    single = own.prediction(shown, 0, np.zeros(1)).table(5)
     assert found.probs.shape == (3, 2, 4, 5)
     assert single.probs == pytest.approx(found.probs[0])
-    cuts = own._bins[5]
+    cuts = own.cuts(5)
     mean, covariance = conditioned(each[0], 1)
     deviation = np.sqrt(np.diag(covariance) + DEVIATION**2)
     below = norm.cdf(cuts[2], mean[2], deviation[2])

@@ -117,7 +117,7 @@ def test_a_user_whom_no_type_fits_is_found_out(library):
 def test_a_known_user_is_served_as_by_the_known_types_alone(library):
     agent = BayesianPolicyReuse(library)
     alone = BayesianPolicyReuse(library)
-    alone.algorithm = ReuseAlgorithm(library, unknown_users=False)
+    alone.algorithm = ReuseAlgorithm(library, unknown=None)
     assert lived(agent, MEANS[0]) == lived(alone, MEANS[0])
     assert agent.algorithm.unknown.log_odds[0] < np.log(MASS / (1 - MASS))
 
@@ -211,7 +211,7 @@ def test_an_explanation_says_how_probably_no_type_fits(library):
     assert BayesianPolicyReuse(library).explain().novelty == pytest.approx(MASS)
     assert BayesianPolicyReuse(library, models="plug-in").explain().novelty is None
     earlier = BayesianPolicyReuse(library)  # restored from before there was an unknown type
-    earlier.algorithm.restore(0, earlier.log_belief, ReuseAlgorithm(library, unknown_users=False).state(0))
+    earlier.algorithm.restore(0, earlier.log_belief, ReuseAlgorithm(library, unknown=None).state(0))
     earlier.update(0, 9.0)
     assert earlier.explain().novelty is None
     assert BayesianPolicyReuse(library, novelty=0.05).explain().novelty == pytest.approx(0.05)

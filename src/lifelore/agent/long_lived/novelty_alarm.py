@@ -13,7 +13,7 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.novelty.calibration import LEAST_ALARMS, NoveltyCalibration
 from lifelore.interaction.reuse.novelty.known_tasks import known_tasks
 from lifelore.interaction.reuse.novelty.misfit import Misfit
-from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
+from lifelore.interaction.reuse.novelty.unknown_evidence import unknown_evidence
 
 N_TASKS = 400
 """Simulated tasks behind the threshold, at least; more cost time and state the rate more precisely."""
@@ -45,7 +45,7 @@ def alarm_calibration(
     noise = generator.gumbel(size=(n_tasks, n_causes))
     order = np.argsort(-(np.log(frequency) + noise), axis=1)[:, :horizon]
     dynamics, every = TypeDynamics.static(), np.arange(n_tasks)
-    misfit = Misfit(UnknownEvidence(library, n_tasks, dynamics=dynamics))
+    misfit = Misfit(unknown_evidence(library, n_tasks, dynamics=dynamics))
     tasks = known_tasks(library, n_tasks, generator)
     found = np.empty((n_tasks, horizon))
     for place, causes in enumerate(order.T):

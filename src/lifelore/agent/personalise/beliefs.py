@@ -134,20 +134,16 @@ def probabilities(
     return probs / probs.sum(axis=1, keepdims=True)
 
 
-def unknown_log_odds(
+def unknown_probability(
     study: Study, users: Sequence[UserRow], evidence: Iterable[tuple[int, str, float]]
 ) -> NDArray[np.float64]:
-    """Evidence in nats that no known type fits, of each user; InputError where no broad law is known."""
-    from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
+    """The probability that no known type fits, of each user; InputError where no broad law is known."""
+    from lifelore.interaction.reuse.novelty.unknown_evidence import unknown_evidence
 
     models: Any = study.models
-    found = UnknownEvidence(study.library, len(users), dynamics=study.dynamics, models=models)
-    start_at_priors(found.types, study, users)
+    found = unknown_evidence(study.library, len(users), dynamics=study.dynamics, models=models)
+    start_at_priors(found, study, users)
     row = {user.number: place for place, user in enumerate(users)}
     own = [(row[number], policy, outcome) for number, policy, outcome in evidence]
-    for rows, policies, outcomes in turns(study, own):
-        known = policies >= 0
-        if known.any():
-            found.observe(rows[known], policies[known], outcomes[known])
-        found.end_episode(rows)
-    return found.log_odds
+    learn(found, study, own)
+    return found.unknown.probability(slice(None))

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.agent.personalise.beliefs import probabilities, start_at_priors, unknown_log_odds
+from lifelore.agent.personalise.beliefs import probabilities, start_at_priors, unknown_probability
 from lifelore.agent.personalise.identifiers import identifier
 from lifelore.agent.personalise.study import Study, known_users
 from lifelore.core.errors import InputError, NotFoundError
@@ -106,12 +106,7 @@ def novelty_of(memory: Memory, study: Study, user: str) -> float:
 
 
 def _novelty(study: Study, known: UserRow, shown: list[tuple[str, float]]) -> float:
-    from scipy.special import expit, logit
-
-    from lifelore.interaction.reuse.unknown_users import MASS
-
-    (log_odds,) = unknown_log_odds(study, [known], [(known.number, *pair) for pair in shown])
-    return float(expit(log_odds + logit(MASS)))
+    return float(unknown_probability(study, [known], [(known.number, *pair) for pair in shown])[0])
 
 
 def _read(memory: Memory, study: Study, user: str) -> tuple[UserRow, list[DecisionRow], list[tuple[str, float]]]:

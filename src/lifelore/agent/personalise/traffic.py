@@ -17,11 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.agent.personalise.beliefs import open_beliefs, unknown_log_odds
+from lifelore.agent.personalise.beliefs import open_beliefs, unknown_probability
 from lifelore.agent.personalise.calibration import difference
 from lifelore.agent.personalise.study import Study
 from lifelore.core.errors import InputError
-from lifelore.interaction.reuse.unknown_users import MASS
 from lifelore.memory import Memory
 from lifelore.memory.study_totals import UserHalves
 
@@ -159,7 +158,7 @@ def _beliefs(memory: Memory, study: Study, halves: UserHalves) -> dict[str, Any]
     entropy = -np.where(np.isfinite(log_belief), np.exp(log_belief) * log_belief, 0.0).sum(axis=1)
     unknown = None
     with suppress(InputError):  # there is no broad type for such signals
-        unknown = float((unknown_log_odds(study, users, evidence) > np.log((1 - MASS) / MASS)).mean())
+        unknown = float((unknown_probability(study, users, evidence) > 0.5).mean())
     return {"users": len(users), "entropy": float(entropy.mean()), "unknown": unknown}
 
 

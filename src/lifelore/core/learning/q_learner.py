@@ -130,13 +130,13 @@ class QLearning:
         Raises
         ------
         InputError
-            `discount` is out of range, or `rows` comes from elsewhere.
+            `discount` is out of range, `rows` comes from elsewhere, or tables made by hand break a rule.
         """
         if not 0 <= discount <= 1:
             raise InputError(f"discount must lie in [0, 1], got {discount}")
         if not isinstance(rows, Rows | None):
             raise InputError(f"rows must come from prior_rows or feature_rows, got {type(rows).__name__}")
-        rows = rows or uniform_rows(tables)
+        tables, rows = tables.checked(), rows or uniform_rows(tables)
         world, own = world or stream(seed, "world"), own or stream(seed, "learner")
         learner = new_learner(int(rows.q_row.max()) + 1, tables.n_actions, world, own)
         curve, schedule = new_curve(self.episode_cap), self.schedule(discount)

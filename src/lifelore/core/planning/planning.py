@@ -40,11 +40,12 @@ def optimal_q(tables: Tables, discount: float) -> NDArray[np.float64]:
     """
     if not 0 <= discount <= 1:
         raise InputError(f"discount must lie in [0, 1], got {discount}")
+    rows = tables.checked().by_pair
     tolerance = 1e-12 * max(1.0, float(np.abs(tables.reward).max()))
     q, value = np.zeros(tables.next_state.shape[:2]), np.zeros(tables.n_states)
     moved = np.inf
     while True:
-        before, moved = moved, _sweep(tables.by_pair, float(discount), tolerance, q, value)
+        before, moved = moved, _sweep(rows, float(discount), tolerance, q, value)
         # Large values are rounded by more than the tolerance.
         if not moved > max(tolerance, 2 * np.finfo(np.float64).eps * float(np.abs(value).max())):
             return q
@@ -221,10 +222,10 @@ def policy_values(tables: Tables, policy: NDArray[np.int32], discount: float) ->
             f"policy must give each of {tables.n_states} states an action, 0 to {tables.n_actions - 1}, or -1, "
             f"got {given.dtype} of shape {given.shape}: {policy!r:.60}"
         )
-    policy = np.ascontiguousarray(given, dtype=np.int32)
+    policy, rows = np.ascontiguousarray(given, dtype=np.int32), tables.checked().by_pair
     if tables.n_outcomes == 1:
-        return _follow(tables.by_pair, policy, float(discount))
-    return _iterate(tables.by_pair, policy, float(discount), 1e-12 * max(1.0, float(np.abs(tables.reward).max())))
+        return _follow(rows, policy, float(discount))
+    return _iterate(rows, policy, float(discount), 1e-12 * max(1.0, float(np.abs(tables.reward).max())))
 
 
 @kernel

@@ -32,7 +32,8 @@ class GPUCB(Baseline):
     n_policies, n_tasks, seed
         As in `Baseline`.
 
-    `from_library` gives the covariance over the library's types, means and noise, all under G₀.
+    `from_library` gives the covariance over the library's types, means and noise, all under G₀. Of a single type
+    the covariance is 0: its means are taken as known, and the best of them is played for ever.
     Thesis: §4.6.4, §4.7.3, Fig. 4.11.
 
     Examples

@@ -17,8 +17,6 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.baselines.ucb1 import UCB1, to_unit
 
-WINDOW = 100
-"""Number of plays that count where neither a window nor a horizon is given; fewer forget sooner."""
 XI = 0.6
 """ξ of the paper's experiments; its bounds on regret need more than 1/2."""
 
@@ -28,13 +26,9 @@ class SlidingWindowUCB(UCB1):
 
     Parameters
     ----------
-    window : int, optional
-        τ ≥ 1, number of plays.
-    horizon : int, optional
-        Number of plays T ≥ 1 to come: τ = 2·√(T ln T / changes), which the paper derives. Give at most one of the
-        two; 100 plays count without both.
-    changes : int
-        Expected number of changes until the horizon, at least 1.
+    window : int
+        τ ≥ 1, number of plays that count; fewer forget sooner. The paper derives
+        2·√(T ln T / changes) for T plays.
     exploration : float
         c = √(ξ / 2); ξ = 0.6 by default, as in the paper's experiments.
     scale, prior_means, prior_pulls, n_policies, n_tasks, seed
@@ -55,14 +49,14 @@ class SlidingWindowUCB(UCB1):
         self,
         n_policies: int,
         *,
-        window: int | None = None,
-        horizon: int | None = None,
-        changes: int = 1,
+        window: int = 100,
         exploration: float = (XI / 2) ** 0.5,
         **settings: Any,
     ) -> None:
         super().__init__(n_policies, exploration=exploration, **settings)
-        self.window = _window(window, horizon, changes)
+        if not window >= 1:
+            raise InputError(f"window must be at least 1, got {window}")
+        self.window = window
         self._recent: deque[tuple[NDArray[np.int64], NDArray[np.float64]]] = deque()
 
     def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
@@ -70,14 +64,3 @@ class SlidingWindowUCB(UCB1):
         self._recent.append((policies, to_unit(rewards, self.scale)))
         if len(self._recent) > self.window:
             self.arms.remove(*self._recent.popleft())
-
-
-def _window(window: int | None, horizon: int | None, changes: int) -> int:
-    if window is not None and horizon is not None:
-        raise InputError("give either window or horizon")
-    for name, value in (("window", window), ("horizon", horizon), ("changes", changes)):
-        if value is not None and not value >= 1:
-            raise InputError(f"{name} must be at least 1, got {value}")
-    if horizon is None:
-        return WINDOW if window is None else window
-    return max(1, round(2 * (horizon * np.log(horizon) / changes) ** 0.5))

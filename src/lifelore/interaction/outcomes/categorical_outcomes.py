@@ -13,7 +13,6 @@ from lifelore.interaction.outcomes.cells import ValueCells, distinct_values
 from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 from lifelore.interaction.outcomes.log_probability import checked_counts, checked_distributions
 from lifelore.interaction.outcomes.outcome_rows import OutcomeRows, rows_of_samples
-from lifelore.interaction.outcomes.pseudo_counts import PseudoCount
 
 Array = NDArray[np.float64]
 
@@ -60,18 +59,15 @@ class CategoricalOutcomes(CountedOutcomes):
         return self.cells.places
 
     @classmethod
-    def from_samples(
-        cls, samples: ArrayLike, values: ArrayLike | None = None, pseudo_count: PseudoCount = 0.5
-    ) -> Self:
+    def from_samples(cls, samples: ArrayLike, values: ArrayLike | None = None, pseudo_count: float = 0.5) -> Self:
         """The model fitted to `samples` (n_types, n_policies, n), NaN where missing.
 
         Parameters
         ----------
         values : (n_values,) float, optional
             All possible values; by default the values of the samples.
-        pseudo_count : float or "held-out"
-            Added to every value of every pair, ≥ 0; "held-out" chooses it by held-out likelihood, see
-            `outcomes.pseudo_counts`.
+        pseudo_count : float
+            Added to every value of every pair, ≥ 0.
 
         Raises
         ------
@@ -81,9 +77,7 @@ class CategoricalOutcomes(CountedOutcomes):
         return cls.from_rows(rows_of_samples(samples), values, pseudo_count)
 
     @classmethod
-    def from_rows(
-        cls, rows: OutcomeRows, values: ArrayLike | None = None, pseudo_count: PseudoCount = 0.5
-    ) -> Self:
+    def from_rows(cls, rows: OutcomeRows, values: ArrayLike | None = None, pseudo_count: float = 0.5) -> Self:
         """The model fitted to rows of outcomes; see `from_samples`."""
         known = distinct_values(rows.values) if values is None else np.sort(np.array(values, np.float64))
         return cls.fitted(ValueCells(known), rows, pseudo_count)

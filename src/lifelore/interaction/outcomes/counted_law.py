@@ -17,6 +17,7 @@ from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.cells import Cells
 from lifelore.interaction.outcomes.law import Law, Numbers, filled
 from lifelore.interaction.outcomes.log_probability import log_of
+from lifelore.interaction.outcomes.outcome_rows import finite_outcomes
 from lifelore.interaction.outcomes.prediction import CountedPrediction
 from lifelore.interaction.outcomes.special_functions import gammaln
 from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest
@@ -34,8 +35,8 @@ class CountedLaw(Law):
     spread : Spread
     place : callable
         Signals (...) to numbers of cells (...), -1 where a signal has none; InputError for what is no signal.
-    log_sizes : (n_cells,) float, optional
-        Logs of the widths of bins, which turn probabilities into densities.
+    cells : Cells, optional
+        Of outcomes: their means, and the widths of bins, which turn probabilities into densities.
     dtype : {"f8", "f4"}
         Precision of the statistics and of the likelihoods.
 
@@ -50,15 +51,15 @@ class CountedLaw(Law):
         counts: Array,
         spread: Spread,
         place: Callable[[Any], Any],
-        log_sizes: Array | None = None,
+        cells: Cells | None = None,
         dtype: str = "f8",
     ) -> None:
-        self.spread, self.dtype, self._place = spread, np.dtype(dtype), place
+        self.spread, self.dtype, self._place, self.cells = spread, np.dtype(dtype), place, cells
         self.n_types, self.n_policies, self.n_cells = counts.shape
         self.shape = counts.shape[1:]
         totals = counts.sum(axis=2)
         self.probs = counts / totals[:, :, None]
-        self._log_sizes = np.zeros(self.n_cells) if log_sizes is None else log_sizes
+        self._log_sizes = np.zeros(self.n_cells) if cells is None else np.log(cells.sizes)
         # Policy and cell first: a signal reads the rows of its policy and cell.
         weight = 1 / (1 / totals.T[:, None, :] + spread.values[:, None])
         self.weight: Array = weight.astype(self.dtype)
@@ -68,8 +69,8 @@ class CountedLaw(Law):
     # ---- the law of signals --------------------------------------------------------------------------------
 
     def checked(self, signals: Any) -> NDArray[np.int64]:
-        """Numbers of cells (...), -1 where a signal has none."""
-        return self._place(signals)
+        """Numbers of cells (...), -1 where a signal has none; InputError where an outcome is not finite."""
+        return self._place(signals if self.cells is None else finite_outcomes(signals))
 
     def log_likelihoods(
         self, policies: Numbers, signals: Any, shown: Array | None = None, users: Numbers = None
@@ -110,25 +111,25 @@ class CountedLaw(Law):
         weights = np.exp(log_weights).reshape(len(own), -1)[rows]
         return (rows, policies), weights, (prior + counts[:, None, None]) / total[..., None], total
 
-    def table(self, n_bins: int, shown: Array, users: Numbers, log_weights: Array) -> SignalTable:
-        """The cells as signals; above `n_bins` cells, neighbours are joined so that they tell the types apart."""
+    def prediction(self, shown: Array, users: Numbers, log_weights: Array) -> "CountedRows":
+        """The next cell of `users`; `log_weights` (..., n_spreads) are log probabilities of their spreads."""
+        return CountedRows(self, shown, users, log_weights)
+
+    def bins(self, n_bins: int) -> tuple[NDArray[np.int64], SignalTable]:
+        """Ends of joined cells that tell the types apart, and their table, of users who have shown nothing."""
         if n_bins not in self._bins:
             self._bins[n_bins] = joined_table(self.probs, n_bins)
-        ends, table = self._bins[n_bins]
-        at, weights, probs, _ = self.predicted(shown, users, log_weights)
-        expected = (weights[:, :, None, None] * probs).sum(axis=1)
-        binned = joined(expected.transpose(1, 0, 2), ends[at[1]]).transpose(1, 0, 2)
-        return table.replaced(np.shape(users), at, binned)
+        return self._bins[n_bins]
 
 
 class CountedRows(CountedPrediction):
-    """The next outcomes of users, each given what the user has shown, where outcomes are cells.
+    """The next signals of users, each given what the user has shown; outcomes where cells have means.
 
-    Only pairs of a user and a policy that the user has shown an outcome of differ from the library's.
+    Only pairs of a user and a policy that the user has shown a signal of differ from the library's.
     """
 
-    def __init__(self, law: CountedLaw, cells: Cells, shown: Array, users: Numbers, log_weights: Array) -> None:
-        self.cells, self._law, self._shape = cells, law, np.shape(users)
+    def __init__(self, law: CountedLaw, shown: Array, users: Numbers, log_weights: Array) -> None:
+        self.cells, self._law, self._shape = law.cells, law, np.shape(users)  # pyright: ignore
         self._spread_weights = np.exp(log_weights).reshape(-1, len(law.spread.values))
         self._at, weights, self._by_spread, self._total = law.predicted(shown, users, log_weights)
         self._tried = weights[:, :, None]
@@ -136,8 +137,18 @@ class CountedRows(CountedPrediction):
     @cached_property
     def probs(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
         """P(next cell | type, policy), (..., n_types, n_policies, n_cells)."""
-        expected = (self._tried[..., None] * self._by_spread).sum(axis=1)
-        return self._rows(self._law.probs, expected)
+        return self._rows(self._law.probs, self._tried_probs)
+
+    def table(self, n_bins: int) -> SignalTable:
+        """The cells as signals; above `n_bins` cells, neighbours are joined so that they tell the types apart."""
+        ends, table = self._law.bins(n_bins)
+        binned = joined(self._tried_probs.transpose(1, 0, 2), ends[self._at[1]]).transpose(1, 0, 2)
+        return table.replaced(self._shape, self._at, binned)
+
+    @cached_property
+    def _tried_probs(self) -> Array:
+        """P(next cell | type) of tried pairs, (m, n_types, n_cells)."""
+        return (self._tried[..., None] * self._by_spread).sum(axis=1)
 
     @cached_property
     def mean_variance(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]

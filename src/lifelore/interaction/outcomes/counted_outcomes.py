@@ -10,13 +10,11 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import joined_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.cells import Cells
-from lifelore.interaction.outcomes.counted_law import CountedLaw, CountedRows, spread_of_counts
-from lifelore.interaction.outcomes.law import Numbers
-from lifelore.interaction.outcomes.log_probability import log_of
+from lifelore.interaction.outcomes.counted_law import CountedLaw, spread_of_counts
+from lifelore.interaction.outcomes.log_probability import checked_pseudo_count, log_of
 from lifelore.interaction.outcomes.outcome_model import OutcomeModel, stored_spread
-from lifelore.interaction.outcomes.outcome_rows import OutcomeRows, chosen_of, finite_outcomes
+from lifelore.interaction.outcomes.outcome_rows import OutcomeRows, chosen_of
 from lifelore.interaction.outcomes.prediction import CountedPrediction
-from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
 from lifelore.interaction.outcomes.spread import Spread
 
 Array = NDArray[np.float64]
@@ -95,17 +93,16 @@ class CountedOutcomes(OutcomeModel, CountedPrediction):
         return model
 
     @classmethod
-    def fitted(cls, cells: Cells, rows: OutcomeRows, pseudo_count: PseudoCount) -> Self:
+    def fitted(cls, cells: Cells, rows: OutcomeRows, pseudo_count: float) -> Self:
         """The model fitted to rows of outcomes."""
         counts = _counted(cells, rows)
-        number = checked_pseudo_count(pseudo_count, counts)
-        return cls.of(cells, counts + number, number)
+        return cls.of(cells, counts + checked_pseudo_count(pseudo_count), pseudo_count)
 
     def _estimated_spread(self) -> Spread:
         return Spread.known(0.0) if self.exact else spread_of_counts(self.counts, self.pseudo_count)
 
     def _uncertain_law(self, spread: Spread, dtype: str) -> Any:
-        return None if self.exact else CountedOutcomeLaw(self.cells, self.counts, spread, dtype)
+        return None if self.exact else CountedLaw(self.counts, spread, self.cells.of, self.cells, dtype)
 
     def _count(self, type_: int, policy: int, value: float) -> None:
         if self.exact:
@@ -135,22 +132,6 @@ class CountedOutcomes(OutcomeModel, CountedPrediction):
         # Policy and cell first: an update reads a row.
         density = self.probs.transpose(1, 2, 0) / self.cells.sizes[:, None]
         self._log_by_cell = log_of(np.ascontiguousarray(density))
-
-
-class CountedOutcomeLaw(CountedLaw):
-    """The law of outcomes that are counted in cells."""
-
-    def __init__(self, cells: Cells, counts: Array, spread: Spread, dtype: str) -> None:
-        super().__init__(counts, spread, cells.of, np.log(cells.sizes), dtype)
-        self.cells = cells
-
-    def checked(self, signals: Any) -> NDArray[np.int64]:
-        """The cells of finite outcomes (...), -1 where an outcome has none."""
-        return super().checked(finite_outcomes(signals))
-
-    def prediction(self, shown: Array, users: Numbers, log_weights: Array) -> CountedPrediction:
-        """The next outcome of `users`; `log_weights` (..., n_spreads) are log probabilities of their spreads."""
-        return CountedRows(self, self.cells, shown, users, log_weights)
 
 
 def known_cells(cells: Cells, values: Array) -> NDArray[np.int64]:

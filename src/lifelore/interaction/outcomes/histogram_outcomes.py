@@ -14,7 +14,6 @@ from lifelore.interaction.outcomes.cells import BinCells
 from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 from lifelore.interaction.outcomes.log_probability import checked_counts, checked_distributions
 from lifelore.interaction.outcomes.outcome_rows import OutcomeRows, rows_of_samples
-from lifelore.interaction.outcomes.pseudo_counts import PseudoCount
 
 Array = NDArray[np.float64]
 
@@ -57,18 +56,15 @@ class HistogramOutcomes(CountedOutcomes):
         return self.cells.places
 
     @classmethod
-    def from_samples(
-        cls, samples: ArrayLike, edges: ArrayLike | int = 20, pseudo_count: PseudoCount = 0.5
-    ) -> Self:
+    def from_samples(cls, samples: ArrayLike, edges: ArrayLike | int = 20, pseudo_count: float = 0.5) -> Self:
         """The model fitted to `samples` (n_types, n_policies, n), NaN where missing.
 
         Parameters
         ----------
         edges : (n_bins + 1,) float or int
             Shared by all; or the number of bins over the samples' range, widened by a twentieth at either end.
-        pseudo_count : float or "held-out"
-            Added to every bin of every pair, ≥ 0; "held-out" chooses it by held-out likelihood, see
-            `outcomes.pseudo_counts`.
+        pseudo_count : float
+            Added to every bin of every pair, ≥ 0.
 
         Raises
         ------
@@ -78,7 +74,7 @@ class HistogramOutcomes(CountedOutcomes):
         return cls.from_rows(rows_of_samples(samples), edges, pseudo_count)
 
     @classmethod
-    def from_rows(cls, rows: OutcomeRows, edges: ArrayLike | int = 20, pseudo_count: PseudoCount = 0.5) -> Self:
+    def from_rows(cls, rows: OutcomeRows, edges: ArrayLike | int = 20, pseudo_count: float = 0.5) -> Self:
         """The model fitted to rows of outcomes; see `from_samples`."""
         number = isinstance(edges, int | np.integer)
         return cls.fitted(BinCells(_edges_over(rows.values, edges) if number else edges), rows, pseudo_count)

@@ -149,14 +149,13 @@ class JointNormalLaw(Law):
         """The next outcome of `users`; `log_weights` are of a single spread, and ignored."""
         return JointNormalRows(self, shown, users)
 
-    def table(self, n_bins: int, shown: Array, users: Numbers, log_weights: Array) -> SignalTable:
-        """The next outcome in bins that tell the types apart; the bins are those of users who showed nothing."""
+    def cuts(self, n_bins: int) -> Array:
+        """Cuts that tell the types apart, of users who have shown nothing."""
         if n_bins not in self._bins:
             deviation = np.sqrt(1 + np.diag(self.covariance)) * self.unit
             mean = self.middle + self.unit * self.mean
             self._bins[n_bins] = informative_cuts(mean, np.broadcast_to(deviation, mean.shape), n_bins)
-        found = JointNormalRows(self, shown, users)
-        return SignalTable(normal_probs(found.mean, found.deviation, self._bins[n_bins]))
+        return self._bins[n_bins]
 
     def restore(self, shown: Array, user: int, state: Mapping[str, Array]) -> None:
         """Take over a `state`; InputError where it is of another law."""
@@ -187,6 +186,10 @@ class JointNormalRows(NormalPrediction):
     def deviation(self) -> Array:  # pyright: ignore[reportIncompatibleVariableOverride]
         """Standard deviation of the next outcome, (..., n_types, n_policies)."""
         return np.sqrt(self.mean_variance + self._law.unit**2)
+
+    def table(self, n_bins: int) -> SignalTable:
+        """The next outcome in bins that tell the types apart; the bins are those of users who showed nothing."""
+        return SignalTable(normal_probs(self.mean, self.deviation, self._law.cuts(n_bins)))
 
     @cached_property
     def _posterior(self) -> tuple[Array, Array]:

@@ -12,6 +12,7 @@ users: a single user has none, its number, policy and signal are scalars.
 """
 
 from collections.abc import Callable, Mapping
+from math import prod
 from typing import Any, Literal
 
 import numpy as np
@@ -29,8 +30,9 @@ Models = Literal["uncertain", "plug-in"]
 class Law:
     """The law of a library's signals, or of its outcomes; base class.
 
-    Where signals can be listed, also ``table(n_bins, shown, users, log_weights)``: P(next signal | type, policy)
-    of `users` with log probabilities (..., n_spreads) of their spreads, a `SignalTable` of at most `n_bins` bins.
+    Laws of outcomes, and of signals that can be listed, also have ``prediction(shown, users, log_weights)``: what
+    rules read of the next outcome or signal of `users` with log probabilities (..., n_spreads) of their spreads.
+    Its ``table(n_bins)`` is P(next signal | type, policy), a `SignalTable` of at most `n_bins` bins.
 
     Attributes
     ----------
@@ -115,7 +117,8 @@ def filled(
     tried : (m, n_types, ...)
     """
     n_types, *more = tried.shape[1:]
-    found = np.array(np.broadcast_to(untried, (int(np.prod(shape)), n_types, n_policies, *more)))
+    found = np.empty((prod(shape), n_types, n_policies, *more), untried.dtype)
+    found[...] = untried
     found[at[0], :, at[1]] = tried
     return found.reshape(*shape, *found.shape[1:])
 

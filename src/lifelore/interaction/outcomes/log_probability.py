@@ -38,6 +38,13 @@ def normalised(logs: Array) -> tuple[Array, Array]:
     return weights / total, (np.log(total) + top)[:, 0]
 
 
+def checked_pseudo_count(pseudo_count: float) -> float:
+    """The weight added to each cell; InputError where it is no number, negative or not finite."""
+    if isinstance(pseudo_count, str) or not 0 <= pseudo_count < np.inf:
+        raise InputError(f"pseudo_count must be at least 0 and finite, got {pseudo_count!r}")
+    return pseudo_count
+
+
 def checked_counts(count: ArrayLike, shape: tuple[int, ...]) -> Array:
     """The number of samples behind each row of probabilities, a number or of `shape`, as a float64 of `shape`.
 

@@ -174,19 +174,16 @@ class NormalLaw(Law):
 
     # ---- what rules read -----------------------------------------------------------------------------------
 
-    def prediction(self, shown: Array, users: Numbers, log_weights: Array) -> NormalPrediction:
+    def prediction(self, shown: Array, users: Numbers, log_weights: Array) -> "NormalRows":
         """The next outcome of `users`; `log_weights` (..., n_spreads) are log probabilities of their spreads."""
         return NormalRows(self, shown, users, log_weights)
 
-    def table(self, n_bins: int, shown: Array, users: Numbers, log_weights: Array) -> SignalTable:
-        """The next outcome in bins that tell the types apart; the bins are those of users who showed nothing."""
+    def bins(self, n_bins: int) -> tuple[Array, SignalTable]:
+        """Cuts that tell the types apart, and the table between them, of users who have shown nothing."""
         if n_bins not in self._bins:
             variance = self.noise + self.of_runs + self.of_spread * self.spread.mean
             self._bins[n_bins] = normal_table(self.mean, np.sqrt(variance), n_bins)
-        cuts, table = self._bins[n_bins]
-        rows = NormalRows(self, shown, users, log_weights)
-        at, mean, deviation = rows.tried_pairs()
-        return table.replaced(np.shape(users), at, normal_probs(mean, deviation, cuts[at[1]][:, None]))
+        return self._bins[n_bins]
 
     def _scaled(self, policies: Numbers, signals: Any) -> Array:
         if self.dtype != np.float32:
@@ -270,9 +267,12 @@ class NormalRows(NormalPrediction):
         below = stdtr(np.minimum(freedom, LARGEST_FREEDOM), gap / np.sqrt(squares / freedom * (1 + doubt)))
         return (self._weights[:, :, None] * below).sum(axis=1).T
 
-    def tried_pairs(self) -> tuple[tuple[Array, Array], Array, Array]:
-        """Row and policy (m,) of each tried pair; mean and deviation of its outcome by type, (m, n_types)."""
-        return self._at, self._tried_mean, np.sqrt(sum(self._tried_variances))
+    def table(self, n_bins: int) -> SignalTable:
+        """The next outcome in bins that tell the types apart; the bins are those of users who showed nothing."""
+        cuts, table = self._law.bins(n_bins)
+        deviation = np.sqrt(sum(self._tried_variances))
+        probs = normal_probs(self._tried_mean, deviation, cuts[self._at[1]][:, None])
+        return table.replaced(self._shape, self._at, probs)
 
     @cached_property
     def _at(self) -> tuple[Array, Array]:

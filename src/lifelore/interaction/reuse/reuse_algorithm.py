@@ -24,9 +24,11 @@ from lifelore.interaction.beliefs.belief import log_prior, update
 from lifelore.interaction.beliefs.learnt_dynamics import LearntDynamics
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.outcomes.law import Models, Numbers, law_of, of_users
+from lifelore.interaction.outcomes.law import Law, Models, Numbers, law_of, of_users
+from lifelore.interaction.outcomes.normal_law import NormalLaw
 from lifelore.interaction.outcomes.spread import Spread
-from lifelore.interaction.reuse.unknown_users import UnknownUsers, unknown_law
+from lifelore.interaction.reuse.unknown_law import unknown_law
+from lifelore.interaction.reuse.unknown_users import UnknownUsers
 from lifelore.interaction.reuse.user_library import UserLibrary
 from lifelore.interaction.reuse.user_model import UserModel
 from lifelore.interaction.selection import SelectionRule
@@ -70,9 +72,10 @@ class ReuseAlgorithm:
         Of the users of a type; by default as the library's runs leave it.
     dtype : {"f8", "f4"}
         Precision of the rows. float32 is faster and needs half the memory.
-    unknown_users : bool
-        Whether users whom no known type fits are looked for, where the outcomes are the signals and their models
-        are uncertain, see `unknown_users`; costs memory for three numbers a policy.
+    unknown : Law, optional
+        Of the signals of an unknown type: users whom no known type fits are looked for, see `unknown_users`. By
+        default `unknown_law` where the outcomes are the signals and their means uncertain, else none; costs
+        memory for three numbers a policy.
 
     Attributes
     ----------
@@ -95,7 +98,7 @@ class ReuseAlgorithm:
         models: Models = "uncertain",
         spread: Spread | None = None,
         dtype: Precision = "f8",
-        unknown_users: bool = True,
+        unknown: Law | Literal["default"] | None = "default",
     ) -> None:
         if models not in ("uncertain", "plug-in"):
             raise InputError(f"models must be 'uncertain' or 'plug-in', got {models!r}")
@@ -112,7 +115,10 @@ class ReuseAlgorithm:
         laws = {"signal": law_of(library.signal, library.n_types, models, **settings)}
         if not (isinstance(library.signal, ReturnSignal) and library.signal.outcomes is library.performance):
             laws["outcomes"] = law_of(library.performance, library.n_types, models, **settings)
-        elif unknown_users and (unknown := unknown_law(library, laws["signal"])) is not None:
+        if unknown == "default":
+            looked_for = "outcomes" not in laws and isinstance(laws["signal"], NormalLaw) and library.n_types > 1
+            unknown = unknown_law(library, dtype) if looked_for else None
+        if unknown is not None:
             laws["unknown"] = unknown
         self._begin(n_users, laws)
 
@@ -202,8 +208,8 @@ class ReuseAlgorithm:
         """
         known, belief = self.known(users), self.belief(users)
         scores = scored(rule, known, belief, available, episodes_left=episodes_left, generator=generator)
-        tried, bounds = self._of_unknown(users, rule, known, belief, available)
-        if np.any(tried):
+        if (unknown := self._of_unknown(users, rule, known, belief, available)) is not None:
+            tried, bounds = unknown
             scores[tried] = bounds
         return scores
 
@@ -219,8 +225,8 @@ class ReuseAlgorithm:
         belief = belief / belief.sum(axis=-1, keepdims=True)
         known = self.known(users)
         shares = propensities(rule, known, belief, available, episodes_left=episodes_left)
-        tried, bounds = self._of_unknown(users, rule, known, belief, available)
-        if np.any(tried):
+        if (unknown := self._of_unknown(users, rule, known, belief, available)) is not None:
+            tried, bounds = unknown
             shares[tried] = tied_shares(bounds)
         return shares
 
@@ -247,7 +253,7 @@ class ReuseAlgorithm:
         InputError
             The model cannot have made a signal, or gave NaN or infinity. All stays as it was.
         """
-        law, before = self.signals.law, of_users(self.log_belief, users)
+        law, before, raw = self.signals.law, of_users(self.log_belief, users), signals
         signals = law.checked(signals)
         outcomes = None if outcomes is None else self.outcomes.law.checked(outcomes)
         if law.single and not isinstance(signals, float) and np.shape(signals) != np.shape(users):
@@ -266,8 +272,8 @@ class ReuseAlgorithm:
                     model.fade(users, 1 - np.minimum(changes, 1.0))
             if explained.any():
                 self.signals.learn(*_explained(explained, users, policies, signals, gain))
-                if self.unknown is not None:
-                    self.unknown.weigh(*_explained(explained, users, policies, signals, log_evidence))
+        if self.unknown is not None:
+            self.unknown.weigh(users, policies, raw, log_evidence)
         if outcomes is not None and self.outcomes is not self.signals and self.outcomes.law.learns:
             self._learn_outcomes(users, policies, outcomes, before)
         self.log_belief[users] = after
@@ -380,17 +386,17 @@ class ReuseAlgorithm:
 
     def _of_unknown(
         self, users: Numbers, rule: SelectionRule, known: Any, belief: Array, available: Mask | None
-    ) -> tuple[Any, Any]:
-        """Which `users` (...) policies are tried on, and the scores of policies on these, (m, n_policies)."""
+    ) -> tuple[Any, Array] | None:
+        """Which `users` (...) policies are tried on, and their scores on these, (m, n_policies); None for none."""
         if self.unknown is None or not getattr(rule, "tries_unknown", False):
-            return False, 0.0
+            return None
         bounds, means = self.unknown.bounds(users), known.performance.mean
         if available is not None:
             bounds = np.where(available, bounds, -np.inf)
             means = np.where(np.expand_dims(available, -2), means, -np.inf)
         best = (belief * means.max(axis=-1)).sum(axis=-1)
         tried = np.asarray(self.unknown.tried(users, bounds, best))
-        return tried, bounds[tried]
+        return (tried, bounds[tried]) if tried.any() else None
 
     def _learn_outcomes(self, users: Numbers, policies: Numbers, outcomes: Any, log_belief: Array) -> None:
         found = self.outcomes.evidence(users, policies, outcomes, log_belief, None)

@@ -2,7 +2,7 @@
 
     log odds ← log odds + log q(σ) − log m(σ)
 
-q is a type as broad as all types of the library together (`broad_moments`), m the mixture of the known types, each
+q is a type as broad as all types of the library together (`unknown_law`), m the mixture of the known types, each
 given the user's earlier signals. The unknown type never changes, so what a user has shown of it never fades: only
 evidence leads to it or away from it. Known types may change (`beliefs`), and what was shown of them then fades.
 
@@ -16,24 +16,23 @@ little. A policy is tried until it is probably worse.
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Law, Numbers
-from lifelore.interaction.outcomes.normal_law import EXACT, NormalLaw
-from lifelore.interaction.outcomes.spread import Spread
-from lifelore.interaction.reuse.novelty.broad_library import broad_moments
+from lifelore.interaction.reuse.explanation import MAX_SURPRISE
 from lifelore.interaction.reuse.user_model import UserModel
 
 Array = NDArray[Any]
 
 MASS = 0.15
 """Prior probability of the unknown type; more finds such users sooner, and takes more known users for such."""
+FIRST = float(np.log(MASS / (1 - MASS)))
+"""Log odds of the unknown type of a user who has shown nothing."""
 DEVIATIONS = 2.0
 """Deviations of a mean pay that count in favour of a policy; more tries policies longer."""
 GAIN = 0.25
@@ -45,8 +44,8 @@ class UnknownUsers(UserModel):
 
     Parameters
     ----------
-    law : NormalLaw
-        Of the unknown type, see `unknown_law`.
+    law : Law
+        Of the unknown type, see `unknown_law`. Policies are tried where it is that of numbers.
     n_users : int
 
     Attributes
@@ -57,19 +56,26 @@ class UnknownUsers(UserModel):
 
     def __init__(self, law: Law, n_users: int) -> None:
         super().__init__(law, n_users)
-        self.log_odds: Array = np.full(n_users, _FIRST)
-        self._least = GAIN * float(np.sqrt(law.of_runs.mean()))  # pyright: ignore[reportAttributeAccessIssue]
+        self.log_odds: Array = np.full(n_users, FIRST)
 
     def weigh(self, users: Numbers, policies: Numbers, signals: Any, log_evidence: Array) -> None:
-        """Take in checked signals of distinct users; `log_evidence` (...) is log m(σ)."""
+        """Take in signals of distinct users; `log_evidence` (...) is log m(σ).
+
+        A signal counts at most `MAX_SURPRISE` nats against either side.
+        """
+        signals = self.law.checked(signals)
         broad = self.law.log_likelihoods(policies, signals, self.shown, users)[..., 0, 0]
-        self.log_odds[users] += broad - log_evidence
+        self.log_odds[users] += np.maximum(broad, -MAX_SURPRISE) - np.maximum(log_evidence, -MAX_SURPRISE)
         self.law.learn(self.shown, users, policies, signals)
+
+    @cached_property
+    def _least(self) -> float:
+        law: Any = self.law
+        return GAIN * float(np.sqrt(law.of_runs.mean()))
 
     def bounds(self, users: Numbers) -> Array:
         """m + 2 s of each policy's mean pay on `users` (...), (..., n_policies)."""
-        law: Any = self.law
-        pay = law.prediction(self.shown, users, self.log_weights[users])
+        pay = self.prediction(users)
         return (pay.mean + DEVIATIONS * np.sqrt(pay.mean_variance))[..., 0, :]
 
     def tried(self, users: Numbers, bounds: Array, known: Array) -> Any:
@@ -95,12 +101,12 @@ class UnknownUsers(UserModel):
     def reset(self, users: Numbers) -> None:
         """Forget what `users` have shown."""
         super().reset(users)
-        self.log_odds[users] = _FIRST
+        self.log_odds[users] = FIRST
 
     def grow(self, n_users: int) -> None:
         """Make room for `n_users` users; new users have shown nothing."""
         super().grow(n_users)
-        self.log_odds = np.append(self.log_odds, np.full(n_users - len(self.log_odds), _FIRST))
+        self.log_odds = np.append(self.log_odds, np.full(n_users - len(self.log_odds), FIRST))
 
     def arrays(self) -> list[Array]:
         """Every array with a row for each user."""
@@ -123,24 +129,3 @@ class UnknownUsers(UserModel):
         if log_odds.shape != () or not log_odds < np.inf:
             raise InputError("a user's state must have the log odds of the unknown type, a number below infinity")
         self.log_odds[user] = log_odds
-
-
-_FIRST = float(np.log(MASS / (1 - MASS)))
-
-
-def unknown_law(library: PolicyLibrary, outcomes: Law) -> NormalLaw | None:
-    """The law of the unknown type; None where outcomes have no means in doubt, or there is a single type.
-
-    Parameters
-    ----------
-    outcomes : Law
-        Of the library's outcomes.
-    """
-    if not isinstance(outcomes, NormalLaw) or library.n_types < 2:
-        return None
-    model: Any = library.performance
-    known, prior = model.moments, library.prior
-    broad = broad_moments(known.mean, np.sqrt(known.variance), prior)
-    # The variances are as well known as those of the known types: only the mean pays shall tell a user from these.
-    broad = replace(broad, freedom=(prior @ np.minimum(known.freedom, EXACT))[None])
-    return NormalLaw(broad, Spread.known(0.0), outcomes.dtype.name)

@@ -31,19 +31,16 @@ class UserLibrary:
     @cached_property
     def performance(self) -> Prediction:
         """The next outcome of each pair."""
-        model = self._outcomes
-        if not model.law.learns:
-            return self.library.performance  # pyright: ignore[reportReturnType]
-        law: Any = model.law
-        return law.prediction(model.shown, self._users, model.log_weights[self._users])
+        learns = self._outcomes.law.learns
+        return self._outcomes.prediction(self._users) if learns else self.library.performance  # pyright: ignore
 
     def table(self, n_bins: int) -> SignalTable:
         """The next signal of each pair, in at most `n_bins` bins; errors as for `PolicyLibrary.table`."""
         model = self._signals
-        law: Any = model.law
-        if not (law.learns and hasattr(law, "table")):
+        if not (model.law.learns and hasattr(model.law, "prediction")):
             return self.library.table(n_bins)
-        return law.table(n_bins, model.shown, self._users, model.log_weights[self._users])
+        rows: Any = self.performance if model is self._outcomes else model.prediction(self._users)
+        return rows.table(n_bins)
 
     def part(self, rows: Any, policies: NDArray[np.bool_]) -> PartOfLibrary:
         """What rules read of some of the users and policies."""

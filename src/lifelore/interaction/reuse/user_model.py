@@ -91,6 +91,11 @@ class UserModel:
         with np.errstate(divide="ignore"):
             return Evidence(np.log(whole) + top, new / np.maximum(whole, LEAST), gain)
 
+    def prediction(self, users: Numbers) -> Any:
+        """What rules read of the next outcome or signal of `users`, see `Law`."""
+        law: Any = self.law
+        return law.prediction(self.shown, users, self.log_weights[users])
+
     def fade(self, users: Numbers, keep: Array) -> None:
         """Let all that distinct `users` have shown count `keep` (...) of what it did: types may have changed."""
         if not self.law.learns:

@@ -15,9 +15,13 @@ from lifelore.interaction.finite_signals.signal_bins import joined_table, normal
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.counted_law import CountedLaw, spread_of_counts
 from lifelore.interaction.outcomes.law import FixedLaw, Models
-from lifelore.interaction.outcomes.log_probability import checked_counts, checked_distributions, log_of
+from lifelore.interaction.outcomes.log_probability import (
+    checked_counts,
+    checked_distributions,
+    checked_pseudo_count,
+    log_of,
+)
 from lifelore.interaction.outcomes.outcome_rows import check_known, chosen_of, rows_of_samples
-from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
 from lifelore.interaction.outcomes.spread import Spread
 
 Array = NDArray[np.float64]
@@ -70,7 +74,7 @@ class CategorySignal:
         cls,
         samples: ArrayLike,
         n_categories: int | None = None,
-        pseudo_count: PseudoCount = 0.5,
+        pseudo_count: float = 0.5,
         categories: Sequence[Hashable] | None = None,
     ) -> Self:
         """The model fitted to category numbers `samples` (n_types, n_policies, n), NaN where missing.
@@ -79,9 +83,8 @@ class CategorySignal:
         ----------
         n_categories : int, optional
             By default the number of `categories`, or else the largest sample plus 1.
-        pseudo_count : float or "held-out"
+        pseudo_count : float
             Added to every category of every pair, ≥ 0; at 0, a category never seen excludes a type for ever.
-            "held-out" chooses it by held-out likelihood, see ``outcomes.pseudo_counts``.
 
         Raises
         ------
@@ -89,7 +92,7 @@ class CategorySignal:
             A pair has no sample, or a sample is no category.
         """
         counted = category_counts(samples, n_categories or (None if categories is None else len(categories)))
-        counts = counted + checked_pseudo_count(pseudo_count, counted)
+        counts = counted + checked_pseudo_count(pseudo_count)
         totals = counts.sum(axis=2)
         return cls(counts / totals[:, :, None], categories, totals)
 

@@ -13,9 +13,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.law import FixedLaw, Models
-from lifelore.interaction.outcomes.log_probability import checked_counts, checked_distributions, log_of
+from lifelore.interaction.outcomes.log_probability import (
+    checked_counts,
+    checked_distributions,
+    checked_pseudo_count,
+    log_of,
+)
 from lifelore.interaction.outcomes.outcome_rows import check_known, chosen_of
-from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
 from lifelore.interaction.signals.step_law import StepLaw
 
 Array = NDArray[np.float64]
@@ -170,7 +174,7 @@ def step_counts(
     return counts[:, 0] if n_policies is None else counts
 
 
-def step_probs(counts: ArrayLike, pseudo_count: PseudoCount, possible: ArrayLike | None) -> tuple[Array, Array]:
+def step_probs(counts: ArrayLike, pseudo_count: float, possible: ArrayLike | None) -> tuple[Array, Array]:
     """Distributions over outcomes from counts, `pseudo_count` added to each outcome that is `possible`; row sums.
 
     A row without any count is uniform and counts as one step.
@@ -189,7 +193,7 @@ def step_probs(counts: ArrayLike, pseudo_count: PseudoCount, possible: ArrayLike
     if not counts.size or not ((counts >= 0) & np.isfinite(counts)).all():
         raise InputError("counts must be at least 0 and finite, at least one of them")
     gets = np.broadcast_to(True if possible is None else np.asarray(possible, bool), counts.shape)
-    weights = counts + checked_pseudo_count(pseudo_count, counts, possible) * gets
+    weights = counts + checked_pseudo_count(pseudo_count) * gets
     totals = weights.sum(axis=-1, keepdims=True)
     probs = np.divide(weights, totals, out=np.full_like(weights, 1 / counts.shape[-1]), where=totals > 0)
     return probs, np.where(totals > 0, totals, 1.0)[..., 0]

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.pseudo_counts import PseudoCount
 from lifelore.interaction.signals.step_model import StepModel, step_counts, step_probs
 
 Array = NDArray[np.float64]
@@ -53,7 +52,7 @@ class StepRewardSignal(StepModel):
         n_states: int,
         n_actions: int = 1,
         n_policies: int | None = None,
-        pseudo_count: PseudoCount = 0.5,
+        pseudo_count: float = 0.5,
         possible: ArrayLike | None = None,
     ) -> Self:
         """The model from episodes (type, policy, steps); with `n_policies` each policy has its own table."""

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.pseudo_counts import PseudoCount
 from lifelore.interaction.signals.step_model import StepModel, step_counts, step_probs
 
 Array = NDArray[np.float64]
@@ -44,7 +43,7 @@ class TransitionSignal(StepModel):
     def from_counts(
         cls,
         counts: ArrayLike,
-        pseudo_count: PseudoCount = 0.5,
+        pseudo_count: float = 0.5,
         possible: ArrayLike | None = None,
         n_policies: int | None = None,
     ) -> Self:
@@ -52,8 +51,8 @@ class TransitionSignal(StepModel):
 
         Parameters
         ----------
-        pseudo_count : float or "held-out"
-            Added to each transition that is `possible`, ≥ 0; "held-out" chooses it by held-out likelihood.
+        pseudo_count : float
+            Added to each transition that is `possible`, ≥ 0.
         possible : bool, broadcastable to `counts`, optional
             Possible transitions; by default all.
         """
@@ -68,7 +67,7 @@ class TransitionSignal(StepModel):
         n_states: int,
         n_actions: int = 1,
         n_policies: int | None = None,
-        pseudo_count: PseudoCount = 0.5,
+        pseudo_count: float = 0.5,
         possible: ArrayLike | None = None,
     ) -> Self:
         """The model from episodes (type, policy, steps); with `n_policies` each policy has its own table."""

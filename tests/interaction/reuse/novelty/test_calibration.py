@@ -69,7 +69,6 @@ def test_simulated_tasks_are_played_as_an_agent_plays():
         agent.update(chosen[episode], float(pays[episode, chosen[episode]]))
         assert agent.novelty is not None
         assert agent.novelty.score == pytest.approx(seen.statistic[0, episode])
-        assert agent.novelty.log_odds == pytest.approx(seen.log_odds[0, episode])
 
 
 def test_bad_settings_are_refused():

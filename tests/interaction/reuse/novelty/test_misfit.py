@@ -7,14 +7,14 @@ from scipy.stats import multinomial
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.novelty.misfit import Misfit, pairs_of
-from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
+from lifelore.interaction.reuse.novelty.unknown_evidence import unknown_evidence
 from lifelore.interaction.signals.category_signal import CategorySignal
 
 EXACT = PolicyLibrary.from_means([[10.0, 0.0], [0.0, 10.0]], 2.0)
 
 
 def misfit_of(library: PolicyLibrary, n: int = 1) -> Misfit:
-    return Misfit(UnknownEvidence(library, n, dynamics=TypeDynamics.static()))
+    return Misfit(unknown_evidence(library, n, dynamics=TypeDynamics.static()))
 
 
 def test_outcomes_of_exact_types_by_hand():
@@ -73,6 +73,6 @@ def test_rows_are_single_tasks_and_sums_are_those_of_all_pairs(kind):
     np.testing.assert_allclose(many.statistic(np.arange(20)), singles, rtol=1e-9, atol=1e-9)
     # The naive sum over all pairs of what has been shown.
     pairs = pairs_of(library.signal)
-    shown = many.evidence.broad.signals.shown
+    shown = many.rows.unknown.shown
     whole = sum(pairs.misfit(shown[:, policy], np.full(20, policy)) for policy in range(4))
     np.testing.assert_allclose(many.by_type, whole, rtol=1e-9, atol=1e-9)

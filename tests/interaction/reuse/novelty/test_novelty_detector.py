@@ -75,6 +75,17 @@ def test_a_restored_state_has_the_same_bits(kind, models):
     }
 
 
+def test_earlier_states_that_took_bins_for_normal_outcomes_are_read():
+    samples = np.random.default_rng(0).normal([[[2.0]], [[5.0]]], 1.0, (2, 3, 60))
+    library = PolicyLibrary.from_samples(samples, model="histogram")
+    state = NoveltyDetector(library).state()
+    del state["log_odds"]
+    earlier = {"places": np.array([[1]]), "shown": np.array([[4.0, 2.0, 1.0]]), "numbers": np.array([0.1, 0.5])}
+    detector = NoveltyDetector.restored(state | earlier, library)
+    assert detector.log_odds == pytest.approx(0.5)
+    detector.update(1, 2.0)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

@@ -2,13 +2,12 @@
 
 import numpy as np
 import pytest
-from scipy.stats import norm, t
+from scipy.stats import norm
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.reuse.novelty.broad_library import FREEDOM
-from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
+from lifelore.interaction.reuse.novelty.unknown_evidence import unknown_evidence
 from lifelore.interaction.selection import BeliefSampling
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
@@ -27,7 +26,7 @@ def test_one_signal_by_hand():
     assert agent.novelty.probability == pytest.approx(0.2, abs=1e-15)
     agent.update(0, 6.0)
     # Pooled mean 5, variance 4, spread over types 25: the mean counts as 4 / 25 outcomes.
-    broad = t.logpdf(6.0, FREEDOM, 5.0, np.sqrt(4 * (1 + 25 / 4)))
+    broad = norm.logpdf(6.0, 5.0, np.sqrt(4 * (1 + 25 / 4)))
     known = np.log(0.5 * norm.pdf(6, 10, 2) + 0.5 * norm.pdf(6, 0, 2))
     assert agent.novelty.log_odds == pytest.approx(broad - known, abs=1e-12)
     odds = np.exp(broad - known) * 0.2 / 0.8
@@ -41,8 +40,8 @@ def test_rows_are_single_tasks(kind, models):
     signal = None if kind == "outcomes" else CategorySignal(random.dirichlet(np.ones(4), (3, 3)), count=12)
     library = learnt(signal=signal)
     many, alone = (
-        UnknownEvidence(library, 6, models=models),
-        [UnknownEvidence(library, models=models) for _ in range(6)],
+        unknown_evidence(library, 6, models=models),
+        [unknown_evidence(library, models=models) for _ in range(6)],
     )
     for _ in range(9):
         policies = random.integers(0, 3, 6)
@@ -52,7 +51,7 @@ def test_rows_are_single_tasks(kind, models):
         for row, one in enumerate(alone):
             one.observe(0, int(policies[row]), signals[row].item())
             one.end_episode(0)
-    np.testing.assert_allclose(many.log_odds, [one.log_odds[0] for one in alone], rtol=1e-10)
+    np.testing.assert_allclose(many.unknown.log_odds, [one.unknown.log_odds[0] for one in alone], rtol=1e-10)
 
 
 def test_mistakes_are_said():

@@ -88,7 +88,7 @@ class HeldOut:
         numbers = {policy: number for number, policy in enumerate(library.policies)}
         place = np.array([numbers.get(policy, -1) for policy in self.log.policy.names] + [-1])
         static = TypeDynamics.static()
-        algorithm = ReuseAlgorithm(library, len(self.policies), dynamics=static, unknown_users=False)
+        algorithm = ReuseAlgorithm(library, len(self.policies), dynamics=static, unknown=None)
         priors = [(contexts or {}).get(name, library.prior) for name in (*self.log.context.names, "")]
         # Without a context the place is -1, the last row.
         algorithm.log_belief[:] = np.stack([algorithm.start(prior) for prior in priors])[self.log.context_of_user]

@@ -18,7 +18,7 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Models
 from lifelore.interaction.reuse.novelty.known_tasks import Tasks, known_tasks
 from lifelore.interaction.reuse.novelty.misfit import Misfit
-from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
+from lifelore.interaction.reuse.novelty.unknown_evidence import unknown_evidence
 from lifelore.interaction.reuse.reuse_algorithm import Dynamics
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 from lifelore.interaction.selection import SelectionRule
@@ -35,12 +35,10 @@ class Watched(NamedTuple):
     """What tasks showed in each episode, (n_tasks, n_episodes) float64 each.
 
     statistic : of `Misfit`, after the episode
-    log_odds : of `UnknownEvidence`, after the episode
     entropy : of the agent's belief before the episode, nats
     """
 
     statistic: Array
-    log_odds: Array
     entropy: Array
 
 
@@ -158,15 +156,14 @@ def watch(
         Of the agent, as for `UserBeliefs`.
     """
     users = UserBeliefs(library, n, "f8", prior=prior, dynamics=dynamics, models=models, seed=generator)
-    misfit, every = Misfit(UnknownEvidence(library, n, prior, dynamics, models)), np.arange(n)
-    seen = Watched(*np.empty((3, n, horizon)))
+    misfit, every = Misfit(unknown_evidence(library, n, prior, dynamics, models)), np.arange(n)
+    seen = Watched(*np.empty((2, n, horizon)))
     for episode in range(horizon):
         seen.entropy[:, episode] = entropy(users.belief(every))
         policies = users.select(every, rule)
         signals = tasks(policies)
         users.update(every, policies, signals)
         misfit.observe(every, policies, signals)
-        misfit.evidence.end_episode(every)
+        misfit.rows.end_episode(every)
         seen.statistic[:, episode] = misfit.statistic(every)
-        seen.log_odds[:, episode] = misfit.evidence.log_odds
     return seen

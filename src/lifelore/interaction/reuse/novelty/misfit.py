@@ -19,11 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
-from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.law import Numbers
 from lifelore.interaction.outcomes.log_probability import log_of
 from lifelore.interaction.outcomes.special_functions import gammaln
-from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
+from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.signals.return_signal import ReturnSignal
 
 Array = NDArray[np.float64]
@@ -39,8 +38,8 @@ class Misfit:
 
     Parameters
     ----------
-    evidence : UnknownEvidence
-        Of the same tasks; `observe` teaches it too.
+    rows : ReuseAlgorithm
+        Of the same tasks, of `unknown_evidence`; `observe` teaches them too.
 
     Attributes
     ----------
@@ -49,9 +48,9 @@ class Misfit:
         Σ χ² over the policies that a task has tried.
     """
 
-    def __init__(self, evidence: UnknownEvidence) -> None:
-        self.evidence, library = evidence, evidence.types.library
-        n_tasks, n_types = evidence.types.log_belief.shape
+    def __init__(self, rows: ReuseAlgorithm) -> None:
+        self.rows, library = rows, rows.library
+        n_tasks, n_types = rows.log_belief.shape
         self.n_signals, self.shortfall, self.freedom = np.zeros((3, n_tasks))
         self.by_type = np.zeros((n_tasks, n_types))
         self._pairs = pairs_of(library.signal)
@@ -62,12 +61,11 @@ class Misfit:
             self._square = self._mean**2 + library.performance.deviation.T**2
 
     def observe(self, tasks: Numbers, policies: Numbers, signals: Any) -> None:
-        """Take in a signal of each of `tasks`; errors as for `UnknownEvidence.observe`."""
-        belief = self.evidence.types.belief(tasks)
-        statistics = self.evidence.broad.signals.shown
+        """Take in a signal of each of `tasks`; errors as for `ReuseAlgorithm.observe`."""
+        belief, statistics = self.rows.belief(tasks), self.rows.unknown.shown
         before = self._pairs.misfit(statistics[tasks, policies], policies)
         first = ~statistics[tasks, policies].any(axis=-1)
-        self.evidence.observe(tasks, policies, signals)
+        self.rows.observe(tasks, policies, signals)
         self.by_type[tasks] += self._pairs.misfit(statistics[tasks, policies], policies) - before
         self.freedom[tasks] += self._pairs.freedom * first
         self.n_signals[tasks] += 1
@@ -151,10 +149,7 @@ def pairs_of(signal: Any) -> MeanPairs | CountedPairs:
     if isinstance(model, GaussianOutcomes):
         doubt = 1 / model.moments.count + model.spread.least.values[0]
         return MeanPairs(model.moments.mean, model.moments.variance, doubt)
-    weight = weight_of_runs(model)
-    if isinstance(model, HistogramOutcomes):
-        return MeanPairs(model.mean, model.deviation**2, 0.0 if weight is None else 1 / weight)
-    return CountedPairs(model.probs, weight)
+    return CountedPairs(model.probs, weight_of_runs(model))
 
 
 def weight_of_runs(model: Any) -> Array | None:

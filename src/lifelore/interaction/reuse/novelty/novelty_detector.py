@@ -1,6 +1,6 @@
 """A detector of tasks and users whose type the library does not have: a probability, and a calibrated alarm.
 
-    probability   Bayes' rule from the prior `mass` and the log odds of `UnknownEvidence`
+    probability   Bayes' rule from the prior `mass` and the log odds of `UnknownUsers`
     alarm         the statistic of `Misfit` exceeds a threshold that simulated known tasks exceed at a stated rate
 
 The thesis proposes the belief's spread (§5.2), which rises too little: a belief in a wrong type is as narrow as a
@@ -19,9 +19,9 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.law import Models
 from lifelore.interaction.reuse.novelty.calibration import NoveltyCalibration, check_rate, known_statistic
 from lifelore.interaction.reuse.novelty.misfit import Misfit
-from lifelore.interaction.reuse.novelty.unknown_evidence import UnknownEvidence
+from lifelore.interaction.reuse.novelty.unknown_evidence import unknown_evidence
 from lifelore.interaction.reuse.reuse_algorithm import Dynamics, named_part
-from lifelore.interaction.reuse.unknown_users import MASS
+from lifelore.interaction.reuse.unknown_users import FIRST, MASS
 from lifelore.interaction.selection import SelectionRule, rule_of
 
 
@@ -76,8 +76,8 @@ class NoveltyDetector:
             raise InputError(f"novelty must lie between 0 and 1, the prior that no known type fits, got {mass}")
         self.library, self.mass, self.calibration = library, float(mass), calibration
         self._agent = {"prior": prior, "dynamics": dynamics, "models": models}
-        self._evidence = UnknownEvidence(library, **self._agent)
-        self._misfit = Misfit(self._evidence)
+        self._rows = unknown_evidence(library, **self._agent)
+        self._misfit = Misfit(self._rows)
         self.alarm_episode: int | None = None
 
     @classmethod
@@ -148,7 +148,7 @@ class NoveltyDetector:
         """
         index, known = self.library.index_of_policy(policy), self.calibration
         if known is None:
-            self._evidence.observe(0, index, signal)
+            self._rows.observe(0, index, signal)
             return
         self._misfit.observe(0, index, signal)
         watching = self.alarm_episode is None and self.n_signals <= known.horizon
@@ -157,7 +157,7 @@ class NoveltyDetector:
 
     def end_episode(self) -> None:
         """End an episode: the type may have changed before the next."""
-        self._evidence.end_episode(0)
+        self._rows.end_episode(0)
 
     # ---- answers ---------------------------------------------------------------------------------------
 
@@ -169,7 +169,7 @@ class NoveltyDetector:
     @property
     def log_odds(self) -> float:
         """Evidence of a broad type over that of the known types in nats, without the prior."""
-        return float(self._evidence.log_odds[0])
+        return float(self._rows.unknown.log_odds[0] - FIRST)
 
     @property
     def probability(self) -> float:
@@ -204,17 +204,17 @@ class NoveltyDetector:
     def state(self) -> dict[str, NDArray[Any]]:
         """What the task has shown, as small arrays; policies that were not tried take no room.
 
-        ``numbers`` (mass, log odds), ``log_belief`` and ``task.*`` of the known types, ``places`` and ``shown``
-        of the broad type. With a calibration its arrays, ``misfit`` (signals, shortfall, degrees of freedom, and
-        the signal of the alarm or -1) and ``misfit_by_type``.
+        ``numbers`` (mass, log odds without a prior), ``log_belief`` and ``task.*`` of the known types, ``places``,
+        ``shown`` and ``log_odds`` of the broad type. With a calibration its arrays, ``misfit`` (signals,
+        shortfall, degrees of freedom, and the signal of the alarm or -1) and ``misfit_by_type``.
         """
-        types, broad = self._evidence.types, self._evidence.broad.state(0)
-        task = {f"task.{name}": array for name, array in types.state(0).items()}
-        state = task | {
+        task = self._rows.state(0)
+        state = {f"task.{name}": array for name, array in task.items() if not name.startswith("unknown.")} | {
             "numbers": np.array([self.mass, self.log_odds]),
-            "log_belief": types.log_belief[0].copy(),
-            "places": broad["signal.places"],
-            "shown": broad["signal.shown"],
+            "log_belief": self._rows.log_belief[0].copy(),
+            "places": task["unknown.places"],
+            "shown": task["unknown.shown"],
+            "log_odds": task["unknown.log_odds"],
         }
         if self.calibration is None:
             return state
@@ -237,10 +237,15 @@ class NoveltyDetector:
         try:
             mass, log_odds = np.asarray(state["numbers"], np.float64).tolist()
             detector = cls(library, mass, None, dynamics, models, known)
-            shown = {f"signal.{name}": state[name] for name in ("places", "policies", "shown") if name in state}
-            detector._evidence.types.restore(0, state["log_belief"], named_part(state, "task."))
-            detector._evidence.broad.restore(0, np.zeros(1), shown)
-            detector._evidence.log_odds[0] = log_odds
+            task = {name: state[name] for name in ("places", "policies", "shown") if name in state}
+            n_numbers = detector._rows.unknown.shown.shape[-1]
+            if "log_odds" not in state and np.shape(task["shown"])[1:] != (n_numbers,):
+                # Earlier sessions took outcomes in bins for normal: the statistics begin anew.
+                task = {"places": np.empty((0, 1), np.int64), "shown": np.empty((0, n_numbers))}
+            unknown = {f"unknown.{name}": array for name, array in task.items()}
+            # Earlier sessions have the log odds without their prior alone, where a bit may differ.
+            unknown["unknown.log_odds"] = state.get("log_odds", np.array(log_odds + FIRST))
+            detector._rows.restore(0, state["log_belief"], named_part(state, "task.") | unknown)
             if known is not None:
                 misfit = detector._misfit
                 misfit.n_signals[0], misfit.shortfall[0], misfit.freedom[0], alarm = state["misfit"].tolist()
