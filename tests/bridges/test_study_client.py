@@ -415,6 +415,15 @@ def test_the_example_decides_observes_reports_and_forgets(service, tmp_path):
     assert "user0" not in {row["user"] for row in service.state.decisions.values()}
 
 
+@pytest.mark.slow
+def test_the_example_without_a_service_ends_with_one_line(tmp_path):
+    command = [sys.executable, "-W", "error", ROOT / "examples" / "personalise_client.py", "http://127.0.0.1:9"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=90)
+    assert done.returncode == 1
+    assert done.stderr.splitlines()[-1].startswith("no service at http://127.0.0.1:9; outcomes.db keeps 500")
+    assert "Traceback" not in done.stderr
+
+
 def test_the_file_can_be_copied_into_a_program_without_lifelore(service, tmp_path):
     shutil.copy(ROOT / "src" / "lifelore" / "bridges" / "study_client.py", tmp_path / "copied_client.py")
     code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import copied_client\n"
