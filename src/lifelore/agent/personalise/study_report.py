@@ -144,7 +144,7 @@ def _document(
 ) -> dict[str, Any]:
     counting = _counting(study, split)
     with memory.studies.totals(study.number) as totals:
-        if (totals.first_decision() or 0) >= counting["since"]:
+        if not totals.any_before(counting["since"]):
             counting["since"] = 0  # all decisions count, which takes no look at each
         decisions, pending = totals.n_decisions(**counting)
         users = totals.by_user(**counting)
