@@ -18,7 +18,11 @@ with StudyClient(url, "playlists", fallback="slow", queue="outcomes.db") as clie
             choice = client.decide(f"user{user}")
             client.observe(choice, random.gauss(means[user % 2][choice.policy], 2.0))
         client.flush()  # the next round knows the outcomes of this one
-    counts, report = client.counts(), client.report()
+    counts = client.counts()
     print(f"choices by the service: {counts['service']}, without it: {counts['table'] + counts['fallback']}")
+    try:
+        report = client.report()
+    except ConnectionError:
+        sys.exit(f"no service at {url}; outcomes.db keeps {counts['pending']} outcomes until one runs there")
     print(f"uplift over the control group: {report['uplift']['value']:.2f}, 95 % in {report['uplift']['ci95']}")
     client.forget("user0")

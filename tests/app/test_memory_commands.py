@@ -115,23 +115,18 @@ def test_what_a_person_reads(ask, known):
     assert "2 contributions were forgotten" in ask("memory", "show", "--memory", known).out
 
 
-def test_ten_thousand_of_a_sort_are_one_line(capsys):
-    robots = [{"robot": f"reuse s: {n:04}", "tasks": 2, "first": f"2026-{n % 9 + 1}", "last": "2027"}
-              for n in range(10_000)]  # fmt: skip
-    lore = [{"kind": "reuse_user", "key": f"s/{n:04}", "version": 1, "merge": "newest", "slots": 3, "sum": n}
+def test_ten_thousand_records_of_a_sort_are_one_line(capsys):
+    lore = [{"kind": "policies", "key": f"s/{n:04}", "version": 1, "merge": "newest", "slots": 3, "sum": n}
             for n in range(10_000)]  # fmt: skip
-    rosie = {"robot": "rosie", "tasks": 1, "first": "2026", "last": "2026"}
-    study = {"kind": "reuse_study", "key": "s", "version": 1, "merge": "newest", "slots": 5, "sum": 0}
     place = {"location": "m.db", "schema": 2, "forgotten": 0, "forgotten_records": 0, "buildings": []}
-    print_memory(place | {"robots": [*robots, rosie], "lore": [study, *lore]})
+    print_memory(place | {"robots": [], "lore": [lore[0] | {"key": "s"}, *lore]})
     said = capsys.readouterr().out
     assert len(said.splitlines()) < 20
-    for words in ("reuse s: … (10,000)", "20,000", "2026-1", "rosie", "s/… (10,000)", "30,000"):
-        assert words in said
-    print_memory(place | {"robots": robots[:8], "lore": lore[:8]})
+    assert "s/… (10,000)" in said
+    assert "30,000" in said
+    print_memory(place | {"robots": [], "lore": lore[:8]})
     few = capsys.readouterr().out
     assert "…" not in few
-    assert "reuse s: 0007" in few
     assert "s/0007" in few
 
 

@@ -1,10 +1,6 @@
-"""A small service with the routes of a study that the client uses; it can be killed and started again.
-
-Everything acknowledged is in its file.
-"""
+"""A small service with the routes of a study that the client uses; it can be killed and started again."""
 
 import json
-import os
 import random
 import socket
 import ssl
@@ -13,7 +9,6 @@ import threading
 import time
 import uuid
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
-from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, unquote, urlsplit
 
@@ -31,27 +26,16 @@ class Refusal(Exception):
 
 
 class State:
-    """The rows of a study, in a file that is appended to before anything is acknowledged."""
+    """The rows of a study, which stay when the service is killed."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self) -> None:
         self.decisions: dict[str, dict[str, Any]] = {}
         self.requests: dict[tuple[str, str], str] = {}
         self.outcomes: dict[str, float] = {}
         self.past: dict[str, dict[str, Any]] = {}
         self.lock = threading.Lock()
-        for line in path.read_text().splitlines() if path.exists() else ():
-            self.apply(*json.loads(line))
-        self._file = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
-
-    def close(self) -> None:
-        os.close(self._file)
-        self._file = -1
 
     def store(self, kind: str, row: dict[str, Any]) -> None:
-        os.write(self._file, json.dumps([kind, row]).encode() + b"\n")
-        self.apply(kind, row)
-
-    def apply(self, kind: str, row: dict[str, Any]) -> None:
         if kind == "decision":
             self.decisions[row["decision"]] = row
             if "request" in row:
@@ -207,8 +191,8 @@ class StandIn:
     error for each item of a batch), no study, close second (a connection serves a single request without warning).
     """
 
-    def __init__(self, path: Path) -> None:
-        self._path, self._port = path, 0
+    def __init__(self) -> None:
+        self.state, self._port = State(), 0
         self.mode, self.token, self.asked, self.dead = "well", "", 0, True
         self.tls: ssl.SSLContext | None = None
         self.sockets: set[socket.socket] = set()
@@ -219,13 +203,9 @@ class StandIn:
     def url(self) -> str:
         return f"http://127.0.0.1:{self._port}"
 
-    @property
-    def state(self) -> State:
-        return self._server.state
-
     def start(self) -> None:
         self._server = Server(("127.0.0.1", self._port), Handler)
-        self._server.stand_in, self._server.state = self, State(self._path)
+        self._server.stand_in, self._server.state = self, self.state
         if self.tls:
             self._server.socket = self.tls.wrap_socket(self._server.socket, server_side=True)
         self._port, self.dead = self._server.server_address[1], False
@@ -248,5 +228,3 @@ class StandIn:
                 continue
         self.sockets.clear()
         self._thread.join()
-        with self.state.lock:
-            self.state.close()

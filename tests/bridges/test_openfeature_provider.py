@@ -26,8 +26,8 @@ ADA = EvaluationContext("ada", {"context": "night", "age": 31, "mail": "ada@exam
 
 
 @pytest.fixture
-def service(tmp_path):
-    service = StandIn(tmp_path / "service.jsonl")
+def service():
+    service = StandIn()
     yield service
     service.kill()
 

@@ -2,7 +2,6 @@
 
 import json
 import os
-import random
 import shutil
 import signal
 import socket
@@ -13,7 +12,6 @@ import sys
 import tempfile
 import threading
 import time
-from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -28,8 +26,8 @@ ROOT = Path(__file__).parents[2]
 
 
 @pytest.fixture
-def service(tmp_path):
-    service = StandIn(tmp_path / "service.jsonl")
+def service():
+    service = StandIn()
     yield service
     service.woken.set()
     service.kill()
@@ -415,6 +413,15 @@ def test_the_example_decides_observes_reports_and_forgets(service, tmp_path):
     assert "user0" not in {row["user"] for row in service.state.decisions.values()}
 
 
+@pytest.mark.slow
+def test_the_example_without_a_service_ends_with_one_line(tmp_path):
+    command = [sys.executable, "-W", "error", ROOT / "examples" / "personalise_client.py", "http://127.0.0.1:9"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=90)
+    assert done.returncode == 1
+    assert done.stderr.splitlines()[-1].startswith("no service at http://127.0.0.1:9; outcomes.db keeps 500")
+    assert "Traceback" not in done.stderr
+
+
 def test_the_file_can_be_copied_into_a_program_without_lifelore(service, tmp_path):
     shutil.copy(ROOT / "src" / "lifelore" / "bridges" / "study_client.py", tmp_path / "copied_client.py")
     code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); import copied_client\n"
@@ -570,41 +577,3 @@ def test_a_file_that_breaks_loses_no_later_outcome(tmp_path):
     assert queue.put({"user": "ben", "outcome": 2.0})
     assert (len(queue), [line["user"] for line in queue.head(9)]) == (1, ["ben"])
     queue.close()
-
-
-# Kills
-
-
-def drive(client: StudyClient, thread: int, calls: int, made: dict[str, float], sources: Counter) -> None:
-    for number in range(calls):
-        choice = client.decide(f"u{thread}-{number % 50}")
-        outcome = float(number)
-        client.observe(choice if number % 2 else choice.decision, outcome)
-        made[choice.decision] = outcome
-        sources[choice.source] += 1
-
-
-@pytest.mark.slow
-def test_each_outcome_counts_once_through_20_kills(service, connect, tmp_path):
-    client = connect(queue=tmp_path / "queue", timeout=1.0)
-    wait_until(lambda: client._table)
-    made, sources, draws = {}, [Counter() for _ in range(4)], random.Random(0)
-    threads = [
-        threading.Thread(target=drive, args=(client, thread, 400, made, sources[thread])) for thread in range(4)
-    ]
-    for thread in threads:
-        thread.start()
-    kills = 0
-    while any(thread.is_alive() for thread in threads) or kills < 20:
-        time.sleep(draws.uniform(0.0, 0.1))
-        service.kill()
-        kills += 1
-        time.sleep(draws.uniform(0.0, 0.05))
-        service.start()
-    for thread in threads:
-        thread.join()
-    assert client.flush(30)
-    assert kills >= 20
-    assert sum(sum(one.values()) for one in sources) == len(made) == 1600
-    assert counted(service.state) == made
-    assert client.counts()["lost"] == client.counts()["refused"] == 0

@@ -3,23 +3,22 @@
 from rich.console import Console
 from rich.table import Table
 
-from lifelore.memory.overview import grouped_lore, grouped_robots
+from lifelore.memory.overview import grouped_lore
 
 
 def print_memory(overview: dict) -> None:
-    """Print robots with their tasks, then records with their sizes; large groups are one line."""
+    """Print robots with their tasks, then records with their sizes; large groups of records are one line."""
     console = Console()
     console.print(f"memory {overview['location']} (schema {overview['schema']})", highlight=False)
     robots = Table("robot", "tasks", "first", "last", title="robots")
-    for entry in grouped_robots(overview["robots"]):
-        name = entry["robot"] + _of(entry["of"])
-        robots.add_row(name, f"{entry['tasks']:,}", entry["first"][:19], entry["last"][:19])
+    for entry in overview["robots"]:
+        robots.add_row(entry["robot"], f"{entry['tasks']:,}", entry["first"][:19], entry["last"][:19])
     buildings = Table("building", "key", "maps", "grids", title="buildings")
     for entry in overview["buildings"]:
         buildings.add_row(entry["name"], entry["key"][:12], str(entry["maps"]), str(entry["grids"]))
     lore = Table("kind", "key", "version", "merges by", "slots", title="records")
     for entry in grouped_lore(overview["lore"]):
-        key = entry["key"][:12] if entry["of"] == 1 else entry["key"] + _of(entry["of"])
+        key = entry["key"][:12] if entry["of"] == 1 else f"{entry['key']}… ({entry['of']:,})"
         lore.add_row(entry["kind"], key, str(entry["version"]), entry["merge"], f"{entry['slots']:,}")
     console.print(robots)
     if overview["buildings"]:
@@ -29,7 +28,3 @@ def print_memory(overview: dict) -> None:
         console.print(f"{overview['forgotten']} contributions were forgotten and cannot be restored")
     if overview["forgotten_records"]:
         console.print(f"{overview['forgotten_records']} records were forgotten and cannot be restored")
-
-
-def _of(number: int) -> str:
-    return "" if number == 1 else f"… ({number:,})"

@@ -281,9 +281,7 @@ def report(
         print_json(document)
         return
     _print_report(document)
-    pictures = "report.json, report.png" + (
-        " and calibration.png" if any(document["calibration"].values()) else ""
-    )
+    pictures = "report.json, report.png" + " and calibration.png" * bool(document["calibration"]["outcomes"])
     for content, path in ((pictures, out), ("every decision", log)):
         if path is not None:
             print(f"  {content} written to {path}")
@@ -539,9 +537,8 @@ def _print_report(document: dict[str, Any]) -> None:
         ("regret by the library, control group", document["regret"]["control"]),
     ):
         print(f"  {label}: {_estimate(estimate)}")
-    for label, name in (("quantiles of outcomes", "outcomes"), ("probabilities of types", "types")):
-        if found := document["calibration"][name]:
-            print(f"  calibration, {label}: mean distance {found['error']:.3f}, {found['groups']} users")
+    if found := document["calibration"]["outcomes"]:
+        print(f"  calibration, quantiles of outcomes: mean distance {found['error']:.3f}, {found['groups']} users")
     if strangers := document["strangers"]:
         print(
             f"  users whom probably no known type fits: {strangers['users']} of {strangers['n']} with an outcome"

@@ -26,17 +26,11 @@ class Connection:
     driver : sqlite3.Connection or psycopg.Connection
         Without transactions of its own.
     is_sqlite : bool
-
-    Attributes
-    ----------
-    statements : int
-        Number of statements so far, without those that begin and end transactions.
     """
 
     def __init__(self, driver: Any, *, is_sqlite: bool) -> None:
         self._driver = driver
         self.is_sqlite = is_sqlite
-        self.statements = 0
         self.used = time.monotonic()
 
     def control(self, sql: str) -> None:
@@ -48,14 +42,12 @@ class Connection:
 
         Parameters are ``:name`` or ``?``. The text has no other colon or question mark.
         """
-        self.statements += 1
         if self.is_sqlite:
             return self._driver.execute(sql, parameters)
         return self._driver.execute(_for_psycopg(sql), parameters) if parameters else self._driver.execute(sql)
 
     def execute_many(self, sql: str, rows: Sequence[Parameters]) -> None:
         """Run a statement once for each row of parameters."""
-        self.statements += len(rows)
         if self.is_sqlite:
             self._driver.executemany(sql, rows)
         else:
@@ -86,7 +78,6 @@ class Connection:
         if self.is_sqlite:
             self._insert_values(table, columns, rows, "")
             return
-        self.statements += 1
         with self._driver.cursor().copy(f"COPY {table} ({', '.join(columns)}) FROM STDIN") as copy:
             for row in rows:
                 copy.write_row(row)
@@ -130,7 +121,6 @@ class Connection:
         if self.is_sqlite:
             places = {name: f":{name}" for name in types}
             statement = f"UPDATE {table} SET {setting.format(**places)} WHERE {where.format(**places)}"
-            self.statements += len(rows)
             self._driver.executemany(statement, [dict(zip(types, row, strict=True)) for row in rows])
         elif rows:
             places = {name: f"v.new_{name}" for name in types}
@@ -145,7 +135,6 @@ class Connection:
         if self.is_sqlite:
             cursor = self.execute(sql, parameters)
         else:
-            self.statements += 1
             cursor = self._driver.cursor(name="lifelore_stream")
             cursor.execute(_for_psycopg(sql), parameters)
         try:
@@ -206,12 +195,6 @@ class Pool:
     def __init__(self, connect: Callable[[], Connection]) -> None:
         self._connect = connect
         self._waiting: list[Connection] = []
-        self._ended = 0
-
-    @property
-    def statements(self) -> int:
-        """Number of statements of all connections that are not in use now."""
-        return self._ended + sum(conn.statements for conn in self._waiting)
 
     @contextmanager
     def connection(self) -> Iterator[Connection]:
@@ -220,7 +203,7 @@ class Pool:
         try:
             yield conn
         except BaseException:
-            self._end(conn)
+            conn.close()
             raise
         conn.used = time.monotonic()
         self._waiting.append(conn)
@@ -234,13 +217,9 @@ class Pool:
                 return self._connect()
             if conn.answers():
                 return conn
-            self._end(conn)
+            conn.close()
 
     def close(self) -> None:
         """Close the waiting connections."""
         while self._waiting:
-            self._end(self._waiting.pop())
-
-    def _end(self, conn: Connection) -> None:
-        self._ended += conn.statements
-        conn.close()
+            self._waiting.pop().close()

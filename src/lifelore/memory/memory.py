@@ -118,11 +118,6 @@ class Memory:
         """The file, or the URL without its password."""
         return self._store.location
 
-    @property
-    def statements(self) -> int:
-        """Number of SQL statements since the memory was opened, without those that begin and end transactions."""
-        return self._store.pool.statements
-
     def contribute(
         self,
         robot: str,

@@ -1,6 +1,5 @@
 """Summarises the content of a memory as JSON data: robots, records, number of tombstones."""
 
-from collections.abc import Callable, Hashable, Iterable
 from datetime import UTC, datetime
 from typing import Any
 
@@ -50,54 +49,24 @@ def robots(conn: Connection) -> list[dict[str, Any]]:
     ]
 
 
-def grouped_robots(robots: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Entries of `robots`, with more than `FEW` robots ``GROUP: NAME`` of a group joined to one entry.
-
-    Each entry also has ``of``, the number of its robots; the ``robot`` of a joined entry is ``GROUP: ``.
-    """
-    groups = _grouped(robots, lambda one: _stem(one["robot"], ": "))
-    return [
-        {
-            "robot": _stem(group[0]["robot"], ": "), "tasks": sum(one["tasks"] for one in group),
-            "first": min(one["first"] for one in group), "last": max(one["last"] for one in group),
-            "of": len(group),
-        } if len(group) > 1 else group[0] | {"of": 1}
-        for group in groups
-    ]  # fmt: skip
-
-
 def grouped_lore(lore: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Records of `overview`, with more than `FEW` keys ``GROUP/NAME`` of a kind joined to one entry.
 
     Each entry also has ``of``, the number of its keys; a joined entry has the ``key`` ``GROUP/``, and sums as
     ``slots`` and ``sum``.
     """
-    groups = _grouped(lore, lambda one: (one["kind"], _stem(one["key"], "/"), one["version"], one["merge"]))
-    return [
-        group[0] | {
-            "key": _stem(group[0]["key"], "/") if len(group) > 1 else group[0]["key"],
-            "slots": sum(one["slots"] for one in group), "sum": sum(one["sum"] for one in group),
-            "of": len(group),
-        }
-        for group in groups
-    ]  # fmt: skip
-
-
-def _grouped(
-    entries: Iterable[dict[str, Any]], sort: Callable[[dict[str, Any]], Hashable]
-) -> list[list[dict[str, Any]]]:
-    """Lists of entries with an equal sort key if there are more than `FEW`, else lists of one; in order."""
-    groups: dict[Hashable, list[dict[str, Any]]] = {}
-    for entry in entries:
-        groups.setdefault(sort(entry), []).append(entry)
-    parted = ([group] if len(group) > FEW else [[one] for one in group] for group in groups.values())
-    return [group for part in parted for group in part]
-
-
-def _stem(name: str, separator: str) -> str:
-    """The name up to and with the separator; the whole name without one."""
-    head, found, _ = name.partition(separator)
-    return head + found if found else name
+    groups: dict[tuple[Any, ...], list[dict[str, Any]]] = {}
+    for one in lore:
+        head, slash, _ = one["key"].partition("/")
+        groups.setdefault((one["kind"], head + slash, one["version"], one["merge"]), []).append(one)
+    found = []
+    for (_, stem, *_), group in groups.items():
+        if len(group) > FEW:
+            sums = {name: sum(one[name] for one in group) for name in ("slots", "sum")}
+            found.append(group[0] | sums | {"key": stem, "of": len(group)})
+        else:
+            found += [one | {"of": 1} for one in group]
+    return found
 
 
 def _lore(conn: Connection) -> list[dict[str, Any]]:

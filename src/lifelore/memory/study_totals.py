@@ -69,15 +69,11 @@ class StudyTotals:
         n = int(self._conn.value(count, (self._study,)))
         return n, n - int(self._conn.value(ended, (self._study,)))
 
-    def first_decision(self) -> int | None:
-        """Time of the first decision, in milliseconds since 1970; None without one.
-
-        Identifiers are in the order of their times, but for those of an earlier Lifelore, which have none.
-        """
-        earlier = "SELECT MIN(time) FROM lifelore_decisions WHERE study = ? AND id < ?"
-        first = "SELECT time FROM lifelore_decisions WHERE study = ? AND id >= ? ORDER BY id LIMIT 1"
-        found = [self._conn.first(query, (self._study, first_id(1))) for query in (earlier, first)]
-        return min((int(row[0]) for row in found if row is not None and row[0] is not None), default=None)
+    def any_before(self, time: int) -> bool:
+        """Whether there is a decision before a time, in milliseconds since 1970."""
+        # Identifiers are in the order of their times, but for those of an earlier Lifelore, which come first.
+        query = "SELECT 1 FROM lifelore_decisions WHERE study = ? AND id < ? AND time < ? LIMIT 1"
+        return self._conn.first(query, (self._study, first_id(time), time)) is not None
 
     def by_user(self, *, strangers: bool = False, since: int = 0) -> UserSums:
         """Outcomes of all users with one.

@@ -5,14 +5,13 @@ import json
 import numpy as np
 import pytest
 
+from lifelore.agent.personalise.calibration import calibrated
 from lifelore.agent.personalise.decisions import choose, update
 from lifelore.agent.personalise.fitting.fit import FitSettings, fit
-from lifelore.agent.personalise.past import warm
 from lifelore.agent.personalise.study import open_study
 from lifelore.agent.personalise.study_report import report
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.reuse.calibration import outcome_calibration, outcome_levels, type_calibration
 from lifelore.memory import open_memory
 
 MEANS = np.array([[5.0, 0.0, 3.0], [0.0, 5.0, 3.0]])
@@ -53,20 +52,37 @@ def lived(memory, study, users=6, times=4):
 
 def test_outcomes_are_those_of_agents_that_live_the_same(memory, study):
     said = lived(memory, study)
-    beliefs, levels, groups = [], [], []
+    levels, groups = [], []
     for user, rows in said.items():
         agent = BayesianPolicyReuse(study.library)
         for policy, outcome in rows:
-            beliefs.append(agent.belief)
-            levels.append(outcome_levels(agent.algorithm.known(0), [agent.belief], [policy], [outcome])[0])
+            performance = agent.algorithm.known(0).performance
+            levels.append(2 * [agent.belief @ performance.cumulative(policy, np.array([outcome]))[:, 0]])
             groups.append(user)
             agent.update(policy, outcome)
-    found = report(memory, study)["calibration"]
-    assert found["types"] is None
-    expected = outcome_calibration(levels, groups).to_dict()
-    assert found["outcomes"]["observed"] == pytest.approx(expected["observed"])
-    assert found["outcomes"]["ci95"] == [one and pytest.approx(one) for one in expected["ci95"]]
-    assert (found["outcomes"]["n"][0], found["outcomes"]["groups"]) == (18, 6)
+    found = report(memory, study)["calibration"]["outcomes"]
+    expected = calibrated(np.array(levels), np.array(groups))
+    assert found["observed"] == pytest.approx(expected["observed"])
+    assert found["ci95"] == [one and pytest.approx(one) for one in expected["ci95"]]
+    assert (found["n"][0], found["groups"]) == (18, 6)
+
+
+def test_even_cover_of_discrete_levels_is_calibrated_exactly():
+    """Outcomes in just the predicted shares lie on the line at every level."""
+    levels = np.repeat([[0, 0.4], [0.4, 0.85], [0.85, 1]], [40, 45, 15], axis=0)
+    found = calibrated(levels, np.arange(100))
+    assert found["observed"] == pytest.approx(found["predicted"])
+    assert found["error"] == pytest.approx(0, abs=1e-12)
+
+
+def test_intervals_are_by_the_spread_of_users_by_hand():
+    """At level 0.5 the users have 2 of 2, 1 of 1 and 0 of 1 outcomes: residuals 0.5, 0.25 and -0.75 about 0.75."""
+    levels, users = np.repeat([[0.2], [0.7]], [3, 1], axis=0) * [[1, 1]], np.array([0, 0, 1, 2])
+    found = calibrated(levels, users)
+    half = 1.96 * ((0.5**2 + 0.25**2 + 0.75**2) * 3 / 2) ** 0.5 / 4
+    assert found["observed"][4] == 0.75
+    assert found["ci95"][4] == pytest.approx([0.75 - half, 1.0])
+    assert calibrated(levels[:3], users[:3])["ci95"] == [None] * 9, "two users"
 
 
 @pytest.mark.parametrize("model", ["gaussian", "categorical"])
@@ -92,27 +108,6 @@ def test_predicted_quantiles_are_sums_of_the_predicted_density(model):
         expected = part.sum(axis=0) * step - (0.5 * step * part[-1] if model == "gaussian" else 0)
         found = agent.algorithm.known(0).performance.cumulative(0, np.array([value]))[:, 0]
         assert found == pytest.approx(expected, abs=1e-4)
-
-
-def test_types_are_known_from_a_log_and_the_name_is_no_evidence(memory, study):
-    said = lived(memory, study)
-    warm(
-        {"user": [f"n{user}" for user in (0, 1, 3)], "type": ["k0", "k1", "k1"], "policy": ["p2"] * 3,
-         "outcome": [3.0] * 3}, memory, study,
-    )  # fmt: skip
-    beliefs, types, groups = [], [], []
-    for user in (0, 1, 3):
-        agent = BayesianPolicyReuse(study.library)
-        for policy, outcome in said[user]:
-            agent.update(policy, outcome)
-            beliefs.append(agent.belief)
-            types.append(user % 2)
-            groups.append(user)
-    found = report(memory, study)["calibration"]["types"]
-    expected = type_calibration(beliefs, types, groups).to_dict()
-    assert found["predicted"] == pytest.approx(expected["predicted"])
-    assert found["observed"] == pytest.approx(expected["observed"])
-    assert found["groups"] == 3
 
 
 def test_the_report_has_the_picture_where_there_is_an_outcome(memory, study, tmp_path):

@@ -113,7 +113,8 @@ def test_parts_follow_each_other_without_a_gap(memory, kept, clock, limit):
 def test_parts_of_a_stream_follow_each_other_without_a_gap(memory, kept, clock, monkeypatch):
     everything = [one["decision"] for one in lived(memory, kept, clock)]
     for size in (1, 3, 8):
-        monkeypatch.setattr("lifelore.agent.personalise.decision_log.ROWS", size)
+        for name, number in (("ROWS", size), ("AT_ONCE", 2)):
+            monkeypatch.setattr(f"lifelore.agent.personalise.decision_log.{name}", number)
         assert names(memory, kept) == everything
         assert names(memory, kept, limit=5) == everything[:5]
         rows = list(csv.DictReader(io.StringIO(text(memory, kept, "csv"), newline="")))

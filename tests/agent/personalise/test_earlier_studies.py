@@ -157,13 +157,14 @@ def test_names_of_old_users_leave_no_byte(old):
         assert not [side for side in files if ODD.encode() in side.read_bytes()]
 
 
-def test_the_first_decision_is_the_earliest_of_those_without_times_in_their_identifiers(memory):
+def test_decisions_without_times_in_their_identifiers_are_before_a_time_too(memory):
     study = open_study(memory, "shop")
     with memory.studies.reading(study.number) as rows:
         users = rows.users([f"u{number}" for number in range(200)])
         decisions = rows.decisions_of([user.number for user in users.values()])
     times = [one.time for own in decisions.values() for one in own]
     with memory.studies.totals(study.number) as totals:
-        assert totals.first_decision() <= min(times)
-        assert totals.n_decisions(since=totals.first_decision())[0] == totals.n_decisions()[0]
-        assert totals.n_decisions(since=totals.first_decision() + 1)[0] < totals.n_decisions()[0]
+        assert not totals.any_before(min(times))
+        assert totals.any_before(min(times) + 1)
+        assert totals.n_decisions(since=min(times))[0] == totals.n_decisions()[0]
+        assert totals.n_decisions(since=min(times) + 1)[0] < totals.n_decisions()[0]

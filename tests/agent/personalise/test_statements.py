@@ -4,6 +4,7 @@ import pytest
 
 from lifelore.agent.personalise.decisions import choose, update
 from lifelore.memory import open_memory
+from lifelore.memory.connection import Connection
 
 from .studies import study_of
 
@@ -13,17 +14,37 @@ OUTCOME = {"sqlite": 4, "postgresql": 5}
 """The decision, its user (and on a server the decision again, once the user is locked), outcome and belief."""
 
 
+@pytest.fixture
+def statements(monkeypatch):
+    """The statements so far, without those that begin and end transactions."""
+    run = []
+
+    def noted(name):
+        real = getattr(Connection, name)
+
+        def method(conn, *arguments):
+            if name == "execute" or (conn.is_sqlite == (name == "change")):
+                run.append(name)
+            return real(conn, *arguments)
+
+        monkeypatch.setattr(Connection, name, method)
+
+    for name in ("execute", "change", "insert"):
+        noted(name)
+    return run
+
+
 @pytest.mark.parametrize("back_end", ["sqlite", "postgresql"])
-def test_a_known_users_choice_and_outcome_take_few_statements(back_end, new_place):
+def test_a_known_users_choice_and_outcome_take_few_statements(back_end, new_place, statements):
     with open_memory(new_place(back_end)) as memory:
         study = study_of().keep(memory)
         choose(memory, study, "ann")
         for number in range(5):
-            began = memory.statements
+            began = len(statements)
             made = choose(memory, study, "ann")
-            chosen = memory.statements
+            chosen = len(statements)
             update(memory, study, made["decision"], float(number % 3))
-            taken = chosen - began, memory.statements - chosen
+            taken = chosen - began, len(statements) - chosen
             assert taken == (CHOICE[back_end], OUTCOME[back_end])
 
 

@@ -137,6 +137,27 @@ def test_contexts_move_jointly_normal_means_and_leave_one_covariance():
     assert variance == pytest.approx(NOISE**2, abs=0.04)
 
 
+@pytest.mark.parametrize("model", ["gaussian", "student-t"])
+def test_the_differences_between_contexts_are_no_noise(model):
+    """Deviations are those of outcomes about the mean of their context: 0.5, not 2 as about the mean of all."""
+    log = read_log(drawn(0, (10 * np.array(RATES)).tolist(), kind="minutes", n_users=600))
+    performance: Any = by_context(log, typed_of(log, 1), model).library.performance
+    assert np.sqrt(performance.moments.variance) == pytest.approx(np.full((3, 3), NOISE), rel=0.1)
+
+
+def test_a_context_that_is_the_type_needs_no_other_types(memory_of_types):
+    document, study = memory_of_types
+    assert (document["types_found"], study.library.types) == (True, ("c0", "c1"))
+    assert not [note for note in document["notes"] if "fewer than" in note]
+
+
+@pytest.fixture
+def memory_of_types(tmp_path):
+    with open_memory(tmp_path / "m.db") as memory:
+        log = drawn(3, [[8, 4, 3], [3, 8, 5]], n_users=120, each=8, kind="minutes")
+        yield fit(log, memory, FitSettings(model="gaussian")), open_study(memory)
+
+
 def test_rows_of_weight_0_count_for_no_context():
     table = drawn(0, RATES, n_users=90) | {"weight": [1.0, 0.0] * 270}
     part = {name: column[::2] for name, column in table.items()}

@@ -1,8 +1,10 @@
-"""How well a study's predictions fit its decisions: quantiles of outcomes, and probabilities of types.
+"""How well a study's predictions fit its decisions: predicted quantiles of outcomes beside observed shares.
 
 Users are a random sample of so many that a report takes seconds, with all that happened to them. Outcomes are
-predicted by the belief before each, in the order in which they came. Types are known of users whom a log names;
-the name itself and the outcomes of the log are left out, so that only decisions speak for a type.
+predicted by the belief before each, in the order in which they came. Of all outcomes, a share q should lie at or
+below the predicted quantile of level q. The level of an outcome is P(U ≤ u) (probability integral transform, Dawid
+1984). An outcome with probability of its own covers the levels from P(U < u) to P(U ≤ u), evenly (Czado, Gneiting
+and Held 2009). Intervals are 95 %, by the spread between users: the predictions for one user hang together.
 """
 
 from collections.abc import Sequence
@@ -14,7 +16,6 @@ from numpy.typing import NDArray
 from lifelore.agent.personalise.beliefs import learn, learn_turn, start_at_priors, turns
 from lifelore.agent.personalise.study import Study
 from lifelore.core.intervals import welch_interval
-from lifelore.interaction.reuse.calibration import outcome_calibration, type_calibration
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.memory import Memory
 from lifelore.memory.study_rows import DecisionRow, UserRow
@@ -24,6 +25,10 @@ Numbers = NDArray[np.int64]
 
 SAMPLE = 2000
 """Largest number of users in a sample; more cost time and make curves and calibration less noisy."""
+LEVELS = tuple(level / 10 for level in range(1, 10))
+"""Levels of the predicted quantiles that are compared."""
+LEAST_USERS = 3
+"""Users behind an interval, or it is left out."""
 
 
 class History(NamedTuple):
@@ -85,25 +90,21 @@ def lived_again(study: Study, histories: Sequence[History]) -> tuple[ReuseAlgori
     -------
     algorithm : ReuseAlgorithm
     calibration : dict
-        `Calibration.to_dict` with users as groups; None without an outcome of a policy that the library knows.
+        See `calibrated`; None without an outcome of a policy that the library knows.
     """
     algorithm, levels, users = study.algorithm.new_rows(len(histories)), [], []
     start_at_priors(algorithm, study, [one.user for one in histories])
     learn(algorithm, study, [(row, *pair) for row, one in enumerate(histories) for pair in one.past])
-    for rows, policies, outcomes in turns(study, _outcomes_of(histories)):
+    outcomes = [(row, one.policy, one.outcome or 0.0) for row, own in enumerate(histories) for one in own.ended]
+    for rows, policies, values in turns(study, outcomes):
         known = policies >= 0
         if known.any():
-            levels.append(_levels(algorithm, rows[known], policies[known], outcomes[known]))
+            levels.append(_levels(algorithm, rows[known], policies[known], values[known]))
             users.append(rows[known])
-        learn_turn(algorithm, rows, policies, outcomes)
+        learn_turn(algorithm, rows, policies, values)
     if not users:
         return algorithm, None
-    return algorithm, outcome_calibration(np.concatenate(levels), np.concatenate(users)).to_dict()
-
-
-def _outcomes_of(histories: Sequence[History]) -> list[tuple[int, str, float]]:
-    """(row, policy, outcome) of the decisions of users in the order in which outcomes came."""
-    return [(row, one.policy, one.outcome or 0.0) for row, own in enumerate(histories) for one in own.ended]
+    return algorithm, calibrated(np.concatenate(levels), np.concatenate(users))
 
 
 def _levels(algorithm: ReuseAlgorithm, rows: Numbers, policies: Numbers, values: Array) -> Array:
@@ -117,18 +118,41 @@ def _levels(algorithm: ReuseAlgorithm, rows: Numbers, policies: Numbers, values:
     return np.clip(levels, 0.0, 1.0)
 
 
-def type_probabilities(study: Study, histories: Sequence[History]) -> dict[str, Any] | None:
-    """The calibration of beliefs over types, as for `lived_again`; None where no user's type is known."""
-    known = [one for one in histories if one.user.type in study.library.types and one.ended]
-    if not known:
-        return None
-    algorithm = study.algorithm.new_rows(len(known))
-    start_at_priors(algorithm, study, [one.user._replace(type=None) for one in known])
-    of_user = np.array([study.library.index_of_type(one.user.type or "") for one in known])
-    beliefs, users = [], []
-    for rows, policies, outcomes in turns(study, _outcomes_of(known)):
-        learn_turn(algorithm, rows, policies, outcomes)
-        beliefs.append(algorithm.belief(rows))
-        users.append(rows)
-    rows = np.concatenate(users)
-    return type_calibration(np.concatenate(beliefs), of_user[rows], rows).to_dict()
+def calibrated(levels: Array, users: Numbers) -> dict[str, Any]:
+    """Shares of outcomes at or below predicted quantiles.
+
+    Parameters
+    ----------
+    levels : (n, 2) float64
+        P(U < u) and P(U ≤ u) of each outcome, under the belief before it.
+    users : (n,) int64
+        The user of each outcome.
+
+    Returns
+    -------
+    dict
+        ``predicted``, the levels of quantiles; ``observed`` shares at or below them, with ``ci95`` (None with
+        fewer than three users or without spread); ``n`` outcomes behind each, of ``groups`` users; ``error``, the
+        mean distance of observed from predicted.
+    """
+    low, width = levels[:, 0], np.maximum(levels[:, 1] - levels[:, 0], 1e-12)
+    shares = [_share(np.clip((level - low) / width, 0.0, 1.0), users) for level in LEVELS]
+    return {
+        "predicted": list(LEVELS),
+        "observed": [share for share, _ in shares],
+        "ci95": [interval for _, interval in shares],
+        "n": [len(levels)] * len(LEVELS),
+        "groups": len(np.unique(users)),
+        "error": float(np.mean([abs(share - level) for level, (share, _) in zip(LEVELS, shares, strict=True)])),
+    }
+
+
+def _share(hits: Array, users: Numbers) -> tuple[float, list[float] | None]:
+    """Mean of `hits` (n,) in [0, 1], and its interval by the spread between users (linearised ratio)."""
+    share, (_, place) = float(hits.mean()), np.unique(users, return_inverse=True)
+    residual = np.bincount(place, hits - share)
+    n, spread = len(residual), float((residual**2).sum())
+    if n < LEAST_USERS or spread <= 1e-18 * len(hits):
+        return share, None
+    half = 1.96 * (spread * n / (n - 1)) ** 0.5 / len(hits)
+    return share, [max(share - half, 0.0), min(share + half, 1.0)]

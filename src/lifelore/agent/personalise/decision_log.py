@@ -4,14 +4,12 @@ A part that was read ends at a decision, whose identifier is the cursor of the n
 of their times; with several programs that serve a study, read up to a minute ago to miss none.
 """
 
-import csv
-import io
 import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any, Literal
 
 from lifelore.agent.personalise.identifiers import identifiers, parse_identifier
-from lifelore.agent.personalise.log.log_format import escaped
+from lifelore.agent.personalise.log.log_format import FORMULAS, escaped
 from lifelore.agent.personalise.study import Study
 from lifelore.core.errors import InputError
 from lifelore.memory import Memory
@@ -28,8 +26,11 @@ _READ = (
 )  # fmt: skip
 ROWS = 10_000
 """Decisions of a part; more need more main memory."""
+AT_ONCE = 500
+"""Decisions that become text at once; more no longer fit the processor's cache, and take longer."""
 GROUPS = ("personal", "control")
 Format = Literal["csv", "ndjson"]
+_QUOTED, _FORMULAS = '",\r\n', frozenset(FORMULAS)
 
 
 def log_parts(
@@ -80,48 +81,60 @@ def _parts(
     columns = (*_READ, "u.features") if features else _READ
     head = [*COLUMNS, *features]
     if form == "csv":
-        yield _csv([head])
+        yield _csv([[name] for name in head])
     left = limit
     while left is None or left > 0:
         size = ROWS if left is None else min(left, ROWS)
         with memory.studies.totals(study.number) as totals:
             rows = totals.log(columns, after, before, size)
         if rows:
-            lines = _lines(rows, rules, features, form)
-            yield _csv(lines) if form == "csv" else _documents(head, lines)
+            few = (_columns(rows[at : at + AT_ONCE], rules, features) for at in range(0, len(rows), AT_ONCE))
+            yield b"".join(_csv(part) if form == "csv" else _documents(head, part) for part in few)
             after = rows[-1][_READ.index("d.id")]
         if len(rows) < size:
             return
         left = None if left is None else left - len(rows)
 
 
-def _lines(
-    rows: Sequence[Sequence[Any]], rules: dict[int, str], features: Sequence[str], form: Format
-) -> Iterator[tuple[Any, ...]]:
-    """Lines of the log, made a column at a time."""
+def _columns(rows: Sequence[Sequence[Any]], rules: dict[int, str], features: Sequence[str]) -> list[Sequence[Any]]:
+    """The columns of some lines of the log, None where there is nothing."""
     user, policy, outcome, context, time, probability, control, id_, version, ended, available, request, *known = (
         zip(*rows, strict=True)
     )
-    if form == "csv":
-        user, policy, context, request = (map(escaped, column) for column in (user, policy, context, request))
-    else:
-        available = [None if one is None else json.loads(one) for one in available]
     own = [json.loads(one or "{}") for one in known[0]] if features else []
-    return zip(
+    return [
         user, policy, outcome, context, [one / 1000 for one in time], probability,
-        [GROUPS[one] for one in control], identifiers(id_), version, map(rules.get, version),
+        [GROUPS[one] for one in control], identifiers(id_), version, [rules.get(one) for one in version],
         [None if one is None else one / 1000 for one in ended], available, request,
-        *([one.get(name) for one in own] for name in features), strict=True,
-    )  # fmt: skip
+        *([one.get(name) for one in own] for name in features),
+    ]  # fmt: skip
 
 
-def _csv(lines: Iterable[Sequence[Any]]) -> bytes:
-    text = io.StringIO()
-    csv.writer(text, lineterminator="\r\n").writerows(lines)
-    return text.getvalue().encode()
+def _csv(columns: Sequence[Sequence[Any]]) -> bytes:
+    lines = map(",".join, zip(*map(_fields, columns), strict=True))
+    return "\r\n".join([*lines, ""]).encode()
 
 
-def _documents(names: Sequence[str], lines: Iterable[Sequence[Any]]) -> bytes:
+def _fields(column: Sequence[Any]) -> Sequence[str]:
+    """The fields of a column of numbers or words, which are looked at one by one only where one is special."""
+    words = [one for one in column if isinstance(one, str)]
+    if not words:
+        return ["" if one is None else repr(one) for one in column]
+    text = "".join(words)
+    if any(mark in text for mark in _QUOTED) or not _FORMULAS.isdisjoint({word[:1] for word in words}):
+        return [_field(one) if one else "" for one in column]
+    return column if len(words) == len(column) else [one or "" for one in column]
+
+
+def _field(word: str) -> str:
+    word = escaped(word)
+    return '"' + word.replace('"', '""') + '"' if any(mark in word for mark in _QUOTED) else word
+
+
+def _documents(names: Sequence[str], columns: Sequence[Sequence[Any]]) -> bytes:
     import msgspec  # of the extra web, as the service that asks for this format
 
+    at = names.index("available")
+    columns = [*columns[:at], [one and json.loads(one) for one in columns[at]], *columns[at + 1 :]]
+    lines = zip(*columns, strict=True)
     return msgspec.json.Encoder().encode_lines([dict(zip(names, line, strict=True)) for line in lines])

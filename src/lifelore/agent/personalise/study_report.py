@@ -19,7 +19,6 @@ from lifelore.agent.personalise.calibration import (
     difference,
     lived_again,
     sampled_histories,
-    type_probabilities,
 )
 from lifelore.agent.personalise.decision_log import log_parts
 from lifelore.agent.personalise.result_folder import write_picture, write_result
@@ -88,7 +87,8 @@ def report(
         beliefs do not tell: one type, categories, or exact models); ``by_decision``: both groups' mean outcome
         at each decision; ``by_time``: for each period with a decision its start, ``time`` in seconds since 1970,
         ``users``, ``decisions``, and ``personal``, ``control`` and ``uplift`` by the users' mean outcomes in the
-        period (None without `by`); ``calibration`` of ``outcomes`` and of ``types``, see `calibration`.
+        period (None without `by`); ``calibration`` of ``outcomes`` (None without one), see
+        `calibration.calibrated`.
 
     Raises
     ------
@@ -122,8 +122,8 @@ def report(
         from lifelore.figures.reuse_report import draw_reuse_report
 
         write_result(Path(out), "report", document, draw_reuse_report)
-        if any(document["calibration"].values()):
-            write_picture(Path(out) / "calibration.png", document["calibration"], draw_calibration)
+        if calibration := document["calibration"]["outcomes"]:
+            write_picture(Path(out) / "calibration.png", calibration, draw_calibration)
     return document
 
 
@@ -144,7 +144,7 @@ def _document(
 ) -> dict[str, Any]:
     counting = _counting(study, split)
     with memory.studies.totals(study.number) as totals:
-        if (totals.first_decision() or 0) >= counting["since"]:
+        if not totals.any_before(counting["since"]):
             counting["since"] = 0  # all decisions count, which takes no look at each
         decisions, pending = totals.n_decisions(**counting)
         users = totals.by_user(**counting)
@@ -171,7 +171,7 @@ def _document(
         "strangers": _strangers(histories, algorithm),
         "by_decision": _by_decision(histories),
         "by_time": by_time,
-        "calibration": {"outcomes": of_outcomes, "types": type_probabilities(study, histories)},
+        "calibration": {"outcomes": of_outcomes},
         "sample": len(histories),
         "split": split,
     }

@@ -48,6 +48,11 @@ def test_features_are_each_users_last_values(written):
         np.testing.assert_array_equal(values, expected[user])
 
 
+def test_a_head_that_the_log_of_decisions_escaped_names_its_features(written):
+    log = read_log([written("user,policy,outcome,'=age\na,p,1,4\n")], LogFormat(features=("=age",)))
+    assert log.features.tolist() == [[4.0]]
+
+
 @pytest.mark.parametrize(
     ("text", "form", "words"),
     [

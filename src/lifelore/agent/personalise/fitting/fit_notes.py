@@ -95,9 +95,9 @@ def _warnings(document: Mapping[str, Any], log: ReuseLog, model: str) -> list[st
     found = []
     if document["context"] and document["context"]["several"]:
         found.append(f"{document['context']['several']} users have several contexts; the last of each counts")
-    small = [kind for kind in document["types"] if kind["users"] < FEW_USERS] if document["types_found"] else []
-    if small and len(document["types"]) > 1:
-        named = ", ".join(f"{kind['name']}: {kind['users']}" for kind in small[:3])
+    small = _small_types(document) if document["types_found"] else {}
+    if small:
+        named = ", ".join(f"{name}: {users}" for name, users in [*small.items()][:3])
         found.append(f"{len(small)} types have fewer than {FEW_USERS} users ({named}); ask for fewer --types")
     if model not in ("auto", "categorical") and len(np.unique(log.outcomes)) == 2:
         found.append(
@@ -110,6 +110,15 @@ def _warnings(document: Mapping[str, Any], log: ReuseLog, model: str) -> list[st
         )
     found += _bias(log) + _equal_lines(log)
     return found + _spelt_twice("users", log.user.names) + _spelt_twice("policies", log.policy.names)
+
+
+def _small_types(document: Mapping[str, Any]) -> dict[str, int]:
+    """Types of several with few users in all contexts: a context's own are shrunk towards those everywhere."""
+    types, contexts = document["types"], (document["context"] or {}).get("types_of") or 1
+    n = len(types) // contexts
+    users = {types[place]["name"]: sum(kind["users"] for kind in types[place::n]) for place in range(n)}
+    named = {name.partition(", ")[0] if contexts > 1 else name: number for name, number in users.items()}
+    return {name: number for name, number in named.items() if number < FEW_USERS and n > 1}
 
 
 def _bias(log: ReuseLog) -> list[str]:

@@ -9,8 +9,8 @@ where the outcomes of the context's n users of the type have the mean m, and m�
 contexts that do not differ all get m₀: empirical Bayes as in Efron and Morris (1975). The mean is as sure as that
 of N outcomes, 1 / N = ρ / (n ρ + 1) + (1 − s)² / N₀, with N₀ outcomes behind m₀.
 
-Jointly normal outcomes have one covariance: contexts move the means of all types alike, and covariance and noise
-are fitted to outcomes less these moves.
+Differences between contexts are no noise: contexts move the means, and variances, or covariance and noise of
+jointly normal outcomes, are fitted to outcomes less these moves.
 """
 
 from dataclasses import replace
@@ -75,13 +75,20 @@ def by_context(log: ReuseLog, typed: TypedRows, model: str) -> Fitted:
     if not contexts:
         return library_of(log, typed, model)
     parted = _parted(log, typed, contexts)
-    rows, users = _rows(log, parted, wide)
+    rows, at = _rows(log, parted, wide)
+    users = log.user.codes[at]
     means = user_means(rows, users)
     found = variance_of_contexts(means, wide.n_types)
     performance: Any = shrunk(wide.performance, rows, means.sums(), found.spread if found else 0.0)
-    if model == JointNormalOutcomes.kind:
-        performance = _joint_normal(log, typed, parted, performance.mean - wide.performance.mean)
-    else:
+    if not isinstance(performance, CategoricalOutcomes):
+        moves, outcomes = (
+            performance.mean - np.tile(wide.performance.mean, (parted.contexts, 1)),
+            log.outcomes.copy(),
+        )
+        outcomes[at] -= moves[rows.types, rows.policies]
+        still = library_of(replace(log, outcomes=outcomes), typed, model).library.performance
+        performance = _moved(still, performance, moves)
+    if model != JointNormalOutcomes.kind:
         within = spread_between(rows.pair, users, rows.values)
         performance.spread = wide.performance.spread if within is None else within  # pyright: ignore
     prior = 1.0 + np.bincount(parted.users(log)[1], minlength=len(parted.names))
@@ -164,7 +171,7 @@ def _parted(log: ReuseLog, typed: TypedRows, contexts: list[int]) -> TypedRows:
 
 
 def _rows(log: ReuseLog, parted: TypedRows, wide: PolicyLibrary) -> tuple[OutcomeRows, NDArray[np.int64]]:
-    """Rows of outcomes, policies numbered as in the library, and the user of each; weight 0 leaves a row out."""
+    """Rows of outcomes of a weight above 0, policies numbered as in the library, and their places in the log."""
     weights = None if log.weights is None else log.weights[parted.rows]
     used = np.ones(len(parted.rows), bool) if weights is None else weights > 0
     at = parted.rows[used]
@@ -172,12 +179,12 @@ def _rows(log: ReuseLog, parted: TypedRows, wide: PolicyLibrary) -> tuple[Outcom
     of_policy = np.array([numbers.get(policy, -1) for policy in log.policy.names])[log.policy.codes[at]]
     shape = len(parted.names), wide.n_policies
     rows = OutcomeRows(parted.types[used], of_policy, log.outcomes[at], shape)
-    return rows if weights is None else rows.with_weights(weights[used]), log.user.codes[at]
+    return rows if weights is None else rows.with_weights(weights[used]), at
 
 
-def _joint_normal(log: ReuseLog, typed: TypedRows, parted: TypedRows, moves: Array) -> JointNormalOutcomes:
-    """Jointly normal outcomes whose means differ by context by `moves` (n_contexts, n_policies)."""
-    outcomes, at = log.outcomes.copy(), parted.rows
-    outcomes[at] -= moves[parted.types, log.policy.codes[at]]
-    found: Any = library_of(replace(log, outcomes=outcomes), typed, JointNormalOutcomes.kind).library.performance
-    return JointNormalOutcomes(found.mean + moves, found.covariance, found.noise)
+def _moved(still: Any, shrunk: Any, moves: Array) -> Any:
+    """The model with the means of contexts, and the noise of `still`, of outcomes less the contexts' `moves`."""
+    if isinstance(still, JointNormalOutcomes):
+        return JointNormalOutcomes(still.mean + moves, still.covariance, still.noise)
+    variance = np.tile(still.moments.variance, (len(moves) // still.n_types, 1))
+    return type(still).of(replace(shrunk.moments, variance=variance, pooled=still.moments.pooled))

@@ -134,9 +134,9 @@ def parse_columns(
     return columns
 
 
-def escaped(word: str | None) -> str | None:
+def escaped(word: str) -> str:
     """The word behind ``'`` where a spreadsheet would take it for a formula."""
-    return "'" + word if word and word[0] in FORMULAS else word
+    return "'" + word if word[:1] and word[0] in FORMULAS else word
 
 
 def unescaped(word: str) -> str:

@@ -81,7 +81,7 @@ class LogReader:
         first = next(lines, "")
         reader = csv.reader(chain([first], lines), strict=True, delimiter=_separator(first, self._form))
         try:
-            header = [column.strip().lower() for column in next(reader, [])]
+            header = [unescaped(column.strip()).lower() for column in next(reader, [])]
             _check_header(header, self._name, self._form)
             rows: list[list[str]] = []
             at: list[int] = []

@@ -65,22 +65,18 @@ export function drawPolicies(traffic, report) {
   $("policies").replaceChildren(table(["Policy", "State", "Share of decisions", "Mean outcome in the control group", "Users behind it", "Expected for a stranger"], rows));
 }
 
-/** Predicted against observed shares of outcomes and types. */
-export function drawCalibration(calibration) {
-  const figures = [["outcomes", "Outcomes: quantiles", "level of the quantile", "share at or below"], ["types", "Types: probabilities", "predicted probability", "share right"]]
-    .filter(([kind]) => calibration[kind])
-    .map(([kind, title, xlabel, ylabel]) => {
-      const { predicted, observed, ci95, groups, error } = calibration[kind];
-      const half = ci95.map((ends) => (ends ? (ends[1] - ends[0]) / 2 : null));
-      const series = [
-        { name: "observed", points: predicted.map((x, i) => [Number(x.toFixed(3)), observed[i]]), half },
-        { name: "as predicted", colour: "#5b636d", points: [[0, 0], [1, 1]] },
-      ];
-      const figure = lineChart({ title, xlabel, ylabel, series, xends: [0, 1] });
-      figure.append(make("p", { class: "quiet" }, `${count(groups)} users; mean distance from the diagonal ${number(error)}.`));
-      return figure;
-    });
-  $("calibration").replaceChildren(...(figures.length ? figures : [make("p", {}, "No outcome yet.")]));
+/** Predicted against observed shares of outcomes. */
+export function drawCalibration({ outcomes }) {
+  if (!outcomes) return $("calibration").replaceChildren(make("p", {}, "No outcome yet."));
+  const { predicted, observed, ci95, groups, error } = outcomes;
+  const half = ci95.map((ends) => (ends ? (ends[1] - ends[0]) / 2 : null));
+  const series = [
+    { name: "observed", points: predicted.map((x, i) => [Number(x.toFixed(3)), observed[i]]), half },
+    { name: "as predicted", colour: "#5b636d", points: [[0, 0], [1, 1]] },
+  ];
+  const figure = lineChart({ title: "Outcomes: quantiles", xlabel: "level of the quantile", ylabel: "share at or below", series, xends: [0, 1] });
+  figure.append(make("p", { class: "quiet" }, `${count(groups)} users; mean distance from the diagonal ${number(error)}.`));
+  $("calibration").replaceChildren(figure);
 }
 
 /** The belief about a user, and what it follows from. */
