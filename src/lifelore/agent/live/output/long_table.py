@@ -13,7 +13,7 @@ from typing import Any, Self
 
 from numpy.typing import NDArray
 
-from lifelore.agent.live.lived_tasks import Result
+from lifelore.agent.live.grid_life import Result
 from lifelore.core.errors import StoreError
 
 COLUMNS = ("run", "task", "agent", "episode", "measure", "value")
