@@ -108,8 +108,7 @@ def learn_from(
     progress : callable, optional
         Called as ``progress(done, total, label)`` after each run.
     **more
-        The other settings of ``LearnFromSettings``, such as ``reached_goal``, ``shift`` and
-        ``dry_run``.
+        ``building``, ``weight``, ``reached_goal``, ``shift`` and ``dry_run``, see ``lifelore learn-from --help``.
 
     Returns
     -------
@@ -128,16 +127,13 @@ def learn_from(
     >>> learn_from("runs.csv", map="depot.yaml", memory="depot.db")["new"]  # doctest: +SKIP
     20
     """
-    from lifelore.agent.learn_from.learn_from import LearnFromSettings
     from lifelore.agent.learn_from.learn_from import learn_from as learn
-    from lifelore.agent.live.life_settings import MemorySettings
-    from lifelore.domains.worlds import WorldSettings
 
-    world = WorldSettings("building", _text(map), cell=cell, robot_radius=robot_radius)
-    settings = LearnFromSettings(world, MemorySettings(_text(memory), robot), **more)
+    keys: dict[str, Any] = {"map": _text(map), "memory": _text(memory), "robot": robot, "cell": cell}
+    keys |= {"robot_radius": robot_radius, "progress": progress, **more}
     if isinstance(runs, str | PathLike):
-        return learn(runs_of(fspath(runs), topic, bumps), settings, fspath(runs), progress)
-    return learn(runs, settings, progress=progress)
+        return learn(runs_of(fspath(runs), topic, bumps), source=fspath(runs), **keys)
+    return learn(runs, **keys)
 
 
 def runs_of(path: str, topic: str | None = None, bumps: str | None = None) -> "list[Run]":
