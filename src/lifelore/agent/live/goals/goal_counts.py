@@ -62,10 +62,6 @@ class GoalCounts:
     def _add(self, states: NDArray[np.int64], count: NDArray[np.int64]) -> None:
         np.add.at(self.count, states[states >= 0], count[states >= 0])
 
-    def _cells(self) -> NDArray[np.int64]:
-        """The number of each state's cell in the grid of the building's first map, -1 outside of it."""
-        return cells_in_building(self.world, self.grid.corner)
-
     def copy(self) -> "GoalCounts":
         """An independent copy for another agent."""
         return GoalCounts(self.world, self.grid, self.count.copy())
@@ -73,7 +69,7 @@ class GoalCounts:
     def found(self, goal: int) -> Record:
         """Count a goal that was found; returns the contribution to memory, empty outside the first map's grid."""
         self.count[goal] += 1
-        cell = self._cells()[[goal]]
+        cell = cells_in_building(self.world, self.grid.corner)[[goal]]
         slots = cell[cell >= 0]
         about = {"world": self.world.name, "building": self.grid.building}
         return Record(KIND, key_of(self.world, self.grid), VERSION, "add", slots, np.ones_like(slots), about)
