@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
 from threading import Event
+from typing import Any
 
 from lifelore.agent.life.loop import run_life
 from lifelore.agent.live.baselines import agent_kind, agents_for
@@ -14,7 +15,7 @@ from lifelore.agent.live.goals.destinations import NamedPlaces
 from lifelore.agent.live.goals.job_progress import JobProgress
 from lifelore.agent.live.goals.own_places import own_places
 from lifelore.agent.live.grid_life import DRIVEN, Result, Watcher
-from lifelore.agent.live.life_settings import LifeSettings
+from lifelore.agent.live.life_settings import LifeSettings, life_settings
 from lifelore.agent.live.lore import Lore
 from lifelore.agent.live.output.known_building import KnownBuilding
 from lifelore.agent.live.searched_life import SearchedLife
@@ -69,34 +70,52 @@ class Life:
 
 
 def live(
-    settings: LifeSettings,
+    settings: LifeSettings | None = None,
     *,
     progress: Progress | None = None,
     stop: Event | None = None,
     watch: Watcher | None = None,
     notify: Callable[[str], None] | None = None,
+    **keys: Any,
 ) -> Life:
-    """Live through ``settings.n_tasks`` tasks and store what is learnt in memory.
+    """Live through tasks in one world and store what is learnt in memory.
 
     Parameters
     ----------
-    settings : LifeSettings
+    settings : LifeSettings, optional
+        All settings, in place of `keys`.
     progress : callable, optional
         Called as ``progress(done, total, label)`` before the first task and after each task.
     stop : threading.Event, optional
         Set it to stop early: the task in progress is dropped, the finished tasks stay.
     watch : callable, optional
-        Called as ``watch(task, results)`` after memory has stored a task; see `Watcher`.
+        Called as ``watch(task, results)`` after memory has stored a task: the report's entry, and the results by
+        agent.
     notify : callable, optional
-        Called with a line of text before the first task, for instance if `scratch` is left out of a big world.
+        Called with a line of text that a person should read, for instance if `scratch` is left out of a big world.
+    **keys
+        Settings by key: those of ``lifelore live --settings``, and ``map``, ``tasks``, ``goal``,
+        ``goals`` (a job list's path), ``agent``, ``robot``, ``memory`` and ``seed``. A point is a pair of metres.
+
+    Returns
+    -------
+    Life
+        Its ``report`` is the JSON document of ``lifelore live``.
 
     Raises
     ------
     InputError, NotFoundError
-        A setting or the map breaks its rule.
+        A key is unknown, or a setting or the map breaks its rule.
     StoreError
-        Memory cannot store the task; earlier tasks stay stored.
+        Memory cannot store a task; earlier tasks stay stored.
+
+    Examples
+    --------
+    >>> life = live(map="depot.yaml", tasks=30, memory="depot.db")  # doctest: +SKIP
     """
+    if settings is not None and keys:
+        raise InputError(f"settings holds all settings, got also {', '.join(keys)}; give one of the two")
+    settings = settings or life_settings(keys)
     stop, notify = stop or Event(), notify or (lambda line: None)
     began = time.perf_counter()
     first = agents_for(settings.agent)[0]  # a mistake in the name shows before the map is read
