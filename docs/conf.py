@@ -51,7 +51,7 @@ napoleon_custom_sections = [("Attributes", "params_style")]
 
 # The rooms in the order in which the reference shows them, and a title for each.
 ROOMS = {
-    "lifelore.verbs": "A robot in a building",
+    "lifelore.verbs": "The log of a robot",
     "lifelore.agent": "Verbs, and the long-lived agent",
     "lifelore.perception": "Perception",
     "lifelore.action": "Action priors",

@@ -12,11 +12,9 @@ pytest.importorskip("py_trees", reason="needs py_trees (pip install py_trees)")
 
 from py_trees.common import Status
 
-from lifelore.agent.learn_from.learn_from import LearnFromSettings, learn_from
+from lifelore.agent.learn_from.learn_from import learn_from
 from lifelore.agent.learn_from.run_log import GOAL, Run
-from lifelore.agent.live.life_settings import MemorySettings
 from lifelore.domains.buildings.occupancy_map import write_occupancy_map
-from lifelore.domains.worlds import WorldSettings
 from lifelore.memory import open_memory
 
 START, END = (1.25, 1.25), (4.75, 2.75)
@@ -63,7 +61,7 @@ def known(tmp_path: Path) -> tuple[str, str]:
     corners = np.array([START, (4.75, 1.25), END])
     points = np.concatenate([np.linspace(a, b, 60) for a, b in pairwise(corners)])
     run = Run("first", 1.6e9 + 0.1 * np.arange(120), points, np.full(120, np.nan), [""] * 119 + [GOAL])
-    learn_from([run], LearnFromSettings(WorldSettings("building", map), MemorySettings(memory)))
+    learn_from([run], map=map, memory=memory)
     return map, memory
 
 

@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+import py_compile
 import subprocess
 import sys
 from importlib import import_module
@@ -50,6 +51,18 @@ def test_every_public_name_has_an_example():
         name for name, value in public.items() if callable(value) and ">>>" not in (inspect.getdoc(value) or "")
     }
     assert without == set()
+
+
+def test_a_room_without_its_source_exports_the_same_names(tmp_path):
+    room = tmp_path / "room" / "__init__.py"
+    room.parent.mkdir()
+    room.write_text(inspect.getsource(import_module("lifelore.bridges")))
+    py_compile.compile(str(room), str(room.with_suffix(".pyc")))
+    room.unlink()
+    code = "import room; print(room.__all__, room.open_directions.__module__)"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=True)
+    names = import_module("lifelore.bridges").__all__
+    assert found.stdout.strip() == f"{names} lifelore.bridges.minigrid_view"
 
 
 def test_importing_the_package_imports_nothing_heavy():

@@ -14,13 +14,12 @@ from numpy.typing import NDArray
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
 
-from lifelore.agent.learn_from.learn_from import LearnFromSettings, learn_from
+from lifelore.agent.learn_from.learn_from import learn_from
 from lifelore.agent.learn_from.run_log import FAILED, GOAL, NOTHING, Run
 from lifelore.agent.live.goals.destinations import destination_from_text
-from lifelore.agent.live.life_settings import MemorySettings
 from lifelore.agent.way import way
 from lifelore.core.errors import LifeloreError
-from lifelore.domains.worlds import WorldSettings, map_from_settings
+from lifelore.domains.buildings.occupancy_map import read_occupancy_map
 
 SPACING = 0.05
 """Metres between two poses of a way, at most."""
@@ -71,19 +70,19 @@ class DriveByMemory(Behaviour):
     ) -> None:  # fmt: skip
         super().__init__(name)
         self._driver, self._start, self._goal = driver, start, goal
-        self._world, self._memory = WorldSettings("building", map), MemorySettings(memory, robot)
+        self._map, self._memory, self._robot = map, memory, robot
         self._drive: list[tuple[float, float, float, float]] = []
 
     def setup(self, **kwargs: object) -> None:
         """Read the map, so that a mistake in its name shows before the tree ticks."""
-        map_from_settings(self._world)
+        read_occupancy_map(self._map)
 
     def initialise(self) -> None:
         """Ask memory for the way and begin to follow it."""
         self._drive, self._outcome, self.feedback_message = [], None, ""
         try:
             ends = destination_from_text("start", self._from()), destination_from_text("goal", self._goal)
-            found = way(*ends, map=self._world.map, memory=self._memory.location, spacing=SPACING)
+            found = way(*ends, map=self._map, memory=self._memory, spacing=SPACING)
         except LifeloreError as error:
             self._outcome, self.feedback_message = FAILED, str(error)
             return
@@ -115,6 +114,6 @@ class DriveByMemory(Behaviour):
         outcomes = [NOTHING] * (len(drive) - 1) + [self._outcome or FAILED]
         run = Run(self.name, time, np.column_stack([x, y]), heading, outcomes)
         try:
-            learn_from([run], LearnFromSettings(self._world, self._memory), self.name)
+            learn_from([run], map=self._map, memory=self._memory, robot=self._robot, source=self.name)
         except LifeloreError as error:
             self.feedback_message = f"memory learnt nothing from the drive: {error}"

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from lifelore.agent.any_tasks.stored_prior import BatchContexts as BatchContexts
     from lifelore.agent.any_tasks.stored_prior import prior_from_memory as prior_from_memory
     from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld as GymnasiumWorld
+    from lifelore.agent.live.life import live as live
     from lifelore.agent.live.life_settings import LifeSettings as LifeSettings
     from lifelore.agent.live.life_settings import MemorySettings as MemorySettings
     from lifelore.agent.long_lived.check_family import check_family as check_family
@@ -62,7 +63,6 @@ if TYPE_CHECKING:
     from lifelore.perception.scene_perception import perceived_scene as perceived_scene
     from lifelore.perception.segmentation.table_frame import to_scene as to_scene
     from lifelore.verbs import learn_from as learn_from
-    from lifelore.verbs import live as live
 
 __version__ = "0.2.0"
 

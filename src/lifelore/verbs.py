@@ -1,4 +1,4 @@
-"""Verbs for a robot in a building, with paths, names and flat keywords, as on the command line.
+"""What joins the agent and other people's systems: the runs in a robot's log, and learning from them.
 
 >>> from lifelore import learn_from, live, recognise, way  # doctest: +SKIP
 >>> learn_from("runs.csv", map="depot.yaml", memory="depot.db")  # doctest: +SKIP
@@ -7,10 +7,8 @@
 >>> recognise("depot_new.yaml", goals="jobs.csv", memory="depot.db").waypoints  # doctest: +SKIP
 """
 
-from collections.abc import Callable, Sequence
-from difflib import get_close_matches
+from collections.abc import Sequence
 from os import PathLike, fspath
-from threading import Event
 from typing import TYPE_CHECKING, Any
 
 from lifelore.core.errors import InputError
@@ -18,62 +16,8 @@ from lifelore.core.protocols import Progress
 
 if TYPE_CHECKING:
     from lifelore.agent.learn_from.run_log import Run
-    from lifelore.agent.live.life import Life, Watcher
-    from lifelore.agent.live.life_settings import LifeSettings
 
 PathText = str | PathLike[str]
-
-
-def live(
-    settings: "LifeSettings | None" = None,
-    *,
-    progress: Progress | None = None,
-    stop: Event | None = None,
-    watch: "Watcher | None" = None,
-    notify: Callable[[str], None] | None = None,
-    **keys: Any,
-) -> "Life":
-    """Live through tasks in one world and store what is learnt in memory.
-
-    Parameters
-    ----------
-    settings : LifeSettings, optional
-        All settings, in place of `keys`.
-    progress : callable, optional
-        Called as ``progress(done, total, label)`` before the first task and after each task.
-    stop : threading.Event, optional
-        Set it to stop early: the task in progress is dropped, the finished tasks stay.
-    watch : callable, optional
-        Called as ``watch(task, results)`` after memory has stored a task: the report's entry, and the results by
-        agent.
-    notify : callable, optional
-        Called with a line of text that a person should read.
-    **keys
-        Settings by key: those of ``lifelore live --settings``, and ``map``, ``tasks``, ``goal``,
-        ``goals`` (a job list's path), ``agent``, ``robot``, ``memory`` and ``seed``. A point is a pair of metres.
-
-    Returns
-    -------
-    Life
-        Its ``report`` is the JSON document of ``lifelore live``.
-
-    Raises
-    ------
-    InputError, NotFoundError
-        A key is unknown, or a setting or the map breaks its rule.
-    StoreError
-        Memory cannot store a task; earlier tasks stay stored.
-
-    Examples
-    --------
-    >>> life = live(map="depot.yaml", tasks=30, memory="depot.db")  # doctest: +SKIP
-    """
-    from lifelore.agent.live.life import live as live_through
-
-    if settings is not None and keys:
-        raise InputError(f"settings holds all settings, got also {', '.join(keys)}; give one of the two")
-    chosen = settings or _life_settings(keys)
-    return live_through(chosen, progress=progress, stop=stop, watch=watch, notify=notify)
 
 
 def learn_from(
@@ -108,8 +52,7 @@ def learn_from(
     progress : callable, optional
         Called as ``progress(done, total, label)`` after each run.
     **more
-        The other settings of ``LearnFromSettings``, such as ``reached_goal``, ``shift`` and
-        ``dry_run``.
+        ``building``, ``weight``, ``reached_goal``, ``shift`` and ``dry_run``, see ``lifelore learn-from --help``.
 
     Returns
     -------
@@ -128,16 +71,13 @@ def learn_from(
     >>> learn_from("runs.csv", map="depot.yaml", memory="depot.db")["new"]  # doctest: +SKIP
     20
     """
-    from lifelore.agent.learn_from.learn_from import LearnFromSettings
     from lifelore.agent.learn_from.learn_from import learn_from as learn
-    from lifelore.agent.live.life_settings import MemorySettings
-    from lifelore.domains.worlds import WorldSettings
 
-    world = WorldSettings("building", _text(map), cell=cell, robot_radius=robot_radius)
-    settings = LearnFromSettings(world, MemorySettings(_text(memory), robot), **more)
+    keys: dict[str, Any] = {"map": _text(map), "memory": _text(memory), "robot": robot, "cell": cell}
+    keys |= {"robot_radius": robot_radius, "progress": progress, **more}
     if isinstance(runs, str | PathLike):
-        return learn(runs_of(fspath(runs), topic, bumps), settings, fspath(runs), progress)
-    return learn(runs, settings, progress=progress)
+        return learn(runs_of(fspath(runs), topic, bumps), source=fspath(runs), **keys)
+    return learn(runs, **keys)
 
 
 def runs_of(path: str, topic: str | None = None, bumps: str | None = None) -> "list[Run]":
@@ -160,22 +100,6 @@ def runs_of(path: str, topic: str | None = None, bumps: str | None = None) -> "l
         if value is not None:
             raise InputError(f"{name} applies to rosbags, got '{value}' for {path}; leave it out")
     return read_runs(path)
-
-
-def _life_settings(keys: dict[str, Any]) -> "LifeSettings":
-    from lifelore.agent.live.goals.job_list import read_jobs
-    from lifelore.agent.live.life_settings import LIFE_KEYS, LifeSettings
-    from lifelore.core.keyed_settings import arguments_by_key, keys_of
-
-    known = list(keys_of(LifeSettings, LIFE_KEYS))
-    for key in keys:
-        if key not in known:
-            near = ", ".join(get_close_matches(key, known, 3)) or "lifelore live --settings lists them"
-            raise InputError(f"no setting has the key '{key}'; near: {near}")
-    given = keys | {name: _text(keys[name]) for name in ("map", "memory") if name in keys}
-    if isinstance(keys.get("goals"), str | PathLike):
-        given["goals"] = read_jobs(keys["goals"])
-    return LifeSettings(**arguments_by_key(LifeSettings, given, LIFE_KEYS))
 
 
 def _text(path: PathText | None) -> str | None:

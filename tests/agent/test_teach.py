@@ -137,12 +137,6 @@ def test_lessons_add_up_and_stay_apart(tmp_path):
     assert np.array_equal(first.states, second.states)
 
 
-def test_an_unknown_key_is_told(tmp_path):
-    watcher = iterated(["x", "q"])
-    lesson(watcher, tmp_path / "shown")
-    assert any("'x' is no move; move with w a s d" in text for text in watcher.shown)
-
-
 def test_the_picture_by_hand():
     world = GridWorld.from_free("t", np.array([[1, 1, 0], [0, 1, 1]], bool))
     assert grid_text(world, 0, 3) == "@.#\n#.G"

@@ -1,6 +1,5 @@
 """Ways over the map's free space, by the times and refusals that memory holds, and clear of obstacles."""
 
-import csv
 import math
 from pathlib import Path
 
@@ -15,7 +14,7 @@ from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.agent.live.transitions import from_record, model_table, to_record
 from lifelore.agent.travel import Travel
-from lifelore.agent.way import Way, path_message, poses_along, way, write_poses
+from lifelore.agent.way import Way, path_message, poses_along, way
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.learning.known_world import unknown_world
 from lifelore.domains.buildings.floor import floor_of
@@ -259,16 +258,6 @@ def test_the_message_has_the_shape_of_a_path():
     assert stamped["pose"]["position"] == {"x": 1.0, "y": 2.0, "z": 0.0}
     half = math.sqrt(0.5)  # a quarter turn about z
     assert stamped["pose"]["orientation"] == pytest.approx({"x": 0.0, "y": 0.0, "z": half, "w": half})
-
-
-def test_poses_as_csv(tmp_path):
-    write_poses(tmp_path / "way.csv", np.array([[1.0, 2.0, -0.5], [3.25, 4.0, -0.5]]))
-    with (tmp_path / "way.csv").open(newline="", encoding="utf-8") as file:
-        assert list(csv.reader(file)) == [
-            ["x", "y", "heading"], ["1.0000", "2.0000", "-0.5000"], ["3.2500", "4.0000", "-0.5000"]
-        ]  # fmt: skip
-    with pytest.raises(StoreError, match="csv cannot be written"):
-        write_poses(tmp_path / "no" / "way.csv", np.empty((0, 3)))
 
 
 @pytest.mark.parametrize("place", [3, None, (1.0,), (1.0, 2.0, 3.0), ("a", "b")])

@@ -5,6 +5,7 @@ import pytest
 
 from lifelore.bridges.viewer_log import write_life_log
 from lifelore.core.errors import InputError
+from lifelore.domains.buildings.logged_life import LoggedLife
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 
 MAP = OccupancyMap(np.array([[FREE, OCCUPIED], [UNKNOWN, FREE]], np.uint8), 0.5, (1.0, 2.0, np.pi / 2))
@@ -20,7 +21,7 @@ def test_an_mcap_file_holds_map_costs_ways_and_events(tmp_path):
     highlevel = pytest.importorskip("rosbags.highlevel", reason="needs the extra ros")
     path = tmp_path / "life.mcap"
     path.write_text("an older file")
-    write_life_log(str(path), MAP, COSTS, WAYS, EVENTS)
+    write_life_log(str(path), LoggedLife(MAP, COSTS, WAYS, EVENTS))
     with highlevel.AnyReader([path]) as reader:
         found = [(c.topic, time, reader.deserialize(data, c.msgtype)) for c, time, data in reader.messages()]
     assert [(topic, time / 1e9) for topic, time, _ in found] == [
@@ -48,7 +49,7 @@ def test_an_mcap_file_holds_map_costs_ways_and_events(tmp_path):
 def test_an_rrd_file_holds_the_same(tmp_path):
     chunk = pytest.importorskip("rerun.chunk", reason="needs the extra view")
     path = tmp_path / "life.rrd"
-    write_life_log(str(path), MAP, COSTS, WAYS, EVENTS)
+    write_life_log(str(path), LoggedLife(MAP, COSTS, WAYS, EVENTS))
     found: dict = {}
     for part in chunk.RrdReader(str(path)).stream():
         batch = part.to_record_batch()
@@ -67,10 +68,10 @@ def test_an_rrd_file_holds_the_same(tmp_path):
 
 def test_a_life_without_ways_is_its_map(tmp_path):
     pytest.importorskip("rosbags", reason="needs the extra ros")
-    write_life_log(str(tmp_path / "life.mcap"), MAP, COSTS, [], [])
+    write_life_log(str(tmp_path / "life.mcap"), LoggedLife(MAP, COSTS, [], []))
     assert (tmp_path / "life.mcap").stat().st_size > 0
 
 
 def test_another_ending_is_refused(tmp_path):
     with pytest.raises(InputError, match=r"ends with \.mcap or \.rrd"):
-        write_life_log(str(tmp_path / "life.bag"), MAP, COSTS, [], [])
+        write_life_log(str(tmp_path / "life.bag"), LoggedLife(MAP, COSTS, [], []))

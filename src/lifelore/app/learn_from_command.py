@@ -46,35 +46,39 @@ def learn_from(
     bump, goal or failed. Of a rosbag, /tf, /tf_static, poses, bumps and the goals of nav2's
     /navigate_to_pose are read. To undo it: lifelore memory forget --source RUNS.
     """
-    from lifelore.agent.learn_from.learn_from import LearnFromSettings
-    from lifelore.agent.learn_from.learn_from import learn_from as learn
-    from lifelore.agent.live.life_settings import MemorySettings, PriorSettings
     from lifelore.app.console import print_json, progress_bar
     from lifelore.core.errors import InputError
-    from lifelore.domains.worlds import WorldSettings
-    from lifelore.verbs import runs_of
+    from lifelore.verbs import learn_from as learn
 
     if dry_run and out is not None:
         raise InputError(f"out does not apply to a dry run, got {out!r}; leave one of the two out")
-    settings = LearnFromSettings(
-        WorldSettings("building", map, cell=cell, robot_radius=robot_radius),
-        MemorySettings(memory, robot, building),
-        PriorSettings(weight=weight),
-        reached_goal,
-        _shift(shift),
-        dry_run,
-    )
-    source = runs_of(runs, topic, bumps)
     if out is not None:
         from lifelore.agent.live.output.report import check_folder
 
         check_folder(out)
     with progress_bar("learning") as progress:
-        report = learn(source, settings, runs, progress)
+        report = learn(
+            runs,
+            map=map,
+            memory=memory,
+            robot=robot,
+            building=building,
+            cell=cell,
+            robot_radius=robot_radius,
+            topic=topic,
+            bumps=bumps,
+            weight=weight,
+            reached_goal=reached_goal,
+            shift=_shift(shift),
+            dry_run=dry_run,
+            progress=progress,
+        )
     if out is not None:
         from lifelore.agent.live.output.known_building import write_known_building
+        from lifelore.domains.worlds import WorldSettings
 
-        report["files"] = write_known_building(out, settings.world, memory, building)
+        world = WorldSettings("building", map, cell=cell, robot_radius=robot_radius)
+        report["files"] = write_known_building(out, world, memory, building)
     print_json(report) if as_json else _print(report)
 
 

@@ -194,7 +194,7 @@ def _write_log(life: "Life", path: str) -> str:
     from lifelore.core.atomic_write import refused_writes
 
     with refused_writes(path, "log"):
-        write_life_log(path, *logged_life(life))
+        write_life_log(path, logged_life(life))
     return path
 
 

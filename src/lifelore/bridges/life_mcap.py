@@ -5,20 +5,18 @@ way, and ``/lifelore/events`` a MarkerArray for each event, with its point and i
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.bridges.detection3d import header_at
 from lifelore.bridges.mcap_file import mcap_writer
-from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED
-
-if TYPE_CHECKING:
-    from lifelore.domains.buildings.occupancy_map import OccupancyMap
+from lifelore.domains.buildings.logged_life import LoggedLife
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap
 
 FRAME = "map"
 SPHERE, TEXT = 2, 9
@@ -28,13 +26,7 @@ SIZE = 0.25
 """Metres: diameter of an event's point, and height of its name."""
 
 
-def write_life_mcap(
-    path: str | Path,
-    occupancy: "OccupancyMap",
-    costs: NDArray[np.uint8],
-    ways: Sequence[tuple[str, float, NDArray[np.float64]]],
-    events: Sequence[tuple[str, float, tuple[float, float]]],
-) -> None:
+def write_life_mcap(path: str | Path, life: LoggedLife) -> None:
     """Write a life, ways and events in order of time; see `write_life_log`.
 
     Raises
@@ -44,14 +36,15 @@ def write_life_mcap(
     OSError
         The file cannot be written.
     """
-    first = min((seconds for _, seconds, _ in [*ways, *events]), default=0.0)
+    occupancy = life.occupancy
+    first = min((seconds for _, seconds, _ in [*life.ways, *life.events]), default=0.0)
     seen = np.select([occupancy.state == FREE, occupancy.state == OCCUPIED], [0, 100], 255).astype(np.uint8)
     with mcap_writer(Path(path), {}) as write:
-        for topic, grey in (("/map", seen), ("/lifelore/costs", costs)):
+        for topic, grey in (("/map", seen), ("/lifelore/costs", life.costs)):
             write(topic, "nav_msgs/msg/OccupancyGrid", _grid(occupancy, grey, first), _nanoseconds(first))
-        for _, seconds, points in ways:
+        for _, seconds, points in life.ways:
             write("/lifelore/way", "nav_msgs/msg/Path", _path(points, seconds), _nanoseconds(seconds))
-        for number, (name, seconds, point) in enumerate(events):
+        for number, (name, seconds, point) in enumerate(life.events):
             markers = {"markers": _markers(number, name, point, seconds)}
             write("/lifelore/events", "visualization_msgs/msg/MarkerArray", markers, _nanoseconds(seconds))
 
@@ -60,7 +53,7 @@ def _nanoseconds(seconds: float) -> int:
     return round(seconds * 1e9)
 
 
-def _grid(occupancy: "OccupancyMap", grey: NDArray[np.uint8], seconds: float) -> dict[str, Any]:
+def _grid(occupancy: OccupancyMap, grey: NDArray[np.uint8], seconds: float) -> dict[str, Any]:
     """A grid has the lowest row first; values above 100 are unknown."""
     rows, columns = grey.shape
     about = {

@@ -4,30 +4,20 @@ All is in metres of the map's frame: ``map`` holds the occupied pixels, ``costs`
 timeline ``clock`` come ``way`` and ``events``.
 """
 
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.bridges.scene_rerun import recording
+from lifelore.domains.buildings.logged_life import LoggedLife
 from lifelore.domains.buildings.occupancy_map import OCCUPIED
-
-if TYPE_CHECKING:
-    from lifelore.domains.buildings.occupancy_map import OccupancyMap
 
 MOST = 100
 """Largest cost; larger values of a mask are unknown."""
 
 
-def write_life_rrd(
-    path: str | Path,
-    occupancy: "OccupancyMap",
-    costs: NDArray[np.uint8],
-    ways: Sequence[tuple[str, float, NDArray[np.float64]]],
-    events: Sequence[tuple[str, float, tuple[float, float]]],
-) -> None:
+def write_life_rrd(path: str | Path, life: LoggedLife) -> None:
     """Write a life, see `write_life_log`.
 
     Raises
@@ -37,6 +27,7 @@ def write_life_rrd(
     OSError
         The file cannot be written.
     """
+    occupancy, costs = life.occupancy, life.costs
     dear = (costs > 0) & (costs <= MOST)
     heat = np.column_stack([np.full(dear.sum(), 255), 255 - 2 * costs[dear], np.zeros(dear.sum())]).astype(
         np.uint8
@@ -49,10 +40,10 @@ def write_life_rrd(
         )
         log.log("map", rr.Points3D(walls, radii=half), static=True)
         log.log("costs", rr.Points3D(places, colors=heat, radii=half), static=True)
-        for name, seconds, points in ways:
+        for name, seconds, points in life.ways:
             log.set_time("clock", timestamp=seconds)
             log.log("way", rr.LineStrips3D([_flat(points)], labels=[name]))
-        for name, seconds, point in events:
+        for name, seconds, point in life.events:
             log.set_time("clock", timestamp=seconds)
             log.log("events", rr.Points3D(_flat(np.array([point])), labels=[name], radii=4 * half))
 

@@ -11,6 +11,8 @@ import gymnasium
 import numpy as np
 from gymnasium.spaces import Box, Discrete
 from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse import csgraph
 
 from lifelore.core.errors import InputError
 
@@ -106,47 +108,24 @@ def solved_layout(env: gymnasium.Env) -> SolvedLayout:
     kind = _KIND[grid.encode()[..., 0]]
     if not (kind == GOAL).any():
         raise InputError("env must have a goal in its layout, got none")
-    passable = (kind == FREE) | (kind == GOAL)
-    before = np.stack([_neighbour(passable, direction) for direction in range(4)], axis=-1)
-    after = _distances_after_moves(passable, kind == GOAL)
-    steps = after.min(axis=-1) + 1
-    counted = (passable & (kind != GOAL))[..., None] & np.isfinite(steps)
-    directions = np.stack([before[..., [(d - 1) % 4, d, (d + 1) % 4]] @ _BITS for d in range(4)], axis=-1)
-    best = (after + 1 == steps[..., None]) & counted[..., None]
-    here = (*env.unwrapped.agent_pos, env.unwrapped.agent_dir)  # pyright: ignore[reportAttributeAccessIssue]
-    passed = _passed(best, here)
-    return SolvedLayout(directions[counted], best[counted], steps[counted].astype(np.int64), passed[counted])
-
-
-def _neighbour(cells: NDArray[Any], direction: int) -> NDArray[Any]:
-    """Values of the next cell in a direction; the outer wall hides the values from the opposite side."""
-    return np.roll(cells, tuple(-_DIRECTIONS[direction]), axis=(0, 1))
-
-
-def _distances_after_moves(passable: NDArray[np.bool_], goal: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Steps to the goal after turning left, turning right and moving forward, (width, height, 4, 3)."""
-    steps = np.where(goal, 0.0, np.inf)[..., None].repeat(4, axis=-1)
-    while True:
-        forward = np.stack(
-            [np.where(_neighbour(passable, d), _neighbour(steps[..., d], d), steps[..., d]) for d in range(4)],
-            axis=-1,
-        )
-        after = np.stack((np.roll(steps, 1, axis=-1), np.roll(steps, -1, axis=-1), forward), axis=-1)
-        shorter = np.minimum(steps, np.where(passable[..., None], after.min(axis=-1) + 1, np.inf))
-        if (shorter == steps).all():
-            return after
-        steps = shorter
-
-
-def _passed(best: NDArray[np.bool_], here: tuple[int, int, int]) -> NDArray[np.bool_]:
-    """Poses on the paths of best moves from a pose."""
-    passed, open_poses = np.zeros(best.shape[:3], bool), [here]
-    while open_poses:
-        x, y, d = pose = open_poses.pop()
-        if passed[pose]:
-            continue
-        passed[pose] = True
-        dx, dy = _DIRECTIONS[d]
-        following = {LEFT: (x, y, (d - 1) % 4), RIGHT: (x, y, (d + 1) % 4), FORWARD: (x + dx, y + dy, d)}
-        open_poses += [pose for move, pose in following.items() if best[(x, y, d)][move]]
-    return passed
+    cells = np.argwhere((kind == FREE) | (kind == GOAL))
+    number = np.full(kind.shape, -1)
+    number[tuple(cells.T)] = np.arange(len(cells))
+    # Pose 4 · cell + direction; the outer wall hides what lies beyond the edge of the arrays.
+    ahead = number[tuple((cells[:, None] + _DIRECTIONS).transpose(2, 0, 1))]
+    cell, direction = np.indices((len(cells), 4)).reshape(2, -1)
+    forward = 4 * np.where(ahead.ravel() >= 0, ahead.ravel(), cell) + direction
+    after = np.column_stack([4 * cell + (direction - 1) % 4, 4 * cell + (direction + 1) % 4, forward])
+    moves = sparse.csr_array((np.ones(after.size), after.ravel(), np.arange(0, after.size + 1, N_MOVES)))
+    ends = np.flatnonzero(kind[tuple(cells[cell].T)] == GOAL)
+    steps = np.asarray(csgraph.dijkstra(moves.T, indices=ends, unweighted=True, min_only=True))
+    stands = tuple(env.unwrapped.agent_pos)  # pyright: ignore[reportAttributeAccessIssue]
+    here = 4 * number[stands] + env.unwrapped.agent_dir  # pyright: ignore[reportAttributeAccessIssue]
+    on_way = np.asarray(csgraph.dijkstra(moves, indices=here, unweighted=True)) + steps == steps[here]
+    beside = ahead[cell[:, None], (direction[:, None] + np.arange(-1, 2)) % 4] >= 0
+    counted = np.isfinite(steps) & (steps > 0)
+    best = steps[after[counted]] + 1 == steps[counted, None]
+    passed = on_way[counted] & np.isfinite(steps[here])
+    return SolvedLayout(
+        np.where(beside, _BITS, 0).sum(axis=1)[counted], best, steps[counted].astype(np.int64), passed
+    )

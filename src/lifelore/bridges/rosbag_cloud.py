@@ -1,6 +1,5 @@
 """Reads point clouds from a rosbag (ROS 1, ROS 2 in SQLite or MCAP) without ROS; needs the extra ``ros``."""
 
-from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 
@@ -39,26 +38,10 @@ def read_bag_cloud(
     """
     if index < 0:
         raise InputError(f"index must be 0 or more, got {index}")
-    clouds = bag_clouds(path, topic, units=units, labels=labels, start=index)
-    found = next(clouds, None)
-    if found is None:
-        raise NotFoundError(f"{path}: holds no cloud number {index}; count from 0")
-    return found[1]
-
-
-def bag_clouds(
-    path: str | Path, topic: str | None = None, *, units: str = "m", labels: str = "auto", start: int = 0
-) -> Iterator[tuple[float, PointCloud]]:
-    """(seconds, cloud) of every message on a topic, in order of time, from number `start` on.
-
-    Raises
-    ------
-    MissingExtraError, NotFoundError, InputError
-        As `read_bag_cloud`.
-    """
     path = Path(path)
     with bag_errors(path), opened_bag(path) as reader:
-        chosen = topic_of(reader, path, (_TYPE,), "clouds", topic)
-        for connection, nanoseconds, content in islice(reader.messages(chosen), start, None):
+        messages = islice(reader.messages(topic_of(reader, path, (_TYPE,), "clouds", topic)), index, None)
+        for connection, _, content in messages:
             message = reader.deserialize(content, connection.msgtype)
-            yield nanoseconds * 1e-9, cloud_from_message(message, units=units, labels=labels)
+            return cloud_from_message(message, units=units, labels=labels)
+    raise NotFoundError(f"{path}: holds no cloud number {index}; count from 0")

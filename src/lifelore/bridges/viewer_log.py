@@ -1,12 +1,9 @@
 """Logs a perceived scene or a life in a building to a file whose ending names the kind: ``.mcap`` or ``.rrd``."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.bridges.life_mcap import write_life_mcap
 from lifelore.bridges.life_rerun import write_life_rrd
@@ -14,9 +11,9 @@ from lifelore.bridges.mcap_file import check_ros_extra
 from lifelore.bridges.scene_mcap import write_scene_mcap
 from lifelore.bridges.scene_rerun import rerun, write_scene_rrd
 from lifelore.core.errors import InputError
+from lifelore.domains.buildings.logged_life import LoggedLife
 
 if TYPE_CHECKING:
-    from lifelore.domains.buildings.occupancy_map import OccupancyMap
     from lifelore.perception.scene import Scene
 
 _KINDS = {
@@ -46,28 +43,10 @@ def write_scene_log(path: str, scene: "Scene", document: Mapping[str, Any]) -> N
     _of_kind(path)[1](path, scene, document)
 
 
-def write_life_log(
-    path: str,
-    occupancy: "OccupancyMap",
-    costs: NDArray[np.uint8],
-    ways: Sequence[tuple[str, float, NDArray[np.float64]]],
-    events: Sequence[tuple[str, float, tuple[float, float]]],
-) -> None:
-    """Write the map, costs, ways and events of a life; a file of this name is replaced. Errors as above.
-
-    Parameters
-    ----------
-    path : str
-    occupancy : OccupancyMap
-    costs : (rows, columns) uint8
-        On the pixels of the map, 0 to 100; larger values are unknown.
-    ways : list of (name, seconds, points)
-        When each way began, and its corners (n, 2) in metres of the map's frame.
-    events : list of (name, seconds, point)
-        What happened (``refused``, ``reached``, …), when and where.
-    """
-    seconds = itemgetter(1)
-    _of_kind(path)[2](path, occupancy, costs, sorted(ways, key=seconds), sorted(events, key=seconds))
+def write_life_log(path: str, life: LoggedLife) -> None:
+    """Write a life, its ways and events in order of time; a file of this name is replaced. Errors as above."""
+    ways, events = (sorted(one, key=itemgetter(1)) for one in (life.ways, life.events))
+    _of_kind(path)[2](path, life._replace(ways=ways, events=events))
 
 
 def _of_kind(path: str) -> tuple[Any, Any, Any]:

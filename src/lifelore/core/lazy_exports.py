@@ -1,10 +1,11 @@
 """Names that a room exports, each imported from its module when it is first used.
 
 So ``import lifelore.action`` costs nothing, and modules of a room can import one another while it is imported. The
-names are those that the room's source imports for type checkers: ``from module import name as name``.
+names are those that the room imports for type checkers: ``from module import name as name``. They are read from
+the room's compiled code, which is there without its source, too.
 """
 
-import re
+import dis
 import sys
 from collections.abc import Callable
 from importlib import import_module
@@ -27,8 +28,13 @@ def lazy_exports(room: str, *own: str) -> tuple[list[str], Callable[[str], Any],
     >>> find("stream").__name__, "optimal_q" in names
     ('stream', True)
     """
-    source = sys.modules[room].__spec__.loader.get_source(room)  # pyright: ignore[reportOptionalMemberAccess, reportAttributeAccessIssue]
-    homes = {name: home for home, name in re.findall(r"^ +from (\S+) import \(?\s*(\w+) as \2\b", source, re.M)}
+    module, homes, home = sys.modules[room], dict[str, str](), ""
+    code = module.__spec__.loader.get_code(room)  # pyright: ignore[reportOptionalMemberAccess, reportAttributeAccessIssue]
+    for step in dis.get_instructions(code):
+        if step.opname == "IMPORT_NAME":
+            home = step.argval
+        elif step.opname == "IMPORT_FROM" and step.argval not in vars(module):
+            homes[step.argval] = home
     names = sorted([*own, *homes])
 
     def find(name: str) -> Any:

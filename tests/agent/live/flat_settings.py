@@ -2,12 +2,9 @@
 
 from typing import Any
 
-from lifelore.agent.live.life_settings import LifeSettings
-from lifelore.app.live_command import OPTIONS, setting_keys
+from lifelore.agent.live.life_settings import LifeSettings, life_settings
 
 
 def flat_settings(**flat: Any) -> LifeSettings:
     """Settings of a life in the lattice unless `flat` names another domain."""
-    keys = setting_keys("lattice")
-    assert flat.keys() <= {*OPTIONS, *keys.settings}
-    return LifeSettings(**keys.arguments({"domain": "lattice"} | flat))
+    return life_settings({"domain": "lattice"} | flat)

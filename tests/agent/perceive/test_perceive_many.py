@@ -89,7 +89,10 @@ def test_mistakes_are_told_before_any_cloud_is_read(clouds, tmp_path):
     twin = str(tmp_path / "sub" / "on.npz")
     named = str(tmp_path / "{name}.dot")
     refused("dot names one file for many clouds", lambda: perceive_many(clouds, UPRIGHT, dot="a.dot"))
-    refused("'on'.*rename one of them", lambda: perceive_many([*clouds, twin], UPRIGHT, dot=named))
+    refused(
+        "on.dot' would be overwritten.*rename clouds of one name",
+        lambda: perceive_many([*clouds, twin], UPRIGHT, dot=named),
+    )
     refused("would be overwritten", lambda: perceive_many([clouds[0]] * 2, UPRIGHT, dot=named))
     refused("would be overwritten", lambda: perceive_many(clouds, UPRIGHT, dot=str(tmp_path / "{name}.npz")))
     refused("folder must exist", lambda: perceive_many(clouds, UPRIGHT, dot=str(tmp_path / "no/{name}.dot")))

@@ -15,8 +15,8 @@ def test_the_domain_lies_beside_its_problem(problem, domain):
 
 def test_files_that_differ_pass_and_none_is_made(tmp_path):
     files = SceneFiles(str(tmp_path / "a.pddl"), str(tmp_path / "a.dot"), str(tmp_path / "A.PNG"))
-    check_scene_files(files, [tmp_path / "cloud.pcd"])
-    check_scene_files(SceneFiles(), ["cloud.pcd", "cloud.pcd"])
+    check_scene_files([files], [tmp_path / "cloud.pcd"])
+    check_scene_files([SceneFiles()], ["cloud.pcd", "cloud.pcd"])
     assert list(tmp_path.iterdir()) == []
 
 
@@ -42,5 +42,5 @@ def test_what_cannot_be_written_is_refused(tmp_path, monkeypatch, files, said):
     (tmp_path / "link.pcd").symlink_to("cloud.pcd")
     (tmp_path / "b-domain.pddl").mkdir()
     with pytest.raises(InputError) as refused:
-        check_scene_files(files, ["cloud.pcd"])
+        check_scene_files([files], ["cloud.pcd"])
     assert said in str(refused.value)

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from lifelore.agent.live.summary import plain, third
-from lifelore.core.metrics import difference_estimate, mean_estimate
+from lifelore.agent.live.summary import compared, failures, means_by_third, third
+from lifelore.core.metrics import difference_estimate
 
 MEASURES = ("first_return", "mean_return", "final_return")
 
@@ -38,31 +38,14 @@ def summarise_life(tasks: list[dict], agents: Sequence[str]) -> dict:
     agents : sequence of str
         Their names; the first is compared with the others.
     """
-    last = third(tasks, "last")
-    subject, *others = agents
-    return {
-        **{f"{subject}_vs_{other}": _compared(last, subject, other) for other in others},
-        "agents": {
-            name: {which: _means(third(tasks, which), name) for which in ("first", "last")} for name in agents
-        },
+    last, (subject, *others) = third(tasks, "last"), agents
+    differences = {
+        f"{subject}_vs_{other}": {
+            "jumpstart": compared(last, subject, other, "first_return", difference_estimate),
+            "mean_return_difference": compared(last, subject, other, "mean_return", difference_estimate),
+            "final_return_difference": compared(last, subject, other, "final_return", difference_estimate),
+            "never_reached": {who: failures(last, who) for who in (subject, other)},
+        }
+        for other in others
     }
-
-
-def _compared(tasks: list[dict], subject: str, other: str) -> dict:
-    return {
-        "jumpstart": _difference(tasks, subject, other, "first_return"),
-        "mean_return_difference": _difference(tasks, subject, other, "mean_return"),
-        "final_return_difference": _difference(tasks, subject, other, "final_return"),
-        "never_reached": {who: sum(not t["agents"][who]["reached"] for t in tasks) for who in (subject, other)},
-    }
-
-
-def _difference(tasks: list[dict], subject: str, other: str, measure: str) -> dict:
-    """The paired difference of two agents, and their means."""
-    values = {who: [float(task["agents"][who][measure]) for task in tasks] for who in (subject, other)}
-    raw = {who: sum(own) / len(own) for who, own in values.items()}
-    return plain(difference_estimate(values[subject], values[other])) | {"raw": raw}
-
-
-def _means(tasks: list[dict], name: str) -> dict:
-    return {m: plain(mean_estimate([task["agents"][name][m] for task in tasks])) for m in MEASURES}
+    return differences | {"agents": means_by_third(tasks, MEASURES)}

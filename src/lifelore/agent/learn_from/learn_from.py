@@ -8,7 +8,6 @@ observation prior, weighted by the robot's competence as for demonstrations (the
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -39,46 +38,47 @@ from lifelore.memory import Memory, open_memory
 from lifelore.memory.location import locate
 
 
-@dataclass(frozen=True)
-class LearnFromSettings:
-    """Settings of `learn_from`.
+def learn_from(
+    runs: Sequence[Run],
+    *,
+    map: str | Path,
+    memory: str | Path | None = None,
+    robot: str = "robot",
+    building: str | None = None,
+    cell: float | None = None,
+    robot_radius: float | None = None,
+    weight: float = 1.0,
+    reached_goal: bool = False,
+    shift: Shift | None = None,
+    dry_run: bool = False,
+    source: str = "runs",
+    progress: Progress | None = None,
+) -> dict[str, Any]:
+    """Learn from runs and store what was learnt, each run in one transaction.
 
     Parameters
     ----------
-    world : WorldSettings
-        The building, with its map.
-    memory : MemorySettings
-        Its `robot` is the robot that drove.
-    prior : PriorSettings
-        α⁰ and the weight of a run by a robot of competence 1.
+    runs : sequence of Run
+    map : str or Path
+        YAML of the ROS map in whose frame the poses are.
+    memory : str or Path, optional
+        SQLite file or URL; None: the user's own.
+    robot, building : str
+        Name of the robot that drove, and of the building, which otherwise is recognised.
+    cell, robot_radius : float, optional
+        Metres; 0.5 and 0.2.
+    weight : float
+        Weight w(π) of a run by a robot of competence 1, ≥ 0.
     reached_goal : bool
         Take each run without an outcome goal or failed for a run that ended at its goal.
     shift : (x, y, yaw), optional
         Metres and radians that lay the log on the map: a point p becomes R(yaw) · p + (x, y).
     dry_run : bool
         Report, and store nothing.
-    """
-
-    world: WorldSettings
-    memory: MemorySettings = field(default_factory=MemorySettings)
-    prior: PriorSettings = field(default_factory=PriorSettings)
-    reached_goal: bool = False
-    shift: Shift | None = None
-    dry_run: bool = False
-
-    def __post_init__(self) -> None:
-        if self.world.domain != "building" or self.world.map is None:
-            raise InputError("map must be given: runs are in metres of the frame of a building's map")
-        if self.shift is not None and not (len(self.shift) == 3 and np.isfinite(self.shift).all()):
-            raise InputError(f"shift must be three numbers x, y (metres) and yaw (radians), got {self.shift}")
-
-
-def learn_from(
-    runs: Sequence[Run], settings: LearnFromSettings, source: str = "runs", progress: Progress | None = None
-) -> dict[str, Any]:
-    """Learn from runs and store what was learnt, each run in one transaction.
-
-    `forget_source` undoes it: it forgets the runs that were learnt from this `source`.
+    source : str
+        Name of the log. `forget_source` forgets the runs that were learnt from it.
+    progress : callable, optional
+        Called as ``progress(done, total, label)`` after each run.
 
     Returns
     -------
@@ -98,44 +98,50 @@ def learn_from(
     StoreError
         Memory cannot store a run; earlier runs stay stored.
     """
-    runs = runs if settings.shift is None else shifted_runs(runs, settings.shift)
-    occupancy = map_from_settings(settings.world)
-    world, noise = world_from_settings(settings.world, occupancy), localisation_noise(runs)
+    if map is None:
+        raise InputError("map must be given: runs are in metres of the frame of a building's map")
+    if shift is not None and not (len(shift) == 3 and np.isfinite(shift).all()):
+        raise InputError(f"shift must be three numbers x, y (metres) and yaw (radians), got {shift}")
+    MemorySettings(robot=robot, building=building)  # checks them
+    prior = PriorSettings(weight=weight)
+    settings = WorldSettings("building", map, cell=cell, robot_radius=robot_radius)
+    runs = runs if shift is None else shifted_runs(runs, shift)
+    occupancy = map_from_settings(settings)
+    world, noise = world_from_settings(settings, occupancy), localisation_noise(runs)
     outside = checked_log(runs, Reachable.of(floor_of(occupancy, world)), noise, world.frame.cell, source)
-    robot = settings.memory.robot
-    with _opened(settings) as memory:
-        place = recognised_place(settings.world, world, occupancy, memory, settings.memory.building)
-        learnt = [_learnt(place.world, run, noise, settings.reached_goal) for run in runs]
+    with _opened(memory, dry_run) as opened:
+        place = recognised_place(settings, world, occupancy, opened, building)
+        learnt = [_learnt(place.world, run, noise, reached_goal) for run in runs]
         competence = _competence(place.world, [one for one in learnt if one.goal is not None])
         report = log_report(place, learnt, source, outside, noise)
         report["clock"] = all(has_clock(run.time) for run in runs)
         report["competence"] = competence
-        report["dry_run"] = settings.dry_run
+        report["dry_run"] = dry_run
         # A run that was forgotten has a tombstone, and comes again under the next number.
-        numbers = [memory.times_forgotten(robot, one.process) for one in learnt]
-        if settings.dry_run:
-            known = (memory.is_known(robot, one.process, seq) for one, seq in zip(learnt, numbers, strict=True))
+        numbers = [opened.times_forgotten(robot, one.process) for one in learnt]
+        if dry_run:
+            known = (opened.is_known(robot, one.process, seq) for one, seq in zip(learnt, numbers, strict=True))
             report["new"] = len(learnt) - sum(known)
             return report
-        _store_building(place, settings, memory)
+        _store_building(place, prior.alpha0, robot, opened)
         report["new"] = 0
         for done, (one, seq) in enumerate(zip(learnt, numbers, strict=True), start=1):
-            records = one.records(place, settings.prior.alpha0, settings.prior.weight * (competence or 0.0))
+            records = one.records(place, prior.alpha0, weight * (competence or 0.0))
             goal = None if one.goal is None else place.world.cells[one.goal].tolist()
             task = {"run": one.run.name, "goal": goal, "world": place.world.fingerprint, "source": source}
-            report["new"] += memory.contribute(robot, records, process=one.process, seq=seq, task=task)
+            report["new"] += opened.contribute(robot, records, process=one.process, seq=seq, task=task)
             if progress:
                 progress(done, len(learnt), f"run {one.run.name}")
     return report
 
 
-def _store_building(place: Place, settings: LearnFromSettings, memory: Memory) -> None:
+def _store_building(place: Place, alpha0: float, robot: str, memory: Memory) -> None:
     """Store the building and what carries over from its earlier map; both stay if the runs are forgotten."""
     scope = prior_scope(place.world, "observation")
-    lore = Lore.recalled(place.world, scope, settings.prior.alpha0, memory, place.grid)
+    lore = Lore.recalled(place.world, scope, alpha0, memory, place.grid)
     if records := [record for record in (*place.news, lore.model_news()) if len(record.slots)]:
         task = {"world": place.world.fingerprint}
-        memory.contribute(settings.memory.robot, records, process=uuid4().hex, seq=0, task=task)
+        memory.contribute(robot, records, process=uuid4().hex, seq=0, task=task)
 
 
 def forget_source(memory: Memory, source: str, robot: str | None = None) -> int:
@@ -159,17 +165,14 @@ def forget_source(memory: Memory, source: str, robot: str | None = None) -> int:
 
 
 @contextmanager
-def _opened(settings: LearnFromSettings) -> Iterator[Memory]:
+def _opened(where: str | Path | None, dry_run: bool) -> Iterator[Memory]:
     """The memory; in a dry run it is only read, or an empty one that is deleted where there is none."""
-    place = locate(settings.memory.location)
-    if not settings.dry_run:
-        with open_memory(settings.memory.location) as memory:
-            yield memory
-    elif isinstance(place, Path) and not place.exists():
+    place = locate(where)
+    if dry_run and isinstance(place, Path) and not place.exists():
         with TemporaryDirectory() as folder, open_memory(Path(folder) / "dry.db") as memory:
             yield memory
     else:
-        with open_memory(settings.memory.location, read_only=True) as memory:
+        with open_memory(where, read_only=dry_run) as memory:
             yield memory
 
 

@@ -3,13 +3,18 @@
 The first sentence on a setting stands in ``lifelore live --settings``.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from math import ceil
+from os import PathLike, fspath
+from typing import Any
 
 from lifelore.action.priors.action_prior import FORMS, MOST_WEIGHT
 from lifelore.action.priors.exploration import TIES
-from lifelore.agent.live.goals.job_list import Job
+from lifelore.agent.live.goals.job_list import Job, read_jobs
 from lifelore.core.errors import InputError
+from lifelore.core.keyed_settings import arguments_by_key, keys_of
 from lifelore.domains.worlds import WorldSettings
 
 CONDITIONS = ("observation", "state", "none")
@@ -315,3 +320,22 @@ def _check_choice(name: str, value: str, known: tuple[str, ...]) -> None:
 def _check_whole(name: str, value: int, least: int, most: int) -> None:
     if not (isinstance(value, int) and least <= value <= most):
         raise InputError(f"{name} must be a whole number from {least} to {most:,}, got {value}")
+
+
+def life_settings(keys: Mapping[str, Any]) -> LifeSettings:
+    """The settings of a life from flat keys, see `live`.
+
+    Raises
+    ------
+    InputError
+        A key is unknown, or a setting breaks its rule.
+    """
+    known = list(keys_of(LifeSettings, LIFE_KEYS))
+    for key in keys:
+        if key not in known:
+            near = ", ".join(get_close_matches(key, known, 3)) or "lifelore live --settings lists them"
+            raise InputError(f"no setting has the key '{key}'; near: {near}")
+    given = {key: fspath(value) if isinstance(value, PathLike) else value for key, value in keys.items()}
+    if isinstance(given.get("goals"), str):
+        given["goals"] = read_jobs(given["goals"])
+    return LifeSettings(**arguments_by_key(LifeSettings, given, LIFE_KEYS))

@@ -1,6 +1,7 @@
 """Summary of a life: means of each agent over thirds of the tasks, and comparisons of agents."""
 
 import math
+from collections.abc import Callable, Iterable
 
 from lifelore.core.learning.learning_metrics import jumpstart
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
@@ -31,8 +32,16 @@ def summarise(tasks: list[dict]) -> dict:
     """
     agents, last = list(tasks[0]["agents"]), third(tasks, "last")
     others = [name for name in agents if name != "scratch" and "scratch" in agents]
-    compared = {f"{name}_vs_scratch": _compared_with_scratch(last, name) for name in others}
-    return compared | _means(tasks, SEARCH_MEASURES, "capped")
+    ratios = {
+        f"{name}_vs_scratch": {
+            "steps_to_80_ratio": compared(last, name, "scratch", "steps_to_80", ratio_estimate),
+            "collisions_ratio": compared(last, name, "scratch", "collisions", ratio_estimate),
+            "jumpstart": compared(last, name, "scratch", "first_return", jumpstart),
+            "capped": {who: failures(last, who) for who in (name, "scratch")},
+        }
+        for name in others
+    }
+    return ratios | {"agents": means_by_third(tasks, SEARCH_MEASURES, "capped")}
 
 
 def summarise_drives(tasks: list[dict]) -> dict:
@@ -43,50 +52,46 @@ def summarise_drives(tasks: list[dict]) -> dict:
     agents, summary = list(tasks[0]["agents"]), {}
     if len(agents) > 1:
         parts = {"all": tasks, "last": third(tasks, "last")}
-        summary["lore_vs_map_only"] = {which: _compared_drives(part, *agents) for which, part in parts.items()}
-    return summary | _means(tasks, DRIVE_MEASURES, "no_way")
+        summary["lore_vs_map_only"] = {which: _compared_drives(part, agents) for which, part in parts.items()}
+    return summary | {"agents": means_by_third(tasks, DRIVE_MEASURES, "no_way")}
 
 
-def _means(tasks: list[dict], measures: tuple[str, ...], failed: str) -> dict:
-    """``agents``: means over the first and last third; `failed` names the count of goals that were not reached."""
+def _compared_drives(tasks: list[dict], agents: list[str]) -> dict:
+    own, others = (column(tasks, name, "seconds") for name in agents)
     return {
-        "agents": {
-            name: {
-                which: {m: plain(mean_estimate(_column(third(tasks, which), name, m))) for m in measures}
-                | {failed: _failures(third(tasks, which), name)}
-                for which in ("first", "last")
-            }
-            for name in tasks[0]["agents"]
-        }
+        "seconds_ratio": plain(ratio_estimate(own, others)),
+        "seconds": {name: sum(column(tasks, name, "seconds")) for name in agents},
+        "refusals": {name: sum(column(tasks, name, "refusals")) for name in agents},
     }
 
 
-def _column(tasks: list[dict], agent: str, measure: str) -> list[float]:
+def means_by_third(tasks: list[dict], measures: Iterable[str], failed: str | None = None) -> dict:
+    """Means of each agent over the first and last third; `failed` names the count of goals not reached."""
+
+    def means(part: list[dict], name: str) -> dict:
+        found = {measure: plain(mean_estimate(column(part, name, measure))) for measure in measures}
+        return found if failed is None else found | {failed: failures(part, name)}
+
+    return {
+        name: {which: means(third(tasks, which), name) for which in ("first", "last")}
+        for name in tasks[0]["agents"]
+    }
+
+
+def compared(
+    tasks: list[dict], name: str, other: str, measure: str, estimate: Callable[[list, list], Estimate]
+) -> dict:
+    """A comparison of two agents by a measure of the same tasks, and their ``raw`` means."""
+    values = {who: column(tasks, who, measure) for who in (name, other)}
+    raw = {who: sum(own) / len(own) for who, own in values.items()}
+    return plain(estimate(values[name], values[other])) | {"raw": raw}
+
+
+def column(tasks: list[dict], agent: str, measure: str) -> list:
+    """A measure of an agent in each task."""
     return [task["agents"][agent][measure] for task in tasks]
 
 
-def _failures(tasks: list[dict], agent: str) -> int:
-    return sum(not reached for reached in _column(tasks, agent, "reached"))
-
-
-def _compared_with_scratch(tasks: list[dict], name: str) -> dict:
-    def compared(measure: str, compare=ratio_estimate) -> dict:
-        own, scratch = _column(tasks, name, measure), _column(tasks, "scratch", measure)
-        raw = {name: sum(own) / len(own), "scratch": sum(scratch) / len(scratch)}
-        return plain(compare(own, scratch)) | {"raw": raw}
-
-    return {
-        "steps_to_80_ratio": compared("steps_to_80"),
-        "collisions_ratio": compared("collisions"),
-        "jumpstart": compared("first_return", jumpstart),
-        "capped": {who: _failures(tasks, who) for who in (name, "scratch")},
-    }
-
-
-def _compared_drives(tasks: list[dict], name: str, other: str) -> dict:
-    own, others = _column(tasks, name, "seconds"), _column(tasks, other, "seconds")
-    return {
-        "seconds_ratio": plain(ratio_estimate(own, others)),
-        "seconds": {name: sum(own), other: sum(others)},
-        "refusals": {who: sum(_column(tasks, who, "refusals")) for who in (name, other)},
-    }
+def failures(tasks: list[dict], agent: str) -> int:
+    """Number of tasks in which an agent did not reach its goal."""
+    return sum(not reached for reached in column(tasks, agent, "reached"))

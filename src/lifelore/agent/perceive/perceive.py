@@ -228,7 +228,7 @@ def perceive(
     """
     asked = SceneFiles(**files)
     check_goal(settings, asked.pddl)
-    check_scene_files(asked, files_read([source], settings))
+    check_scene_files([asked], files_read([source], settings))
     model = None if settings.model is None else model_of(settings, notice)
     return perceived(source, model, settings, asked, progress, notice)
 

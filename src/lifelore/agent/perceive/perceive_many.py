@@ -21,13 +21,7 @@ from lifelore.agent.perceive.perceive import (
     model_of,
     perceived,
 )
-from lifelore.agent.perceive.scene_files import (
-    FileNames,
-    SceneFiles,
-    check_files_of_scenes,
-    check_names,
-    check_scene_files,
-)
+from lifelore.agent.perceive.scene_files import FileNames, SceneFiles, check_names, check_scene_files
 from lifelore.agent.perceive.source_files import NO_SOURCE_FILES
 from lifelore.core.errors import InputError, LifeloreError
 from lifelore.core.protocols import Progress
@@ -81,11 +75,9 @@ def perceive_many(
     check_settings(settings, asked.pddl)
     if len(sources) > 1:
         settings.beside.check_for_many()
-    if asked.paths:
-        check_names(asked)
-        _check_equal_names(sources)
+    check_names(asked)
     named = [asked.of(source) for source in sources]
-    check_files_of_scenes(named, files_read(sources, settings))
+    check_scene_files(named, files_read(sources, settings))
     model = model_of(settings, notice)
 
     def each() -> Iterator[Entry]:
@@ -141,7 +133,7 @@ def perceive_folder(
             "watch perceives clouds alone: leave out intrinsics, colour, depth_scale, masks and table_mask"
         )
     check_names(asked)
-    check_scene_files(asked, files_read([], settings))
+    check_scene_files([asked], files_read([], settings))
     model = model_of(settings, notice)
     arrivals = new_clouds(
         folder, lambda path: read_cloud(path, units=settings.units, labels=settings.labels), stop
@@ -153,7 +145,7 @@ def perceive_folder(
             raise cloud
         own = asked.of(path)
         if own.paths:
-            check_scene_files(own, files_read([path], settings))
+            check_scene_files([own], files_read([path], settings))
             _claim(owner, path, own)
         return perceived(cloud, model, settings, own, None, None if notice is None else _named(notice, path))
 
@@ -175,18 +167,6 @@ def _entry(source: str, document: Callable[[], dict[str, Any]]) -> Entry:
         return {"source": source, "error": str(error).removeprefix(f"{Path(source)}: ")}
     except MemoryError:
         return {"source": source, "error": "does not fit into memory: reduce the number of points"}
-
-
-def _check_equal_names(sources: Sequence[str]) -> None:
-    """Refuse two clouds whose files would have the same name."""
-    first: dict[str, str] = {}
-    for source in sources:
-        other = first.setdefault(Path(source).stem, source)
-        if Path(other) != Path(source):
-            raise InputError(
-                f"'{other}' and '{source}' would be written to the same file, because both are named"
-                f" '{Path(source).stem}': rename one of them, or perceive them one by one"
-            )
 
 
 def _claim(owner: dict[str, str], source: str, files: SceneFiles) -> None:

@@ -113,31 +113,27 @@ def check_names(files: SceneFiles) -> None:
             )
 
 
-def check_scene_files(files: SceneFiles, sources: Sequence[str | os.PathLike[str]]) -> None:
-    """Refuse files that cannot be written, or that would overwrite each other or the `sources`.
+def check_scene_files(scenes: Iterable[SceneFiles], sources: Sequence[str | os.PathLike[str]]) -> None:
+    """Refuse files of scenes that cannot be written, or that would overwrite each other or the `sources`.
 
     Raises
     ------
     InputError
         The message names the file.
     """
-    check_files_of_scenes([files], sources)
-
-
-def check_files_of_scenes(many: Iterable[SceneFiles], sources: Sequence[str | os.PathLike[str]]) -> None:
-    """As `check_scene_files`, for the files of several scenes."""
-    many = [files for files in many if files.paths]
-    for files in many:
+    scenes = [files for files in scenes if files.paths]
+    for files in scenes:
         for path in files.paths:
             _check_writable(path)
         for option, path in files.options.items():
             _check_ending(option, path)
-    used = {os.path.realpath(path) for path in sources if many}
-    for path in (path for files in many for path in files.paths):
+    used = {os.path.realpath(path) for path in sources if scenes}
+    for path in (path for files in scenes for path in files.paths):
         if os.path.realpath(path) in used:
             raise InputError(
                 f"'{path}' would be overwritten: the cloud, the model, plot, dot, masks_out, log, pddl and the"
                 " domain beside it must be different files"
+                + ("; rename clouds of one name, or perceive them one by one" if len(scenes) > 1 else "")
             )
         used.add(os.path.realpath(path))
 

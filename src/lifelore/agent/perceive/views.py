@@ -79,7 +79,7 @@ def perceive_views(
     if asked.masks_out is not None:
         raise InputError("masks_out (--set masks_out=FILE) is of one image, and views have several: leave it out")
     check_settings(settings, asked.pddl)
-    check_scene_files(asked, [*files_read(sources, settings), *([] if poses is None else [poses])])
+    check_scene_files([asked], [*files_read(sources, settings), *([] if poses is None else [poses])])
     given = None if poses is None else read_poses(poses, len(sources))
     model = model_of(settings)
     clouds = [_read(source, settings, read) for source in sources]

@@ -25,6 +25,8 @@ Pose = tuple[float, float, float]
 """dx, dy in metres and dyaw in radians: p ↦ R(dyaw) p + (dx, dy)."""
 IDENTITY: Pose = (0.0, 0.0, 0.0)
 
+LEAST_WALLED = 0.1
+"""Share of the border of free ground that is walls, below which all of it counts."""
 WALL_TOLERANCE = 0.15
 """Metres within which two walls are the same wall."""
 SPECK = 3
@@ -100,12 +102,17 @@ def register_near(a: "Walls", b: "Walls") -> Fit | None:
 
 
 class Walls:
-    """The walls of a map as points in metres of its world frame, and what lies near them."""
+    """The walls of a map as points in metres of its world frame, and what lies near them.
+
+    A map with hardly a wall, such as of a yard, has the border of its free ground in their place.
+    """
 
     def __init__(self, occupancy: OccupancyMap) -> None:
         self.map = occupancy
         state, self.pixel = occupancy.state, occupancy.resolution
-        self.edge = (state == OCCUPIED) & inflate(state == FREE, 2**0.5)
+        border = (state != FREE) & inflate(state == FREE, 2**0.5)
+        walls = border & (state == OCCUPIED)
+        self.edge = walls if walls.sum() >= LEAST_WALLED * border.sum() else border
         rows, columns = np.nonzero(self.edge)
         self.width = state.shape[1] + 1  # with an empty column, so that no row continues in the next one
         self.numbers = rows * self.width + columns

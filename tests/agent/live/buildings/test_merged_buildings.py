@@ -7,15 +7,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lifelore.agent.building_record import map_digest
 from lifelore.agent.live.buildings.building_memory import buildings_in, forget_building
 from lifelore.agent.live.buildings.merged_buildings import ROBOT, described, merge_memories
 from lifelore.agent.live.buildings.recognition import recognised_place
 from lifelore.agent.live.goals.destinations import NamedPlaces
 from lifelore.agent.live.goals.goal_counts import GoalCounts
+from lifelore.agent.live.transitions import BuildingGrid, frame_key, model_table, to_record
 from lifelore.agent.travel import Travel
-from lifelore.domains.buildings.occupancy_map import OccupancyMap, read_occupancy_map
+from lifelore.core.learning.known_world import UNKNOWN, unknown_world
+from lifelore.core.protocols import Record
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap, read_occupancy_map
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.registration import moved
+from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.worlds import WorldSettings, world_from_settings
 from lifelore.memory import Memory, open_memory
 from reproduction.own.o_04_same_building.edits import cropped, turned
@@ -100,6 +105,28 @@ def test_what_both_learnt_is_known_on_either_map(merged, turn):
         driven = Travel.recalled(place.world, place.grid, memory).driven
         assert driven[[dock, lab]].all()
         assert driven.sum() == 2 + (place.world.neighbour[[dock, lab]] >= 0).sum()
+
+
+def test_a_joined_map_that_changed_is_known_in_its_own_frame(merged):
+    """Furniture that leaves too few walls for a comparison with all buildings."""
+    changed = quarter_turned(OFFICE)
+    state, free = changed.state.copy(), np.argwhere(changed.state == FREE)
+    for row, column in free[np.random.default_rng(1).permutation(len(free))[:20]]:
+        state[row : row + 6, column : column + 6] = OCCUPIED
+    with open_memory(merged) as memory:
+        world = world_from_settings(WorldSettings("building", "home.yaml"), changed)
+        memory.contribute("karl", [moves_on(world, map_digest(changed))], process="t", seq=0, task={})
+        place = place_on(replace(changed, state=state), memory)
+        assert place.report["recognised"], place.report["reason"]
+        assert np.allclose(NamedPlaces.of(place).points(memory)["dock"], seen_from(OFFICE, DOCK), atol=0.02)
+
+
+def moves_on(world: GridWorld, building: str) -> Record:
+    """All moves of a world, as a robot stored them in its own frame before its building was joined."""
+    model = unknown_world(world.n_states, 4)
+    model.target[:] = np.where(world.neighbour < 0, np.arange(world.n_states)[:, None], world.neighbour)
+    model.percept[:] = world.percepts
+    return to_record(world, model_table(world, model), UNKNOWN, BuildingGrid(frame_key(world), building=building))
 
 
 def test_a_second_merge_changes_nothing_and_later_tasks_come_in(merged, tmp_path):

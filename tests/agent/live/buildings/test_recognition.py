@@ -116,6 +116,25 @@ def test_another_floor_of_the_same_outline_in_the_same_frame_is_another_building
     assert "of the walls match" in report[2]["reason"]
 
 
+def yard(column: int, corner: int = 0) -> OccupancyMap:
+    """Free ground with a box, and around it ground that nobody has seen."""
+    state = np.full((240, 360), UNKNOWN, np.uint8)
+    state[20:220, 20:340] = FREE
+    state[20:120, 260 - corner : 340] = UNKNOWN
+    state[150:156, column : column + 12] = OCCUPIED
+    return OccupancyMap(state, 0.05)
+
+
+def test_a_yard_without_walls_is_known_by_its_border(tmp_path):
+    """Its only box may move; a yard of another outline in the same frame is another one."""
+    new, moved, other = (
+        life_on(tmp_path, one, f"yard{number}").report["building"]
+        for number, one in enumerate((yard(100), yard(180), yard(100, corner=140)))
+    )
+    assert [new["recognised"], moved["recognised"], other["recognised"]] == [False, True, False]
+    assert moved["pose"] == [0, 0, 0]
+
+
 def test_a_symmetric_building_is_refused_as_ambiguous(tmp_path):
     state = np.full((80, 120), OCCUPIED, np.uint8)
     state[2:-2, 2:-2] = FREE

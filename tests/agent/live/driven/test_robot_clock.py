@@ -4,7 +4,11 @@ from datetime import UTC, datetime
 
 import pytest
 
-from lifelore.agent.live.driven.robot_clock import BEGIN, clock_text, job_start, list_day, next_start
+from lifelore.agent.live.buildings.recognition import Place
+from lifelore.agent.live.driven.robot_clock import BEGIN, RobotClock, clock_text, job_start, list_day, next_start
+from lifelore.agent.live.transitions import BuildingGrid
+from lifelore.domains.worlds import WorldSettings, world_from_settings
+from lifelore.memory import open_memory
 
 
 def at(text: str) -> float:
@@ -46,3 +50,14 @@ def test_times_of_a_list_are_of_its_day_or_dates():
     assert job_start("2024-03-01T10:00", BEGIN) == at("2024-03-01T10:00")
     assert job_start("2024-03-01T10:00+01:00", BEGIN) == at("2024-03-01T09:00")
     assert clock_text(job_start("09:30:15", BEGIN)) == "2024-01-01T09:30:15"
+
+
+def test_a_robot_stands_nowhere_in_cells_of_another_size(tmp_path):
+    office = {cell: world_from_settings(WorldSettings("building", cell=cell)) for cell in (0.5, 0.6)}
+    places = {cell: Place(world, BuildingGrid("frame", building="b")) for cell, world in office.items()}
+    with open_memory(tmp_path / "memory.db") as memory:
+        news = RobotClock("b/rosie").at(BEGIN + 60, 700).record(places[0.5])
+        memory.contribute("rosie", [news], process="p", seq=0, task={})
+        clocks = {cell: RobotClock.recalled(place, "rosie", memory) for cell, place in places.items()}
+    assert {clock.clock for clock in clocks.values()} == {BEGIN + 60}
+    assert [clock.state for clock in clocks.values()] == [700, None]

@@ -1,13 +1,16 @@
 """Where goals were found: remembered, added up, forgotten with the building, and tried first."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from lifelore.agent.live.buildings.building_memory import buildings_in, forget_building
 from lifelore.agent.live.goals.goal_counts import KIND, VERSION, GoalCounts
 from lifelore.agent.live.life import live
-from lifelore.agent.live.transitions import BuildingGrid, frame_key
-from lifelore.domains.worlds import make_world
+from lifelore.agent.live.transitions import BuildingGrid, frame_key, model_table, to_record
+from lifelore.core.learning.known_world import unknown_world
+from lifelore.domains.worlds import WorldSettings, make_world, world_from_settings
 from lifelore.memory import open_memory
 
 from ..flat_settings import flat_settings
@@ -48,6 +51,24 @@ def test_memory_adds_the_goals_of_all_robots(tmp_path):
             memory.contribute(robot, [counts_of(world).found(goal)], process=robot, seq=goal, task={})
         recalled = GoalCounts.recalled(world, BuildingGrid(frame_key(world)), memory)
     assert {int(s): int(recalled.count[s]) for s in np.flatnonzero(recalled.count)} == {7: 2, 9: 1}
+
+
+def test_cells_of_another_size_are_other_places(tmp_path):
+    office = {cell: world_from_settings(WorldSettings("building", cell=cell)) for cell in (0.5, 1.0)}
+    grids = {cell: BuildingGrid(frame_key(world), building="b") for cell, world in office.items()}
+    with open_memory(str(tmp_path / "memory.db")) as memory:
+        news = GoalCounts.recalled(office[0.5], grids[0.5], memory).found(7)
+        old = replace(GoalCounts.recalled(office[0.5], grids[0.5], memory).found(9), key="b")
+        memory.contribute("a", [news, old], process="a", seq=0, task={})
+        counts = {cell: GoalCounts.recalled(world, grids[cell], memory).count for cell, world in office.items()}
+        assert np.flatnonzero(counts[0.5]).tolist() == [7, 9]
+        # A record of an earlier version does not tell its cells; the moves of the building do.
+        moves = to_record(
+            office[0.5], model_table(office[0.5], unknown_world(office[0.5].n_states, 4)), 0, grids[0.5]
+        )
+        memory.contribute("a", [moves], process="a", seq=1, task={})
+        assert GoalCounts.recalled(office[0.5], grids[0.5], memory).count.sum() == 2
+        assert GoalCounts.recalled(office[1.0], grids[1.0], memory).count.sum() == 0
 
 
 def test_another_corner_of_the_grid_is_the_same_place():

@@ -172,11 +172,15 @@ def _in_frame(
 ) -> Recognised | None:
     """A map on the same grid whose percepts and walls are mostly unchanged."""
     earlier = same_place(world, memory, BuildingGrid(frame_key(world)))
-    building = by_key.get(earlier.record.about.get("building", "")) if earlier else None
-    if building is None or building.frame.origin != occupancy.origin:
+    key = earlier.record.about.get("building", "") if earlier else ""
+    joined = joined_buildings(memory).get(key)
+    shown = joined.building if joined else by_key.get(key)
+    if shown is None or shown.frame.origin != occupancy.origin:
         return None
-    fit = register_near(Walls(map_of(building, memory)), Walls(occupancy))
-    return Recognised(building, IDENTITY, fit.match) if fit and fit.match >= LEAST_IN_FRAME else None
+    fit = register_near(Walls(map_of(shown, memory)), Walls(occupancy))
+    if fit is None or fit.match < LEAST_IN_FRAME:
+        return None
+    return Recognised(joined.home, joined.pose, fit.match) if joined else Recognised(shown, IDENTITY, fit.match)
 
 
 def map_of(building: Building, memory: Memory) -> OccupancyMap:

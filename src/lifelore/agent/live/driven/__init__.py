@@ -1,5 +1,5 @@
 """Jobs with known goals, which are driven to.
 
-`drive_job` is the algorithm and `route` its planner. `driven_tasks` are the jobs of a life, and `robot_clock` says
+`drive_job` is the algorithm and `route` its planner. `driven_life` is a life of such jobs, and `robot_clock` says
 when and where they start.
 """

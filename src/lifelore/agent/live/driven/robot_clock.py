@@ -2,7 +2,8 @@
 
 The calendar is simulated. It begins on Monday 2024-01-01, and goes on from run to run. A record of kind
 "robot_clock" holds the clock of a robot in a building in slot 0 (seconds since 1970), and in slot 1 the cell in
-which it stands, in the grid of the building's first map; the newest counts.
+which it stands, in the grid of the building's first map; the newest counts. The place is not known in a life with
+cells of another size.
 """
 
 import math
@@ -48,7 +49,9 @@ class RobotClock:
         record = memory.recall(KIND, new.key, VERSION)
         if record is None:
             return new
-        state = int(states_in_building(place.world, record.values[1:2], place.grid.corner)[0])
+        state, cell = -1, place.world.frame.cell
+        if record.about.get("cell", cell) == cell:
+            state = int(states_in_building(place.world, record.values[1:2], place.grid.corner)[0])
         return replace(new, clock=float(record.values[0]), state=state if state >= 0 else None)
 
     def at(self, clock: float, state: int) -> "RobotClock":
@@ -59,7 +62,7 @@ class RobotClock:
         """The record by which memory knows clock and place of the robot from then on."""
         cell = cells_in_building(place.world, place.grid.corner)[self.state]
         building, robot = self.key.split("/", 1)
-        about = {"building": building, "robot": robot, "clock": int(self.clock)}
+        about = {"building": building, "robot": robot, "clock": int(self.clock), "cell": place.world.frame.cell}
         return Record(KIND, self.key, VERSION, "newest", np.arange(2), np.array([int(self.clock), cell]), about)
 
 

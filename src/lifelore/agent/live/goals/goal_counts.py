@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.building_record import joined_buildings
+from lifelore.agent.live import transitions
+from lifelore.agent.travel.passes import key_of
 from lifelore.core.planning.destination_order import MOST_EXACT, by_exact_search, by_rate
 from lifelore.core.protocols import Record
 from lifelore.domains.grids.cell_numbers import COLUMN_BITS, BuildingGrid, cells_in_building, states_in_building
@@ -39,27 +41,26 @@ class GoalCounts:
     def recalled(cls, world: GridWorld, grid: BuildingGrid, memory: Memory) -> "GoalCounts":
         """The counts that memory holds of this building; cells that the map no longer has are left out."""
         counts = cls(world, grid, np.zeros(world.n_states, np.int64))
-        record = memory.recall(KIND, counts.key, VERSION)
-        if record is not None:
+        for record in counts._remembered(grid, memory):
             counts._add(states_in_building(world, record.slots, grid.corner), record.values)
         for key, joined in joined_buildings(memory).items():
-            record = memory.recall(KIND, key, VERSION) if joined.home.key == grid.building else None
-            if record is not None:
-                row, column = record.slots >> COLUMN_BITS, record.slots & (2**COLUMN_BITS - 1)
-                counts._add(joined.states(world, grid, row, column), record.values)
+            if joined.home.key == grid.building:
+                for record in counts._remembered(grid._replace(building=key), memory):
+                    row, column = record.slots >> COLUMN_BITS, record.slots & (2**COLUMN_BITS - 1)
+                    counts._add(joined.states(world, grid, row, column), record.values)
         return counts
+
+    def _remembered(self, grid: BuildingGrid, memory: Memory) -> list[Record]:
+        """The counts of a building; earlier versions stored them without the size of cells."""
+        keys, moves = [key_of(self.world, grid)], (about for _, _, about in memory.keys(transitions.KIND))
+        cells = {about["settings"].get("cell") for about in moves if about.get("building") == grid.building}
+        if grid.building is not None and cells <= {self.world.frame.cell}:
+            keys.append(grid.building)
+        found = (memory.recall(KIND, key, VERSION) for key in keys)
+        return [record for record in found if record is not None]
 
     def _add(self, states: NDArray[np.int64], count: NDArray[np.int64]) -> None:
         np.add.at(self.count, states[states >= 0], count[states >= 0])
-
-    @property
-    def key(self) -> str:
-        """Key of the building in memory, or of the frame of a world in no building."""
-        return self.grid.building or self.grid.frame
-
-    def _cells(self) -> NDArray[np.int64]:
-        """The number of each state's cell in the grid of the building's first map, -1 outside of it."""
-        return cells_in_building(self.world, self.grid.corner)
 
     def copy(self) -> "GoalCounts":
         """An independent copy for another agent."""
@@ -68,10 +69,10 @@ class GoalCounts:
     def found(self, goal: int) -> Record:
         """Count a goal that was found; returns the contribution to memory, empty outside the first map's grid."""
         self.count[goal] += 1
-        cell = self._cells()[[goal]]
+        cell = cells_in_building(self.world, self.grid.corner)[[goal]]
         slots = cell[cell >= 0]
         about = {"world": self.world.name, "building": self.grid.building}
-        return Record(KIND, self.key, VERSION, "add", slots, np.ones_like(slots), about)
+        return Record(KIND, key_of(self.world, self.grid), VERSION, "add", slots, np.ones_like(slots), about)
 
     def belief(self) -> tuple[NDArray[np.int64], NDArray[np.float64], float]:
         """Remembered destinations, the probability of each, and that of a place where no goal was found yet.

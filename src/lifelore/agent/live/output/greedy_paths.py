@@ -12,7 +12,8 @@ from scipy.sparse import csgraph
 
 from lifelore.agent.live.driven.drive_job import DrivenJob
 from lifelore.agent.live.driven.route import chain_to
-from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
+from lifelore.agent.live.grid_life import TASKS_WITH_POLICY
+from lifelore.agent.live.life import Life
 from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.grids.grid_world import GridWorld
 

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lifelore.agent.live.baselines import AGENTS
-from lifelore.agent.live.lived_tasks import Result
+from lifelore.agent.live.grid_life import Result
 from lifelore.agent.live.output.folder import folder_to_write
 from lifelore.agent.live.task_result import TaskResult
 from lifelore.core.errors import InputError

@@ -1,7 +1,7 @@
 """A life in a building as data for a log: its map, costs, ways and events, with their times."""
 
 from datetime import UTC, datetime
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,25 +12,8 @@ from lifelore.agent.live.output.greedy_paths import GreedyPaths, last_paths, pat
 from lifelore.agent.live.output.known_building import KnownBuilding
 from lifelore.agent.live.output.nav2_masks import NO_OPINION, on_map, place_costs, place_masks
 from lifelore.core.errors import InputError
-from lifelore.domains.buildings.occupancy_map import OccupancyMap
+from lifelore.domains.buildings.logged_life import LoggedLife
 from lifelore.domains.grids.grid_world import MOVE_NAMES
-
-
-class LoggedLife(NamedTuple):
-    """What a log holds; points are in metres of the map's frame, seconds those since 1970 by the robot's clock.
-
-    occupancy : the user's map
-    costs : (rows, columns) uint8, on its pixels, as in the mask ``costs``
-    ways : (name, seconds, corners (n, 2)) of the last tasks
-    events : (name, seconds, point): goals reached or missed, and moves refused
-
-    A life without a clock has the number of its task in place of seconds, and no refusals.
-    """
-
-    occupancy: OccupancyMap
-    costs: NDArray[np.uint8]
-    ways: list[tuple[str, float, NDArray[np.float64]]]
-    events: list[tuple[str, float, Point]]
 
 
 def logged_life(life: Life) -> LoggedLife:

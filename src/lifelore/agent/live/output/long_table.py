@@ -7,19 +7,19 @@
 
 import csv
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from pathlib import Path
-from types import TracebackType
-from typing import Any, Self
+from typing import Any
 
 from numpy.typing import NDArray
 
-from lifelore.agent.live.lived_tasks import Result
-from lifelore.core.errors import StoreError
+from lifelore.agent.live.grid_life import Result
+from lifelore.core.atomic_write import refused_writes
 
 COLUMNS = ("run", "task", "agent", "episode", "measure", "value")
 
 
-class LongTable:
+class LongTable(AbstractContextManager):
     """The file, written while the life runs: after each task, its rows are on disk. An older file is replaced.
 
     Parameters
@@ -36,19 +36,12 @@ class LongTable:
 
     def __init__(self, path: str | Path, run: int) -> None:
         self.path, self.run = Path(path), run
-        try:
+        with refused_writes(path, "measures"):
             self._file = self.path.open("w", newline="", encoding="utf-8")
-        except OSError as error:
-            raise self._refused(error) from None
         self._rows = csv.writer(self._file, lineterminator="\n")
         self._write([COLUMNS])
 
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._file.close()
 
     def add(
@@ -77,14 +70,9 @@ class LongTable:
         self.add(task, {agent: result.episodes() for agent, result in results.items()})
 
     def _write(self, rows: Sequence[Sequence[Any]]) -> None:
-        try:
+        with refused_writes(self.path, "measures"):
             self._rows.writerows(rows)
             self._file.flush()
-        except OSError as error:
-            raise self._refused(error) from None
-
-    def _refused(self, error: OSError) -> StoreError:
-        return StoreError(f"measures cannot be written to {self.path}: {error.strerror}; choose another file")
 
 
 def _number(value: Any) -> float | int:

@@ -88,8 +88,11 @@ class OrderTable:
         """
         pay = self.factory.rewards
         rewards = np.array([self.factory.floor.discount, pay.use, pay.misuse, pay.completion])
+        begin = _planned_stages(now.stages, now.known, planned) @ N_STAGES ** np.arange(len(now.stages))
+        tried = (now.stages > 0) | (now.known != UNKNOWN) | planned
+        left = (sets * (now.stages < N_STAGES - 1)).sum(axis=1)
         return returns_of_tours(
-            self.acts, self.walk, self.shrink, rewards, now.stages, now.known, now.place, planned, order, sets
+            self.acts, self.walk, self.shrink, rewards, now.place, begin, tried, left, order, sets
         )
 
     def act(self, now: "OrderState", planned: NDArray[np.bool_], order: Numbers) -> int:
@@ -172,31 +175,22 @@ def best_acts_of_orders(walk, shrink, gamma, use, completion, n):
 
 
 @kernel
-def returns_of_tours(acts, walk, shrink, rewards, stages, known, place, planned, order, sets):
-    """See `OrderTable.returns`."""
+def returns_of_tours(acts, walk, shrink, rewards, place, begin, tried, left, order, sets):
+    """See `OrderTable.returns`; a tour begins in a configuration, and a set has a number of components left."""
     gamma, use, misuse, completion = rewards
-    n = stages.size
-    found = np.zeros((len(planned), len(sets)))
+    n = sets.shape[1]
+    found = np.zeros((len(begin), len(sets)))
     power = 3 ** np.arange(n)
-    for tour in range(len(planned)):
+    for tour in range(len(begin)):
         for number in range(len(sets)):
-            wanted = sets[number]
-            configuration, left = 0, 0
-            tried = np.zeros(n, np.bool_)
-            for k in range(n):
-                if stages[k] > 0 or known[k] == 1 or (known[k] == -1 and planned[tour, k]):
-                    configuration += stages[k] * power[k]
-                else:
-                    configuration += 2 * power[k]
-                tried[k] = stages[k] > 0 or known[k] != -1 or planned[tour, k]
-                if wanted[k] == 1 and stages[k] < 2:
-                    left += 1
+            wanted, open_ = sets[number], ~tried[tour]
+            configuration, to_do = begin[tour], left[number]
             here, discount, total = place, 1.0, 0.0
-            while left > 0:
+            while to_do > 0:
                 if configuration == power[n - 1] * 3 - 1:
                     for k in order[tour]:
-                        if not tried[k]:
-                            tried[k] = True
+                        if open_[k]:
+                            open_[k] = False
                             configuration -= 2 * power[k]
                             break
                 act = acts[configuration, here]
@@ -210,8 +204,8 @@ def returns_of_tours(acts, walk, shrink, rewards, stages, known, place, planned,
                     total += discount * use
                     configuration += power[k]
                     if act >= n:
-                        left -= 1
-                        if left == 0:
+                        to_do -= 1
+                        if to_do == 0:
                             total += discount * completion
                 discount *= gamma
                 here = act

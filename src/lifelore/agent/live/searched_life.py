@@ -1,16 +1,19 @@
-"""The tasks of a life whose goals are hidden: each agent searches, guided by what it learnt before."""
+"""A life whose goals are hidden: each agent searches, guided by what it learnt before."""
 
-from concurrent.futures import Executor
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from threading import Event
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.live.baselines import agent_kind
+from lifelore.agent.live import baselines
+from lifelore.agent.live.baselines import agent_kind, agents_for
 from lifelore.agent.live.buildings.recognition import Place
-from lifelore.agent.live.goals.own_places import OwnGoal, OwnPlaces
+from lifelore.agent.live.goals.own_places import OwnGoal
+from lifelore.agent.live.grid_life import SEARCHED, GridLife, LivedByAll
 from lifelore.agent.live.life_settings import LifeSettings
-from lifelore.agent.live.lived_tasks import SEARCHED, LivedByAll
 from lifelore.agent.live.lore import Lore, prior_scope
 from lifelore.agent.live.summary import summarise
 from lifelore.agent.live.task_result import TaskResult
@@ -22,59 +25,34 @@ from lifelore.core.streams import stream
 from lifelore.domains.buildings.floor import floor_of
 from lifelore.domains.buildings.visibility import visible_places
 from lifelore.domains.grids.grid_world import GridWorld
-from lifelore.memory import Memory
 
 
-class SearchedTasks:
-    """Tasks with hidden goals, and what each agent knows; see `TasksOfLife`.
-
-    Parameters
-    ----------
-    settings : LifeSettings
-    place : Place
-    places : OwnPlaces
-    memory : Memory
-    names : list of str
-        Agents that live the same tasks.
-    pool : Executor
-        Runs the agents side by side.
-    """
+class SearchedLife(GridLife):
+    """A life of tasks with hidden goals. Parameters as of `GridLife`, and ``notify``, see `live`."""
 
     how = SEARCHED
 
-    def __init__(
-        self,
-        settings: LifeSettings,
-        place: Place,
-        places: OwnPlaces,
-        memory: Memory,
-        names: list[str],
-        pool: Executor,
-    ) -> None:
-        self.names = names
-        self._kinds = {name: agent_kind(name, settings) for name in names}
-        self._settings, self._place, self._memory, self._pool = settings, place, memory, pool
+    def __init__(self, *life: Any, notify: Callable[[str], None]) -> None:
+        super().__init__(*life)
+        settings, place, start = self.settings, self.place, self.places.start
+        self._kinds = {name: agent_kind(name, settings) for name in _names(settings, place.world, notify)}
+        self._first = next(iter(self._kinds))
         self._lores: dict[str, Lore] = {}
-        self._goals = hidden_goals(place.world, settings, place.grid.frame, places.start)
-        self._starts = None if places.start is None else np.array([places.start], np.int32)
+        self._goals = hidden_goals(place.world, settings, place.grid.frame, start)
+        self._starts = None if start is None else np.array([start], np.int32)
         self._sight = None if settings.sensor.reach is None else _sight_lists(place, settings.sensor.reach)
-
-    @property
-    def lore(self) -> Lore:
-        """Knowledge of the first agent."""
-        return self._lores[self.names[0]]
 
     def recall(self) -> None:
         """The first agent knows what memory holds; at the start all agents do, and then learn by themselves."""
-        settings, place = self._settings, self._place
+        settings, place = self.settings, self.place
         scope = prior_scope(place.world, settings.prior)
-        first = Lore.recalled(place.world, scope, settings.alpha0, self._memory, place.grid)
-        self._lores = self._lores or {name: first.copy() for name in self.names}
-        self._lores[self.names[0]] = first
+        self.lore = Lore.recalled(place.world, scope, settings.alpha0, self.memory, place.grid)
+        self._lores = self._lores or {name: self.lore.copy() for name in self._kinds}
+        self._lores[self._first] = self.lore
 
-    def live(self, number: int, seq: int, own: OwnGoal | None, stop: Event) -> LivedByAll:
+    def live_by_all(self, number: int, seq: int, own: OwnGoal | None, stop: Event) -> LivedByAll:
         """Live a task with each agent; they learn on the same random streams."""
-        settings, world = self._settings, self._place.world
+        settings, world = self.settings, self.place.world
         goal = int(stream(settings.seed, "task", number, "goal").choice(self._goals)) if own is None else own.state
         task = world.task(goal, self._starts)
         tables = task.tables()
@@ -85,33 +63,47 @@ class SearchedTasks:
                 f"got {task.domain.discount}; use a larger discount"
             )
         search = TaskSearch(settings, world, self._sight, number, task, tables, optimal, stop)
-        try:
-            futures = {
-                name: self._pool.submit(search.live, self._kinds[name], self._lores[name]) for name in self.names
-            }
-            results = {name: future.result() for name, future in futures.items()}
-        except BaseException:
-            stop.set()
-            raise
-        records = {name: self._learn(name, results[name], goal) for name in self.names}
-        first = self.names[0]
-        known = {"places": self.lore.known_places} if self._kinds[first].remembers else {}
-        return LivedByAll(goal, results, records[first], {"optimal_return": optimal}, known)
+        with ThreadPoolExecutor(settings.jobs) as pool:
+            try:
+                futures = {
+                    name: pool.submit(search.live, self._kinds[name], self._lores[name]) for name in self._kinds
+                }
+                results = {name: future.result() for name, future in futures.items()}
+            except BaseException:
+                stop.set()
+                raise
+        records = {name: self._learn(name, results[name], goal) for name in self._kinds}
+        known = {"places": self.lore.known_places} if self._kinds[self._first].remembers else {}
+        return LivedByAll(goal, results, records[self._first], {"optimal_return": optimal}, known)
 
     def _learn(self, name: str, result: TaskResult, goal: int) -> list[Record]:
         """Add a finished task to the knowledge of one agent; return the records that memory is to store."""
         kind, lore, records = self._kinds[name], self._lores[name], []
         if kind.uses_prior:
-            records.append(lore.learn_prior(result.best, goal, self._settings.weight))
+            records.append(lore.learn_prior(result.best, goal, self.settings.weight))
         if kind.remembers:
             records.append(lore.model_news())
-            if self._settings.destinations and result.reached:
+            if self.settings.destinations and result.reached:
                 records.append(lore.goals.found(goal))
-        return [record for record in records if len(record.slots)]
+        return records
 
-    def summary(self, tasks: list[dict]) -> dict:
+    def summary(self) -> dict:
         """Means of each agent over thirds of the tasks, and ratios to `scratch`."""
-        return summarise(tasks)
+        return summarise(self.finished)
+
+
+def _names(settings: LifeSettings, world: GridWorld, notify: Callable[[str], None]) -> list[str]:
+    """Names of the agents that live; in a big world, `scratch` lives beside the others only if it is asked for."""
+    small = world.n_states <= baselines.BIG
+    names = agents_for(settings.agent, small if settings.compare is None else settings.compare)
+    if settings.compare is None and names != agents_for(settings.agent):
+        building = settings.world.domain == "building"
+        smaller = "a larger cell (--set cell=METRES)" if building else "a smaller size (--set size=CELLS)"
+        notify(
+            f"{world.n_states:,} places: above {baselines.BIG:,} places scratch lives beside {settings.agent} "
+            f"only with --set compare=true; {smaller} takes less time"
+        )
+    return names
 
 
 def hidden_goals(
