@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from scipy import sparse
 
 from lifelore.core.errors import InputError
+from lifelore.core.matrices import dense_transitions
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning.planning import optimal_actions, optimal_q
 
@@ -73,6 +74,15 @@ def test_all_forms_give_the_same_tables(form):
         other = Tables.from_matrices(as_sparse(transitions, form), as_sparse(rewards, form), [2])
     for one, two in zip(dense, other, strict=True):
         assert np.array_equal(one, two)
+
+
+def test_rounding_of_float32_is_no_mistake():
+    transitions, rewards = random_mdp(3)
+    rounded = Tables.from_matrices(transitions.astype(np.float32), rewards, terminal={2})
+    exact = Tables.from_matrices(transitions, rewards, terminal={2})
+    assert optimal_q(rounded, GAMMA) == pytest.approx(optimal_q(exact, GAMMA), abs=1e-5)
+    over = Tables.from_matrices([[[0.999995, 0.000009, 1e-7]]] * 3, [0, 0, 0])
+    assert dense_transitions(over).min() >= 0
 
 
 def test_rewards_of_actions_and_of_states():

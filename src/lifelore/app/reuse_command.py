@@ -508,6 +508,7 @@ def _print_warm(document: dict[str, Any]) -> None:
 LEFT_OUT = (
     ("without an outcome yet left out", "pending"),
     ("without a policy left out", "without_policy"),
+    ("of an earlier log, too, left out", "repeated"),
     ("without an outcome used as --missing-outcome says", "filled_outcomes"),
     ("without a policy used as --missing-policy says", "filled_policies"),
 )

@@ -92,6 +92,7 @@ def evaluate(
 LEFT_OUT = {
     "pending": "lines without an outcome",
     "without_policy": "lines without a policy",
+    "repeated": "lines that an earlier log has, too",
     "other_groups": "decisions of other groups",
     "known_to_the_study": "decisions for users whom the study knows",
     "later_decisions": "later decisions of users",

@@ -16,8 +16,8 @@ from lifelore.core.errors import InputError
 if TYPE_CHECKING:
     from lifelore.core.mdp import Tables
 
-ROW_TOLERANCE = 1e-9
-"""Largest distance from 1 of the sum of a row of probabilities; a larger one is a mistake."""
+ROW_TOLERANCE = 1e-5
+"""Largest distance from 1 of the sum of a row; float32 rounds by less. Its last outcome takes the rest."""
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -51,6 +51,7 @@ def outcomes_of(transitions: Any, rewards: Any, terminal: Any) -> tuple[Outcomes
     numbers = np.arange(count.max())
     place = (chances.indptr[:-1, None] + np.minimum(numbers, count - 1)).reshape(n_states, n_actions, -1)
     cumulative = np.cumsum(np.where(numbers < count, chances.data[place.reshape(len(count), -1)], 0.0), axis=1)
+    np.minimum(cumulative, 1.0, out=cumulative)
     cumulative[numbers >= count - 1] = 1.0
     return Outcomes(chances.indices[place].astype(np.int32), paid[place], cumulative.reshape(place.shape)), ended
 
@@ -63,7 +64,7 @@ def checked_numbers(given: Any, n: int, name: str) -> Ints:
     InputError
         The mask has another length, or a number is not whole or not below `n`.
     """
-    numbers = np.atleast_1d(np.asarray(given))
+    numbers = np.atleast_1d(np.asarray(sorted(given) if isinstance(given, set | frozenset) else given))
     if numbers.dtype == bool:
         if numbers.shape != (n,):
             raise InputError(f"{name} as a mask must have shape ({n},), got {numbers.shape}")

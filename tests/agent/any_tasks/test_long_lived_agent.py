@@ -18,6 +18,7 @@ from lifelore.agent.any_tasks.experience import Experience, TaskNews
 from lifelore.agent.any_tasks.reuse import TaskReuse
 from lifelore.agent.external_world.context_labels import ContextLabels
 from lifelore.agent.life.loop import Stopped
+from lifelore.agent.live.buildings.merged_buildings import merge_memories
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.streams import stream
 from tests.agent.any_tasks.windy_grid import SETTINGS, WINDS, WindyGrid
@@ -202,6 +203,18 @@ def test_robots_share_what_they_learn(tmp_path):
         assert sum(one.tasks for one in agent.types.values()) == pytest.approx(4, abs=0.1)
         assert result.type == "bob.0"
         assert result.policies[0] in ("ann.0", "bob.0")
+
+
+def test_types_of_two_robots_of_one_name_are_not_mixed(tmp_path):
+    for name, wind in {"here": -1, "there": 1}.items():
+        with LongLivedAgent(**SETTINGS, memory=tmp_path / f"{name}.db") as agent:
+            agent.live(WindyGrid(wind))
+    with open_memory(tmp_path / "here.db") as memory:
+        with pytest.raises(StoreError, match=r"each met a type 'robot.0' of '.*nothing was merged.*robot=NAME"):
+            merge_memories(memory, [tmp_path / "there.db"])
+        assert memory.tasks("robot") == 1
+        memory.export_to(tmp_path / "copy.db")
+        assert merge_memories(memory, [tmp_path / "copy.db"])[0][0]["already_there"] == 1
 
 
 def test_a_killed_task_is_lived_again(tmp_path):

@@ -44,6 +44,11 @@ class OldReset(Probe):
         return self.answer
 
 
+class NoSeed(Probe):
+    def reset(self):
+        return 0, {}
+
+
 def lake(task, slippery=False):
     return gymnasium.make("FrozenLake-v1", desc=generate_random_map(4, seed=task), is_slippery=slippery)
 
@@ -178,6 +183,7 @@ def test_hashable_by_hand():
         (lambda: begun(reward=np.ones(1)).step(0), "reward of Probe must be a number, got ndarray"),
         (lambda: begun(made=OldStep).step(0), r"step of OldStep must return \(observation.*info\), got 4 values"),
         (lambda: begun(made=OldReset), r"reset of OldReset must return \(observation, info\), got int"),
+        (lambda: begun(made=NoSeed), r"reset of NoSeed must take seed=, as reset\(self, \*, seed=None"),
         (lambda: GymnasiumWorld(Probe()).context(0, 0.0), "state must be the last state"),
         (lambda: begun().context(8, 0.0), "state must be the last state"),
         (

@@ -122,6 +122,9 @@ def test_real_noise_is_learnt_and_noise_of_half_a_cell_is_not(world, tmp_path):
     assert abs(real["moves"] - clean["moves"]) < 0.1 * clean["moves"]
     with pytest.raises(InputError, match=r"the poses tremble by 0\.\d+ m"):
         learn_from(noisy(0.25), **settings(tmp_path / "c.db"))
+    millimetres = [replace(run, points=1000 * run.points) for run in noisy(0.005)]
+    with pytest.raises(InputError, match=r"poses lie where the robot cannot be.*metres"):
+        learn_from(millimetres, **settings(tmp_path / "d.db"))
 
 
 def corridor(world) -> tuple[int, int]:

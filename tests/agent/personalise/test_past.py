@@ -1,6 +1,7 @@
 """The past of users: each line counts once, whatever the order or window of the log that has it."""
 
 import random
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -99,6 +100,22 @@ def test_lines_with_times_count_once_in_overlapping_windows(memory, study, tmp_p
     same_as_twin(memory, study, "t3", of_user(lines, "t3"))
     # An outcome that was corrected later is the same line.
     assert warm(written(tmp_path / "w.csv", ["t0,b0,1,2026-01-01T00:00:00Z"], head), memory, study)["rows"] == 0
+
+
+def test_lines_of_overlapping_logs_count_once_in_one_call(memory, tmp_path):
+    lines = [f"{line},{1_700_000_000 + number}" for number, line in enumerate(households())]
+    lines += lines[:3]  # in one log, these are other visits in the same second
+    head = "user,policy,outcome,time\n"
+    whole = written(tmp_path / "whole.csv", lines, head)
+    parts = [*written(tmp_path / "a.csv", lines[:250], head), *written(tmp_path / "b.csv", lines[100:], head)]
+    expected, found = (fit(log, memory, replace(SETTINGS, name=log[0].stem)) for log in (whole, parts))
+    assert (expected["rows"], expected["repeated"]) == (363, 0)
+    # The three lines at the end of b.csv are the first of their kind there, as those of a.csv.
+    assert (found["rows"], found["repeated"]) == (360, 153)
+    assert warm(parts, memory, study_of_parts := open_study(memory, parts[0].stem))["known"] == 360
+    assert lines_of_the_past(memory, study_of_parts) == 360
+    untimed = [*written(tmp_path / "c.csv", households()[:9]), *written(tmp_path / "d.csv", households()[:8])]
+    assert warm(untimed, memory, study_of_parts)["repeated"] == 0
 
 
 def test_lines_with_identifiers_count_once_by_them(memory, study, tmp_path):

@@ -38,9 +38,10 @@ def test_lost_minutes_are_added_up(n, tmp_path):
     assert words[1] == f"on the map alone\n{n} min, " + ("1 refused move" if n == 1 else f"{n} refused moves")
 
 
-def test_a_quiet_building_shows_that_nothing_was_lost():
+@pytest.mark.parametrize("seconds", [-1e-9, -0.02])
+def test_a_quiet_building_shows_that_nothing_was_lost(seconds):
     figure = draw_drives(
-        np.arange(4), {"lore": {"lost": np.full(4, -1e-9), "refusals": np.zeros(4)}}, floor(), title=""
+        np.arange(4), {"lore": {"lost": np.full(4, seconds), "refusals": np.zeros(4)}}, floor(), title=""
     )
     axes = figure.axes[0]
     assert axes.get_ylim() == (0, 1)

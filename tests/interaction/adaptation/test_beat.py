@@ -158,6 +158,7 @@ def test_from_tasks_starts_explore_as_printed_and_rules():
         (([transitions[0], transitions[0][:, :1]], np.arange(3.0), {"a": [0]}, 0.9), "same states and actions"),
         ((transitions, np.arange(3.0), {"a": []}, 0.9), "sets of at least one action"),
         ((transitions, np.arange(3.0), {"a": [2]}, 0.9), "action set 'a' must be whole numbers from 0 to 1"),
+        ((transitions, np.arange(3.0), [[0], [1]], 0.9), "action_sets must map names to actions, got list"),
         ((transitions, np.arange(3.0), {}, 0.9), "sets of at least one action"),
     ):
         with pytest.raises(InputError, match=message):

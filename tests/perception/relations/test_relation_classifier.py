@@ -212,7 +212,8 @@ def test_what_cannot_be_learnt_is_refused(lessons):
 
 
 def test_one_scene_is_enough_to_learn_from(lessons):
-    model = RelationClassifier(trees=SMALL).fit(lessons[0][:1], lessons[1][:1])
+    with pytest.warns(UserWarning, match=r"every labelled pair of objects is 'on'.*without it, too, as 'none'"):
+        model = RelationClassifier(trees=SMALL).fit(lessons[0][:1], lessons[1][:1])
     assert said(model.predict(lessons[0][0])) == wanted(lessons[1][0])
     empty = LabelledCloud(np.empty((0, 3)), np.empty(0, np.int64))
     assert model.predict(empty) == ()
@@ -294,6 +295,7 @@ def test_wrong_settings_are_refused_at_once(wrong, named):
         wrong()
 
 
+@pytest.mark.filterwarnings("ignore:every labelled pair")
 def test_opposite_directions_of_a_word_never_both_hold(lessons, monkeypatch):
     truths = [views(blocks(number)[0]) for number in range(12)]
     model = RelationClassifier(multi_label=True, trees=SMALL, symmetric={"near"}).fit(lessons[0][:12], truths)
@@ -305,6 +307,7 @@ def test_opposite_directions_of_a_word_never_both_hold(lessons, monkeypatch):
     assert said(model.predict(lessons[0][0])) == {(2, 3, "near"), (3, 2, "under"), (2, 3, "left_of")}
 
 
+@pytest.mark.filterwarnings("ignore:every labelled pair")
 def test_a_word_declared_to_have_a_direction_is_not_labelled_both_ways(lessons):
     truths = [[PairLabel(2, 3, "touches"), PairLabel(3, 2, "touches")]]
     with pytest.raises(InputError, match=r"must not state touches\(2, 3\) and touches\(3, 2\)"):
@@ -321,6 +324,7 @@ def test_adjacent_and_none_stay_symmetric_whatever_is_declared(lessons):
     assert model.symmetric_ == {ADJACENT, NONE}
 
 
+@pytest.mark.filterwarnings("ignore:every labelled pair")
 def test_scikit_learn_clones_it_and_searches_over_its_settings(lessons):
     from sklearn.base import clone, is_classifier
     from sklearn.model_selection import GridSearchCV, cross_val_score

@@ -113,7 +113,14 @@ class GymnasiumWorld(AbstractContextManager):
             self._change_task(task)
         episode = stream(seed, "episode")
         number = episode if self._reset_by == "episode" else stream(self._seed, "task", task)
-        found = self._env.reset(seed=int(number.integers(2**31)))
+        try:
+            found = self._env.reset(seed=int(number.integers(2**31)))
+        except TypeError as error:
+            if "'seed'" not in str(error):
+                raise
+            raise InputError(
+                f"reset of {self.name} must take seed=, as reset(self, *, seed=None, options=None)"
+            ) from error
         observation, _ = self._parts("reset", ("observation", "info"), found)
         if self._reset_by == "task":
             self._env.unwrapped.np_random = np.random.default_rng(int(episode.integers(2**31)))

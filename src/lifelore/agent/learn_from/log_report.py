@@ -28,13 +28,13 @@ def checked_log(runs: Sequence[Run], reachable: Reachable, noise: float, cell: f
         The poses tremble too much for the cells, or more than `MOST_OUTSIDE` of them lie outside; the message
         names the offset that mends the log, if there is one.
     """
-    if noise > MOST_NOISE * cell:
+    points = np.concatenate([run.points for run in runs])
+    outside = int(reachable.outside(points).sum())
+    if noise > MOST_NOISE * cell and 2 * outside < len(points):  # in millimetres all poses lie outside
         raise InputError(
             f"{source}: the poses tremble by {noise:.2f} m (standard deviation), too much for cells of {cell:g} m;"
             " smooth the log, or take a larger cell"
         )
-    points = np.concatenate([run.points for run in runs])
-    outside = int(reachable.outside(points).sum())
     if outside > MOST_OUTSIDE * len(points):
         found = mending_shift(points, reachable)
         raise InputError(

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
+from warnings import catch_warnings
 
 from lifelore.agent.perceive.relation_memory import (
     DEFAULT_NAME,
@@ -108,8 +109,8 @@ def learn_relations(
 
     With `out` and without `memory`, no memory is opened. Otherwise the model also learns from the scenes that
     memory has for models of this name, and the new scenes stay there. A scene of a cloud that was there before
-    replaces its labels. `notice` is called with one line for the user if labels were interpreted as parts of
-    objects.
+    replaces its labels. `notice` is called with each line for the user, such as that labels were
+    interpreted as parts of objects.
 
     Returns
     -------
@@ -145,7 +146,11 @@ def learn_relations(
     if not scenes:
         raise InputError(f"memory has no scenes of '{settings.name}' to learn from; give a folder of scenes")
     _check_symmetric(settings.symmetric or (), [scene.truth for scene in scenes])
-    model.fit([scene.pairs for scene in scenes], [scene.truth for scene in scenes])
+    with catch_warnings(record=notice is not None, action="always") as caught:
+        model.fit([scene.pairs for scene in scenes], [scene.truth for scene in scenes])
+    if notice is not None and caught:
+        for each in caught:
+            notice(str(each.message))
     report = _report(settings, model, scenes, len({scene.digest for scene in latest}))
     about = {key: report[key] for key in ("name", "scenes", "pairs", "method", "relations")}
     about["lifelore"] = version("lifelore")

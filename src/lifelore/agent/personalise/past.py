@@ -57,6 +57,7 @@ def warm(sources: Any, memory: Memory, study: Study, form: LogFormat | None = No
         ``study``; ``rows`` added, of ``users``; ``known``: rows that are in the past already; ``decisions``:
         rows left out because memory has them as decisions; ``unknown_policies``: rows whose policy the
         library does not know, which give no evidence; ``unknown_types``: types of users that it does not know;
+        ``repeated``: rows that an earlier log of the call has, too, and that are left out;
         ``by_time``: whether every line has a time or an identifier; ``unread_times``: rows whose time is no date
         or number, and only tells lines apart; ``pending``, ``filled_outcomes``, ``filled_policies``,
         ``without_policy`` (see `ReuseLog`).
@@ -66,7 +67,7 @@ def warm(sources: Any, memory: Memory, study: Study, form: LogFormat | None = No
     InputError, NotFoundError
         A log breaks a rule; memory is as it was.
     """
-    log = read_log(sources, form)
+    log = each_line_once(read_log(sources, form))
     return add_lines(memory, study, lines_of(log)) | {"unread_times": len(unread_times(log))} | log.counts
 
 
@@ -169,6 +170,27 @@ def _given(identifier: str) -> bytes:
         return parse_identifier(identifier)
     except InputError:
         return hashlib.sha256(identifier.encode()).digest()[:16]
+
+
+def each_line_once(log: ReuseLog) -> ReuseLog:
+    """The log without rows that an earlier file has, too; their number is ``repeated`` in its counts.
+
+    The n-th of equal lines in one file is the n-th in another. Rows with neither a time nor an identifier stay.
+    """
+    new = np.ones(len(log), bool)
+    at = [parse_time(word) or word for word in log.time.names]
+    number, known = Counter[tuple[Any, ...]](), set[tuple[Any, ...]]()
+    columns = (log.file, log.user.codes, log.policy.codes, log.time.codes, log.decision.codes)
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    for row, (file, user, policy, time, decision) in enumerate(rows if log.file.any() else ()):
+        given = log.decision.names[decision]
+        if given or at[time]:
+            which = (given,) if given else (user, policy, at[time])
+            number[file, which] += 1
+            line = which, number[file, which]
+            new[row] = line not in known
+            known.add(line)
+    return log.keeping(new, "repeated")
 
 
 def lines_of(log: ReuseLog) -> list[Line]:

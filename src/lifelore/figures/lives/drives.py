@@ -73,7 +73,7 @@ def draw_lost_time(axes: "Axes", jobs: ArrayLike, agents: Mapping[str, Mapping[s
     """Minutes lost, added up over jobs; a mark for each job in which a move was refused."""
     jobs = np.asarray(jobs)
     for name, of in agents.items():
-        minutes = (np.cumsum(np.asarray(of["lost"], float)) / 60).round(6) + 0.0  # no -0
+        minutes = (np.cumsum(np.asarray(of["lost"], float)) / 60).round(2) + 0.0  # no -0
         refused = np.asarray(of["refusals"]) > 0
         count = int(np.sum(of["refusals"]))
         moves = "1 refused move" if count == 1 else f"{count} refused moves"
@@ -83,8 +83,9 @@ def draw_lost_time(axes: "Axes", jobs: ArrayLike, agents: Mapping[str, Mapping[s
             jobs[refused], minutes[refused], "X", color=colour, markersize=5.5, markeredgecolor=PAPER,
             markeredgewidth=0.7, zorder=6,
         )  # fmt: skip
+        lost = round(minutes[-1])
         axes.annotate(
-            f"{_WORDS.get(name, name)}\n{minutes[-1]:.0f} min, {moves}", (jobs[-1], minutes[-1]), (6, 0),
+            f"{_WORDS.get(name, name)}\n{lost} min, {moves}", (jobs[-1], minutes[-1]), (6, 0),
             textcoords="offset points", va="center" if minutes[-1] else "bottom", color=colour, fontsize=8,
         )  # fmt: skip
     axes.set_title("Known goals: minutes lost to the building, added up")

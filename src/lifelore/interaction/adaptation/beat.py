@@ -159,6 +159,8 @@ class Beat:
         if len({each.next_state.shape[:2] for each in tables}) != 1:
             raise InputError("transitions must be of types with the same states and actions, at least one type")
         n_actions = tables[0].n_actions
+        if not isinstance(action_sets, Mapping):
+            raise InputError(f"action_sets must map names to actions, got {type(action_sets).__name__}")
         sets = {
             name: checked_numbers(given, n_actions, f"action set '{name}'") for name, given in action_sets.items()
         }

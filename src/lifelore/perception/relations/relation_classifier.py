@@ -11,6 +11,7 @@ from copy import copy
 from functools import cache
 from pathlib import Path
 from typing import Any, Self
+from warnings import warn
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
@@ -143,7 +144,8 @@ class RelationClassifier(Estimator):
         """Learn from scenes and the labels of their pairs with confidence 2 or more.
 
         A scene is a cloud, or the result of `scene_pairs` for it, which spares a search over settings the search
-        for contacts.
+        for contacts. With trees, a relation that every labelled pair of objects has brings a warning: it would be
+        predicted for every near pair.
 
         Raises
         ------
@@ -180,6 +182,12 @@ class RelationClassifier(Estimator):
             check_directions(truths, self.symmetric_, LEAST_CONFIDENCE)
         else:
             self._check_one_class(scenes, truths)
+        if self.method == "trees" and (always := self._without_counterexample(scenes, truths)):
+            warn(
+                f"every labelled pair of objects is '{always[0]}', and so will be every near pair predicted: "
+                f"label pairs without it, too, as '{NONE}'",
+                stacklevel=2,
+            )
         self.models_ = self._fitted(scenes, truths)
         self.learnt_from_ = dict(sorted(learnt_from.items()))
         return self
@@ -195,6 +203,18 @@ class RelationClassifier(Estimator):
             ):
                 if pair_labels:
                     pair_class(pair_labels, int(first), self.symmetric_)
+
+    def _without_counterexample(
+        self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]
+    ) -> list[str]:
+        """The relations, without *none*, that every labelled pair of objects has."""
+        named = [
+            {label.relation for label in labels}
+            for scene, truth in zip(scenes, truths, strict=True)
+            for labels, table in zip(scene.labels(truth, LEAST_CONFIDENCE), scene.with_table, strict=True)
+            if labels and not table
+        ]
+        return sorted(set.intersection(*named) - {NONE}) if named else []
 
     def _fitted(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> dict[str, Any]:
         words = self.vocabulary

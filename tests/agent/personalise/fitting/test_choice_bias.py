@@ -77,8 +77,9 @@ def test_fit_says_so(tmp_path):
         assert sum("1 / (probability of its choice)" in note for note in biased) == 1
         equal = [note for note in biased if "equal an earlier one" in note]
         assert equal == []
+        stamped = log | {"time": list(range(len(log["user"])))}
         twice = fit(
-            {name: values * 2 for name, values in log.items()}, memory, FitSettings(types=2, model="gaussian")
+            {name: values * 2 for name, values in stamped.items()}, memory, FitSettings(types=2, model="gaussian")
         )
         assert any(note.startswith(f"{len(log['user'])} lines equal an earlier one") for note in twice["notes"])
         timed = {name: values * 2 for name, values in log.items()} | {"time": list(range(2 * len(log["user"])))}

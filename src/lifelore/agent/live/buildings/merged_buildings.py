@@ -20,6 +20,7 @@ from lifelore.agent.building_record import (
 )
 from lifelore.agent.live.buildings.recognition import Recognised, fitting_building, map_of
 from lifelore.agent.live.goals.destinations import NamedPlaces
+from lifelore.core.errors import StoreError
 from lifelore.domains.buildings.registration import inverse
 from lifelore.memory import Memory, open_memory
 
@@ -46,10 +47,18 @@ def merge_memories(memory: Memory, others: Sequence[str | Path]) -> tuple[list[d
     Raises
     ------
     StoreError
-        As of `Memory.merge_many`.
+        As of `Memory.merge_many`; or robots of one name met different types apart. Nothing is merged.
     """
-    own = [one.key for one in remembered_buildings(memory)]
-    counts, incoming = memory.merge_many(others), []
+    own, incoming = [one.key for one in remembered_buildings(memory)], []
+    with memory.together():
+        before = _mixed_types(memory)
+        counts = memory.merge_many(others)
+        if mixed := sorted(_mixed_types(memory) - before):
+            key, name = mixed[0]
+            raise StoreError(
+                f"two robots of one name each met a type '{name}' of '{key}', which would become one type; "
+                "nothing was merged. Robots that live apart need names of their own (--robot NAME, robot=NAME)"
+            )
     for other in others:
         with open_memory(other, read_only=True) as opened:
             incoming += [one.key for one in remembered_buildings(opened)]
@@ -70,6 +79,19 @@ def merge_memories(memory: Memory, others: Sequence[str | Path]) -> tuple[list[d
             if to is None:
                 maps[one] = occupancy
     return counts, report
+
+
+def _mixed_types(memory: Memory) -> set[tuple[Any, Any]]:
+    """(key, name) of each type that two tasks with different descriptions showed first."""
+    first: dict[tuple[Any, Any], dict[str, Any]] = {}
+    mixed: set[tuple[Any, Any]] = set()
+    for robot in memory.robots():
+        for task in memory.task_descriptions(robot):
+            if task.get("new_type") or (task.get("new") and "type" in task):
+                name = (task.get("key", task.get("domain")), task.get("type", task.get("learnt")))
+                if first.setdefault(name, task) != task:
+                    mixed.add(name)
+    return mixed
 
 
 def _join(one: Building, to: Recognised, memory: Memory) -> bool:

@@ -37,7 +37,7 @@ from lifelore.interaction.selection import rule_named
 from lifelore.memory import Memory
 
 MODELS = ("means", "library")
-LEFT_OUT = ("pending", "without_policy", "other_groups", "known_to_the_study", "later_decisions")
+LEFT_OUT = ("pending", "without_policy", "repeated", "other_groups", "known_to_the_study", "later_decisions")
 """Reasons for which lines of a log do not count."""
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from lifelore.agent.personalise.log.log import ReuseLog, read_log
 from lifelore.agent.personalise.log.log_format import LogFormat
+from lifelore.agent.personalise.past import each_line_once
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.evaluation.propensity_weights import MOST
 
@@ -41,7 +42,7 @@ def read_decisions(
     NotFoundError
         There is no such file or group.
     """
-    log = read_log(paths, replace(form or LogFormat(), probabilities=True))
+    log = each_line_once(read_log(paths, replace(form or LogFormat(), probabilities=True)))
     probability: Any = log.probability
     bad = np.flatnonzero(~((probability > 0) & (probability <= MOST)))
     if bad.size:

@@ -16,7 +16,7 @@ from lifelore.agent.personalise.fitting.types_by_context import by_context, cont
 from lifelore.agent.personalise.fitting.types_of_users import typed_rows
 from lifelore.agent.personalise.log.log import ReuseLog, read_log
 from lifelore.agent.personalise.log.log_format import LogFormat
-from lifelore.agent.personalise.past import keep_fitted_past
+from lifelore.agent.personalise.past import each_line_once, keep_fitted_past
 from lifelore.agent.personalise.study import (
     ACTIVE,
     CHOOSING,
@@ -109,8 +109,8 @@ def fit(
     dict
         Plain data: ``study``; ``rows`` learnt from, ``left_out`` (of users whose type the log does not name);
         ``pending`` (lines left out without an outcome), ``filled_outcomes``, ``filled_policies``,
-        ``without_policy`` (see `ReuseLog`); ``users``; ``model``;
-        ``types_found``, ``held_out``: how models
+        ``without_policy`` (see `ReuseLog`); ``repeated`` (lines left out that an earlier log has, too);
+        ``users``; ``model``; ``types_found``, ``held_out``: how models
         were compared on users held out (None where they were not): number of ``users`` and mean ``value`` of the
         chosen model's choices, its difference and 95 % interval to the best single policy (``over_single``) and
         to counting a user's own outcomes with a prior worth two (``over_counting``), and all ``candidates``;
@@ -148,7 +148,7 @@ def fit(
     ['calm', 'jazz']
     """
     settings = settings or FitSettings()
-    log = read_log(sources, form)
+    log = each_line_once(read_log(sources, form))
     earlier = _earlier(memory, settings.name)
     study, typed, counts, held_out = study_of_log(log, settings, dict(earlier.get("states", {})))
     with memory.together():

@@ -134,18 +134,16 @@ def _bias(log: ReuseLog) -> list[str]:
 
 
 def _equal_lines(log: ReuseLog) -> list[str]:
-    """How many lines equal another one, where neither a time nor an identifier tells them apart."""
-    lines = np.flatnonzero(
-        [not (time or given) for time, given in zip(log.time.words, log.decision.words, strict=True)]
-    )
+    """How many lines equal another one, also in their time, where no identifier tells them apart."""
+    lines = np.flatnonzero([not given for given in log.decision.words])
     same = np.zeros(len(lines), np.int64)
     _, outcomes = np.unique(log.outcomes, return_inverse=True)
-    for codes in (log.user.codes, log.policy.codes, outcomes, log.context.codes, log.type.codes):
+    for codes in (log.user.codes, log.policy.codes, outcomes, log.context.codes, log.type.codes, log.time.codes):
         _, same = np.unique(same * (codes.max() + 1) + codes[lines], return_inverse=True)
     n = len(lines) - len(np.unique(same))
     return [
-        f"{n} lines equal an earlier one, and each counts: if an export wrote lines twice, leave them out, or add "
-        "a column time"
+        f"{n} lines equal an earlier one, and each counts: if an export wrote lines twice, leave them out; if "
+        "not, tell them apart by a column time or decision"
     ] * (n > 0)
 
 
