@@ -34,4 +34,4 @@ def test_without_a_pair_each_item_is_a_part():
 
 def test_pixels_of_rays_by_hand():
     rays = np.array([[1.0, 0.005, 0.005], [10.0, 0.05, 0.05], [1.0, -0.005, 0.015], [0.0, 1.0, 0.0]])
-    assert view_pixels(rays, 0.01).tolist() == [[0, 0], [0, 0], [-1, 1], [157, 0]]
+    assert view_pixels(rays, 0.01).T.tolist() == [[0, 0], [0, 0], [-1, 1], [157, 0]]

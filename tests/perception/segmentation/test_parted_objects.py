@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.perception.segmentation.convexity_segmentation import convex_objects
+from lifelore.perception.segmentation.parted_objects import coplanar_pairs
 
 CAMERA = np.array([0.0, -0.9, 0.6])
 STEP = 0.002
@@ -59,3 +60,18 @@ def test_equal_blocks_with_a_gap_that_is_seen_are_two():
     left, right = block(-0.12, 0.0, 0.08, 0.08, 0.08), block(0.04, 0.0, 0.08, 0.08, 0.08)
     first, second = labels_of(left, right)
     assert np.bincount(first).argmax() != np.bincount(second).argmax()
+
+
+def test_coplanar_pairs_agree_with_matrices_of_all_pairs():
+    rng = np.random.default_rng(0)
+    middles, regions, large = rng.uniform(0, 0.5, (150, 3)), rng.integers(0, 4, 150), np.array([1, 1, 0, 1], bool)
+    normals = np.eye(3)[rng.integers(0, 3, 150)] + rng.normal(0, 0.1, (150, 3))
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    apart = middles[None] - middles[:, None]
+    off = np.abs(np.einsum("ik,ijk->ij", normals, apart))
+    good = (normals @ normals.T >= np.cos(np.radians(15))) & (off <= 0.01) & (off.T <= 0.01)
+    good &= (np.linalg.norm(apart, axis=2) <= 0.35) & (regions[:, None] != regions)
+    good &= large[regions] & large[regions][:, None]
+    pairs = coplanar_pairs(middles, normals, regions, large)
+    assert len(pairs) > 5
+    assert pairs == list(zip(*(rows.tolist() for rows in np.nonzero(np.triu(good))), strict=True))

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.compiled.jit import kernel
+from lifelore.perception.clouds.voxel import box_of
 
 CELL = 0.02
 """Side of a cell, metres: some dozens of points at 3 mm spacing."""
@@ -29,8 +30,9 @@ class CellCloud(NamedTuple):
 
 def cell_cloud(points: NDArray[np.float64], size: float = CELL) -> CellCloud:
     """Sort ``(n, 3)`` points, n ≥ 1, into cells of side `size`, metres."""
-    cell = np.floor((points - points.min(axis=0)) / size).astype(np.int64)
-    sides = cell.max(axis=0) + 1
+    low, high = box_of(points)
+    cell = np.floor((points - low) / size).astype(np.int64)
+    sides = np.floor((high - low) / size).astype(np.int64) + 1
     key = (cell[:, 0] * sides[1] + cell[:, 1]) * sides[2] + cell[:, 2]
     order = np.argsort(key, kind="stable")
     sorted_points = np.ascontiguousarray(points[order])

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from lifelore.core.compiled.jit import kernel
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.perception.clouds.cell_cloud import CellCloud, cell_cloud, closest_distances
+from lifelore.perception.clouds.voxel import box_of
 from lifelore.perception.contacts.object_shape import ObjectShape, shape_of
 
 CLOSEST = 5
@@ -25,7 +26,7 @@ class ObjectCloud:
     @cached_property
     def box(self) -> NDArray[np.float64]:
         """Least and greatest corner, ``(2, 3)``."""
-        return _box(self.points)
+        return box_of(self.points)
 
     @property
     def low(self) -> NDArray[np.float64]:
@@ -59,18 +60,6 @@ class NearPair:
     first: ObjectCloud
     second: ObjectCloud
     gap: float
-
-
-@kernel
-def _box(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Least and greatest corner of the points' box, (2, 3)."""
-    box = np.empty((2, 3))
-    box[0], box[1] = np.inf, -np.inf
-    for i in range(len(points)):
-        for axis in range(3):
-            box[0, axis] = min(box[0, axis], points[i, axis])
-            box[1, axis] = max(box[1, axis], points[i, axis])
-    return box
 
 
 @kernel

@@ -9,10 +9,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from math import inf
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import NONE, ON
-from lifelore.perception.clouds.view_image import ViewImage, lengths, rays_beside
+from lifelore.perception.clouds.view_image import ViewImage
 from lifelore.perception.contacts.object_shape import DIRECTIONS, ObjectShape, shape_of
 from lifelore.perception.relations.relation import PairBelief
 
@@ -63,7 +64,10 @@ def raised_objects(cloud: LabelledCloud, shapes: Mapping[int, ObjectShape] | Non
         shapes = {label: shape_of(cloud.of(label)) for label in cloud.objects}
     high = [label for label, shape in shapes.items() if shape.foot >= RAISED]
     raised = {label for label in high if any(_tops_below(label, shapes))}
-    raised |= {label for label in high if label not in raised and _edge_seen(label, cloud) >= EDGE_SEEN}
+    unsupported = [label for label in high if label not in raised]
+    if unsupported and cloud.camera is not None:
+        view = ViewImage(cloud.points - cloud.camera, PIXEL)
+        raised |= {label for label in unsupported if _edge_seen(view, cloud.labels == label) >= EDGE_SEEN}
     return frozenset(raised)
 
 
@@ -76,18 +80,10 @@ def _tops_below(label: int, shapes: Mapping[int, ObjectShape]) -> Iterator[bool]
             yield bool(within.all(axis=1).mean() >= UNDER)
 
 
-def _edge_seen(label: int, cloud: LabelledCloud) -> float:
-    """Share of the columns of an object's image in which something farther is seen right below it, 0 to 1.
-
-    0 without a camera.
-    """
-    if cloud.camera is None:
-        return 0.0
-    own = cloud.of(label) - cloud.camera
-    rays = cloud.points - cloud.camera
-    beside = rays_beside(rays, own / lengths(own)[:, None], 4 * PIXEL)
-    view = ViewImage(rays[beside], PIXEL)
-    wins = (view.depths == view.nearest[view.at]) & (cloud.labels[beside] == label)
+def _edge_seen(view: ViewImage, own: NDArray[np.bool_]) -> float:
+    """Share of the columns of the image of an object's `own` points (n,) in which something farther is seen right
+    below it, 0 to 1."""
+    wins = (view.depths == view.nearest[view.at]) & own
     seen, depths = np.zeros(len(view.nearest), bool), view.nearest.reshape(view.shape)
     seen[view.at[wins]] = True
     seen = seen.reshape(view.shape)

@@ -27,8 +27,9 @@ _ONE_IN = 8
 
 def camera_doubt(points: NDArray[np.float64], camera: NDArray[np.float64]) -> str | None:
     """Why the points (n, 3) cannot have been seen from `camera` (3,), both in metres; None without a doubt."""
-    rays = np.subtract(points, camera, dtype=np.float32, casting="same_kind")
-    ranges = np.sqrt(np.einsum("ij,ij->i", rays, rays))
+    rays = np.subtract(points.T, camera[:, None], dtype=np.float32, casting="same_kind", order="C").T
+    x, y, z = rays.T
+    ranges = np.sqrt(x * x + y * y + z * z)
     near = float(np.mean(ranges < NEAREST))
     # A scene that is near as a whole may be in other units.
     if _MOST_NEAR < near < 0.5:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.segmentation.cut_confidence import CutCloud, cut_confidence, labels_by_size
 from lifelore.perception.segmentation.hollow_objects import hollow_pairs
-from lifelore.perception.segmentation.parted_objects import parted_pairs
+from lifelore.perception.segmentation.parted_objects import SeenImage, parted_pairs
 from lifelore.perception.segmentation.patch_convexity import beyond_bend, evidence, signed_angles
 from lifelore.perception.segmentation.patch_merging import absorbed, merged
 from lifelore.perception.segmentation.plane import NEAR
@@ -69,12 +69,12 @@ def convex_objects(
     # Voxels of less than the noise would be layers of a surface, and not its surface.
     noisier = min(float(np.median(band(points, camera))) / NEAR, NOISIEST)
     surface = surface_voxels(points, camera, VOXEL * noisier, _MOST_VOXELS, _SPARSE)
-    seen = points if seen is None else seen
+    image = None if camera is None else SeenImage(points if seen is None else seen, camera)
     spacing = PATCH * surface.size / VOXEL
     costs = step_costs(surface, spacing)
     cuts: list[CutCloud] = []
     for start in _STARTS:
-        cuts.append(_cut(surface, supervoxels(surface, costs, spacing, start), camera, seen, min_area))
+        cuts.append(_cut(surface, supervoxels(surface, costs, spacing, start), image, min_area))
         if len(cuts) == 2 and agreement(cuts[0].labels, cuts[1].labels) >= _SAME:
             break
     cut = most_agreed(cuts)
@@ -84,8 +84,7 @@ def convex_objects(
 def _cut(
     surface: SurfaceVoxels,
     patches: Supervoxels,
-    camera: NDArray[np.float64] | None,
-    seen: NDArray[np.float64],
+    image: SeenImage | None,
     min_area: float,
 ) -> CutCloud:
     """Labels of the voxels of a surface, whose patches join into objects."""
@@ -96,8 +95,8 @@ def _cut(
         regions, patches.pairs, patches.borders, lambda own: _below(fragment, _voxels(patches, own))
     )
     pairs = list(hollow_pairs(surface, patches, regions, fragment))
-    if camera is not None:
-        pairs += parted_pairs(patches, regions, fragment, camera, seen)
+    if image is not None:
+        pairs += parted_pairs(patches, regions, fragment, image)
     joined = connected_parts(np.array(pairs, np.int64).reshape(-1, 2), int(regions.max()) + 1)
     regions = joined[regions]
     n_cut = int((_voxels(patches, regions) * surface.size**2 >= min_area).sum())

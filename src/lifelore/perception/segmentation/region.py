@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.clouds.voxel import voxels_of
+from lifelore.perception.clouds.voxel import box_of, voxels_of
 from lifelore.perception.segmentation.surface_patches import Patch
 from lifelore.perception.segmentation.table_evidence import FRINGE, REACH
 from lifelore.perception.segmentation.table_search import Table
@@ -146,6 +146,6 @@ def _linked(points: NDArray[np.float64]) -> NDArray[np.int64]:
 
     if len(points) == 0:
         return np.empty(0, np.int64)
-    thin = voxels_of(points - points.min(axis=0), _LINK)
+    thin = voxels_of(points - box_of(points)[0], _LINK)
     cells = np.floor(thin.means / _LINK)
     return connected_parts(KDTree(cells).query_pairs(1.8, output_type="ndarray"), len(cells))[thin.inverse]

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.perception.clouds.connected_parts import connected_parts
+from lifelore.perception.clouds.voxel import box_of, voxels_of
 from lifelore.perception.segmentation.surface_voxels import SurfaceVoxels
 
 if TYPE_CHECKING:
@@ -65,9 +66,9 @@ def supervoxels(surface: SurfaceVoxels, costs: "csr_array", spacing: float, star
     middles = _sums(of_voxel, surface.points) / counts[:, None]
     normals = _sums(of_voxel, surface.normals)
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-    ends = np.sort(of_voxel[surface.pairs], axis=1)
-    between = ends[:, 0] != ends[:, 1]
-    numbers, borders = np.unique(ends[between] @ [len(counts), 1], return_counts=True)
+    a, b = of_voxel[surface.pairs.T]
+    numbers = np.minimum(a, b) * len(counts) + np.maximum(a, b)
+    numbers, borders = np.unique(numbers[a != b], return_counts=True)
     pairs = np.stack(np.divmod(numbers, len(counts)), axis=1)
     return Supervoxels(of_voxel, counts, middles, normals, pairs, borders)
 
@@ -87,12 +88,14 @@ def _grown(surface: SurfaceVoxels, costs: "csr_array", seeds: NDArray[np.int64])
 
 def _seeds(surface: SurfaceVoxels, spacing: float, start: float) -> NDArray[np.int64]:
     """The voxel of each occupied cell of the lattice that is nearest to the mean of the cell's voxels."""
-    cells = np.floor((surface.points - surface.points.min(axis=0)) / spacing + start).astype(np.int64)
-    sides = tuple(cells.max(axis=0) + 1)
-    _, cell = np.unique(np.ravel_multi_index(tuple(cells.T), sides), return_inverse=True)
-    away = surface.points - (_sums(cell, surface.points) / np.bincount(cell)[:, None])[cell]
-    order = np.lexsort((np.einsum("ij,ij->i", away, away), cell))
-    return order[np.unique(cell[order], return_index=True)[1]]
+    places = surface.points - (box_of(surface.points)[0] - start * spacing)
+    cells = voxels_of(places, spacing)
+    away = places - cells.means[cells.inverse]
+    away = np.einsum("ij,ij->i", away, away)
+    least = np.full(len(cells.first), np.inf)
+    np.minimum.at(least, cells.inverse, away)
+    nearest = np.flatnonzero(away == least[cells.inverse])
+    return nearest[np.unique(cells.inverse[nearest], return_index=True)[1]]
 
 
 def _sums(group: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.float64]:
