@@ -50,8 +50,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     ``reuse``: by kind of models and meaning of convergence; ``learners``: by learner; None where it never has.
     """
     maze, here = PacmanMaze(settings["rows"], settings["columns"]), (seed, "pacman", cell["layout"])
-    foods = maze.draw_foods(stream(*here, "foods"))
-    arenas = pacman_library.arenas(maze, foods)
+    arenas = pacman_library.arenas(maze, maze.draw_foods(stream(*here, "foods")))
     policies = pacman_library.trained_policies(settings, arenas, here)
     moments = pacman_library.exact_moments(arenas, policies)
     target = moments[0].max(axis=1) - settings["tolerance"] * GREATEST
@@ -80,7 +79,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
             returns = _learn(settings, name, arena, policies, (*here, "task", arena.task.strategy))
             found["learners"][name] = first_stretch(returns, goal, window)
             found["curves"][name] = in_blocks(returns)
-    return {**cell, "foods": list(foods), "tasks": tasks}
+    return {**cell, "tasks": tasks}
 
 
 def libraries(
@@ -148,12 +147,11 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Curves of twenty tasks, by block of episodes; the library's best and a layout of foods."""
+    """Curves of twenty tasks, by block of episodes, and the library's best."""
     tasks = [task for result in results[:DRAWN] for task in result["tasks"]]
     found = []
     for name, label in (("BPR", "BPR"), (next(iter(UNITS)), "PRQ"), (Q, Q)):
         curves = np.array([task["curves"][name] for task in tasks])
         mean, deviation = (of.round(1).tolist() for of in (curves.mean(axis=0), curves.std(axis=0)))
         found.append({"method": label, "tasks": len(tasks), "mean": mean, "deviation": deviation})
-    best = round(float(np.mean([task["best"] for task in tasks])), 2)
-    return [*found, {"best": best, "foods": results[0]["foods"]}]
+    return [*found, {"best": round(float(np.mean([task["best"] for task in tasks])), 2)}]
