@@ -1,17 +1,15 @@
 """C2.4: seconds of one picture of two objects on one core, from labelled points to networks and relations.
 
 Pictures are drawn as the pairs of claims C2.1 to C2.3, but with their table. Everything compiled runs once before
-the timing starts. Pictures are timed one after another, and libraries use one thread. Seconds are those of the
+the timing starts. Libraries use one thread. Seconds are those of the
 processor, which a busy machine changes little; of a picture, the median of some repeats. Thesis: §2.4.1, without
 segmentation (§2.3.3).
 """
 
 import time
 from collections.abc import Mapping, Sequence
-from threading import Lock
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.metrics import Estimate
@@ -30,7 +28,6 @@ KINDS = {"stereo": "stereo", "dense": "stereo, made dense"}
 JITTER = 0.0005
 """Metres by which repeated points are moved."""
 LOT = 11
-_alone = Lock()
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -42,17 +39,16 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """``{"images": […]}``, of each its ``kind``, ``points`` and ``seconds``."""
     drawn = TabletopSettings(arrangement="pair", mix=MIX, camera="stereo", shapes="all")
     images = []
-    with _alone, threadpool_limits(1):
-        model = shipped_model()
-        for k in numbers_of(cell, LOT, settings["images"]):
-            rng = stream(seed, "image timing", "stereo", k)
-            cloud = sample_scene(int(rng.integers(2**31)), k, drawn).cloud
-            if not images:
-                timed_stages(cloud, model)  # compiled and warm
-            images.append({"kind": "stereo", **timed_image(cloud, model, settings["repeats"])})
-            if k % settings["dense_every"] == 0:
-                dense = made_dense(cloud, settings["dense_points"], rng)
-                images.append({"kind": "dense", **timed_image(dense, model, settings["repeats"])})
+    model = shipped_model()
+    for k in numbers_of(cell, LOT, settings["images"]):
+        rng = stream(seed, "image timing", "stereo", k)
+        cloud = sample_scene(int(rng.integers(2**31)), k, drawn).cloud
+        if not images:
+            timed_stages(cloud, model)  # compiled and warm
+        images.append({"kind": "stereo", **timed_image(cloud, model, settings["repeats"])})
+        if k % settings["dense_every"] == 0:
+            dense = made_dense(cloud, settings["dense_points"], rng)
+            images.append({"kind": "dense", **timed_image(dense, model, settings["repeats"])})
     return {"images": images}
 
 

@@ -9,7 +9,6 @@ from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, ON
@@ -73,9 +72,8 @@ def k_means(points: NDArray[np.float64], k: int, rng: np.random.Generator) -> La
     from sklearn.cluster import KMeans
 
     k = min(k, len(np.unique(points, axis=0)))
-    with threadpool_limits(1):  # with few columns, threads mostly wait for each other
-        model = KMeans(k, n_init=10, random_state=int(rng.integers(2**31)))  # type: ignore[arg-type]
-        return model.fit_predict(points).astype(np.int64)
+    model = KMeans(k, n_init=10, random_state=int(rng.integers(2**31)))  # type: ignore[arg-type]
+    return model.fit_predict(points).astype(np.int64)
 
 
 def rand_index(relations: NDArray[np.str_], labels: Labels) -> float:
