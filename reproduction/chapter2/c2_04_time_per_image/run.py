@@ -20,7 +20,7 @@ from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scenes.tabletop_pairs import MIX
 from reproduction.chapter2.scoring.perception_stages import timed_stages
 from reproduction.engine.estimates import mean_or_unmeasured, quantile_estimate
-from reproduction.engine.results_table import ResultsTable
+from reproduction.engine.records import having, nested, values_of
 
 KINDS = {"stereo": "stereo", "dense": "stereo, made dense"}
 """Pictures as our stereo camera gives them; and some with their objects' points repeated: the thesis's cameras had
@@ -71,10 +71,11 @@ def made_dense(cloud: LabelledCloud, n_points: int, rng: np.random.Generator) ->
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """Seconds of a stereo picture, mean and 95 % point over pictures; the mean of dense ones; points of either."""
-    table = ResultsTable.nested(results, "images", keys=("kind",))
+    images = nested(results, "images")
     found = {}
     for kind in KINDS:
-        own = table.select(kind=kind).records
         for key in ("seconds", "points"):
-            found[f"{key}_{kind}"] = mean_or_unmeasured(image[key] for image in own)
-    return found | {"seconds_stereo_95_percent": quantile_estimate(table.values("seconds", kind="stereo"), 0.95)}
+            found[f"{key}_{kind}"] = mean_or_unmeasured(image[key] for image in having(images, kind=kind))
+    return found | {
+        "seconds_stereo_95_percent": quantile_estimate(values_of(images, "seconds", kind="stereo"), 0.95)
+    }

@@ -31,7 +31,7 @@ from reproduction.chapter2.scenes.skeletons import (
     standing,
 )
 from reproduction.engine.estimates import exact_share
-from reproduction.engine.results_table import ResultsTable
+from reproduction.engine.records import having, nested
 
 KINDS = ("stack", "cut", "row", "two-on-one")
 REAL = ("real stack", "real cut")
@@ -123,9 +123,9 @@ def is_path(scene: Scene, three: Three) -> bool:
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """Shares by kind of two points in the middle, and of the stack's structure."""
-    table, found = ResultsTable.nested(results, "scenes", keys=(), outer=("kind",)), {}
+    every, found = nested(results, "scenes", ("kind",)), {}
     for kind in (*KINDS, *REAL):
-        scenes, name = table.select(kind=kind).records, kind.replace(" ", "_").replace("-", "_")
+        scenes, name = having(every, kind=kind), kind.replace(" ", "_").replace("-", "_")
         found[f"structure_{name}"] = exact_share(scene["stack"] for scene in scenes)
         found[f"two_points_{name}"] = exact_share(scene["two_points"] for scene in scenes)
     return found

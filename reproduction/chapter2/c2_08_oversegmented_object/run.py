@@ -25,7 +25,7 @@ from reproduction.chapter2.scenes.scene_example import scene_row
 from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of, real_lots
 from reproduction.chapter2.scenes.skeletons import perceived, reading
 from reproduction.engine.estimates import share_by_cluster
-from reproduction.engine.results_table import ResultsTable
+from reproduction.engine.records import having, nested
 
 LOT, REAL_LOT = 10, 4
 TILTS = {"level": 0.0, "upright": 90.0}
@@ -137,14 +137,14 @@ def relation_in_words(relations: tuple[Relation, ...], part: int, label: int) ->
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """Share of right relations by kind of cut, of simulated and of real scenes."""
-    table = ResultsTable.nested(results, "rows", keys=("kind",), outer=("real",))
+    every = nested(results, "rows", ("real",))
     return {
         f"{true}_right_{name}": share_by_cluster(
             [row["said"] == true for row in own], [row["scene"] for row in own]
         )
         for name, real in (("simulated", False), ("real", True))
         for kind, true in TRUE.items()
-        for own in [table.select(real=real, kind=kind).records]
+        for own in [having(every, real=real, kind=kind)]
     }
 
 

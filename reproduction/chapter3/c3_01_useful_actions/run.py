@@ -6,6 +6,7 @@ generators: one walls up cells one at a time without parting the rest, one is un
 Thesis: §3.2.2.2, Figure 3.1.
 """
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
@@ -19,7 +20,6 @@ from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.noise_maze import noise_maze
-from reproduction.engine.results_table import tally
 
 PRINTED, PRINTED_OF = (42, 48), 76
 """Useful actions in the two mazes of Figure 3.1, and all actions there."""
@@ -118,11 +118,11 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """How many mazes have each number of useful actions, and one maze for each printed share."""
     found = []
     for generator in settings["generators"]:
-        mazes = _mazes(results, generator)
-        found += tally(
-            [{"generator": generator, **{key: maze[key] for key in ("useful", "actions")}} for maze in mazes],
-            "mazes",
-        )
+        counts = Counter((maze["useful"], maze["actions"]) for maze in _mazes(results, generator))
+        found += [
+            {"generator": generator, "useful": useful, "actions": actions, "mazes": n}
+            for (useful, actions), n in sorted(counts.items())
+        ]
     for printed in map(str, PRINTED):
         examples = (r["examples"][printed] for r in results if printed in r["examples"])
         found += [{"example": int(printed), **example} for example in examples][:1]

@@ -19,7 +19,7 @@ from reproduction.chapter3.factory.learning import LEARNT, problem_of, tasks_of,
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.grid import Cell, Grid
 from reproduction.engine.learning_run import learnt
-from reproduction.engine.results_table import ResultsTable, curve_of, having
+from reproduction.engine.records import curve_of, having, nested, values_of
 
 SOURCES = ("exact", "learnt")
 N_COMPONENTS = 9
@@ -95,8 +95,8 @@ class Sequences(NamedTuple):
     @classmethod
     def of(cls, results: Sequence[Mapping], grid: Grid, cell: Mapping) -> "Sequences":
         """The sequences of `results`, all of the same number of components."""
-        table = ResultsTable.nested(results, "found", keys=("method", *grid.default))
-        learnt, uniform = (table.values("rewards", **grid.where(m, cell)) for m in (LEARNT, UNIFORM))
+        found = nested(results, "found")
+        learnt, uniform = (values_of(found, "rewards", **grid.where(m, cell)) for m in (LEARNT, UNIFORM))
         return cls(learnt - uniform, np.array([result["optimal"] for result in results]) - uniform)
 
     def share(self, tasks: Sequence[int]) -> NDArray[np.float64]:
@@ -142,7 +142,9 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Ce
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Mean reward and its standard deviation by number of prior tasks."""
     own, grid = having(results, components=settings["components"][0]), grid_of(settings)
-    table = ResultsTable.nested(own, "found", keys=("method", *grid.default))
-    found = {method: table.values("rewards", **grid.where(method, grid.default)) for method in (UNIFORM, LEARNT)}
+    found = {
+        method: values_of(nested(own, "found"), "rewards", **grid.where(method, grid.default))
+        for method in (UNIFORM, LEARNT)
+    }
     found["optimal"] = np.array([result["optimal"] for result in own])
     return [{"curve_of": name, **curve_of(values)} for name, values in found.items()]

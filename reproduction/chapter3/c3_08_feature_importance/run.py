@@ -19,7 +19,7 @@ from lifelore.domains.factory.contexts import PHI
 from reproduction.chapter3.factory import comparison, modified_tasks
 from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET, Problem
 from reproduction.engine.grid import Cell, Grid
-from reproduction.engine.results_table import ResultsTable
+from reproduction.engine.records import having, nested
 
 KEYS = ("policies", "over", "actions")
 GAPS = {"gap_phi4": ("phi4", "phi4"), "gap_phi3": ("phi3", "phi3"), "gap_phi2_to_phi1": ("phi2", "phi1")}
@@ -98,8 +98,7 @@ def _least_and_largest(
 
 
 def _increases(results: Sequence[Mapping], cell: Mapping) -> list[Mapping[str, Mapping[str, float]]]:
-    table = ResultsTable.nested(results, "found", keys=KEYS).select(**cell)
-    return [record["increase"] for record in table.records]
+    return [record["increase"] for record in having(nested(results, "found"), **cell)]
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

@@ -22,7 +22,7 @@ from reproduction.chapter3.advice.learning import (
 )
 from reproduction.chapter3.advice.mazes import AGENTS, KAPPA, WINDOW, Maze
 from reproduction.chapter3.learning.schedules import PRINTED
-from reproduction.engine.results_table import having
+from reproduction.engine.records import having
 
 cells = mazes.maze_cells
 LEARNER = "q_learning"

@@ -23,7 +23,7 @@ from reproduction.chapter3.advice.mazes import Maze
 from reproduction.chapter3.learning.grid_tasks import block_curve, even_blocks
 from reproduction.chapter3.learning.schedules import Epsilon
 from reproduction.engine.grid import combinations
-from reproduction.engine.results_table import having
+from reproduction.engine.records import having
 
 cells = mazes.maze_cells
 HANDFUL = 10

@@ -20,7 +20,7 @@ from reproduction.chapter3.advice.learning import learner_schedule
 from reproduction.chapter3.advice.mazes import AGENTS, KAPPA, Maze
 from reproduction.chapter3.learning.schedules import PRINTED
 from reproduction.engine.learning_run import learnt
-from reproduction.engine.results_table import having
+from reproduction.engine.records import having
 
 cells = mazes.maze_cells
 EARLY, LATE = "q_early", "q_late"

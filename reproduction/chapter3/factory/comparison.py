@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from lifelore.core.learning.curve import Curve
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from reproduction.engine.grid import Cell, Grid
-from reproduction.engine.results_table import ResultsTable, curve_of
+from reproduction.engine.records import curve_of, having, nested, values_of
 
 UNIFORM = "uniform"
 """Q-learning without a prior."""
@@ -66,12 +66,12 @@ class Comparison:
 
     def __init__(self, results: Sequence[Mapping], grid: Grid) -> None:
         self.grid = grid
-        self.table = ResultsTable.nested(results, "found", keys=("method", *grid.default))
+        self.records = nested(results, "found")
         self.optimal = np.array([result["optimal"] for result in results], float)
 
     def values(self, method: str, cell: Mapping, number: str = "all") -> NDArray[np.float64]:
         """A number of a method, run by run."""
-        return self.table.values(number, **self.grid.where(method, cell))
+        return values_of(self.records, number, **self.grid.where(method, cell))
 
     def distance(self, cell: Mapping, number: str = "all") -> NDArray[np.float64]:
         """From learning without a prior to the optimum, run by run."""
@@ -93,7 +93,7 @@ class Comparison:
 
     def curve(self, method: str, cell: Mapping) -> dict:
         """A row with a method's ``mean`` rewards and their standard ``deviation`` across the tasks of all runs."""
-        records = self.table.select(**self.grid.where(method, cell)).records
+        records = having(self.records, **self.grid.where(method, cell))
         curves = [of_task for record in records for of_task in record["rewards"]]
         return {"curve_of": method, **curve_of(curves)}
 

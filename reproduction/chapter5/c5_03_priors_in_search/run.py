@@ -17,13 +17,13 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.search.depth_first import depth_first, preferences
 from lifelore.action.search.tree_search import SearchSettings, play, search_guidance
 from lifelore.core.mdp import Tables
-from lifelore.core.metrics import Estimate
+from lifelore.core.metrics import Estimate, difference_estimate, ratio_estimate
 from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.noise_maze import noise_maze
 from reproduction.chapter5.c5_03_priors_in_search.bandit import BANDITS, regret
-from reproduction.engine.results_table import ResultsTable
+from reproduction.engine.records import nested, values_of
 
 PLACE, PERCEPT = KINDS = ("place", "percept")
 FORMS = ("proportion", "dirichlet", "softmax", "support")
@@ -177,38 +177,35 @@ def _arms(settings: Mapping, maze: Maze) -> Iterator[tuple[dict, NDArray[np.floa
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """Gain of tree search, ratio of nodes, ratios of regret, paired by maze; at the default."""
-    search, order, arms = _tables(results)
     return {
-        "search_gain": _gain(search, DEFAULT, GUIDES[0]),
-        "nodes_ratio": _nodes_ratio(order, DEFAULT, ORDERS[0]),
-        **{f"{index}_ratio": arms.ratio("regret", DEFAULT, NONE, index=index) for index in BANDITS},
-        **{f"{index}_even_ratio": arms.ratio("regret", DEFAULT, EVEN, index=index) for index in BANDITS},
+        "search_gain": _gain(results, DEFAULT, GUIDES[0]),
+        "nodes_ratio": _nodes_ratio(results, DEFAULT, ORDERS[0]),
+        **{f"{index}_ratio": _regret_ratio(results, index, DEFAULT) for index in BANDITS},
+        **{f"{index}_even_ratio": _regret_ratio(results, index, DEFAULT, EVEN) for index in BANDITS},
     }
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """The same for every kind and form of the prior, part of the search that it guides, and use of its order."""
-    search, order, arms = _tables(results)
     for kind, form in product(KINDS, FORMS):
         prior = {"kind": kind, "form": form}
         for guides in GUIDES:
-            yield {**prior, "guides": guides}, {"search_gain": _gain(search, prior, guides)}
+            yield {**prior, "guides": guides}, {"search_gain": _gain(results, prior, guides)}
         for use in ORDERS:
-            yield {**prior, "order": use}, {"nodes_ratio": _nodes_ratio(order, prior, use)}
-        yield prior, {f"{index}_ratio": arms.ratio("regret", prior, NONE, index=index) for index in BANDITS}
+            yield {**prior, "order": use}, {"nodes_ratio": _nodes_ratio(results, prior, use)}
+        yield prior, {f"{index}_ratio": _regret_ratio(results, index, prior) for index in BANDITS}
 
 
-def _tables(results: Sequence[Mapping]) -> tuple[ResultsTable, ResultsTable, ResultsTable]:
-    return (
-        ResultsTable.nested(results, "search", ("kind", "form", "guides")),
-        ResultsTable.nested(results, "depth_first", ("kind", "form", "order")),
-        ResultsTable.nested(results, "bandit", ("index", "kind", "form")),
-    )
+def _gain(results: Sequence[Mapping], prior: Mapping, guides: str) -> Estimate:
+    found, ways = nested(results, "search"), ({**prior, "guides": guides}, {**NONE, "guides": None})
+    return difference_estimate(*(values_of(found, "reached", **way) for way in ways))
 
 
-def _gain(table: ResultsTable, prior: Mapping, guides: str) -> Estimate:
-    return table.difference("reached", {**prior, "guides": guides}, {**NONE, "guides": None})
+def _nodes_ratio(results: Sequence[Mapping], prior: Mapping, order: str) -> Estimate:
+    found, ways = nested(results, "depth_first"), ({**prior, "order": order}, {**NONE, "order": None})
+    return ratio_estimate(*(values_of(found, "expanded", **way) for way in ways))
 
 
-def _nodes_ratio(table: ResultsTable, prior: Mapping, order: str) -> Estimate:
-    return table.ratio("expanded", {**prior, "order": order}, {**NONE, "order": None})
+def _regret_ratio(results: Sequence[Mapping], index: str, prior: Mapping, other: Mapping = NONE) -> Estimate:
+    found = nested(results, "bandit")
+    return ratio_estimate(*(values_of(found, "regret", index=index, **way) for way in (prior, other)))
