@@ -61,7 +61,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     optimal = []
     for n, components in enumerate(tasks):
         problem = problem_of(settings, components, (seed, "factory", k, run, n))
-        optimal.append(problem.solved.optimal_reward)
+        optimal.append(problem.optimal)
         own = None
         for record in found:
             if not (n in asked or is_default(grid, record, but=["source"])):
@@ -70,14 +70,14 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
             rows = None
             if record["method"] == LEARNT:
                 prior = with_pseudo_count(priors[record["source"], record["encoding"]], record["alpha0"])
-                rows = learning.rows_of(problem, prior, record["encoding"], record["ties"])
+                rows = learning.rows_of(problem, record["encoding"], prior.probs, record["ties"])
             schedule = schedule_of({**settings, "max_steps": record["max_steps"]}, record["schedule"])
             curve, learner = learnt(problem.tables, problem.stream, rows, schedule)
             record["rewards"].append(float(curve.rewards.mean()))
             if record["source"] == "learnt":
-                own = tried_actions(learner, problem.solved.task.completed)
+                own = tried_actions(learner, problem.task.completed)
         for (source, encoding), prior in priors.items():
-            best = problem.solved.best if source == "exact" else own
+            best = problem.best if source == "exact" else own
             if best is not None:
                 prior.update(learning.contexts_of(problem, encoding), best)
     seen = [components in tasks[:n] for n, components in enumerate(tasks)]

@@ -20,7 +20,8 @@ from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, 
 from lifelore.core.streams import stream
 from lifelore.domains.factory.contexts import PHI
 from lifelore.domains.factory.factory import ACTION_NAMES
-from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET, Problem, problem_of, rewards_of
+from reproduction.chapter3.factory.learning import Problem
+from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET, problem_of, rewards_of
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.estimates import exact_share
 from reproduction.engine.grid import combinations
