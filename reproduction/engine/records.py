@@ -12,6 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import NotFoundError
 
 Record = Mapping[str, Any]
+POINTS = 100
+"""Most points of a stored learning curve; more make result files larger."""
 
 
 def nested(results: Iterable[Record], within: str, outer: Sequence[str] = ()) -> list[Record]:
@@ -54,3 +56,9 @@ def curve_of(curves: ArrayLike) -> dict[str, list[float]]:
     curves = np.asarray(curves, float)
     deviation = curves.std(axis=0, ddof=1) if len(curves) > 1 else np.zeros(curves.shape[1])
     return {"mean": np.round(curves.mean(axis=0), 1).tolist(), "deviation": np.round(deviation, 1).tolist()}
+
+
+def in_blocks(curves: NDArray[Any]) -> NDArray[np.float64]:
+    """Means of `curves` (n, length) in even blocks, (n, at most `POINTS`)."""
+    blocks = np.array_split(curves, min(POINTS, curves.shape[1]), axis=1)
+    return np.column_stack([block.mean(axis=1) for block in blocks])

@@ -25,13 +25,13 @@ from reproduction.chapter3.learning.grid_tasks import (
     choices_of,
     compared,
     curve_rows,
-    learn_task,
     learnt_by_choice,
     problem_of,
     returns_of,
     rows_of,
 )
 from reproduction.chapter3.learning.schedules import schedule_of
+from reproduction.engine.learning_run import learnt
 
 PRIOR = "eps_qsap"
 
@@ -72,7 +72,8 @@ def online_prior(run: Tasks, choice: Mapping, schedule: Schedule) -> ActionPrior
     """
     prior = ActionPrior(4, choice["alpha0"])
     for problem in run.training:
-        q = learn_task(problem, rows_of(problem, prior, choice["form"], choice["ties"]), schedule)[1].q
+        rows = rows_of(problem, prior, choice["form"], choice["ties"])
+        q = learnt(problem.tables, problem.stream, rows, schedule)[1].q
         prior.update(np.arange(len(q)), learnt_best_actions(q))
     return prior
 

@@ -12,12 +12,10 @@ from numpy.typing import NDArray
 from lifelore.core.learning.curve import Curve
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from reproduction.engine.grid import Cell, Grid
-from reproduction.engine.records import curve_of, having, nested, values_of
+from reproduction.engine.records import curve_of, having, in_blocks, nested, values_of
 
 UNIFORM = "uniform"
 """Q-learning without a prior."""
-POINTS = 100
-"""Most points of a stored learning curve; more make result files larger."""
 
 Pairs = Mapping[str, tuple[str, ...]]
 """Name of a measure → the two methods compared, and the rewards: ``all`` unless it names others."""
@@ -53,12 +51,6 @@ def summary(curves: Sequence[Curve], early: int, drawn: bool) -> dict:
     if len(curves) > 1:
         found["spread"] = float(first.std(axis=0, ddof=1).mean())
     return {**found, "rewards": in_blocks(rewards).tolist()} if drawn else found
-
-
-def in_blocks(rewards: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Means of (n, n_episodes) rewards in even blocks of episodes, (n, at most `POINTS`)."""
-    blocks = np.array_split(rewards, min(POINTS, rewards.shape[1]), axis=1)
-    return np.column_stack([block.mean(axis=1) for block in blocks])
 
 
 class Comparison:

@@ -7,12 +7,10 @@ paired. Thesis: §3.4.4.
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.action.features.feature_set import FeatureSet
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.core.learning.curve import Curve
-from lifelore.core.learning.q_learning import Rows, Schedule
+from lifelore.core.learning.q_learning import Rows
 from lifelore.core.streams import stream
 from lifelore.domains.factory.contexts import FEATURE_NAMES, FEATURE_SIZES, PHI
 from lifelore.domains.factory.modified_factory import modified_factory
@@ -20,7 +18,7 @@ from reproduction.chapter3.factory.comparison import UNIFORM, is_default, summar
 from reproduction.chapter3.factory.learning import N_ACTIONS, Problem, contexts_of, solved_task
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.grid import Cell, Grid, run_grid
-from reproduction.engine.learning_run import learnt
+from reproduction.engine.learning_run import curves_of
 
 FULL_SET = FeatureSet(FEATURE_NAMES, FEATURE_SIZES)
 """φ4: the ten features of the modified factory."""
@@ -53,20 +51,6 @@ def exact_priors(settings: Mapping, names: tuple, conditions: Iterable[str]) -> 
             if i + 1 in settings["policies"]:
                 found[name, i + 1] = ActionPrior.merged([prior])
     return found
-
-
-def curves_of(
-    problems: Iterable[Problem], rows_for: Callable[[Problem], Rows | None], schedule: Schedule
-) -> list[Curve]:
-    """The curve of each problem."""
-    return [learnt(problem.tables, problem.stream, rows_for(problem), schedule)[0] for problem in problems]
-
-
-def rewards_of(
-    problems: Iterable[Problem], rows_for: Callable[[Problem], Rows | None], schedule: Schedule
-) -> NDArray[np.float64]:
-    """Reward of each episode of each problem, (n_problems, n_episodes)."""
-    return np.array([curve.rewards for curve in curves_of(problems, rows_for, schedule)])
 
 
 def compared(
