@@ -22,7 +22,7 @@ from reproduction.chapter2.c2_06_same_hole.passage import passages
 from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.perturbation import part_of
 from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of
+from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of
 from reproduction.engine.estimates import exact_share
 from reproduction.engine.records import having, nested
 
@@ -40,6 +40,8 @@ _BAND = (0.03, 0.06)
 _CLOSE = 0.025
 WITH_HOLE = CAPTIONS = {"hinged": "hinged blocks", "other": "another object"}
 """Kinds that have a hole, and captions of their pictures."""
+
+rows = example_rows
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -125,8 +127,3 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     found["found_where_the_passage_is"] = exact_share(scene["true"] for scene in holes)
     found["two_contacts_on_either_side"] = exact_share(scene["form"] == [2, 2] for scene in holes)
     return found
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The pictures."""
-    return examples_in(results)

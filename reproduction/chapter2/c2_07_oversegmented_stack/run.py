@@ -19,7 +19,7 @@ from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.perturbation import cut_object
 from reproduction.chapter2.scenes.real_scenes import real_scenes
 from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of, uses_real
+from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of, uses_real
 from reproduction.chapter2.scenes.skeletons import (
     Three,
     carried_pairs,
@@ -41,6 +41,8 @@ LOW_CUT, HIGH_CUT = 0.35, 0.65
 CAPTIONS = {"stack": "three objects", "cut": "two objects, segmented into three"}
 TALL = 0.04
 """Metres: the lower of two real objects is cut if its visible height reaches this, else the upper."""
+
+rows = example_rows
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -129,8 +131,3 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         found[f"structure_{name}"] = exact_share(scene["stack"] for scene in scenes)
         found[f"two_points_{name}"] = exact_share(scene["two_points"] for scene in scenes)
     return found
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The pictures."""
-    return examples_in(results)

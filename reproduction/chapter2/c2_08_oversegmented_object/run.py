@@ -22,7 +22,7 @@ from lifelore.perception.scene import Scene
 from reproduction.chapter2.scenes.perturbation import cut_object
 from reproduction.chapter2.scenes.real_scenes import real_scenes
 from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of, real_lots
+from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of, real_lots
 from reproduction.chapter2.scenes.skeletons import perceived, reading
 from reproduction.engine.estimates import share_by_cluster
 from reproduction.engine.records import having, nested
@@ -40,6 +40,8 @@ FEWEST = 150
 """Points that each part must have."""
 DRAWS = 12
 Row = dict[str, Any]
+
+rows = example_rows
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -146,8 +148,3 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         for kind, true in TRUE.items()
         for own in [having(every, real=real, kind=kind)]
     }
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The pictures."""
-    return examples_in(results)

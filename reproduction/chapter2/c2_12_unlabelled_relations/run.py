@@ -16,11 +16,7 @@ from lifelore.core.streams import stream
 from reproduction.chapter2.c2_12_unlabelled_relations.x_means import x_means
 from reproduction.chapter2.scenes import tabletop_pairs
 from reproduction.chapter2.scenes.tabletop_pairs import Row, simulated_sets
-from reproduction.chapter2.scoring.pair_validation import (
-    CONTACT_READINGS,
-    Reading,
-    joined_displacements,
-)
+from reproduction.chapter2.scoring.pair_validation import CONTACT_READINGS, Reading, joined_displacements
 from reproduction.engine.estimates import mean_or_unmeasured
 
 MOST = 10

@@ -13,12 +13,7 @@ from lifelore.core.metrics import Estimate
 from reproduction.chapter2.scenes import tabletop_pairs
 from reproduction.chapter2.scenes.scene_lots import lots
 from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES, STANDARD, Row, data_sets
-from reproduction.chapter2.scoring.pair_validation import (
-    THRESHOLD,
-    Reading,
-    votes_of_neighbours,
-    votes_on,
-)
+from reproduction.chapter2.scoring.pair_validation import THRESHOLD, Reading, votes_of_neighbours, votes_on
 from reproduction.chapter2.scoring.relation_scoring import CARRIED
 from reproduction.engine.estimates import exact_share, mean_or_unmeasured
 

@@ -13,12 +13,7 @@ from numpy.typing import NDArray
 from lifelore.action.advice.advisor import Advisor
 from lifelore.core.metrics import Estimate
 from reproduction.chapter3.advice import mazes
-from reproduction.chapter3.advice.learning import (
-    errand_tables,
-    final_reward,
-    learner_schedule,
-    reached_by_learner,
-)
+from reproduction.chapter3.advice.learning import errand_tables, final_reward, learner_schedule, reached_by_learner
 from reproduction.chapter3.advice.mazes import Maze
 from reproduction.chapter3.learning.grid_tasks import block_curve
 from reproduction.chapter3.learning.schedules import Epsilon

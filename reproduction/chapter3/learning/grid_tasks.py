@@ -185,6 +185,6 @@ def at_default(results: Sequence[Mapping], measure: str, name: str) -> Estimate:
     return mean_estimate([result["choices"][0][name][measure] for result in results])
 
 
-def curve_rows(results: Sequence[Mapping]) -> list[dict]:
+def curve_rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """What the figure draws: the curves of run 0."""
     return [{"curve_of": name, **curve} for result in results for name, curve in result["curves"].items()]

@@ -3,14 +3,7 @@
 import numpy as np
 import pytest
 
-from reproduction.chapter3.c3_17_advice_cost.run import (
-    EARLY,
-    LATE,
-    greedy_policy,
-    readings,
-    rows,
-    steepest_rise,
-)
+from reproduction.chapter3.c3_17_advice_cost.run import EARLY, LATE, greedy_policy, readings, rows, steepest_rise
 from reproduction.engine.registry import claim_of
 
 SETTINGS = {
