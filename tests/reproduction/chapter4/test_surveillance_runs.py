@@ -52,3 +52,4 @@ def test_the_covariance_of_policies_by_hand():
     gaps = np.sqrt(((columns[:, None] - columns[None]) ** 2).mean(axis=2))
     lengths = gaps[0, 1:] / np.sqrt(-2 * np.log(kernel[0, 1:] / deviation**2))
     assert lengths == pytest.approx(lengths[0])
+    assert np.linalg.eigvalsh(kernel)[0] > -1e-9 * deviation**2
