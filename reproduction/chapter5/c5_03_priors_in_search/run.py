@@ -18,10 +18,10 @@ from lifelore.action.search.depth_first import depth_first, preferences
 from lifelore.action.search.tree_search import SearchSettings, play, search_guidance
 from lifelore.core.mdp import Tables
 from lifelore.core.metrics import Estimate, difference_estimate, ratio_estimate
-from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.noise_maze import noise_maze
+from reproduction.chapter3.learning.grid_tasks import problem_of
 from reproduction.chapter5.c5_03_priors_in_search.bandit import BANDITS, regret
 from reproduction.engine.records import nested, values_of
 
@@ -75,9 +75,9 @@ def maze_of(settings: Mapping, names: tuple) -> Maze:
     others = np.delete(np.arange(world.n_states), goal)
     starts = random.choice(others, settings["starts"])
     goals = random.permutation(others)[:n_tasks]
-    tables, best = _solved(world, goal)
+    problem = problem_of(world, goal, ())
     lessons = {
-        PLACE: [(np.arange(world.n_states), _solved(world, int(other))[1]) for other in goals],
+        PLACE: [(np.arange(world.n_states), problem_of(world, int(other), ()).best) for other in goals],
         PERCEPT: [_percepts_elsewhere(settings, (*names, i)) for i in range(n_tasks)],
     }
     priors = {kind: ActionPrior(4, settings["alpha0"]) for kind in KINDS}
@@ -89,7 +89,7 @@ def maze_of(settings: Mapping, names: tuple) -> Maze:
         (kind, form): _rows(settings, priors[kind], contexts_of[kind], form, (*names, kind))
         for kind, form in product(KINDS, FORMS)
     }
-    return Maze(tables, best, start, starts, probs_of)
+    return Maze(problem.tables, problem.best, start, starts, probs_of)
 
 
 def _world(settings: Mapping, random: np.random.Generator) -> GridWorld:
@@ -97,17 +97,10 @@ def _world(settings: Mapping, random: np.random.Generator) -> GridWorld:
     return noise_maze(random, settings["size"], density, discount=settings["discount"])
 
 
-def _solved(world: GridWorld, goal: int) -> tuple[Tables, NDArray[np.bool_]]:
-    tables = world.task(goal).tables()
-    best = best_actions(optimal_q(tables, world.discount))
-    best[goal] = False  # every action ties at the goal: nothing was chosen there
-    return tables, best
-
-
 def _percepts_elsewhere(settings: Mapping, names: tuple) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
     random = stream(*names, "training")
     world = _world(settings, random)
-    return world.percepts, _solved(world, int(random.integers(world.n_states)))[1]
+    return world.percepts, problem_of(world, int(random.integers(world.n_states)), ()).best
 
 
 def _rows(settings: Mapping, prior: ActionPrior, contexts, form: str, names: tuple) -> NDArray[np.float64]:

@@ -5,7 +5,6 @@ import pytest
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import PairLabel
-from lifelore.perception.relations.relation import Relation
 from reproduction.chapter2.c2_05_discarded_points.run import (
     METHODS,
     THINNED,
@@ -18,8 +17,7 @@ from reproduction.chapter2.scoring.relation_scoring import JudgedPair
 
 
 def answer(right: bool, scene: str, truth: str = "on") -> JudgedPair:
-    said = truth if right else "both"
-    return JudgedPair(scene, PairLabel(2, 3, truth), Relation(2, 3, said, 1.0, 0.0), 0.0)
+    return JudgedPair(scene, PairLabel(2, 3, truth), right, 0.0)
 
 
 def test_measures_by_hand():
