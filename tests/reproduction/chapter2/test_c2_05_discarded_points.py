@@ -86,7 +86,8 @@ def test_pairs_are_told_by_the_lessons_and_those_on_the_border_left_out():
     ]
     results = [{"kind": "lessons", "scenes": lessons}, {"kind": "scenes", "scenes": scenes}]
     found = judged({"discarded": [0.7]}, results)[THINNED]
-    assert {level: [pair.relation for pair in pairs] for level, pairs in found.items()} == {
-        0.0: ["on", "adjacent", "both"],
-        0.7: ["adjacent", "none", "on"],
+    # Less is left: *on* looks like *adjacent*, *adjacent* like nothing, and *both* like *on*.
+    assert {level: [(pair.scene, pair.exact) for pair in pairs] for level, pairs in found.items()} == {
+        0.0: [("a", True), ("b", True), ("d", True)],
+        0.7: [("a", False), ("b", False), ("d", False)],
     }
