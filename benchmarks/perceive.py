@@ -14,6 +14,7 @@ from statistics import median
 
 import numpy as np
 
+from benchmarks.perception_stages import STAGES, timed_stages
 from benchmarks.process import Cost, installed_environment, measured_inside, process_cost
 from benchmarks.rounds import at_most, row
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
@@ -23,7 +24,6 @@ from lifelore.domains.tabletop.scene_folder import save_cloud
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
 from lifelore.perception.relations.relation_classifier import shipped_model
 from reproduction.chapter2.scenes.real_scenes import real_scenes_folder
-from reproduction.chapter2.scoring.perception_stages import STAGES, timed_stages
 
 THINGS, POINTS = 15, 100_000
 SEED = 7003

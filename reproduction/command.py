@@ -12,10 +12,9 @@ def reproduce(
         list[str] | None,
         typer.Argument(metavar="[CLAIM|FIGURE]...", help="Claims (C3.4) or figures (3.7); default: all."),
     ] = None,
-    quick: Annotated[
-        bool, typer.Option("--quick", help="Run at a small size, for tests only (the default).")
+    full: Annotated[
+        bool, typer.Option("--full", help="Run at the thesis's size or larger; default: a small size, for tests.")
     ] = False,
-    full: Annotated[bool, typer.Option("--full", help="Run at the thesis's size or larger.")] = False,
     list_all: Annotated[bool, typer.Option("--list", help="List every claim with its figure.")] = False,
     verify: Annotated[
         bool, typer.Option("--verify", help="Run stored results again and compare them to the last digit.")
@@ -23,13 +22,12 @@ def reproduce(
     settings: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a setting of the claims.")
     ] = None,
-    jobs: Annotated[int | None, typer.Option(help="Parts that run at once; results do not depend on it.")] = None,
-    engine: Annotated[
-        str,
-        typer.Option(help="Where parts run: local (here) or dask (a cluster; extra cluster); same results."),
-    ] = "local",
+    jobs: Annotated[
+        int | None, typer.Option(help="Parts of a full run that run at once; results do not depend on it.")
+    ] = None,
     scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="dask: the cluster's scheduler, such as tcp://host:8786.")
+        str | None,
+        typer.Option(metavar="ADDRESS", help="Run on a dask cluster, such as tcp://host:8786 (extra cluster)."),
     ] = None,
     out: Annotated[
         str | None, typer.Option(metavar="DIR", help="Folder for the results; default: that of the checkout.")
@@ -50,26 +48,24 @@ def reproduce(
         found = list_claims()
         print_json(found) if as_json else _print_list(found)
         return
-    if quick and full:
-        raise InputError("quick and full exclude each other: choose one")
     ids = [claim_id for name in claims or [] for claim_id in found_ids(name)]
     folder = Path(out) if out else RESULTS
     if verify:
-        if quick or full or settings or seed:
+        if full or settings or seed:
             raise InputError(
                 "verify takes mode, settings and seed from the stored result; leave out --full, --set and --seed"
             )
         from reproduction.engine.verify import verify as run_again
 
         with progress_bar("verifying") as progress:
-            found = run_again(ids, jobs, folder, progress, engine, scheduler)
+            found = run_again(ids, jobs, folder, progress, scheduler)
         print_json(found) if as_json else _print_verified(found)
         if any(one["equal"] is False for one in found):
             raise typer.Exit(1)
         return
     with progress_bar("reproducing") as progress:
         mode = "full" if full else "quick"
-        results = run(ids, mode, _pairs(settings or []), jobs, folder, seed, progress, engine, scheduler)
+        results = run(ids, mode, _pairs(settings or []), jobs, folder, seed, progress, scheduler)
     print_json(results) if as_json else print_results(results, folder)
 
 

@@ -75,7 +75,7 @@ NOT_RUN = {
     "lifelore perceive left.pcd": "needs two views",
     "lifelore live --domain tabletop": "takes minutes",
     "dask ": "needs a cluster",
-    "lifelore reproduce C3.2 --full --engine": "needs a cluster",
+    "lifelore reproduce C3.2 --full --scheduler": "needs a cluster",
     "make ": "installs from the network",
     "python3 -m venv": "an environment for the next command",
     "pip install": "installs from the network",

@@ -20,13 +20,13 @@ from docs.pictures.figure_performance_curves import draw_performance_curves
 from docs.pictures.figure_reserve_map import draw_reserve_maps
 from docs.pictures.figure_response_surface import draw_response_surface
 from docs.pictures.figure_world_plates import draw_world_plates
+from docs.pictures.pacman_picture import draw_pacman
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import SIZES, SPEEDS, ball_game
 from lifelore.domains.golf.golf import CLUBS, EDGES, HOLES, Golf
 from lifelore.domains.pacman.pacman import PacmanMaze, PacmanTask
 from lifelore.domains.surveillance.surveillance import BASE, LAYOUTS, SIDE, Surveillance
 from lifelore.figures.style import save_figure
-from reproduction.chapter4.c4_04_pacman.picture import draw_pacman
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

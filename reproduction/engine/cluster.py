@@ -26,7 +26,7 @@ def cluster_backend(scheduler: str) -> Iterator[None]:
         from distributed import Client  # pyright: ignore[reportMissingImports]
     except ImportError as error:
         raise MissingExtraError(
-            "engine dask needs dask.distributed, which is not installed; pip install 'lifelore[cluster]'"
+            "a cluster needs dask.distributed, which is not installed; pip install 'lifelore[cluster]'"
         ) from error
     try:
         client = Client(scheduler, timeout=SECONDS_TO_CONNECT, set_as_default=False)

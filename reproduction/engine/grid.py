@@ -71,7 +71,7 @@ class Grid:
         return {key: cell[key] if key in read else None for key in self.default}
 
     def where(self, method: str, cell: Mapping[str, Any]) -> Cell:
-        """The keys of the method's records in a cell, for selections of a `ResultsTable`."""
+        """The keys of the method's records in a cell, for selections of `records`."""
         return {"method": method, **self.met_by(method, cell)}
 
     def cells_of(self, method: str) -> list[Cell]:

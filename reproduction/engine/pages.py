@@ -22,7 +22,7 @@ LINK = "../../reproduction/results"
 """The folder of the results as links of the pages see it."""
 PICTURES = {
     "1.1": "assistive_robot", "3.17": "advised_walk", "3.19": "advice_system", "4.1": "reuse_model",
-    "4.2": "reuse_curves", "4.13": "reuse_interaction",
+    "4.2": "reuse_curves", "4.7": "reuse_games", "4.13": "reuse_interaction",
 }  # fmt: skip
 """Drawings of the thesis that show no measurement, by figure number: files of ``docs/pictures``."""
 FIRST = "Generated from the stored results by `make reproduction-pages`."

@@ -19,7 +19,7 @@ from reproduction.engine.cell_store import CellStore, write_atomically
 from reproduction.engine.claim import Claim
 from reproduction.engine.provenance import provenance, versions
 from reproduction.engine.registry import RESULTS, claim_ids, claim_of
-from reproduction.engine.run_cells import CellRun, run_on_threads, run_on_workers
+from reproduction.engine.run_cells import CellRun, run_here, run_on_workers
 from reproduction.engine.source_key import source_key
 from reproduction.engine.statement import word_of
 
@@ -27,7 +27,6 @@ RESULT_KEYS = (
     "claim", "mode", "verdict", "marks", "measured", "settings", "seed", "versions", "seconds", "made", "readings",
     "rows",
 )  # fmt: skip
-ENGINES = ("local", "dask")
 MAX_BYTES = 200_000
 """Largest ``result.json``: results are committed."""
 
@@ -40,7 +39,6 @@ def reproduce(
     out: str | Path = RESULTS,
     seed: int = 0,
     progress: Progress | None = None,
-    engine: str = "local",
     scheduler: str | None = None,
 ) -> list[dict]:
     """Run claims and write ``<out>/<ID>/result.json`` and ``figure.png``.
@@ -63,17 +61,15 @@ def reproduce(
     progress : callable, optional
         ``progress(done, total, label)``, called from this thread as cells finish; both count the cells of all
         claims.
-    engine : {"local", "dask"}
-        Where cells run: here (full runs with more than one job in processes, others on threads), or on the workers
-        of a dask cluster (extra ``cluster``).
     scheduler : str, optional
-        Address of the cluster, such as ``tcp://host:8786``.
+        Address of a dask cluster whose workers run the cells, such as ``tcp://host:8786`` (extra ``cluster``);
+        default: this machine, full runs in `jobs` processes, quick ones one cell after another.
 
     Returns
     -------
     list of dict
         The results, each with exactly `RESULT_KEYS`: `verdict` is the claim's word, `marks` has three marks by
-        statement, `seconds` is the processor time of the cells' threads, whenever and for whichever claim they
+        statement, `seconds` is the processor time of the cells, whenever and for whichever claim they
         were run, and `made` that of `provenance`.
 
     Raises
@@ -83,16 +79,16 @@ def reproduce(
     InputError
         A mode, setting or number of jobs that breaks its rule; a cluster that cannot be used.
     MissingExtraError
-        Engine ``dask`` needs the extra ``cluster``.
+        A cluster needs the extra ``cluster``.
     StoreError
         The disk refuses.
     KeyboardInterrupt
-        Ctrl-C; cells under way are finished and kept first on threads, and dropped elsewhere.
+        Ctrl-C; finished cells are kept, those under way are dropped.
     """
     claims = [claim_of(claim_id) for claim_id in dict.fromkeys(ids or claim_ids())]
     plan = [ClaimRun(claim, mode, claim.settings(mode, overrides), seed) for claim in claims]
     results = []
-    for claim, result in zip(claims, run_plan(plan, jobs, out, progress, engine, scheduler), strict=True):
+    for claim, result in zip(claims, run_plan(plan, jobs, out, progress, scheduler), strict=True):
         _write(claim, result, result_folder(Path(out) / claim.id, mode))
         results.append(result)
     return results
@@ -112,7 +108,6 @@ def run_plan(
     jobs: int | None,
     out: str | Path,
     progress: Progress | None,
-    engine: str = "local",
     scheduler: str | None = None,
 ) -> Iterator[dict]:
     """The results of claims, one after the other; cells are kept in `out`, results not written.
@@ -120,13 +115,6 @@ def run_plan(
     Cells of all claims share the workers, so that none waits for the last cell of a claim. `progress` counts the
     cells of all.
     """
-    if engine not in ENGINES:
-        raise InputError(f"engine must be one of {', '.join(ENGINES)}, got '{engine}'")
-    if (engine == "dask") != (scheduler is not None):
-        raise InputError(
-            f"engine dask and scheduler belong together, got engine '{engine}' and scheduler {scheduler}; "
-            "give --engine dask --scheduler tcp://HOST:8786, or neither"
-        )
     jobs = usable_cores() if jobs is None else jobs
     if jobs < 1:
         raise InputError(f"jobs must be at least 1, got {jobs}")
@@ -145,7 +133,7 @@ def run_plan(
     shown(done, total, plan[0].claim.id)
     quick = all(run.mode == "quick" for run in plan)
     if scheduler is None and (quick or min(jobs, len(cells)) < 2):
-        finished = run_on_threads(cells, jobs)
+        finished = run_here(cells)
     else:
         finished = run_on_workers(cells, jobs, scheduler)
     with closing(finished):

@@ -1,13 +1,12 @@
-"""Where cells run: on threads, in processes of this machine, or on the workers of a dask cluster.
+"""Where cells run: in this process, in processes of this machine, or on the workers of a dask cluster.
 
 A cell is a pure function of settings, cell and seed, so its result depends neither on the place nor on what runs
-beside it. Full runs use processes: threads share Python's lock, so that two of them are slower than one where a
-claim computes in Python (C4.3: 200 s and 142 s). Starting processes takes longer than most quick runs.
+beside it. Starting processes takes longer than most quick runs, which therefore run here, one cell after another.
 """
 
 import socket
 from collections.abc import Generator, Mapping, Sequence
-from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor, as_completed
+from concurrent.futures import BrokenExecutor
 from contextlib import nullcontext
 from time import thread_time
 from typing import Any, NamedTuple
@@ -34,24 +33,14 @@ Finished = Generator[tuple[int, dict], None, None]
 """Place and content of each finished cell, which is stored already."""
 
 
-def run_on_threads(cells: Sequence[CellRun], jobs: int) -> Finished:
-    """Run cells on threads; where it is stopped, cells under way are finished and stored first."""
+def run_here(cells: Sequence[CellRun]) -> Finished:
+    """Run cells one after another; where it is stopped, the cell under way is dropped."""
     from threadpoolctl import threadpool_limits
 
-    def run(one: CellRun) -> dict:
-        began = thread_time()
-        result = one.claim.run_cell(one.settings, one.cell, one.seed)
-        return one.store.put(one.cell, result, thread_time() - began)
-
-    # Cells share the cores among themselves; threads of a library's own would fight them, and change its sums.
-    with threadpool_limits(1), ThreadPoolExecutor(max_workers=jobs) as pool:
-        place: dict[Future, int] = {pool.submit(run, one): i for i, one in enumerate(cells)}
-        try:
-            for future in as_completed(place):
-                yield place[future], future.result()
-        except BaseException:
-            pool.shutdown(wait=True, cancel_futures=True)
-            raise
+    for place, (claim, settings, seed, cell, store) in enumerate(cells):
+        with threadpool_limits(1):  # a library's own threads would change its sums
+            result, seconds = _timed(claim, settings, cell, seed)
+        yield place, store.put(cell, result, seconds)
 
 
 def run_on_workers(cells: Sequence[CellRun], jobs: int, scheduler: str | None = None) -> Finished:
@@ -117,8 +106,12 @@ def run_on_worker(
             f"worker {socket.gethostname()} has other code of {claim_id} (key {own}, here {code}); "
             "it must have the same lifelore"
         )
-    # While the worker lives, because cells may overlap in its threads; a library's threads would change its sums.
+    # While the worker lives, because cells may overlap in its threads.
     threadpool_limits(1)
+    return place, *_timed(claim, settings, cell, seed)
+
+
+def _timed(claim: Claim, settings: Mapping[str, Any], cell: Mapping[str, Any], seed: int) -> tuple[dict, float]:
+    """A cell's result and its processor seconds."""
     began = thread_time()
-    result = claim.run_cell(settings, cell, seed)
-    return place, result, thread_time() - began
+    return claim.run_cell(settings, cell, seed), thread_time() - began

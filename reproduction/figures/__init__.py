@@ -1,1 +1,1 @@
-"""Kinds of figures that several claims draw: curves, bars with intervals, and a gallery of scenes."""
+"""Kinds of figures that several claims draw: curves, and bars with intervals."""

@@ -19,7 +19,6 @@ def draw_interval_bars(
     *,
     colours: Mapping[str, str] | Sequence[str] = (),
     horizontal: bool = True,
-    scale: float = 1.0,
     words: Callable[[float], str] | None = "{:.3g}".format,
     title: str = "",
     label: str = "",
@@ -37,8 +36,6 @@ def draw_interval_bars(
     colours : mapping or sequence of str
         Colour by group, or a list of colours, one for each name; with one group, a colour for each name.
     horizontal : bool
-    scale : float
-        Factor of all numbers, such as 100 for shares in per cent.
     words : callable, optional
         Text of a value, written at the end of its bar; None writes none.
     title, label : str
@@ -51,7 +48,7 @@ def draw_interval_bars(
         for place, number in enumerate(numbers):
             if number is None or number["value"] is None:
                 continue
-            value, interval = scale * number["value"], [scale * end for end in number.get("ci95") or ()]
+            value, interval = number["value"], number.get("ci95") or ()
             at = place + (g - (len(groups) - 1) / 2) * height
             colour = _colour(colours, group, g, place, len(groups))
             bar = axes.barh if horizontal else axes.bar

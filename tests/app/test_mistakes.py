@@ -74,7 +74,6 @@ NAMES = {
     "memory forget nobody --memory {known}": "robot 'nobody' has contributed nothing here; known robots: robot",
     "memory forget --source none.csv --memory {known}": "has taught nothing here; known sources: none",
     "reproduce C9.9": "no claim or figure 'C9.9'",
-    "reproduce C3.1 --quick --full": "exclude each other",
     "reproduce C3.1 --verify --full": "takes mode, settings and seed from the stored result",
     "reproduce C3.1 --verify --out {folder}": "no result of C3.1 in",
     "reproduce C3.1 --set x": "KEY=VALUE",

@@ -7,9 +7,9 @@ import pytest
 
 from benchmarks import perceive
 from benchmarks.perceive import AGAIN, PARTS, bench_perceive
+from benchmarks.perception_stages import STAGES
 from benchmarks.process import Cost
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from reproduction.chapter2.scoring.perception_stages import STAGES
 from tests.benchmarks.contract import checked
 
 

@@ -1,4 +1,4 @@
-"""Claims on a real dask cluster (extra cluster): the same bits as on threads, also where a worker is killed."""
+"""Claims on a real dask cluster (extra cluster): the same bits as here, also where a worker is killed."""
 
 import json
 import os
@@ -55,7 +55,7 @@ def without_seconds(results: list[dict]) -> str:
 
 def test_a_cluster_without_workers_is_refused(scheduler, tmp_path):
     with pytest.raises(InputError, match="has no workers; start some: dask worker"):
-        reproduce([CLAIM], out=tmp_path, engine="dask", scheduler=scheduler)
+        reproduce([CLAIM], out=tmp_path, scheduler=scheduler)
 
 
 def test_a_cluster_gives_the_same_bits_also_where_a_worker_is_killed(scheduler, tmp_path):
@@ -69,9 +69,7 @@ def test_a_cluster_gives_the_same_bits_also_where_a_worker_is_killed(scheduler, 
             victim.send_signal(signal.SIGKILL)
 
     with victim, survivor:
-        there = reproduce(
-            [CLAIM], out=tmp_path / "there", overrides=SMALL, engine="dask", scheduler=scheduler, progress=kill
-        )
+        there = reproduce([CLAIM], out=tmp_path / "there", overrides=SMALL, scheduler=scheduler, progress=kill)
         assert victim.wait() == -signal.SIGKILL
         survivor.kill()
     ((done, total),) = killed
@@ -87,23 +85,10 @@ def test_a_scheduler_that_is_not_there(monkeypatch, tmp_path):
     pytest.importorskip("distributed", reason="needs the extra cluster")
     monkeypatch.setattr(cluster, "SECONDS_TO_CONNECT", 1)
     with pytest.raises(InputError, match=r"scheduler tcp://127\.0\.0\.1:9 cannot be reached"):
-        reproduce([CLAIM], out=tmp_path, engine="dask", scheduler="tcp://127.0.0.1:9")
+        reproduce([CLAIM], out=tmp_path, scheduler="tcp://127.0.0.1:9")
 
 
 def test_without_distributed_the_extra_is_named(monkeypatch, tmp_path):
     monkeypatch.setitem(sys.modules, "distributed", None)
     with pytest.raises(MissingExtraError, match=r"lifelore\[cluster\]"):
-        reproduce([CLAIM], out=tmp_path, engine="dask", scheduler="tcp://127.0.0.1:9")
-
-
-@pytest.mark.parametrize(
-    ("engine", "scheduler", "message"),
-    [
-        ("ray", None, "engine must be one of local, dask"),
-        ("dask", None, "belong together"),
-        ("local", "tcp://a:1", "belong together"),
-    ],
-)
-def test_settings_that_do_not_fit(engine, scheduler, message, tmp_path):
-    with pytest.raises(InputError, match=message):
-        reproduce([CLAIM], out=tmp_path, engine=engine, scheduler=scheduler)
+        reproduce([CLAIM], out=tmp_path, scheduler="tcp://127.0.0.1:9")

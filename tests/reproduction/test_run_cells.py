@@ -1,4 +1,4 @@
-"""Cells in processes of this machine: the same bits as on threads, and one line where a process dies."""
+"""Cells in processes of this machine: the same bits as in one, and one line where a process dies."""
 
 import os
 import signal
@@ -22,7 +22,7 @@ def processes_of_cells() -> list[int]:
     return [int(child) for child in children if b"popen_loky" in Path(f"/proc/{child}/cmdline").read_bytes()]
 
 
-def test_processes_give_the_bits_of_threads(tmp_path):
+def test_processes_give_the_bits_of_one(tmp_path):
     one = reproduce(["C3.1"], "full", SMALL, jobs=1, out=tmp_path / "one")
     calls = []
     two = reproduce(

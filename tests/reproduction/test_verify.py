@@ -88,17 +88,6 @@ def test_where_and_what_differs():
     ]
 
 
-def test_an_interval_without_spread_was_null():
-    number = {"value": 2.0, "median": 2.0, "ci95": None, "n": 5}
-    one = {
-        "claim": "C3.1", "verdict": "reproduced", "marks": {}, "versions": {}, "readings": [], "rows": [],
-        "measured": {"a": number}, "made": {"source": "k", "processor": "p", "simd": "s", "data": {}},
-        "seconds": 1.0,
-    }  # fmt: skip
-    assert compared(one, {**one, "measured": {"a": {**number, "ci95": [2.0, 2.0]}}})["equal"]
-    assert not compared(one, {**one, "measured": {"a": {**number, "ci95": [1.0, 2.0]}}})["equal"]
-
-
 def test_what_is_refused(tmp_path):
     with pytest.raises(NotFoundError, match="no result in"):
         verify([], out=tmp_path)

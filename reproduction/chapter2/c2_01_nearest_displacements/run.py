@@ -16,12 +16,7 @@ from lifelore.core.relations import BOTH, CORE_RELATIONS, ON
 from lifelore.core.streams import stream
 from reproduction.chapter2.scenes import tabletop_pairs
 from reproduction.chapter2.scenes.tabletop_pairs import Row, data_sets, simulated_sets
-from reproduction.chapter2.scoring.pair_validation import (
-    CONTACT_READINGS,
-    WEIGHTS,
-    Reading,
-    votes_of_neighbours,
-)
+from reproduction.chapter2.scoring.pair_validation import CONTACT_READINGS, WEIGHTS, Reading, votes_of_neighbours
 from reproduction.chapter2.scoring.relation_scoring import less_rate
 from reproduction.engine.estimates import UNMEASURED, exact_share
 

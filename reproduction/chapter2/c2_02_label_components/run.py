@@ -14,12 +14,7 @@ from lifelore.core.relations import CORE_RELATIONS
 from lifelore.core.streams import stream
 from reproduction.chapter2.scenes import tabletop_pairs
 from reproduction.chapter2.scenes.tabletop_pairs import Row, simulated_sets
-from reproduction.chapter2.scoring.pair_validation import (
-    CONTACT_READINGS,
-    Reading,
-    joined_displacements,
-    votes_on,
-)
+from reproduction.chapter2.scoring.pair_validation import CONTACT_READINGS, Reading, joined_displacements, votes_on
 from reproduction.chapter2.scoring.relation_scoring import BESIDE, CARRIED
 from reproduction.engine.estimates import mean_or_unmeasured
 

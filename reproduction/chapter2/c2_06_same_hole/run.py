@@ -22,9 +22,9 @@ from reproduction.chapter2.c2_06_same_hole.passage import passages
 from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.perturbation import part_of
 from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of
+from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of
 from reproduction.engine.estimates import exact_share
-from reproduction.engine.results_table import ResultsTable
+from reproduction.engine.records import having, nested
 
 ARRANGEMENTS = {
     "hinged": "hole-hinged",
@@ -40,6 +40,8 @@ _BAND = (0.03, 0.06)
 _CLOSE = 0.025
 WITH_HOLE = CAPTIONS = {"hinged": "hinged blocks", "other": "another object"}
 """Kinds that have a hole, and captions of their pictures."""
+
+rows = example_rows
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -116,17 +118,12 @@ def split_contact(cloud: LabelledCloud, rng: np.random.Generator) -> LabelledClo
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """Shares of scenes by kind with a hole found; form and place of the holes."""
-    table = ResultsTable.nested(results, "scenes", keys=(), outer=("kind",))
+    scenes = nested(results, "scenes", ("kind",))
     found = {
-        f"hole_found_{kind}": exact_share(scene["hole"] for scene in table.select(kind=kind).records)
+        f"hole_found_{kind}": exact_share(scene["hole"] for scene in having(scenes, kind=kind))
         for kind in ARRANGEMENTS
     }
-    holes = [scene for kind in WITH_HOLE for scene in table.select(kind=kind).records if scene["hole"]]
+    holes = [scene for scene in scenes if scene["hole"] and scene["kind"] in WITH_HOLE]
     found["found_where_the_passage_is"] = exact_share(scene["true"] for scene in holes)
     found["two_contacts_on_either_side"] = exact_share(scene["form"] == [2, 2] for scene in holes)
     return found
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The pictures."""
-    return examples_in(results)

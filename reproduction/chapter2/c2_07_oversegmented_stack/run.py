@@ -19,7 +19,7 @@ from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.perturbation import cut_object
 from reproduction.chapter2.scenes.real_scenes import real_scenes
 from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of, uses_real
+from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of, uses_real
 from reproduction.chapter2.scenes.skeletons import (
     Three,
     carried_pairs,
@@ -31,7 +31,7 @@ from reproduction.chapter2.scenes.skeletons import (
     standing,
 )
 from reproduction.engine.estimates import exact_share
-from reproduction.engine.results_table import ResultsTable
+from reproduction.engine.records import having, nested
 
 KINDS = ("stack", "cut", "row", "two-on-one")
 REAL = ("real stack", "real cut")
@@ -41,6 +41,8 @@ LOW_CUT, HIGH_CUT = 0.35, 0.65
 CAPTIONS = {"stack": "three objects", "cut": "two objects, segmented into three"}
 TALL = 0.04
 """Metres: the lower of two real objects is cut if its visible height reaches this, else the upper."""
+
+rows = example_rows
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -123,14 +125,9 @@ def is_path(scene: Scene, three: Three) -> bool:
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """Shares by kind of two points in the middle, and of the stack's structure."""
-    table, found = ResultsTable.nested(results, "scenes", keys=(), outer=("kind",)), {}
+    every, found = nested(results, "scenes", ("kind",)), {}
     for kind in (*KINDS, *REAL):
-        scenes, name = table.select(kind=kind).records, kind.replace(" ", "_").replace("-", "_")
+        scenes, name = having(every, kind=kind), kind.replace(" ", "_").replace("-", "_")
         found[f"structure_{name}"] = exact_share(scene["stack"] for scene in scenes)
         found[f"two_points_{name}"] = exact_share(scene["two_points"] for scene in scenes)
     return found
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The pictures."""
-    return examples_in(results)

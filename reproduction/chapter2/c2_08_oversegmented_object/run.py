@@ -22,10 +22,10 @@ from lifelore.perception.scene import Scene
 from reproduction.chapter2.scenes.perturbation import cut_object
 from reproduction.chapter2.scenes.real_scenes import real_scenes
 from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of, real_lots
+from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of, real_lots
 from reproduction.chapter2.scenes.skeletons import perceived, reading
 from reproduction.engine.estimates import share_by_cluster
-from reproduction.engine.results_table import ResultsTable
+from reproduction.engine.records import having, nested
 
 LOT, REAL_LOT = 10, 4
 TILTS = {"level": 0.0, "upright": 90.0}
@@ -40,6 +40,8 @@ FEWEST = 150
 """Points that each part must have."""
 DRAWS = 12
 Row = dict[str, Any]
+
+rows = example_rows
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -137,17 +139,12 @@ def relation_in_words(relations: tuple[Relation, ...], part: int, label: int) ->
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """Share of right relations by kind of cut, of simulated and of real scenes."""
-    table = ResultsTable.nested(results, "rows", keys=("kind",), outer=("real",))
+    every = nested(results, "rows", ("real",))
     return {
         f"{true}_right_{name}": share_by_cluster(
             [row["said"] == true for row in own], [row["scene"] for row in own]
         )
         for name, real in (("simulated", False), ("real", True))
         for kind, true in TRUE.items()
-        for own in [table.select(real=real, kind=kind).records]
+        for own in [having(every, real=real, kind=kind)]
     }
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The pictures."""
-    return examples_in(results)

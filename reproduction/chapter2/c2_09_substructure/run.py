@@ -10,7 +10,7 @@ from lifelore.core.metrics import Estimate
 from lifelore.perception.scene import Scene
 from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of
+from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of
 from reproduction.chapter2.scenes.skeletons import perceived, reading
 from reproduction.chapter2.scenes.substructure import Reading, find_substructure
 from reproduction.engine.estimates import exact_share
@@ -24,6 +24,8 @@ READINGS: dict[str, tuple[bool, Reading]] = {
 """Whether the ground's contacts take part, and what of a network a subgraph keeps."""
 STACK, TWO = "stack", "stack-two-contacts"
 CAPTIONS = {STACK: "a stack: its skeleton is part of …", TWO: "… that of a stack with two contacts"}
+
+rows = example_rows
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -66,8 +68,3 @@ def shares(results: Sequence[Mapping], name: str) -> dict[str, Estimate]:
         "stack_in_two_contacts": exact_share(scene["in two contacts"][name] for scene in scenes),
         "two_contacts_in_stack": exact_share(scene["reversed"][name] for scene in scenes),
     }
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The pictures."""
-    return examples_in(results)

@@ -10,20 +10,15 @@ from lifelore.domains.tabletop.settings import TabletopSettings
 from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.real_scenes import real_scenes
 from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of, uses_real
-from reproduction.chapter2.scenes.skeletons import (
-    carried_pairs,
-    only,
-    perceived,
-    predicates,
-    reading,
-    standing,
-)
+from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of, uses_real
+from reproduction.chapter2.scenes.skeletons import carried_pairs, only, perceived, predicates, reading, standing
 from reproduction.engine.estimates import exact_share
 
 LOT = 10
 BLOCK, BALL = 2, 3
 CAMERAS = ("stereo", "kinect")
+
+rows = example_rows
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -95,8 +90,3 @@ def shares(results: Sequence[Mapping], camera: str) -> dict[str, Estimate]:
         "predicates_right": exact_share(scene["right"] for scene in scenes),
         "two_points_of_the_block": exact_share(scene["two_points"] for scene in scenes),
     }
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The picture."""
-    return examples_in(results)

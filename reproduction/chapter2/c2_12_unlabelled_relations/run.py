@@ -9,7 +9,6 @@ from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, ON
@@ -17,11 +16,7 @@ from lifelore.core.streams import stream
 from reproduction.chapter2.c2_12_unlabelled_relations.x_means import x_means
 from reproduction.chapter2.scenes import tabletop_pairs
 from reproduction.chapter2.scenes.tabletop_pairs import Row, simulated_sets
-from reproduction.chapter2.scoring.pair_validation import (
-    CONTACT_READINGS,
-    Reading,
-    joined_displacements,
-)
+from reproduction.chapter2.scoring.pair_validation import CONTACT_READINGS, Reading, joined_displacements
 from reproduction.engine.estimates import mean_or_unmeasured
 
 MOST = 10
@@ -46,7 +41,7 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
 
 def measures(sets: Sequence[Sequence[Row]], reading: Reading, space: str, starts: int) -> dict[str, Estimate]:
     """Means over data sets of the agreement of clusters with relations, and of how *on* and *adjacent* blur."""
-    found: dict[str, list[float]] = {"agreement": [], "agreement_of_k_means": [], "clusters": [], "blurred": []}
+    found: dict[str, list[float]] = {"agreement": [], "clusters": [], "blurred": []}
     for number, rows in enumerate(sets):
         moved, relations = joined(rows, reading, space)
         if len(moved) < MOST:
@@ -55,7 +50,6 @@ def measures(sets: Sequence[Sequence[Row]], reading: Reading, space: str, starts
             rng = stream(start, "relation clusters", number)
             labels = x_means(moved, rng, most=MOST).labels
             found["agreement"].append(rand_index(relations, labels))
-            found["agreement_of_k_means"].append(rand_index(relations, k_means(moved, len(set(relations)), rng)))
             found["clusters"].append(float(len(set(labels))))
             found["blurred"].append(blurred(relations, labels))
     sized = {name: np.reshape(values, (-1, starts)).mean(axis=1) for name, values in found.items()}
@@ -66,16 +60,6 @@ def joined(rows: Sequence[Row], reading: Reading, space: str) -> tuple[NDArray[n
     """All displacements of a data set in a space, and the relation of the pair of each."""
     moved, owner = joined_displacements(rows, reading.kernel, reading.threshold)
     return np.ascontiguousarray(moved[:, SPACES[space]]), np.array([row["relation"] for row in rows])[owner]
-
-
-def k_means(points: NDArray[np.float64], k: int, rng: np.random.Generator) -> Labels:
-    """scikit-learn's clusters, the best of ten starts."""
-    from sklearn.cluster import KMeans
-
-    k = min(k, len(np.unique(points, axis=0)))
-    with threadpool_limits(1):  # with few columns, threads mostly wait for each other
-        model = KMeans(k, n_init=10, random_state=int(rng.integers(2**31)))  # type: ignore[arg-type]
-        return model.fit_predict(points).astype(np.int64)
 
 
 def rand_index(relations: NDArray[np.str_], labels: Labels) -> float:

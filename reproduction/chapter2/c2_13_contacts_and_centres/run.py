@@ -13,12 +13,7 @@ from lifelore.core.metrics import Estimate
 from reproduction.chapter2.scenes import tabletop_pairs
 from reproduction.chapter2.scenes.scene_lots import lots
 from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES, STANDARD, Row, data_sets
-from reproduction.chapter2.scoring.pair_validation import (
-    THRESHOLD,
-    Reading,
-    votes_of_neighbours,
-    votes_on,
-)
+from reproduction.chapter2.scoring.pair_validation import THRESHOLD, Reading, votes_of_neighbours, votes_on
 from reproduction.chapter2.scoring.relation_scoring import CARRIED
 from reproduction.engine.estimates import exact_share, mean_or_unmeasured
 
@@ -94,12 +89,5 @@ def told_right(sets: Mapping, kernel: str) -> dict[str, dict[str, list[bool]]]:
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Scenes told right by method and arrangement, and the pictures of a scene."""
-    told = told_right(data_sets(results), STANDARD)
-    found: list[dict] = [
-        {"told by": name, "arrangement": arrangement, **exact_share(answers).to_dict()}
-        for name, own in told.items()
-        for arrangement, answers in own.items()
-    ]
-    pictures = (r["examples"] for r in results if r["set"] == ON_BLOCK)
-    return found + list(chain(*pictures))
+    """The pictures of a scene."""
+    return list(chain(*(result["examples"] for result in results if result["set"] == ON_BLOCK)))

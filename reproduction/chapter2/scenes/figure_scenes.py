@@ -130,12 +130,6 @@ def place_hole_other(rng: np.random.Generator) -> Group:
     return facing(rng, [stand(ell), plank.moved(float(shift), 0.0)])
 
 
-def place_hole(rng: np.random.Generator) -> Group:
-    """Either kind of hole."""
-    place = place_hole_hinged if rng.random() < 0.5 else place_hole_other
-    return place(rng)
-
-
 def place_no_hole(rng: np.random.Generator) -> Group:
     """A block whose whole face lies on a slab."""
     length, width = rng.uniform((0.16, 0.09), (0.26, 0.15))
@@ -186,7 +180,6 @@ def place_ball_at_l_block(rng: np.random.Generator) -> Group:
 
 
 FIGURES = {
-    "hole": Figure(place_hole, ((3, 2),), regions=2),
     "hole-hinged": Figure(place_hole_hinged, ((3, 2),), regions=2),
     "hole-other": Figure(place_hole_other, ((3, 2),), regions=2),
     "no-hole": Figure(place_no_hole, ((3, 2),)),

@@ -8,17 +8,20 @@ from typing import Any
 import numpy as np
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.figures.scenes.scene_picture import draw_scene_on
+from lifelore.figures.style import Figure, new_figure
 from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.scene import Scene
 from lifelore.perception.scene_json import scene_document
 from reproduction.chapter2.scenes.perturbation import part_of
-from reproduction.figures.gallery import PictureOfScene, draw_gallery
 
 MOST_POINTS = 4000
 _STEP = 0.0005
 """Metres: places are stored to half a millimetre."""
 _AROUND = 0.05
 """Metres of table stored around the objects."""
+_WIDE, _HIGH, _GUTTER, _CAPTION = 4.45, 3.3375, 0.1, 0.26
+"""Inches: of a picture, between pictures, and for a caption above each."""
 
 
 def scene_row(scene: Scene, caption: str) -> dict:
@@ -41,22 +44,28 @@ def scene_row(scene: Scene, caption: str) -> dict:
     return {"example": caption, "camera": camera, "cloud": _packed(cloud), "document": document}
 
 
-def scene_of_row(row: Mapping) -> PictureOfScene:
-    """(cloud, document, caption), as `figures.gallery` takes them."""
+def scene_of_row(row: Mapping) -> tuple[LabelledCloud, Mapping, str]:
+    """The cloud of an example, its document and its caption."""
     table = np.frombuffer(zlib.decompress(base64.b64decode(row["cloud"])), np.int16).reshape(4, -1)
     camera = None if row["camera"] is None else np.array(row["camera"], float)
     cloud = LabelledCloud(np.asarray(table[:3].T * _STEP, np.float64), table[3].astype(np.int64), None, camera)
     return cloud, row["document"], row["example"]
 
 
-def examples_of(result: Mapping) -> list[PictureOfScene]:
-    """The examples of a result as a gallery takes them."""
-    return [scene_of_row(row) for row in result["rows"] if "example" in row]
-
-
-def draw_examples(result: Mapping, layers: Collection[str] = ("cloud", "networks")):
-    """The gallery of a result's examples, clouds with networks, two a row."""
-    return draw_gallery(examples_of(result), columns=2, layers=layers)
+def draw_examples(result: Mapping, layers: Collection[str] = ("cloud", "networks")) -> Figure:
+    """The pictures of a result's examples, two a row; `layers` are some of `scene_picture.LAYERS`."""
+    scenes = [scene_of_row(row) for row in result["rows"] if "example" in row]
+    columns, rows = min(2, len(scenes)), -(-len(scenes) // 2)
+    width, height = columns * (_WIDE + _GUTTER) + _GUTTER, rows * (_HIGH + _CAPTION + _GUTTER) + _GUTTER
+    figure = new_figure(width, height)
+    figure.set_layout_engine("none")
+    for place, (cloud, document, caption) in enumerate(scenes):
+        left = _GUTTER + place % 2 * (_WIDE + _GUTTER)
+        top = height - _GUTTER - _CAPTION - place // 2 * (_HIGH + _CAPTION + _GUTTER)
+        axes = figure.add_axes((left / width, (top - _HIGH) / height, _WIDE / width, _HIGH / height))
+        draw_scene_on(axes, cloud, document, (_WIDE, _HIGH), layers)
+        axes.set_title(caption, fontsize=8.5, pad=4)
+    return figure
 
 
 def _packed(cloud: LabelledCloud) -> str:

@@ -26,6 +26,6 @@ def real_lots(settings: Mapping, size: int, key: str) -> list[dict]:
     return [{key: names[first : first + size]} for first in range(0, len(names), size)]
 
 
-def examples_in(results: Sequence[Mapping]) -> list[dict]:
-    """The rows of pictures of all results."""
+def example_rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """The function ``rows`` of a claim that stores pictures alone: those of all results."""
     return [example for result in results for example in result["examples"]]

@@ -18,11 +18,7 @@ from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
 from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.contacts.contact_settings import ContactSettings
-from lifelore.perception.contacts.interface import (
-    DEFAULT_CONTACT_SETTINGS,
-    Interface,
-    interfaces,
-)
+from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, Interface, interfaces
 from lifelore.perception.scene import Scene
 from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.perturbation import only, without_table

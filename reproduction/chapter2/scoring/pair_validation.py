@@ -21,8 +21,6 @@ THRESHOLDS = SCALED, FIXED = "scaled", "7"
 """Which contacts are dropped. The thesis's 7 "is somewhat dependent on the resolution". *Scaled*, it is 7 on
 points 3 mm apart, but never above the support of an object's strongest contact; a fixed 7 may drop all."""
 WEIGHTS = ("equal", "inverse distance")
-BLOCK = 4_000_000
-"""Distances computed at once; more costs memory, not time."""
 Rows = NDArray[np.int64]
 Points = NDArray[np.float64]
 
@@ -131,17 +129,9 @@ def votes_on(
 
 def _nearest(moved: Points, asked: Rows, scene: Rows, known: NDArray[np.bool_], k: int) -> tuple[Rows, Points]:
     """The k nearest known displacements of other scenes, and how far; infinitely far where there are fewer."""
-    k = min(k, len(moved))
-    nearest = np.empty((len(asked), k), np.int64)
-    away = np.empty((len(asked), k))
-    lot = max(1, BLOCK // max(len(moved), 1))
-    for start in range(0, len(asked), lot):
-        mine = asked[start : start + lot]
-        distance = cdist(moved[mine], moved)
-        distance[(scene[mine][:, None] == scene[None]) | ~known[None]] = np.inf
-        few = np.sort(np.argpartition(distance, k - 1, axis=1)[:, :k], axis=1)
-        near = np.take_along_axis(distance, few, axis=1)
-        order = np.argsort(near, axis=1, kind="stable")
-        nearest[start : start + lot] = np.take_along_axis(few, order, axis=1)
-        away[start : start + lot] = np.take_along_axis(near, order, axis=1)
-    return nearest, away
+    k, distance = min(k, len(moved)), cdist(moved[asked], moved)
+    distance[(scene[asked][:, None] == scene[None]) | ~known[None]] = np.inf
+    few = np.sort(np.argpartition(distance, k - 1, axis=1)[:, :k], axis=1)
+    near = np.take_along_axis(distance, few, axis=1)
+    order = np.argsort(near, axis=1, kind="stable")
+    return np.take_along_axis(few, order, axis=1), np.take_along_axis(near, order, axis=1)

@@ -5,11 +5,10 @@ Here the direction counts as well: ``on(a, b)`` predicted for ``on(b, a)`` is wr
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, NONE, ON, SYMMETRIC, PairLabel
 from lifelore.perception.relations.relation import Relation
@@ -19,34 +18,16 @@ BORDER = 0.005
 CARRIED, BESIDE = frozenset({ON, BOTH}), frozenset({ADJACENT, BOTH})
 
 
-@dataclass(frozen=True)
-class JudgedPair:
-    """A labelled pair, its predicted relation (None counts as *none*) and its visible gap, metres or infinite."""
+class JudgedPair(NamedTuple):
+    """A labelled pair: whether the predicted relation and its direction are right, and its visible gap.
+
+    The gap is in metres, infinite where it is unknown.
+    """
 
     scene: str
     truth: PairLabel
-    predicted: Relation | None
+    exact: bool
     gap: float
-
-    @property
-    def relation(self) -> str:
-        """The predicted relation."""
-        return self.predicted.relation if self.predicted else NONE
-
-    @property
-    def same_way(self) -> bool:
-        """Whether the prediction names the pair in the truth's order, or has no order."""
-        return self.relation in SYMMETRIC or self.predicted is None or self.predicted.a == self.truth.a
-
-    @property
-    def exact(self) -> bool:
-        """The relation and its direction are right."""
-        return self.relation == self.truth.relation and self.same_way
-
-    @property
-    def with_table(self) -> bool:
-        """Whether one of the two is the table."""
-        return TABLE in (self.truth.a, self.truth.b)
 
     @property
     def border(self) -> bool:
@@ -60,18 +41,20 @@ def judged_scene(
     predicted: Sequence[Relation],
     gaps: Mapping[frozenset[int], float] | None = None,
 ) -> list[JudgedPair]:
-    """Each labelled pair of a scene beside its predicted relation; labels of confidence 1 are left out.
+    """Each labelled pair of a scene judged by its predicted relation; labels of confidence 1 are left out.
 
-    `gaps` are the visible gaps of ``{a, b}``, metres, where better known than by `predicted`.
+    A pair without a prediction counts as *none*. `gaps` are the visible gaps of ``{a, b}``, metres, where better
+    known than by `predicted`.
     """
     by_pair = {frozenset((relation.a, relation.b)): relation for relation in predicted}
     judged = []
     for label in truth:
         pair = frozenset((label.a, label.b))
         if label.confidence >= 2:
-            relation = by_pair.get(pair)
-            gap = (gaps or {}).get(pair, relation.gap if relation else np.inf)
-            judged.append(JudgedPair(scene, label, relation, gap))
+            found = by_pair.get(pair, Relation(label.a, label.b, NONE, 1.0, np.inf))
+            same_way = found.relation in SYMMETRIC or found.a == label.a
+            gap = (gaps or {}).get(pair, found.gap)
+            judged.append(JudgedPair(scene, label, found.relation == label.relation and same_way, gap))
     return judged
 
 

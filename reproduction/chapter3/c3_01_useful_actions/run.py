@@ -6,6 +6,7 @@ generators: one walls up cells one at a time without parting the rest, one is un
 Thesis: §3.2.2.2, Figure 3.1.
 """
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
@@ -15,11 +16,10 @@ from scipy import ndimage
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate, mean_estimate
-from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.noise_maze import noise_maze
-from reproduction.engine.results_table import tally
+from reproduction.chapter3.learning.grid_tasks import problem_of
 
 PRINTED, PRINTED_OF = (42, 48), 76
 """Useful actions in the two mazes of Figure 3.1, and all actions there."""
@@ -71,9 +71,7 @@ def prior_of(world: GridWorld, goals: NDArray[np.int64]) -> ActionPrior:
     """The prior from exact optimal policies, without the goals' own rows (E3)."""
     prior = ActionPrior(4)
     for goal, times in zip(*np.unique(goals, return_counts=True), strict=True):
-        best = best_actions(optimal_q(world.task(int(goal)).tables(), world.discount))
-        best[goal] = False  # at the goal every action ties: nothing was chosen there
-        prior.update(np.arange(world.n_states), best, weight=float(times))
+        prior.update(np.arange(world.n_states), problem_of(world, int(goal), ()).best, weight=float(times))
     return prior
 
 
@@ -118,11 +116,11 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """How many mazes have each number of useful actions, and one maze for each printed share."""
     found = []
     for generator in settings["generators"]:
-        mazes = _mazes(results, generator)
-        found += tally(
-            [{"generator": generator, **{key: maze[key] for key in ("useful", "actions")}} for maze in mazes],
-            "mazes",
-        )
+        counts = Counter((maze["useful"], maze["actions"]) for maze in _mazes(results, generator))
+        found += [
+            {"generator": generator, "useful": useful, "actions": actions, "mazes": n}
+            for (useful, actions), n in sorted(counts.items())
+        ]
     for printed in map(str, PRINTED):
         examples = (r["examples"][printed] for r in results if printed in r["examples"])
         found += [{"example": int(printed), **example} for example in examples][:1]

@@ -16,24 +16,13 @@ from lifelore.core.planning.planning import learnt_best_actions
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.lattice import lattice
-from reproduction.chapter3.learning.grid_tasks import (
-    PLAIN,
-    STATE,
-    Problem,
-    Trained,
-    at_default,
-    choices_of,
-    compared,
-    curve_rows,
-    learn_task,
-    learnt_by_choice,
-    problem_of,
-    returns_of,
-    rows_of,
-)
+from reproduction.chapter3.learning import grid_tasks
+from reproduction.chapter3.learning.grid_tasks import PLAIN, STATE, Problem, Trained
 from reproduction.chapter3.learning.schedules import schedule_of
+from reproduction.engine.learning_run import learnt
 
 PRIOR = "eps_qsap"
+rows = grid_tasks.curve_rows
 
 
 class Tasks(NamedTuple):
@@ -51,17 +40,19 @@ def run_of(settings: Mapping, seed: int, number: int) -> Tasks:
     for name in ("training", "testing"):
         own = (seed, "C3.2", number, name)
         goals = stream(*own).permutation(world.n_states)[: settings[f"{name}_tasks"]]
-        tasks.append([problem_of(world, int(goal), (*own, i)) for i, goal in enumerate(goals)])
+        tasks.append([grid_tasks.problem_of(world, int(goal), (*own, i)) for i, goal in enumerate(goals)])
     return Tasks(world, *tasks)
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: both learners by choice, and the first ten returns with the prior made task by task."""
-    run, default = run_of(settings, seed, cell["run"]), choices_of(settings)[0]
+    run, default = run_of(settings, seed, cell["run"]), grid_tasks.choices_of(settings)[0]
     schedule = schedule_of(settings, default["schedule"])
     prior = online_prior(run, default, schedule)
-    online = returns_of(run.testing, lambda p: rows_of(p, prior, default["form"], default["ties"]), schedule)
-    found = learnt_by_choice(settings, run.testing, {PRIOR: Trained(STATE, run.training)}, cell["run"])
+    online = grid_tasks.returns_of(
+        run.testing, lambda p: grid_tasks.rows_of(p, prior, default["form"], default["ties"]), schedule
+    )
+    found = grid_tasks.learnt_by_choice(settings, run.testing, {PRIOR: Trained(STATE, run.training)}, cell["run"])
     return {**cell, **found, "online": float(online[:, :10].mean())}
 
 
@@ -72,7 +63,8 @@ def online_prior(run: Tasks, choice: Mapping, schedule: Schedule) -> ActionPrior
     """
     prior = ActionPrior(4, choice["alpha0"])
     for problem in run.training:
-        q = learn_task(problem, rows_of(problem, prior, choice["form"], choice["ties"]), schedule)[1].q
+        rows = grid_tasks.rows_of(problem, prior, choice["form"], choice["ties"])
+        q = learnt(problem.tables, problem.stream, rows, schedule)[1].q
         prior.update(np.arange(len(q)), learnt_best_actions(q))
     return prior
 
@@ -88,8 +80,8 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     )
     optimal = np.array([result["optimal"] for result in results])
     return {
-        "to_80_eps_qsap": at_default(results, "to_80", PRIOR),
-        "to_80_q_learning": at_default(results, "to_80", PLAIN),
+        "to_80_eps_qsap": grid_tasks.at_default(results, "to_80", PRIOR),
+        "to_80_q_learning": grid_tasks.at_default(results, "to_80", PLAIN),
         "optimal_return": mean_estimate(optimal),
         "online_minus_exact": ratio_estimate(online - exact, optimal - plain),
     }
@@ -97,15 +89,10 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 def _numbers(results: Sequence[Mapping], place: int) -> dict[str, Estimate]:
     firsts = [r["choices"][place][PRIOR]["first"] for r in results if place < len(r["choices"])]
-    return {"first": mean_estimate(firsts), **compared(results, place, PRIOR, PLAIN)}
+    return {"first": mean_estimate(firsts), **grid_tasks.compared(results, place, PRIOR, PLAIN)}
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """The comparison by schedule, ties, form and α⁰."""
-    for place, choice in enumerate(choices_of(settings)):
+    for place, choice in enumerate(grid_tasks.choices_of(settings)):
         yield choice, _numbers(results, place)
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The learning curves of the first run's tasks."""
-    return curve_rows(results)

@@ -14,22 +14,12 @@ from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.grids.lattice import lattice
 from lifelore.domains.grids.noise_maze import noise_maze
-from reproduction.chapter3.learning.grid_tasks import (
-    PERCEPT,
-    PLACE,
-    PLAIN,
-    Problem,
-    Trained,
-    at_default,
-    choices_of,
-    compared,
-    curve_rows,
-    learnt_by_choice,
-    problem_of,
-)
+from reproduction.chapter3.learning import grid_tasks
+from reproduction.chapter3.learning.grid_tasks import PERCEPT, PLACE, PLAIN, Problem, Trained
 
 PAIRS = {"qpap": ("qpap", PLAIN), "qpap_to_qsap": ("qpap", "qsap"), "qsap": ("qsap", PLAIN)}
 """Compared methods, the first with the second, by the beginning of their measures."""
+rows = grid_tasks.curve_rows
 
 
 class Tasks(NamedTuple):
@@ -45,7 +35,7 @@ def run_of(settings: Mapping, seed: int, number: int) -> Tasks:
     n_tasks, own = settings["training_tasks"], (seed, "C3.3", number)
     world = lattice(settings["size"], settings["discount"])
     goals = stream(*own, "lattice").permutation(world.n_states)[:n_tasks]
-    on_lattice = [problem_of(world, int(goal), (*own, "lattice", i)) for i, goal in enumerate(goals)]
+    on_lattice = [grid_tasks.problem_of(world, int(goal), (*own, "lattice", i)) for i, goal in enumerate(goals)]
     in_mazes = [_in_a_maze(settings, (*own, "training", i)) for i in range(n_tasks)]
     testing = [_in_a_maze(settings, (*own, "testing", i)) for i in range(settings["testing_tasks"])]
     return Tasks(on_lattice, in_mazes, testing)
@@ -55,19 +45,19 @@ def _in_a_maze(settings: Mapping, names: tuple) -> Problem:
     random = stream(*names, "maze")
     density = float(random.uniform(*settings["density"]))
     world = noise_maze(random, settings["size"], density, discount=settings["discount"])
-    return problem_of(world, int(random.integers(world.n_states)), names)
+    return grid_tasks.problem_of(world, int(random.integers(world.n_states)), names)
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: Q-learning and learners with both priors, by choice."""
     run = run_of(settings, seed, cell["run"])
     trained = {"qsap": Trained(PLACE, run.lattice), "qpap": Trained(PERCEPT, run.noise)}
-    return {**cell, **learnt_by_choice(settings, run.testing, trained, cell["run"])}
+    return {**cell, **grid_tasks.learnt_by_choice(settings, run.testing, trained, cell["run"])}
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """Each method's episodes to 80 % at the default."""
-    to_80 = {f"to_80_{name}": at_default(results, "to_80", name) for name in (PLAIN, "qsap", "qpap")}
+    to_80 = {f"to_80_{name}": grid_tasks.at_default(results, "to_80", name) for name in (PLAIN, "qsap", "qpap")}
     return {**to_80, "optimal_return": mean_estimate([result["optimal"] for result in results])}
 
 
@@ -75,20 +65,15 @@ def _numbers(results: Sequence[Mapping], place: int) -> dict[str, Estimate]:
     return {
         f"{name}_{measure}": number
         for name, pair in PAIRS.items()
-        for measure, number in compared(results, place, *pair).items()
+        for measure, number in grid_tasks.compared(results, place, *pair).items()
         if measure != "to_50_ratio"
     }
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """The comparisons by schedule, ties, form and α⁰."""
-    for place, choice in enumerate(choices_of(settings)):
+    for place, choice in enumerate(grid_tasks.choices_of(settings)):
         yield choice, _numbers(results, place)
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The learning curves of the first run's tasks."""
-    return curve_rows(results)
 
 
 def check(settings: Mapping) -> None:

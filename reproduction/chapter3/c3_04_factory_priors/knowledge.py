@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.learning.known_world import GOAL, goal_distances
 from lifelore.domains.factory.contexts import TO_ASSEMBLE, TO_PROCURE, items_flag
 from lifelore.domains.factory.factory import ASSEMBLE, PROCURE, Factory, FactoryTask
 
@@ -53,16 +54,9 @@ def _area_advice(factory: Factory, which: int) -> NDArray[np.bool_]:
     return advice
 
 
-def distances(factory: Factory, targets: NDArray[np.bool_]) -> NDArray[np.int64]:
+def distances(factory: Factory, targets: NDArray[np.bool_]) -> NDArray[np.int32]:
     """(n_cells,) moves to the nearest cell of `targets` (n_cells,) bool; walls are walked round."""
-    distance = np.where(targets, 0, factory.n_cells)
-    neighbour = factory.floor.neighbour
-    while True:
-        beside = np.where(neighbour >= 0, distance[neighbour], factory.n_cells).min(axis=1) + 1
-        closer = np.minimum(distance, beside)
-        if (closer == distance).all():
-            return distance
-        distance = closer
+    return goal_distances(factory.floor.neighbour, np.where(targets, GOAL, 0).astype(np.int8))
 
 
 def _nearer(factory: Factory, area: NDArray[np.bool_]) -> NDArray[np.bool_]:

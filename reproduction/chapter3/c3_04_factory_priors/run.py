@@ -47,7 +47,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         rows = None
         if method != UNIFORM:
             prior = learning.with_pseudo_count(priors[how["encoding"] or method], how["alpha0"])
-            rows = learning.rows_of(problem, prior, how["encoding"], how["ties"])
+            rows = learning.rows_of(problem, how["encoding"], prior.probs, how["ties"])
         schedule = schedule_of({**settings, **how}, how["schedule"])
         curve, learner = learnt(problem.tables, problem.stream, rows, schedule)
         found = summary([curve], settings["early"], is_default(grid, how, but=["max_steps"]))
@@ -55,8 +55,8 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
     return {
         **cell,
-        "optimal": problem.solved.optimal_reward,
-        "optimal_return": problem.solved.optimal_return,
+        "optimal": problem.optimal,
+        "optimal_return": problem.optimal_return,
         "invariances": least_invariance(problem, priors[grid.default["encoding"]], grid.default),
         "found": list(run_grid(grid, METHODS, numbers)),
     }
@@ -67,7 +67,7 @@ def _priors(settings: Mapping, training: list[tuple[int, ...]], problem: Problem
     known = [learning.solved(components, settings["discount"]) for components in training]
     found = {encoding: learning.exact_prior(known, encoding, 1.0) for encoding in settings["encoding"]}
     for name, advice_of in ADVICE.items():
-        found[name] = learning.hand_made_prior(advice_of(problem.solved.task), len(training), 1.0)
+        found[name] = learning.hand_made_prior(advice_of(problem.task), len(training), 1.0)
     return found
 
 
@@ -76,7 +76,7 @@ def least_invariance(problem: Problem, prior: ActionPrior, default: Mapping) -> 
     contexts = contexts_of(problem, default["encoding"])
     probs = learning.with_pseudo_count(prior, default["alpha0"]).probs(contexts)
     even = np.full_like(probs, 1 / N_ACTIONS)
-    held = invariances(problem.solved.task).values()
+    held = invariances(problem.task).values()
     return min((1 if one.wanted else -1) * (one.mass(probs) - one.mass(even)) for one in held)
 
 

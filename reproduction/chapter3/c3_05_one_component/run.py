@@ -19,7 +19,7 @@ from reproduction.chapter3.factory.learning import LEARNT, problem_of, tasks_of,
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.grid import Cell, Grid
 from reproduction.engine.learning_run import learnt
-from reproduction.engine.results_table import ResultsTable, curve_of, having
+from reproduction.engine.records import curve_of, having, nested, values_of
 
 SOURCES = ("exact", "learnt")
 N_COMPONENTS = 9
@@ -61,7 +61,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     optimal = []
     for n, components in enumerate(tasks):
         problem = problem_of(settings, components, (seed, "factory", k, run, n))
-        optimal.append(problem.solved.optimal_reward)
+        optimal.append(problem.optimal)
         own = None
         for record in found:
             if not (n in asked or is_default(grid, record, but=["source"])):
@@ -70,14 +70,14 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
             rows = None
             if record["method"] == LEARNT:
                 prior = with_pseudo_count(priors[record["source"], record["encoding"]], record["alpha0"])
-                rows = learning.rows_of(problem, prior, record["encoding"], record["ties"])
+                rows = learning.rows_of(problem, record["encoding"], prior.probs, record["ties"])
             schedule = schedule_of({**settings, "max_steps": record["max_steps"]}, record["schedule"])
             curve, learner = learnt(problem.tables, problem.stream, rows, schedule)
             record["rewards"].append(float(curve.rewards.mean()))
             if record["source"] == "learnt":
-                own = tried_actions(learner, problem.solved.task.completed)
+                own = tried_actions(learner, problem.task.completed)
         for (source, encoding), prior in priors.items():
-            best = problem.solved.best if source == "exact" else own
+            best = problem.best if source == "exact" else own
             if best is not None:
                 prior.update(learning.contexts_of(problem, encoding), best)
     seen = [components in tasks[:n] for n, components in enumerate(tasks)]
@@ -95,8 +95,8 @@ class Sequences(NamedTuple):
     @classmethod
     def of(cls, results: Sequence[Mapping], grid: Grid, cell: Mapping) -> "Sequences":
         """The sequences of `results`, all of the same number of components."""
-        table = ResultsTable.nested(results, "found", keys=("method", *grid.default))
-        learnt, uniform = (table.values("rewards", **grid.where(m, cell)) for m in (LEARNT, UNIFORM))
+        found = nested(results, "found")
+        learnt, uniform = (values_of(found, "rewards", **grid.where(m, cell)) for m in (LEARNT, UNIFORM))
         return cls(learnt - uniform, np.array([result["optimal"] for result in results]) - uniform)
 
     def share(self, tasks: Sequence[int]) -> NDArray[np.float64]:
@@ -142,7 +142,9 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Ce
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Mean reward and its standard deviation by number of prior tasks."""
     own, grid = having(results, components=settings["components"][0]), grid_of(settings)
-    table = ResultsTable.nested(own, "found", keys=("method", *grid.default))
-    found = {method: table.values("rewards", **grid.where(method, grid.default)) for method in (UNIFORM, LEARNT)}
+    found = {
+        method: values_of(nested(own, "found"), "rewards", **grid.where(method, grid.default))
+        for method in (UNIFORM, LEARNT)
+    }
     found["optimal"] = np.array([result["optimal"] for result in own])
     return [{"curve_of": name, **curve_of(values)} for name, values in found.items()]

@@ -21,7 +21,7 @@ from reproduction.chapter3.c3_05_one_component.run import (
     windows,
 )
 from reproduction.engine.grid import Cell
-from reproduction.engine.results_table import having
+from reproduction.engine.records import having
 
 __all__ = ["cells", "check", "measure", "readings", "rows", "run_cell", "shared"]
 

@@ -10,8 +10,7 @@ from lifelore.core.learning.q_learning import Rows
 from lifelore.domains.factory.contexts import PHI
 from reproduction.chapter3.factory import comparison, modified_tasks
 from reproduction.chapter3.factory.comparison import UNIFORM
-from reproduction.chapter3.factory.learning import with_pseudo_count
-from reproduction.chapter3.factory.modified_tasks import Problem
+from reproduction.chapter3.factory.learning import Problem, rows_of, with_pseudo_count
 from reproduction.engine.grid import Cell, Grid
 
 STATE = "state"
@@ -41,7 +40,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     def rows_of_method(method: str, how: Cell) -> Callable[[Problem], Rows]:
         name = f"{STATE} {how['encoding']}" if method == STATE else method
         prior = with_pseudo_count(priors[name, how["policies"]], how["alpha0"])
-        return lambda problem: modified_tasks.rows_of(problem, name, prior.probs, how["ties"])
+        return lambda problem: rows_of(problem, name, prior.probs, how["ties"])
 
     return {**cell, **modified_tasks.compared(settings, grid_of(settings), own, METHODS, rows_of_method)}
 

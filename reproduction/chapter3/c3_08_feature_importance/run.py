@@ -17,9 +17,10 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.domains.factory.contexts import PHI
 from reproduction.chapter3.factory import comparison, modified_tasks
-from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET, Problem
+from reproduction.chapter3.factory.learning import N_ACTIONS, Problem, contexts_of
+from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET
 from reproduction.engine.grid import Cell, Grid
-from reproduction.engine.results_table import ResultsTable
+from reproduction.engine.records import having, nested
 
 KEYS = ("policies", "over", "actions")
 GAPS = {"gap_phi4": ("phi4", "phi4"), "gap_phi3": ("phi3", "phi3"), "gap_phi2_to_phi1": ("phi2", "phi1")}
@@ -37,10 +38,10 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 
 def _found(settings: Mapping, own: tuple) -> Iterator[dict]:
-    priors = {key: ActionPrior(modified_tasks.N_ACTIONS) for key in product(settings["over"], settings["actions"])}
+    priors = {key: ActionPrior(N_ACTIONS) for key in product(settings["over"], settings["actions"])}
     for i in range(max(settings["policies"])):
         problem = modified_tasks.problem_of(settings, (*own, "training", i))
-        codes = modified_tasks.contexts_of(problem, "phi4")
+        codes = contexts_of(problem, "phi4")
         for (over, actions), prior in priors.items():
             states = counted_states(problem, over)
             prior.update(codes[states], counted_actions(problem.best[states], actions))
@@ -98,8 +99,7 @@ def _least_and_largest(
 
 
 def _increases(results: Sequence[Mapping], cell: Mapping) -> list[Mapping[str, Mapping[str, float]]]:
-    table = ResultsTable.nested(results, "found", keys=KEYS).select(**cell)
-    return [record["increase"] for record in table.records]
+    return [record["increase"] for record in having(nested(results, "found"), **cell)]
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

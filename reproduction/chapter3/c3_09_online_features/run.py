@@ -17,7 +17,7 @@ from reproduction.chapter3.factory.online_selection import FULL, SELECTED, Onlin
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.grid import Cell, Grid
 from reproduction.engine.learning_run import learnt
-from reproduction.engine.results_table import ResultsTable, curve_of
+from reproduction.engine.records import Record, curve_of, nested, values_of
 
 METHODS = (UNIFORM, FULL, SELECTED)
 PARTS = ("first", "last")
@@ -38,11 +38,6 @@ shared = (
 def grid_of(settings: Mapping) -> Grid:
     """The grid: whose policies count × schedules, every other choice alone."""
     return comparison.grid_of(settings, ("source", "schedule"), ("ties", "max_steps", "alpha0"))
-
-
-def table_of(settings: Mapping, results: Sequence[Mapping]) -> ResultsTable:
-    """The series of every method in every cell of the grid."""
-    return ResultsTable.nested(results, "found", keys=("method", *grid_of(settings).default))
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
@@ -80,17 +75,19 @@ def mask_of(names: Sequence[str]) -> int:
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:
     """The comparisons in every cell of the grid."""
-    grid, table = grid_of(settings), table_of(settings, results)
+    grid, series = grid_of(settings), nested(results, "found")
     for cell in grid.cells:
-        yield cell, _numbers(results, grid, table, cell)
+        yield cell, _numbers(results, grid, series, cell)
 
 
-def _numbers(results: Sequence[Mapping], grid: Grid, table: ResultsTable, cell: Mapping) -> dict[str, Estimate]:
+def _numbers(
+    results: Sequence[Mapping], grid: Grid, series: Sequence[Record], cell: Mapping
+) -> dict[str, Estimate]:
     """Differences of rewards as shares of the distance from no prior's first episode to the optimum."""
 
     def mean(method: str, part: str) -> NDArray[np.float64]:
         """Over the tasks after the first, in which nobody has a prior; (n_runs,)."""
-        return table.values(part, **grid.where(method, cell))[:, 1:].mean(axis=1)
+        return values_of(series, part, **grid.where(method, cell))[:, 1:].mean(axis=1)
 
     distance = np.array([np.mean(result["optimal"][1:]) for result in results]) - mean(UNIFORM, "first")
     return {
@@ -101,12 +98,12 @@ def _numbers(results: Sequence[Mapping], grid: Grid, table: ResultsTable, cell: 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Mean reward and its standard deviation in the first and the last episode of each task, by method."""
-    grid, table = grid_of(settings), table_of(settings, results[:DRAWN])
+    grid, series = grid_of(settings), nested(results[:DRAWN], "found")
     return [
         {
             "curve_of": method,
             "part": part,
-            **curve_of(table.values(part, **grid.where(method, grid.default))),
+            **curve_of(values_of(series, part, **grid.where(method, grid.default))),
         }
         for part in PARTS
         for method in METHODS

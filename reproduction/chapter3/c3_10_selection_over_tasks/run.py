@@ -9,12 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate
-from reproduction.chapter3.c3_09_online_features.run import DRAWN, grid_of, mask_of, run_cell, shared, table_of
+from reproduction.chapter3.c3_09_online_features.run import DRAWN, grid_of, mask_of, run_cell, shared
 from reproduction.chapter3.factory.comparison import is_default
 from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET
 from reproduction.chapter3.factory.online_selection import SELECTED
 from reproduction.engine.estimates import exact_share
 from reproduction.engine.grid import Cell
+from reproduction.engine.records import nested, values_of
 
 __all__ = ["readings", "rows", "run_cell", "shared"]
 
@@ -24,7 +25,7 @@ GOAL = mask_of(CARDINALS)
 def masks_of(settings: Mapping, results: Sequence[Mapping], cell: Mapping) -> NDArray[np.int64]:
     """Sets chosen after each task in a cell of the grid as bit masks, (n_runs, n_tasks)."""
     where = grid_of(settings).where(SELECTED, cell)
-    return table_of(settings, results).values("chosen", **where).astype(np.int64)
+    return values_of(nested(results, "found"), "chosen", **where).astype(np.int64)
 
 
 def shares(masks: NDArray[np.int64]) -> NDArray[np.float64]:

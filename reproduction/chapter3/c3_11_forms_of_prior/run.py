@@ -18,8 +18,7 @@ from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.streams import stream
 from reproduction.chapter3.factory import comparison, modified_tasks
 from reproduction.chapter3.factory.comparison import UNIFORM, Comparison
-from reproduction.chapter3.factory.learning import with_pseudo_count
-from reproduction.chapter3.factory.modified_tasks import Problem
+from reproduction.chapter3.factory.learning import Problem, rows_of, with_pseudo_count
 from reproduction.engine.grid import Cell, Grid
 
 PROPORTION, DIRICHLET, SOFTMAX = FORMS = ("proportion", "dirichlet", "softmax")
@@ -49,7 +48,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
         def rows_for(problem: Problem) -> Rows:
             random = stream(*problem.stream, "dirichlet")  # drawn from once for the task
-            return modified_tasks.rows_of(
+            return rows_of(
                 problem, how["features"], lambda codes: probs_of(prior, codes, form, how, random), how["ties"]
             )
 

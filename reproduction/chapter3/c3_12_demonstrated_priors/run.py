@@ -17,7 +17,7 @@ from lifelore.core.streams import stream
 from reproduction.chapter3.c3_12_demonstrated_priors.simulated_person import simulated_demonstration
 from reproduction.chapter3.factory import comparison, modified_tasks
 from reproduction.chapter3.factory.comparison import UNIFORM
-from reproduction.chapter3.factory.modified_tasks import N_ACTIONS, Problem, contexts_of
+from reproduction.chapter3.factory.learning import N_ACTIONS, Problem, contexts_of, exact_prior, rows_of
 from reproduction.engine.grid import Cell, Grid
 
 SELF, SHOWN = "self-trained", "shown"
@@ -50,8 +50,12 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
     def rows_of_method(method: str, how: Cell) -> Callable[[Problem], Rows]:
         known = training[: how["trajectories"]]
-        prior = self_trained(known, how) if method == SELF else from_shown(known, shown_by(how["people"]), how)
-        return lambda problem: modified_tasks.rows_of(problem, how["features"], prior.probs, how["ties"])
+        # Every state of the exact policies counts, or each step of the demonstrations once (Eq. 3.7, 3.3).
+        if method == SELF:
+            prior = exact_prior(known, how["features"], how["alpha0"])
+        else:
+            prior = from_shown(known, shown_by(how["people"]), how)
+        return lambda problem: rows_of(problem, how["features"], prior.probs, how["ties"])
 
     return {**cell, **modified_tasks.compared(settings, grid_of(settings), own, METHODS, rows_of_method)}
 
@@ -64,14 +68,6 @@ def demonstrate(problem: Problem, people: str, number: int) -> Demonstration | N
         problem.tables, problem.best, skills[turn], stream(*problem.stream, people, "person"),
         task=str(number), agent=f"person {turn}", most_steps=PATIENCE,
     )  # fmt: skip
-
-
-def self_trained(known: Sequence[Problem], how: Cell) -> ActionPrior:
-    """The prior from the exact policies of the training tasks, every state counted (Eq. 3.7)."""
-    prior = ActionPrior(N_ACTIONS, how["alpha0"])
-    for problem in known:
-        prior.update(contexts_of(problem, how["features"]), problem.best)
-    return prior
 
 
 def from_shown(known: Sequence[Problem], shown: Sequence[Demonstration | None], how: Cell) -> ActionPrior:

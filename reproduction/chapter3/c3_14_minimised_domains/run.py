@@ -24,7 +24,7 @@ from reproduction.chapter3.c3_14_minimised_domains.minimised_worlds import Solve
 from reproduction.chapter3.learning.grid_tasks import WINDOW, drawn_starts
 from reproduction.chapter3.learning.schedules import Epsilon, schedule_of
 from reproduction.engine.estimates import share_of
-from reproduction.engine.results_table import having
+from reproduction.engine.records import having
 
 TRACE = 1e-12
 EQUAL = 1e-9

@@ -14,15 +14,10 @@ from lifelore.action.advice.goal_model import extend_goal_models
 from lifelore.core.metrics import Estimate
 from lifelore.domains.advice.explorers import EXPLORERS
 from reproduction.chapter3.advice import mazes
-from reproduction.chapter3.advice.learning import (
-    errand_tables,
-    final_reward,
-    learner_schedule,
-    reached_by_learner,
-)
+from reproduction.chapter3.advice.learning import errand_tables, final_reward, learner_schedule, reached_by_learner
 from reproduction.chapter3.advice.mazes import AGENTS, KAPPA, WINDOW, Maze
 from reproduction.chapter3.learning.schedules import PRINTED
-from reproduction.engine.results_table import having
+from reproduction.engine.records import having
 
 cells = mazes.maze_cells
 LEARNER = "q_learning"

@@ -13,17 +13,12 @@ from numpy.typing import NDArray
 from lifelore.action.advice.advisor import Advisor
 from lifelore.core.metrics import Estimate
 from reproduction.chapter3.advice import mazes
-from reproduction.chapter3.advice.learning import (
-    errand_tables,
-    final_reward,
-    learner_schedule,
-    reached_by_learner,
-)
+from reproduction.chapter3.advice.learning import errand_tables, final_reward, learner_schedule, reached_by_learner
 from reproduction.chapter3.advice.mazes import Maze
-from reproduction.chapter3.learning.grid_tasks import block_curve, even_blocks
+from reproduction.chapter3.learning.grid_tasks import block_curve
 from reproduction.chapter3.learning.schedules import Epsilon
 from reproduction.engine.grid import combinations
-from reproduction.engine.results_table import having
+from reproduction.engine.records import having, in_blocks
 
 cells = mazes.maze_cells
 HANDFUL = 10
@@ -54,7 +49,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         drawn = cell["maze"] * settings["tasks"] < DRAWN
         for way, reached in zip(WAYS, curves, strict=True):
             found[f"final_{way}"] = float(np.mean([final_reward(of_task) for of_task in reached]))
-            found[f"curve_{way}"] = np.round(1000 * even_blocks(reached)).tolist() if drawn else []
+            found[f"curve_{way}"] = np.round(1000 * in_blocks(reached)).tolist() if drawn else []
     return {**cell, **found}
 
 

@@ -19,8 +19,8 @@ from reproduction.chapter3.advice import mazes
 from reproduction.chapter3.advice.learning import learner_schedule
 from reproduction.chapter3.advice.mazes import AGENTS, KAPPA, Maze
 from reproduction.chapter3.learning.schedules import PRINTED
-from reproduction.engine.learning_run import learnt
-from reproduction.engine.results_table import having
+from reproduction.engine.learning_run import greedy_probs, learnt
+from reproduction.engine.records import having
 
 cells = mazes.maze_cells
 EARLY, LATE = "q_early", "q_late"
@@ -65,14 +65,8 @@ def agent_policies(settings: Mapping, maze: Maze) -> dict[str, list]:
             learnt(errand.tables, (*maze.names, "learner", number), None, schedule)[1]
             for number, errand in enumerate(mazes.errands_of(maze, settings["tasks"]))
         ]
-        found[name] = [greedy_policy(learner.q, float(schedule.epsilon[-1])) for learner in learners]
+        found[name] = [greedy_probs(learner.q, float(schedule.epsilon[-1])) for learner in learners]
     return found
-
-
-def greedy_policy(q: NDArray[np.float64], epsilon: float) -> NDArray[np.float64]:
-    """The ε-greedy policy (n_states, n_actions) of the values `q`, ties alike."""
-    best = q == q.max(axis=1, keepdims=True)
-    return (1 - epsilon) * best / best.sum(axis=1, keepdims=True) + epsilon / q.shape[1]
 
 
 def _numbers(settings: Mapping, results: Sequence[Mapping], place: int) -> dict[str, Estimate]:

@@ -13,7 +13,7 @@ from lifelore.core.metrics import Estimate
 from lifelore.domains.advice.explorers import EXPLORERS
 from reproduction.chapter3.advice import mazes
 from reproduction.chapter3.advice.advised_walk import Walk
-from reproduction.engine.results_table import having
+from reproduction.engine.records import having
 
 cells = mazes.maze_cells
 BLOCKS = 50

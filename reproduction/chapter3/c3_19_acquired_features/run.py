@@ -20,10 +20,12 @@ from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, 
 from lifelore.core.streams import stream
 from lifelore.domains.factory.contexts import PHI
 from lifelore.domains.factory.factory import ACTION_NAMES
-from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET, Problem, problem_of, rewards_of
+from reproduction.chapter3.factory.learning import Problem
+from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET, problem_of
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.estimates import exact_share
 from reproduction.engine.grid import combinations
+from reproduction.engine.learning_run import curves_of
 
 PLAIN, START, ACQUIRED, ALL = METHODS = ("uniform", "start", "acquired", "all")
 STARTS = {"phi1": PHI["phi1"], "items": ("Items",), "north": ("PosUM", "Items")}
@@ -93,8 +95,9 @@ def _numbers(settings: Mapping, testing: list[Counted], prior: ActionPrior | Non
     def rows_for(problem: Problem):
         return None if prior is None else prior_rows(problem.tables, codes[id(problem)], prior.probs)
 
-    rewards = rewards_of([task.problem for task in testing], rows_for, schedule_of(settings, settings["schedule"]))
-    found: dict = {"rewards": np.round(rewards.mean(axis=0), 1).tolist()}
+    schedule = schedule_of(settings, settings["schedule"])
+    curves = curves_of([task.problem for task in testing], rows_for, schedule)
+    found: dict = {"rewards": np.round(np.mean([curve.rewards for curve in curves], axis=0), 1).tolist()}
     if prior is not None:
         parts = [doubt(prior.probs(codes[id(task.problem)]), task.problem.best) for task in testing]
         found["entropy"], found["surprise"] = np.mean(parts, axis=0).tolist()

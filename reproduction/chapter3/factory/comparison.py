@@ -12,12 +12,10 @@ from numpy.typing import NDArray
 from lifelore.core.learning.curve import Curve
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from reproduction.engine.grid import Cell, Grid
-from reproduction.engine.results_table import ResultsTable, curve_of
+from reproduction.engine.records import curve_of, having, in_blocks, nested, values_of
 
 UNIFORM = "uniform"
 """Q-learning without a prior."""
-POINTS = 100
-"""Most points of a stored learning curve; more make result files larger."""
 
 Pairs = Mapping[str, tuple[str, ...]]
 """Name of a measure → the two methods compared, and the rewards: ``all`` unless it names others."""
@@ -55,23 +53,17 @@ def summary(curves: Sequence[Curve], early: int, drawn: bool) -> dict:
     return {**found, "rewards": in_blocks(rewards).tolist()} if drawn else found
 
 
-def in_blocks(rewards: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Means of (n, n_episodes) rewards in even blocks of episodes, (n, at most `POINTS`)."""
-    blocks = np.array_split(rewards, min(POINTS, rewards.shape[1]), axis=1)
-    return np.column_stack([block.mean(axis=1) for block in blocks])
-
-
 class Comparison:
     """The records of every method in every cell of a grid, run by run; each result has its ``optimal`` reward."""
 
     def __init__(self, results: Sequence[Mapping], grid: Grid) -> None:
         self.grid = grid
-        self.table = ResultsTable.nested(results, "found", keys=("method", *grid.default))
+        self.records = nested(results, "found")
         self.optimal = np.array([result["optimal"] for result in results], float)
 
     def values(self, method: str, cell: Mapping, number: str = "all") -> NDArray[np.float64]:
         """A number of a method, run by run."""
-        return self.table.values(number, **self.grid.where(method, cell))
+        return values_of(self.records, number, **self.grid.where(method, cell))
 
     def distance(self, cell: Mapping, number: str = "all") -> NDArray[np.float64]:
         """From learning without a prior to the optimum, run by run."""
@@ -93,7 +85,7 @@ class Comparison:
 
     def curve(self, method: str, cell: Mapping) -> dict:
         """A row with a method's ``mean`` rewards and their standard ``deviation`` across the tasks of all runs."""
-        records = self.table.select(**self.grid.where(method, cell)).records
+        records = having(self.records, **self.grid.where(method, cell))
         curves = [of_task for record in records for of_task in record["rewards"]]
         return {"curve_of": method, **curve_of(curves)}
 

@@ -13,9 +13,8 @@ from lifelore.action.priors.policy_counts import actions_to_count
 from lifelore.core.learning.curve import Curve
 from lifelore.core.learning.q_learning import QLearner, Schedule
 from lifelore.domains.factory.factory import ACTION_NAMES
-from reproduction.chapter3.factory import modified_tasks
-from reproduction.chapter3.factory.learning import tried_actions
-from reproduction.chapter3.factory.modified_tasks import FULL_SET, N_ACTIONS, Problem
+from reproduction.chapter3.factory.learning import N_ACTIONS, Problem, contexts_of, rows_of, tried_actions
+from reproduction.chapter3.factory.modified_tasks import FULL_SET
 from reproduction.engine.learning_run import learnt
 
 FULL, SELECTED = "full", "selected"
@@ -58,9 +57,9 @@ class OnlineAgent:
     def learn(self, problem: Problem, schedule: Schedule) -> Curve:
         """Learn a task by ε-QPAP with the prior so far (Alg. 4), and count its policy."""
         prior = self.selection or self._full
-        rows = modified_tasks.rows_of(problem, "phi4", prior.probs, self.ties)
+        rows = rows_of(problem, "phi4", prior.probs, self.ties)
         curve, learner = learnt(problem.tables, problem.stream, rows, schedule)
-        prior.update(modified_tasks.contexts_of(problem, "phi4"), counted(problem, learner, self.source))
+        prior.update(contexts_of(problem, "phi4"), counted(problem, learner, self.source))
         return curve
 
     @property

@@ -14,7 +14,7 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import prior_rows
 from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.learning.learning_metrics import episodes_to_threshold
-from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
+from lifelore.core.learning.q_learning import Rows, Schedule
 from lifelore.core.mdp import Tables
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
 from lifelore.core.planning.planning import best_actions, mean_start_value, optimal_q
@@ -22,7 +22,8 @@ from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine.grid import combinations
-from reproduction.engine.learning_run import learnt
+from reproduction.engine.learning_run import curves_of
+from reproduction.engine.records import in_blocks
 
 STATE, PLACE, PERCEPT = "state", "place", "percept"
 """What a prior may be conditioned on; a place is row and column, the same number in every world of a size."""
@@ -31,8 +32,6 @@ CHOICES = ("schedule", "ties", "form", "alpha0")
 PLAIN = "q_learning"
 WINDOW = 10
 """Episodes of the moving mean that must reach a percentage of the optimum."""
-BLOCKS = 100
-"""Points of a drawn learning curve."""
 
 
 class Problem(NamedTuple):
@@ -92,17 +91,11 @@ def rows_of(problem: Problem, prior: ActionPrior, form: str, ties: str, kind: st
     return prior_rows(problem.tables, problem.contexts[kind], probs_of, ties)
 
 
-def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[NDArray[np.float64], QLearner]:
-    """Returns (n_episodes,) and the learner after all episodes; without `rows` it is plain Q-learning."""
-    curve, learner = learnt(problem.tables, problem.stream, rows, schedule)
-    return curve.returns, learner
-
-
 def returns_of(
     problems: Sequence[Problem], rows_for: Callable[[Problem], Rows | None], schedule: Schedule
 ) -> NDArray[np.float64]:
     """Learning curves of problems, (n_problems, n_episodes)."""
-    return np.array([learn_task(p, rows_for(p), schedule)[0] for p in problems])
+    return np.array([curve.returns for curve in curves_of(problems, rows_for, schedule)])
 
 
 def drawn_starts(tables: Tables, names: tuple, n_episodes: int) -> list[int]:
@@ -112,7 +105,7 @@ def drawn_starts(tables: Tables, names: tuple, n_episodes: int) -> list[int]:
 
 
 def start_values(problem: Problem, n_episodes: int) -> NDArray[np.float64]:
-    """The best return from where each episode of `learn_task` starts, (n_episodes,).
+    """The best return from where each episode of `learnt` starts, (n_episodes,).
 
     Episodes start at random, near the goal or far from it. Measured against the best from the same starts, a
     lucky stretch of starts does not pass for learning.
@@ -152,7 +145,7 @@ def learnt_by_choice(
         for name, one in trained.items():
             returns[name] = _returns_with(testing, one, choice, schedule)
         if not curves:
-            curves = {name: block_curve(even_blocks(r), settings["episodes"]) for name, r in returns.items()}
+            curves = {name: block_curve(in_blocks(r), settings["episodes"]) for name, r in returns.items()}
         found.append({name: summary(r.mean(axis=0), best) for name, r in returns.items()})
     optimal = float(np.mean([mean_start_value(p.tables, p.values) for p in testing]))
     return {"optimal": optimal, "choices": found, "curves": curves if number == 0 else {}}
@@ -165,20 +158,10 @@ def _returns_with(
     return returns_of(testing, lambda p: rows_of(p, prior, choice["form"], choice["ties"], kind), schedule)
 
 
-def even_blocks(curves: NDArray) -> NDArray[np.float64]:
-    """Means of curves (n, n_episodes) over at most `BLOCKS` even blocks of episodes, (n, n_blocks)."""
-    ends = _block_ends(curves.shape[1])
-    return np.add.reduceat(curves.astype(float), ends[:-1], axis=1) / np.diff(ends)
-
-
-def _block_ends(n_episodes: int) -> NDArray[np.int64]:
-    return np.linspace(0, n_episodes, min(BLOCKS, n_episodes) + 1).astype(np.int64)
-
-
 def block_curve(blocks: NDArray[np.float64], n_episodes: int) -> dict[str, list[float]]:
-    """Mean and deviation over tasks of `even_blocks` (n_tasks, n_blocks), at their middle episodes `x`."""
-    ends = _block_ends(n_episodes)
-    numbers = {"x": (ends[:-1] + ends[1:] + 1) / 2, "mean": blocks.mean(axis=0), "deviation": blocks.std(axis=0)}
+    """Mean and deviation over tasks of `in_blocks` (n_tasks, n_blocks), at their middle episodes `x`."""
+    x = in_blocks(np.arange(1.0, n_episodes + 1)[None])[0]
+    numbers = {"x": x, "mean": blocks.mean(axis=0), "deviation": blocks.std(axis=0)}
     return {name: np.round(of_blocks, 2).tolist() for name, of_blocks in numbers.items()}
 
 
@@ -202,6 +185,6 @@ def at_default(results: Sequence[Mapping], measure: str, name: str) -> Estimate:
     return mean_estimate([result["choices"][0][name][measure] for result in results])
 
 
-def curve_rows(results: Sequence[Mapping]) -> list[dict]:
+def curve_rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """What the figure draws: the curves of run 0."""
     return [{"curve_of": name, **curve} for result in results for name, curve in result["curves"].items()]

@@ -1,1 +1,1 @@
-"""The ball game: `games`, `move_signal`, players and their `play`, `learners`, and the `methods` compared."""
+"""The ball game: `games`, signals of `moves`, players and their `play`, `learners`, and the `methods` compared."""

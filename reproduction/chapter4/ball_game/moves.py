@@ -7,9 +7,11 @@ type. Thesis: §4.8.4.1, §4.8.5.1.
 """
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.compiled.jit import kernel
 from lifelore.domains.ball_game.ball_game import MOVES
+from lifelore.interaction.signals.category_signal import CategorySignal
 
 BEFORE_EDGES = np.array([2.0, 4.0, 8.0, 16.0, 32.0, 64.0])
 AFTER_EDGES = np.array([2.0, 4.0, 6.0, 10.0, 15.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0])
@@ -19,6 +21,24 @@ N_BEFORE, N_AFTER = len(BEFORE_EDGES) + 1, len(AFTER_EDGES) + 1
 N_CONTEXTS = N_BEFORE * N_BEFORE
 N_OUTCOMES = len(FATES) * N_AFTER
 N_SIGNALS = N_CONTEXTS * N_OUTCOMES
+PRIOR_MOVES = 2.0
+"""Moves added to each context, shared out evenly over its outcomes; more trust the counts of training less."""
+
+
+def outcome_probs(counts: ArrayLike) -> NDArray[np.float64]:
+    """P(outcome | context, speed, type), (n_speeds, N_CONTEXTS, N_OUTCOMES, n_types), from counts of moves.
+
+    `counts` are (n_speeds, N_SIGNALS, n_types). Thesis: §4.8.4.1.
+    """
+    counts = np.asarray(counts, np.float64)
+    moves = counts.reshape(len(counts), N_CONTEXTS, N_OUTCOMES, -1) + PRIOR_MOVES / N_OUTCOMES
+    return moves / moves.sum(axis=2, keepdims=True)
+
+
+def move_signal(counts: ArrayLike) -> CategorySignal:
+    """The signal model of moves from counts; contexts are as likely for all types, so that outcomes alone tell."""
+    probs = outcome_probs(counts) / N_CONTEXTS
+    return CategorySignal(probs.reshape(len(probs), N_SIGNALS, -1).transpose(2, 0, 1))
 
 
 @kernel

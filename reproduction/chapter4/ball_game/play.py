@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import BallGame, LossScale, draw_sigma
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from reproduction.chapter4.ball_game.move_signal import MoveSignal
-from reproduction.chapter4.ball_game.moves import N_OUTCOMES, N_SIGNALS, read_moves
+from reproduction.chapter4.ball_game.moves import N_SIGNALS, move_signal, read_moves
 from reproduction.chapter4.ball_game.players import Balls, advance, new_balls, random_states
 
 Ints = NDArray[np.int64]
@@ -39,13 +38,9 @@ class Trained(NamedTuple):
         """V: minus the mean loss of each type at each speed, (n_types, n_speeds)."""
         return -scale.loss(self.steps, self.hits).mean(axis=-1)
 
-    def move_signal(self) -> MoveSignal:
-        """T(s' | s, a; type) in classes."""
-        return MoveSignal.from_counts(self.signals, N_OUTCOMES)
-
     def library(self, scale: LossScale) -> PolicyLibrary:
         """Types × speeds as a policy library whose signals are moves."""
-        return PolicyLibrary.from_samples(-scale.loss(self.steps, self.hits), signal=self.move_signal())
+        return PolicyLibrary.from_samples(-scale.loss(self.steps, self.hits), signal=move_signal(self.signals))
 
 
 def scale_of(normalisation: str, steps: Ints, hits: Ints) -> LossScale:

@@ -16,7 +16,7 @@ from reproduction.chapter4.golf.rounds import (
     learnt_library,
     play_greedily,
 )
-from reproduction.engine.results_table import having
+from reproduction.engine.records import having
 
 FIRST = {None: "greedy", WOOD: "club 1"}
 """The first club: the rule's choice, or club 1 as in the worked example."""

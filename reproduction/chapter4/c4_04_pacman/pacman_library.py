@@ -17,6 +17,7 @@ from lifelore.core.mdp import Tables
 from lifelore.core.streams import stream
 from lifelore.domains.pacman.pacman import MAX_STEPS, N_ACTIONS, STRATEGIES, PacmanMaze, PacmanTask
 from reproduction.chapter4.c4_04_pacman.episode_value import return_moments
+from reproduction.engine.learning_run import greedy_probs
 
 Array = NDArray[np.float64]
 GREATEST = 140.0
@@ -76,12 +77,6 @@ def falling_schedule(epsilon: float, rate: float, n_episodes: int, discount: flo
     return Schedule(epsilon * left, rate * left, MAX_STEPS, discount)
 
 
-def greedy(q: Array) -> Array:
-    """The greedy policy as probabilities (n_rows, n_actions), ties alike."""
-    best = q == q.max(axis=1, keepdims=True)
-    return best / best.sum(axis=1, keepdims=True)
-
-
 def trained_policies(settings: Mapping, here: Sequence[Arena], stream_of: tuple) -> Array:
     """The policy learnt for each type, (n_types, n_observations, n_actions)."""
     names, policies = ("epsilon", "rate", "training_episodes", "training_discount"), []
@@ -89,7 +84,7 @@ def trained_policies(settings: Mapping, here: Sequence[Arena], stream_of: tuple)
     for arena in here:
         learner = arena.begin((*stream_of, "training", arena.task.strategy))
         arena.learn(learner, schedule)
-        policies.append(greedy(learner.q))
+        policies.append(greedy_probs(learner.q))
     return np.array(policies)
 
 

@@ -19,6 +19,7 @@ from lifelore.interaction.selection import BeliefSampling
 from reproduction.chapter4.c4_04_pacman import pacman_library
 from reproduction.chapter4.c4_04_pacman.pacman_library import GREATEST, Arena, falling_schedule
 from reproduction.chapter4.reuse.many_tasks import play_rule
+from reproduction.engine.records import in_blocks
 
 Array = NDArray[np.float64]
 RETURNS, LASTING = "a hundred returns", "every policy from then on"
@@ -30,8 +31,6 @@ LEAST_DEVIATION = 1e-3 * 240
 """Least deviation of exact models: a thousandth of the range of returns, as with learnt models."""
 DRAWN = 5
 """Layouts of Figure 4.8: twenty tasks with four ghosts each."""
-BLOCKS = 100
-"""Points of a drawn curve, each the mean of as many episodes."""
 
 
 def check(settings: Mapping) -> None:
@@ -50,8 +49,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     ``reuse``: by kind of models and meaning of convergence; ``learners``: by learner; None where it never has.
     """
     maze, here = PacmanMaze(settings["rows"], settings["columns"]), (seed, "pacman", cell["layout"])
-    foods = maze.draw_foods(stream(*here, "foods"))
-    arenas = pacman_library.arenas(maze, foods)
+    arenas = pacman_library.arenas(maze, maze.draw_foods(stream(*here, "foods")))
     policies = pacman_library.trained_policies(settings, arenas, here)
     moments = pacman_library.exact_moments(arenas, policies)
     target = moments[0].max(axis=1) - settings["tolerance"] * GREATEST
@@ -74,13 +72,13 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
                 LASTING: first_stretch(good, 1.0, window),
             }
             if number == 0:
-                found["curves"]["BPR"] = in_blocks(paid)
+                found["curves"]["BPR"] = in_hundred(paid)
     for found, arena, goal in zip(tasks, arenas, target, strict=True):
         for name in (*UNITS, Q):
             returns = _learn(settings, name, arena, policies, (*here, "task", arena.task.strategy))
             found["learners"][name] = first_stretch(returns, goal, window)
-            found["curves"][name] = in_blocks(returns)
-    return {**cell, "foods": list(foods), "tasks": tasks}
+            found["curves"][name] = in_hundred(returns)
+    return {**cell, "tasks": tasks}
 
 
 def libraries(
@@ -109,10 +107,9 @@ def first_stretch(returns: Array, target: float, window: int) -> int | None:
     return int(reached[0]) + 1 if reached.size else None
 
 
-def in_blocks(returns: Array) -> list[float]:
+def in_hundred(returns: Array) -> list[float]:
     """Mean returns of even blocks of episodes."""
-    parts = np.array_split(returns, min(BLOCKS, len(returns)))
-    return [round(float(part.mean()), 1) for part in parts]
+    return in_blocks(returns[None])[0].round(1).tolist()
 
 
 def _learn(settings: Mapping, name: str, arena: Arena, policies: Array, stream_of: tuple) -> Array:
@@ -148,12 +145,11 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Curves of twenty tasks, by block of episodes; the library's best and a layout of foods."""
+    """Curves of twenty tasks, by block of episodes, and the library's best."""
     tasks = [task for result in results[:DRAWN] for task in result["tasks"]]
     found = []
     for name, label in (("BPR", "BPR"), (next(iter(UNITS)), "PRQ"), (Q, Q)):
         curves = np.array([task["curves"][name] for task in tasks])
         mean, deviation = (of.round(1).tolist() for of in (curves.mean(axis=0), curves.std(axis=0)))
         found.append({"method": label, "tasks": len(tasks), "mean": mean, "deviation": deviation})
-    best = round(float(np.mean([task["best"] for task in tasks])), 2)
-    return [*found, {"best": best, "foods": results[0]["foods"]}]
+    return [*found, {"best": round(float(np.mean([task["best"] for task in tasks])), 2)}]

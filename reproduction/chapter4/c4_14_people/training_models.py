@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from lifelore.domains.ball_game.ball_game import SIZES, SPEEDS, LossScale
 from lifelore.interaction.adaptation.beat import Beat
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from reproduction.chapter4.ball_game.move_signal import MoveSignal
-from reproduction.chapter4.ball_game.moves import N_OUTCOMES, N_SIGNALS
+from reproduction.chapter4.ball_game.moves import N_SIGNALS, move_signal
 from reproduction.chapter4.c4_14_people.ball_round import column
 from reproduction.chapter4.c4_14_people.study_plan import TRAINING, StudySettings
 
@@ -87,8 +86,7 @@ def expected_values(own: TrainingTotals, others: TrainingTotals, settings: Study
 def beat_for(own: TrainingTotals, others: TrainingTotals, settings: StudySettings, seed: int = 0) -> Beat:
     """BEAT for one player: its types are the sizes of the session, its action sets the speeds."""
     rows, columns = pairs_of(settings)
-    counts = (own.moves + others.moves)[columns.ravel()][:, :, rows.ravel()].astype(np.float64)
-    signal = MoveSignal.from_counts(counts, N_OUTCOMES)
+    counts = (own.moves + others.moves)[columns.ravel()][:, :, rows.ravel()]
     # Only the values decide; the deviation of a loss is never read.
-    library = PolicyLibrary.from_means(expected_values(own, others, settings), 1.0, signal=signal)
+    library = PolicyLibrary.from_means(expected_values(own, others, settings), 1.0, signal=move_signal(counts))
     return Beat(library, seed=seed)

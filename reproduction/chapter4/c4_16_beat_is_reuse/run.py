@@ -20,8 +20,7 @@ from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 from lifelore.interaction.signals.transition_signal import TransitionSignal
 from reproduction.chapter4.ball_game.games import N_TYPES, Game
-from reproduction.chapter4.ball_game.move_signal import PRIOR_MOVES
-from reproduction.chapter4.ball_game.moves import N_CONTEXTS, N_OUTCOMES, read_moves
+from reproduction.chapter4.ball_game.moves import N_CONTEXTS, N_OUTCOMES, PRIOR_MOVES, outcome_probs, read_moves
 from reproduction.chapter4.ball_game.play import Trained, train
 from reproduction.chapter4.ball_game.players import advance, new_balls, random_states
 from reproduction.chapter4.ball_game.trials import EPISODES
@@ -73,7 +72,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     game = Game.parsed(settings["game"]).game
     trained = train(game, settings["training"], seed)
     value = trained.value(LossScale())
-    library = library_of(game, trained, LossScale())
+    library = library_of(trained)
     sessions = []
     for kind, user in product(range(N_TYPES), range(settings["users"])):
         beat = Algorithm9(trained.signals, value)
@@ -111,20 +110,16 @@ def _session(
     return {"steps": steps, "alike": alike, "apart": apart, "vanished": vanished}
 
 
-def library_of(game: BallGame, trained: Trained, scale: LossScale) -> PolicyLibrary:
+def library_of(trained: Trained) -> PolicyLibrary:
     """Types × speeds as a policy library; its signal takes the pairs of `transition_of`."""
-    samples = -scale.loss(trained.steps, trained.hits)
-    types = [f"b = {b}" for b in game.sizes]
-    policies = [f"speed {z}" for z in game.speeds]
-    return PolicyLibrary.from_samples(samples, types, policies, signal=transition_signal(trained))
+    samples = -LossScale().loss(trained.steps, trained.hits)
+    return PolicyLibrary.from_samples(samples, signal=transition_signal(trained))
 
 
 def transition_signal(trained: Trained) -> TransitionSignal:
     """T(s' | s; type, speed) in classes: from the context of a command to its outcome."""
-    table = np.exp(trained.move_signal().log_table)
-    n_speeds, _, n_types = table.shape
-    probs = np.zeros((n_types, n_speeds, N_STATES, 1, N_STATES))
-    shares = table.reshape(n_speeds, N_CONTEXTS, N_OUTCOMES, n_types).transpose(3, 0, 1, 2)
+    shares = outcome_probs(trained.signals).transpose(3, 0, 1, 2)
+    probs = np.zeros((*shares.shape[:2], N_STATES, 1, N_STATES))
     probs[:, :, :N_CONTEXTS, 0, :N_OUTCOMES] = shares
     probs[:, :, N_CONTEXTS:, 0, 0] = 1.0  # no command has such a context
     return TransitionSignal(probs / probs.sum(axis=-1, keepdims=True))

@@ -2,10 +2,13 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
 
 from lifelore.interaction import baselines
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from reproduction.chapter4.surveillance.policy_kernels import performance_kernel
+
+LENGTHS = 24
+"""Lengths of the kernel that are compared, evenly in logarithm."""
 
 GIVEN = {
     "UCB1": "each policy's mean pay over the types, worth one pull",
@@ -47,3 +50,27 @@ def make_peer(
 def kernel_of(name: str, library: PolicyLibrary) -> NDArray[np.float64] | None:
     """The covariance that a Gaussian process takes from a library; None for peers that take none."""
     return performance_kernel(library.performance.mean) if name.startswith("GP-UCB") else None
+
+
+def performance_kernel(mean: NDArray[np.float64]) -> NDArray[np.float64]:
+    """deviation²·exp(-d²/2ℓ²) of the policies, (n_policies, n_policies), from mean pays (n_types, n_policies).
+
+    The metric is not known and "is approximated from performance in the training tasks" (§4.6.4): d is the root
+    mean square difference of two policies' pays over the types, the deviation that of pays about each policy's
+    mean, and ℓ the most likely length if types are draws of the process with a hundredth of the deviation as
+    noise. Lengths are from a tenth of the least positive distance to the largest.
+    """
+    centred, columns = mean - mean.mean(axis=0), mean.T
+    deviation = float(np.sqrt((centred**2).mean()))
+    gaps = np.sqrt(((columns[:, None, :] - columns[None, :, :]) ** 2).mean(axis=2))
+    lengths = np.geomspace(gaps[gaps > 0].min() / 10, gaps.max(), LENGTHS)
+    kernels = [deviation**2 * np.exp(-0.5 * (gaps / length) ** 2) for length in lengths]
+    noise = (deviation / 100) ** 2 * np.eye(len(gaps))
+    return max(kernels, key=lambda kernel: _log_density(kernel + noise, centred))
+
+
+def _log_density(covariance: NDArray[np.float64], rows: NDArray[np.float64]) -> float:
+    """Log density of all rows, up to a constant."""
+    factor = cho_factor(covariance, lower=True)
+    size = 2 * np.log(np.diag(factor[0])).sum()
+    return float(-0.5 * (rows * cho_solve(factor, rows.T).T).sum() - 0.5 * len(rows) * size)

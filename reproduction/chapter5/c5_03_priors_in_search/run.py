@@ -17,13 +17,13 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.search.depth_first import depth_first, preferences
 from lifelore.action.search.tree_search import SearchSettings, play, search_guidance
 from lifelore.core.mdp import Tables
-from lifelore.core.metrics import Estimate
-from lifelore.core.planning.planning import best_actions, optimal_q
+from lifelore.core.metrics import Estimate, difference_estimate, ratio_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.noise_maze import noise_maze
+from reproduction.chapter3.learning.grid_tasks import problem_of
 from reproduction.chapter5.c5_03_priors_in_search.bandit import BANDITS, regret
-from reproduction.engine.results_table import ResultsTable
+from reproduction.engine.records import nested, values_of
 
 PLACE, PERCEPT = KINDS = ("place", "percept")
 FORMS = ("proportion", "dirichlet", "softmax", "support")
@@ -75,9 +75,9 @@ def maze_of(settings: Mapping, names: tuple) -> Maze:
     others = np.delete(np.arange(world.n_states), goal)
     starts = random.choice(others, settings["starts"])
     goals = random.permutation(others)[:n_tasks]
-    tables, best = _solved(world, goal)
+    problem = problem_of(world, goal, ())
     lessons = {
-        PLACE: [(np.arange(world.n_states), _solved(world, int(other))[1]) for other in goals],
+        PLACE: [(np.arange(world.n_states), problem_of(world, int(other), ()).best) for other in goals],
         PERCEPT: [_percepts_elsewhere(settings, (*names, i)) for i in range(n_tasks)],
     }
     priors = {kind: ActionPrior(4, settings["alpha0"]) for kind in KINDS}
@@ -89,7 +89,7 @@ def maze_of(settings: Mapping, names: tuple) -> Maze:
         (kind, form): _rows(settings, priors[kind], contexts_of[kind], form, (*names, kind))
         for kind, form in product(KINDS, FORMS)
     }
-    return Maze(tables, best, start, starts, probs_of)
+    return Maze(problem.tables, problem.best, start, starts, probs_of)
 
 
 def _world(settings: Mapping, random: np.random.Generator) -> GridWorld:
@@ -97,17 +97,10 @@ def _world(settings: Mapping, random: np.random.Generator) -> GridWorld:
     return noise_maze(random, settings["size"], density, discount=settings["discount"])
 
 
-def _solved(world: GridWorld, goal: int) -> tuple[Tables, NDArray[np.bool_]]:
-    tables = world.task(goal).tables()
-    best = best_actions(optimal_q(tables, world.discount))
-    best[goal] = False  # every action ties at the goal: nothing was chosen there
-    return tables, best
-
-
 def _percepts_elsewhere(settings: Mapping, names: tuple) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
     random = stream(*names, "training")
     world = _world(settings, random)
-    return world.percepts, _solved(world, int(random.integers(world.n_states)))[1]
+    return world.percepts, problem_of(world, int(random.integers(world.n_states)), ()).best
 
 
 def _rows(settings: Mapping, prior: ActionPrior, contexts, form: str, names: tuple) -> NDArray[np.float64]:
@@ -177,38 +170,35 @@ def _arms(settings: Mapping, maze: Maze) -> Iterator[tuple[dict, NDArray[np.floa
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """Gain of tree search, ratio of nodes, ratios of regret, paired by maze; at the default."""
-    search, order, arms = _tables(results)
     return {
-        "search_gain": _gain(search, DEFAULT, GUIDES[0]),
-        "nodes_ratio": _nodes_ratio(order, DEFAULT, ORDERS[0]),
-        **{f"{index}_ratio": arms.ratio("regret", DEFAULT, NONE, index=index) for index in BANDITS},
-        **{f"{index}_even_ratio": arms.ratio("regret", DEFAULT, EVEN, index=index) for index in BANDITS},
+        "search_gain": _gain(results, DEFAULT, GUIDES[0]),
+        "nodes_ratio": _nodes_ratio(results, DEFAULT, ORDERS[0]),
+        **{f"{index}_ratio": _regret_ratio(results, index, DEFAULT) for index in BANDITS},
+        **{f"{index}_even_ratio": _regret_ratio(results, index, DEFAULT, EVEN) for index in BANDITS},
     }
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """The same for every kind and form of the prior, part of the search that it guides, and use of its order."""
-    search, order, arms = _tables(results)
     for kind, form in product(KINDS, FORMS):
         prior = {"kind": kind, "form": form}
         for guides in GUIDES:
-            yield {**prior, "guides": guides}, {"search_gain": _gain(search, prior, guides)}
+            yield {**prior, "guides": guides}, {"search_gain": _gain(results, prior, guides)}
         for use in ORDERS:
-            yield {**prior, "order": use}, {"nodes_ratio": _nodes_ratio(order, prior, use)}
-        yield prior, {f"{index}_ratio": arms.ratio("regret", prior, NONE, index=index) for index in BANDITS}
+            yield {**prior, "order": use}, {"nodes_ratio": _nodes_ratio(results, prior, use)}
+        yield prior, {f"{index}_ratio": _regret_ratio(results, index, prior) for index in BANDITS}
 
 
-def _tables(results: Sequence[Mapping]) -> tuple[ResultsTable, ResultsTable, ResultsTable]:
-    return (
-        ResultsTable.nested(results, "search", ("kind", "form", "guides")),
-        ResultsTable.nested(results, "depth_first", ("kind", "form", "order")),
-        ResultsTable.nested(results, "bandit", ("index", "kind", "form")),
-    )
+def _gain(results: Sequence[Mapping], prior: Mapping, guides: str) -> Estimate:
+    found, ways = nested(results, "search"), ({**prior, "guides": guides}, {**NONE, "guides": None})
+    return difference_estimate(*(values_of(found, "reached", **way) for way in ways))
 
 
-def _gain(table: ResultsTable, prior: Mapping, guides: str) -> Estimate:
-    return table.difference("reached", {**prior, "guides": guides}, {**NONE, "guides": None})
+def _nodes_ratio(results: Sequence[Mapping], prior: Mapping, order: str) -> Estimate:
+    found, ways = nested(results, "depth_first"), ({**prior, "order": order}, {**NONE, "order": None})
+    return ratio_estimate(*(values_of(found, "expanded", **way) for way in ways))
 
 
-def _nodes_ratio(table: ResultsTable, prior: Mapping, order: str) -> Estimate:
-    return table.ratio("expanded", {**prior, "order": order}, {**NONE, "order": None})
+def _regret_ratio(results: Sequence[Mapping], index: str, prior: Mapping, other: Mapping = NONE) -> Estimate:
+    found = nested(results, "bandit")
+    return ratio_estimate(*(values_of(found, "regret", index=index, **way) for way in (prior, other)))

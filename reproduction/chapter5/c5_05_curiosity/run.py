@@ -25,7 +25,7 @@ from lifelore.core.streams import stream
 from lifelore.domains.factory.customer_orders import CUSTOMERS
 from lifelore.domains.task_stream import TaskStream
 from reproduction.engine.estimates import UNMEASURED, exact_share
-from reproduction.engine.results_table import having
+from reproduction.engine.records import having
 
 UNIFORM, CURIOUS = CHOOSERS = ("uniform", "curious")
 """How the context of a spare order is chosen."""

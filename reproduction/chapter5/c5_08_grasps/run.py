@@ -20,13 +20,7 @@ from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scenes.skeletons import perceived, reading
 from reproduction.chapter2.scenes.substructure import Substructure, find_substructure, skeleton
 from reproduction.chapter5.c5_08_grasps.parallel_gripper import Grasp, GraspedTabletop
-from reproduction.chapter5.c5_08_grasps.searches import (
-    anywhere,
-    around,
-    carried,
-    from_above,
-    from_seeds,
-)
+from reproduction.chapter5.c5_08_grasps.searches import anywhere, around, carried, from_above, from_seeds
 from reproduction.chapter5.role_scenes import POOLS, role_scene
 from reproduction.engine.estimates import UNMEASURED, mean_by_cluster
 

@@ -1,7 +1,7 @@
 """The agents that are compared: policy reuse by its dynamics, two baselines, and an agent that knows the type."""
 
 from collections.abc import Callable, Hashable
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
@@ -16,23 +16,21 @@ RATE = 0.002
 """Probability of a new type per episode, the library's default before hazards were learnt."""
 
 
-class Player(Protocol):
+class Player:
     """An agent in a world; all learn from what their method reads."""
 
     def select(self) -> int:
         """The policy of the next round or step."""
-        ...
+        raise NotImplementedError
 
     def observe(self, policy: int, signal: Any, pay: float | None = None) -> None:
         """Learn from a signal; `pay` is what the policy paid, None where only the end of the episode pays."""
-        ...
 
     def end_episode(self, outcome: Hashable, pay: float) -> None:
         """End an episode; `pay` is that of its last policy, as the library's performance model knows it."""
-        ...
 
 
-class ReusePlayer:
+class ReusePlayer(Player):
     """Policy reuse by the default rule: it reads signals, and how episodes end."""
 
     def __init__(self, library: PolicyLibrary, dynamics: Any, seed: np.random.Generator) -> None:
@@ -58,7 +56,7 @@ class OkrPlayer(ReusePlayer):
         self._agent.end_episode(pay)
 
 
-class BprPlayer:
+class BprPlayer(Player):
     """BPR+: it reads pays alone, and holds a policy until it pays."""
 
     def __init__(self, library: PolicyLibrary, seed: np.random.Generator) -> None:
@@ -81,7 +79,7 @@ class BprPlayer:
         self._free, self._paid = True, False
 
 
-class KnowsType:
+class KnowsType(Player):
     """Selects the best policy for the type, which it learns before each episode as its attribute `type`."""
 
     def __init__(self, library: PolicyLibrary) -> None:
@@ -90,12 +88,6 @@ class KnowsType:
 
     def select(self) -> int:
         return int(self._best[self.type])
-
-    def observe(self, policy: int, signal: Any, pay: float | None = None) -> None:
-        pass
-
-    def end_episode(self, outcome: Hashable, pay: float) -> None:
-        pass
 
 
 AGENTS: dict[str, Callable[[PolicyLibrary, np.random.Generator], Player]] = {

@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import LossScale
+from lifelore.interaction.signals.category_signal import CategorySignal
 from reproduction.chapter4.ball_game.games import Game
-from reproduction.chapter4.ball_game.move_signal import MoveSignal
+from reproduction.chapter4.ball_game.moves import move_signal
 from reproduction.chapter4.ball_game.play import FixedSpeeds, Ints, Moves, Players, play_all, train
 from reproduction.chapter5.c5_09_switching.rounds import Recorded
 
@@ -19,7 +20,7 @@ GAME = "s-maze 160"
 def recorded_ball_games(n_games: int, seed: int) -> Recorded:
     """`n_games` of every pair, which pay minus the loss; moves are known from as many others."""
     game, scale = Game.parsed(GAME).game, LossScale()
-    signal = train(game, n_games, seed).move_signal()
+    signal = move_signal(train(game, n_games, seed).signals)
     kinds, speeds = np.mgrid[: game.n_types, : game.n_speeds].reshape(2, -1).repeat(n_games, axis=1)
     players = Players.drawn(kinds, 1, stream(seed, "C5.9", "ball game"))
     recorder = MoveRecorder(speeds, signal)
@@ -34,11 +35,11 @@ class MoveRecorder(FixedSpeeds):
 
     watches: ClassVar[bool] = True
 
-    def __init__(self, speeds: Ints, signal: MoveSignal) -> None:
+    def __init__(self, speeds: Ints, signal: CategorySignal) -> None:
         super().__init__(speeds)
-        self._table = signal.log_table
+        self._signal = signal
         self.log_likelihood: NDArray[np.float64] = np.zeros((len(speeds), signal.n_types))
 
     def observe(self, speed: Ints, moves: Moves) -> None:
         rows = moves.rows
-        self.log_likelihood[rows] += self._table[speed[rows], moves.signal[rows]]
+        self.log_likelihood[rows] += self._signal.log_likelihoods(speed[rows], moves.signal[rows])

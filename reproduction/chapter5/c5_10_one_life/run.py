@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from reproduction.chapter5.c5_10_one_life.lives import AGENTS, FULL, PARTS, SCRATCH, TEXTBOOK, drawn_tasks, lived
 from reproduction.engine.estimates import UNMEASURED, exact_share, exact_value, share_of
-from reproduction.engine.results_table import having
+from reproduction.engine.records import having
 
 Array = NDArray[np.float64]
 Results = Sequence[Mapping]

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from lifelore.agent.any_tasks.live_in import AGENTS, live_in
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate
+from reproduction.engine.estimates import exact_value
 from reproduction.own.o_03_your_worlds.worlds import WORLDS
 
 MEASURES = {"first": "first_return", "all": "mean_return", "last": "final_return"}
@@ -49,7 +50,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     """Returns and gains over lives in the first world, and the number of worlds below the textbook."""
     worlds = settings["worlds"]
     below = {
-        f"below_{key}": _number([_certainly_below(results, world, key) for world in worlds])
+        f"below_{key}": exact_value(sum(_certainly_below(results, world, key) for world in worlds), len(worlds))
         for key in ("all", "last")
     }
     return numbers(results, worlds[0]) | below
@@ -82,13 +83,3 @@ def _certainly_below(results: Sequence[Mapping], world: str, key: str) -> bool:
     """Whether the whole 95 % interval of the gain over the textbook lies below 0."""
     interval = _gain(results, world, key, "textbook").ci95
     return interval is not None and interval[1] < 0
-
-
-def _number(found: Sequence[bool]) -> Estimate:
-    """How many worlds; a count has no interval."""
-    return Estimate(float(sum(found)), float(sum(found)), None, len(found))
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Returns of each life, by world and agent."""
-    return [dict(result) for result in results]

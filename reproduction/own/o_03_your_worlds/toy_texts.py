@@ -1,6 +1,5 @@
 """Worlds of Gymnasium's toy texts whose tasks differ: frozen lakes, cliff walks, Taxi."""
 
-from collections import deque
 from functools import cache
 from typing import Any
 
@@ -9,6 +8,7 @@ import numpy as np
 from gymnasium.envs.toy_text.frozen_lake import generate_random_map
 from gymnasium.wrappers import TransformObservation
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from lifelore.core.streams import stream
 
@@ -42,7 +42,8 @@ def cliff(number: int) -> gymnasium.Env:
         kinds = np.where(random.random(shape) < CLIFF_SHARE, CLIFF, 0)
         start, goal = (int(random.integers(shape[0])), 0), (int(random.integers(shape[0])), shape[1] - 1)
         kinds[start], kinds[goal] = 0, GOAL
-        if goal in _reachable(kinds, start):
+        parts = ndimage.label(kinds != CLIFF)[0]  # type: ignore[index]
+        if parts[start] == parts[goal]:
             break
     _set_cliff(env.unwrapped, kinds, start)
     around = np.pad(kinds, 1, constant_values=EDGE)
@@ -52,20 +53,6 @@ def cliff(number: int) -> gymnasium.Env:
         return int(place), tuple(int(around[row + 1 + down, column + 1 + right]) for down, right in MOVES)
 
     return TransformObservation(env, look, None)
-
-
-def _reachable(kinds: NDArray[np.int64], start: tuple[int, int]) -> set[tuple[int, int]]:
-    """Cells (row, column) that can be reached from the start without a fall."""
-    seen, waiting = {start}, deque([start])
-    while waiting:
-        row, column = waiting.popleft()
-        for down, right in MOVES:
-            cell = row + down, column + right
-            inside = 0 <= cell[0] < kinds.shape[0] and 0 <= cell[1] < kinds.shape[1]
-            if inside and kinds[cell] != CLIFF and cell not in seen:
-                seen.add(cell)
-                waiting.append(cell)
-    return seen
 
 
 def _set_cliff(env: Any, kinds: NDArray[np.int64], start: tuple[int, int]) -> None:

@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
@@ -83,7 +84,7 @@ def counts_of(scene: TabletopScene, said: Sequence[Relation]) -> tuple[int, int]
     """Pairs of objects answered rightly, and all of them; without those near the limit of *adjacent*."""
     gaps = {frozenset((gap.a, gap.b)): gap.visible for gap in scene.gaps}
     judged = judged_scene(scene.name, scene.truth, said, gaps)
-    exact = [pair.exact for pair in judged if not pair.with_table and not pair.border]
+    exact = [pair.exact for pair in judged if TABLE not in (pair.truth.a, pair.truth.b) and not pair.border]
     return sum(exact), len(exact)
 
 

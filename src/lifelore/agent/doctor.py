@@ -41,7 +41,7 @@ EXTRAS = {
     "minigrid": ("envs", "bridges.minigrid_view: MiniGrid worlds for live_in"),
     "stable-baselines3": ("deep", "bridges.sb3: action priors in deep Q-learning"),
     "openfeature-sdk": ("openfeature", "bridges.openfeature_provider: studies as flags"),
-    "distributed": ("cluster", "reproduce --engine dask"),
+    "distributed": ("cluster", "reproduce --scheduler"),
 }
 """Packages of extras: the extra, and the verbs and options that need it."""
 SLOW = 5.0

@@ -6,7 +6,6 @@ import pytest
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from reproduction.chapter2.c2_04_time_per_image import run as image_timing
 from reproduction.chapter2.c2_04_time_per_image.run import made_dense, measure, timed_image
-from reproduction.chapter2.scoring.perception_stages import STAGES
 
 
 def test_measures_by_hand():
@@ -21,7 +20,7 @@ def test_measures_by_hand():
 
 def test_of_the_repeats_the_one_in_the_middle_counts(monkeypatch):
     takes = iter([0.3, 0.1, 0.2])
-    monkeypatch.setattr(image_timing, "timed_stages", lambda cloud, model, clock: {STAGES[0]: next(takes)})
+    monkeypatch.setattr(image_timing, "seconds_of", lambda cloud, model: next(takes))
     cloud = LabelledCloud(np.zeros((3, 3)), np.array([TABLE, 2, 3]))
     assert timed_image(cloud, None, 3) == {"points": 3, "seconds": 0.2}  # type: ignore[arg-type]
 

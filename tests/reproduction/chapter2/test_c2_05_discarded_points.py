@@ -5,7 +5,6 @@ import pytest
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import PairLabel
-from lifelore.perception.relations.relation import Relation
 from reproduction.chapter2.c2_05_discarded_points.run import (
     METHODS,
     THINNED,
@@ -18,8 +17,7 @@ from reproduction.chapter2.scoring.relation_scoring import JudgedPair
 
 
 def answer(right: bool, scene: str, truth: str = "on") -> JudgedPair:
-    said = truth if right else "both"
-    return JudgedPair(scene, PairLabel(2, 3, truth), Relation(2, 3, said, 1.0, 0.0), 0.0)
+    return JudgedPair(scene, PairLabel(2, 3, truth), right, 0.0)
 
 
 def test_measures_by_hand():
@@ -88,7 +86,8 @@ def test_pairs_are_told_by_the_lessons_and_those_on_the_border_left_out():
     ]
     results = [{"kind": "lessons", "scenes": lessons}, {"kind": "scenes", "scenes": scenes}]
     found = judged({"discarded": [0.7]}, results)[THINNED]
-    assert {level: [pair.relation for pair in pairs] for level, pairs in found.items()} == {
-        0.0: ["on", "adjacent", "both"],
-        0.7: ["adjacent", "none", "on"],
+    # Less is left: *on* looks like *adjacent*, *adjacent* like nothing, and *both* like *on*.
+    assert {level: [(pair.scene, pair.exact) for pair in pairs] for level, pairs in found.items()} == {
+        0.0: [("a", True), ("b", True), ("d", True)],
+        0.7: [("a", False), ("b", False), ("d", False)],
     }

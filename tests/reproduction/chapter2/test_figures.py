@@ -3,9 +3,12 @@
 import numpy as np
 import pytest
 
+from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.figures.scenes import scene_picture
 from lifelore.figures.style import house_style, new_figure
 from reproduction.chapter2.c2_01_nearest_displacements.figure import PRINTED, draw_confusion
 from reproduction.chapter2.c2_03_displacements_by_relation.figure import draw_displacements
+from reproduction.chapter2.scenes import scene_example
 
 
 def axes_with(draw, *arguments):
@@ -39,3 +42,17 @@ def test_displacements_lie_where_they_are_given_and_the_band_begins_a_fifth_of_t
     low, high = band.get_path().get_extents(band.get_patch_transform()).intervaly
     assert low == pytest.approx(-1.7)
     assert high > 25
+
+
+def test_a_picture_for_each_scene_row_by_row(monkeypatch):
+    monkeypatch.setattr(scene_picture, "_RESOLUTION", 60)
+    points = np.random.default_rng(0).uniform(0, 0.1, (60, 3))
+    cloud = LabelledCloud(points, np.repeat([1, 2, 3], 20), None, np.array([0.0, -1, 0.5]))
+    document = {"objects": [], "relations": [], "holes": [], "contact_edges": []}
+    monkeypatch.setattr(scene_example, "scene_of_row", lambda row: (cloud, document, row["example"]))
+    rows = [{"example": caption} for caption in ("one", "two", "three")]
+    axes = scene_example.draw_examples({"rows": rows}, ("cloud",)).axes
+    assert [each.get_title() for each in axes] == ["one", "two", "three"]
+    left, top = zip(*((each.get_position().x0, each.get_position().y1) for each in axes), strict=True)
+    assert left[0] == left[2] < left[1]
+    assert top[0] == top[1] > top[2]

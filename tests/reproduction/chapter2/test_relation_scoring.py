@@ -8,9 +8,9 @@ from lifelore.perception.relations.relation import Relation
 from reproduction.chapter2.scoring.relation_scoring import JudgedPair, judged_scene, less_rate
 
 
-def judged(truth: str, said: str | None, *, way=(2, 3), gap=0.001, scene="a", truth_way=(2, 3)) -> JudgedPair:
-    relation = None if said is None else Relation(*way, said, 1.0, gap)
-    return JudgedPair(scene, PairLabel(*truth_way, truth), relation, gap)
+def judged(truth: str, said: str | None, *, way=(2, 3), gap=0.001) -> JudgedPair:
+    relations = [] if said is None else [Relation(*way, said, 1.0, gap)]
+    return judged_scene("a", [PairLabel(2, 3, truth)], relations)[0]
 
 
 @pytest.mark.parametrize(
@@ -44,7 +44,7 @@ def test_a_scene_is_judged_pair_by_pair_without_the_doubtful():
     said = [Relation(3, 2, "on", 0.9, 0.004), Relation(3, 4, "adjacent", 0.9, 0.01)]
     first, second = judged_scene("s", truth, said, {frozenset((2, 4)): 0.07})
     assert (first.exact, first.gap) == (False, 0.004)
-    assert (second.exact, second.predicted, second.gap) == (True, None, 0.07)
+    assert (second.exact, second.gap) == (True, 0.07)
     # A gap that is known better than by looking counts.
     assert judged_scene("s", truth, said, {frozenset((2, 3)): 0.001})[0].gap == 0.001
 

@@ -5,8 +5,9 @@ import pytest
 
 from lifelore.core.planning.planning import best_actions
 from reproduction.chapter3.c3_02_lattice_prior.run import measure, online_prior, readings, run_of
-from reproduction.chapter3.learning.grid_tasks import PLAIN, choices_of, learn_task
+from reproduction.chapter3.learning.grid_tasks import PLAIN, choices_of
 from reproduction.chapter3.learning.schedules import schedule_of
+from reproduction.engine.learning_run import learnt
 from reproduction.engine.registry import claim_of
 
 SETTINGS = {**claim_of("C3.2").sizes["quick"], "episodes": 30, "testing_tasks": 2}
@@ -16,7 +17,9 @@ def test_online_prior_after_one_task_by_hand():
     run, choice = run_of({**SETTINGS, "training_tasks": 1}, 0, 0), choices_of(SETTINGS)[0]
     schedule = schedule_of(SETTINGS, [1.0, 0.98, 0.01])
     prior = online_prior(run, choice, schedule)
-    q = learn_task(run.training[0], None, schedule)[1].q  # before the first task there is no prior
+    q = learnt(run.training[0].tables, run.training[0].stream, None, schedule)[
+        1
+    ].q  # before the first task there is no prior
     expected = np.where(q.max(axis=1, keepdims=True) > 0, best_actions(q), False)
     assert (prior.counts(np.arange(len(q))) == expected).all()
     assert not prior.counts([run.training[0].goal]).any()

@@ -17,5 +17,5 @@ def test_a_prior_from_policies_holds_all_invariances_and_incorrect_advice_does_n
     assert least_invariance(problem, learnt, default) > 0
     assert least_invariance(problem, ActionPrior(N_ACTIONS, 0.1), default) == pytest.approx(0)
     # Codes by the list's order tell states of the task apart, as advice does.
-    wrong = hand_made_prior(ADVICE["incorrect"](problem.solved.task), 35, 0.1)
+    wrong = hand_made_prior(ADVICE["incorrect"](problem.task), 35, 0.1)
     assert least_invariance(problem, wrong, default) < 0

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from reproduction.chapter3.c3_12_demonstrated_priors.run import PEOPLE, demonstrate, from_shown, self_trained
-from reproduction.chapter3.factory.modified_tasks import contexts_of, problems_of
+from reproduction.chapter3.c3_12_demonstrated_priors.run import PEOPLE, demonstrate, from_shown
+from reproduction.chapter3.factory.learning import contexts_of, exact_prior
+from reproduction.chapter3.factory.modified_tasks import problems_of
 
 HOW = {"features": "phi3", "alpha0": 0.1}
 
@@ -35,6 +36,6 @@ def test_counts_of_what_was_shown_by_hand(training, shown):
         assert prior.counts([code])[0].tolist() == counts.tolist()
     assert len(prior) == len(expected)
     # The self-trained prior has counted the same states, and all others.
-    own = self_trained(training[:2], HOW)
+    own = exact_prior(training[:2], HOW["features"], HOW["alpha0"])
     assert len(own) >= len(prior)
     assert (own.counts(prior.contexts) >= 1).any(axis=1).all()

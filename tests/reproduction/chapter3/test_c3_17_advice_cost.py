@@ -3,14 +3,8 @@
 import numpy as np
 import pytest
 
-from reproduction.chapter3.c3_17_advice_cost.run import (
-    EARLY,
-    LATE,
-    greedy_policy,
-    readings,
-    rows,
-    steepest_rise,
-)
+from reproduction.chapter3.c3_17_advice_cost.run import EARLY, LATE, readings, rows, steepest_rise
+from reproduction.engine.learning_run import greedy_probs
 from reproduction.engine.registry import claim_of
 
 SETTINGS = {
@@ -21,7 +15,7 @@ SETTINGS = {
 
 def test_greedy_policy_by_hand():
     q = np.array([[0.0, 0.0, 0.0, 0.0], [3.0, 1.0, 3.0, 0.0]])
-    found = greedy_policy(q, 0.2)
+    found = greedy_probs(q, 0.2)
     assert found[0] == pytest.approx([0.25] * 4)
     assert found[1] == pytest.approx([0.45, 0.05, 0.45, 0.05])
 

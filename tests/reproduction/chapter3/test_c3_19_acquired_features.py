@@ -3,14 +3,7 @@
 import numpy as np
 import pytest
 
-from reproduction.chapter3.c3_19_acquired_features.run import (
-    ACQUIRED,
-    ALL,
-    PLAIN,
-    START,
-    doubt,
-    readings,
-)
+from reproduction.chapter3.c3_19_acquired_features.run import ACQUIRED, ALL, PLAIN, START, doubt, readings
 from reproduction.engine.registry import claim_of
 
 SETTINGS = claim_of("C3.19").sizes["quick"]

@@ -6,12 +6,7 @@ import pytest
 from lifelore.domains.factory.contexts import state_contexts
 from lifelore.domains.factory.layout import factory
 from reproduction.chapter3.factory import learning
-from reproduction.chapter3.factory.learning import (
-    Problem,
-    exact_prior,
-    greedy_return,
-    solved,
-)
+from reproduction.chapter3.factory.learning import exact_prior, greedy_return, solved
 from reproduction.engine.registry import claim_of
 
 SETTINGS = {**claim_of("C3.5").sizes["full"], "max_steps": 300}
@@ -32,7 +27,7 @@ def corridor(monkeypatch):
 
 def test_a_corridor_solved_by_hand(corridor):
     # East -2, Procure 10, East -2, Assemble 10 and 100.
-    assert corridor.optimal_reward == 116
+    assert corridor.optimal == 116
     assert corridor.optimal_return == pytest.approx(-2 + 0.9 * 10 - 0.81 * 2 + 0.729 * 110)
     assert corridor.way.tolist() == [0, 1, 4, 5]
     east, west, procure, assemble = 2, 3, 4, 5
@@ -42,7 +37,7 @@ def test_a_corridor_solved_by_hand(corridor):
 
 
 def test_what_has_learnt_the_exact_values_earns_the_optimal_return(corridor):
-    problem = Problem(corridor, corridor.task.tables(), (0, "hand"))
+    problem = corridor._replace(stream=(0, "hand"))
     q = corridor.task.optimal_q()
     assert greedy_return(problem, q) == pytest.approx(corridor.optimal_return)
     assert greedy_return(problem, np.zeros_like(q)) == 0.0

@@ -3,7 +3,8 @@
 import numpy as np
 
 from lifelore.domains.factory.factory import RAW
-from reproduction.chapter3.factory.modified_tasks import contexts_of, exact_priors, problem_of
+from reproduction.chapter3.factory.learning import contexts_of
+from reproduction.chapter3.factory.modified_tasks import exact_priors, problem_of
 
 SETTINGS = {"discount": 0.99, "components": 1, "policies": [3, 1]}
 NAMES = (3, "tasks", "training")

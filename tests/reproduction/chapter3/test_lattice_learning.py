@@ -14,14 +14,15 @@ from reproduction.chapter3.learning.grid_tasks import (
     choices_of,
     compared,
     exact_prior,
-    learn_task,
     learnt_by_choice,
+    returns_of,
     rows_of,
     start_values,
     summary,
 )
 from reproduction.chapter3.learning.schedules import schedule_of
 from reproduction.engine import learning_run
+from reproduction.engine.learning_run import learnt
 from reproduction.engine.registry import claim_of
 
 QUICK = dict(claim_of("C3.2").sizes["quick"])
@@ -48,20 +49,21 @@ def test_start_values_are_what_an_optimal_learner_earns(run, monkeypatch):
 
     monkeypatch.setattr(learning_run, "new_learner", knowing)
     schedule = schedule_of({**SETTINGS, "learning_rate": 0.0}, [0.0, 1.0, 0.0])
-    returns, _ = learn_task(problem, None, schedule)
-    np.testing.assert_allclose(returns, start_values(problem, SETTINGS["episodes"]), rtol=1e-12)
+    curve, _ = learnt(problem.tables, problem.stream, None, schedule)
+    np.testing.assert_allclose(curve.returns, start_values(problem, SETTINGS["episodes"]), rtol=1e-12)
 
 
 def test_plain_learning_is_learning_with_a_prior_that_has_seen_nothing(run):
-    schedule = schedule_of(SETTINGS, [1.0, 0.98, 0.01])
+    problem, schedule = run.testing[1], schedule_of(SETTINGS, [1.0, 0.98, 0.01])
+    of = problem.tables, problem.stream
     for ties in ("uniform", "prior"):
-        plain, learner = learn_task(run.testing[1], None, schedule)
-        rows = rows_of(run.testing[1], ActionPrior(4, 0.1), "proportion", ties)
-        guided, other = learn_task(run.testing[1], rows, schedule)
-        assert plain.tobytes() == guided.tobytes()
+        plain, learner = learnt(*of, None, schedule)
+        rows = rows_of(problem, ActionPrior(4, 0.1), "proportion", ties)
+        guided, other = learnt(*of, rows, schedule)
+        assert plain.returns.tobytes() == guided.returns.tobytes()
         assert learner.q.tobytes() == other.q.tobytes()
-    taught = rows_of(run.testing[1], exact_prior(run.training, 0.1), "proportion", "uniform")
-    assert learn_task(run.testing[1], taught, schedule)[0].tobytes() != plain.tobytes()
+    taught = rows_of(problem, exact_prior(run.training, 0.1), "proportion", "uniform")
+    assert learnt(*of, taught, schedule)[0].returns.tobytes() != plain.returns.tobytes()
 
 
 def test_every_combination_of_the_choices_and_the_default_first():
@@ -81,8 +83,8 @@ def test_a_number_is_what_learning_alone_gives(run):
         "schedule": [0.1, 1.0, 0.1], "ties": "prior", "form": "dirichlet", "alpha0": 0.1
     }  # fmt: skip
     prior = exact_prior(run.training, 0.1)
-    returns = [learn_task(p, rows_of(p, prior, "dirichlet", "prior"), schedule)[0] for p in run.testing]
-    plain = [learn_task(p, None, schedule)[0] for p in run.testing]
+    returns = returns_of(run.testing, lambda p: rows_of(p, prior, "dirichlet", "prior"), schedule)
+    plain = returns_of(run.testing, lambda p: None, schedule)
     assert found["choices"][place]["prior"]["mean"] == pytest.approx(np.mean(returns))
     assert found["choices"][place][PLAIN]["first"] == pytest.approx(np.mean([r[0] for r in plain]))
     assert set(found["curves"]) == {PLAIN, "prior"}

@@ -1,6 +1,7 @@
 """Signals of the ball game by hand and against a naive reading."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -9,10 +10,13 @@ from reproduction.chapter4.ball_game.moves import (
     FATES,
     N_AFTER,
     N_BEFORE,
+    N_CONTEXTS,
     N_OUTCOMES,
+    N_SIGNALS,
     move_context,
     move_fate,
     move_outcome,
+    move_signal,
     read_moves,
     room_along,
 )
@@ -54,3 +58,12 @@ def test_room_along_is_the_least_on_the_way(x, y, heading, distance):
         if rooms[-1] == 0:
             break
     assert room_along(FIELD.clearance, x, y, dx, dy, distance) == min(rooms)
+
+
+def test_signals_from_counts_and_two_prior_moves_by_hand():
+    counts = np.zeros((1, N_SIGNALS, 1))
+    counts[0, 1] = 6.0
+    # Two prior moves are shared out over the outcomes of a context; contexts are all as likely.
+    signal = move_signal(counts)
+    assert np.exp(signal.log_likelihood(0, 1)) == pytest.approx((6 + 2 / N_OUTCOMES) / 8 / N_CONTEXTS)
+    assert np.exp(signal.log_likelihood(0, N_OUTCOMES)) == pytest.approx(1 / N_OUTCOMES / N_CONTEXTS)

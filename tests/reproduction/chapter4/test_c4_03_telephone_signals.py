@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lifelore.domains.telephone.telephone import ANGRY, HUNG_UP, OPEN, STATES, SUCCESS, Telephone, reward
+from lifelore.domains.telephone.telephone import STATES, Telephone
 from lifelore.figures.style import new_figure
-from reproduction.chapter4.c4_03_telephone_signals.call_graph import EDGES, PLACES, draw_call_graph
+from reproduction.chapter4.c4_03_telephone_signals.figure import draw_call_graph
 from reproduction.chapter4.c4_03_telephone_signals.run import (
     SIGNAL_OF_PATH,
     compared,
@@ -52,14 +52,7 @@ def test_under_reading_b_states_tell_what_rewards_tell():
 
 
 def test_call_graph_is_the_worlds():
-    assert set(PLACES) == set(STATES)
-    for (before, after), (_, paid) in EDGES.items():
-        assert paid == reward(STATES.index(before), STATES.index(after))
-    there = {(STATES[s], STATES[s2]) for s in OPEN for s2 in (s + 1, SUCCESS, HUNG_UP)}
-    assert set(EDGES) == there
     axes = new_figure(7, 4).subplots()
     draw_call_graph(axes)
-    written = [text.get_text() for text in axes.texts]
-    assert STATES[ANGRY] in written
-    for part in ("[10]", "[3]", "(1−η)ρ"):
-        assert any(part in text for text in written)
+    written = {text.get_text() for text in axes.texts}
+    assert set(STATES) | {"(1−η)ρ\n[10]", "(1−η)(1−ρ)\n[3]", "(1−η)(1−ρ)\n[1]", "η\n[1]"} <= written

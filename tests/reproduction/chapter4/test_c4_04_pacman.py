@@ -17,7 +17,7 @@ def layout(bpr, q, prq, as_paid):
         "curves": {name: [1.0, float(bpr)] for name in ("BPR", "PRQ in [0, 1]", "Q-learning")},
         "best": 140.0,
     }
-    return {"foods": [0, 1, 2, 3], "tasks": [task]}
+    return {"tasks": [task]}
 
 
 RESULTS = [layout(1, 1000, 100, 10), layout(10, None, 1000, 10), layout(1, 100, 10_000, 10)]

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from reproduction.chapter4.ball_game.move_signal import PRIOR_MOVES
-from reproduction.chapter4.ball_game.moves import N_OUTCOMES, N_SIGNALS
+from reproduction.chapter4.ball_game.moves import N_OUTCOMES, N_SIGNALS, PRIOR_MOVES
 from reproduction.chapter4.c4_16_beat_is_reuse.run import Algorithm9, measure
 
 

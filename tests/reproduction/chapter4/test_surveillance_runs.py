@@ -6,6 +6,7 @@ import pytest
 from lifelore.domains.surveillance.surveillance import Surveillance
 from lifelore.interaction.selection.information import mutual_information
 from reproduction.chapter4.reuse.rules import RULES
+from reproduction.chapter4.surveillance.peers import performance_kernel
 from reproduction.chapter4.surveillance.runs import EXACT, LEARNT, WORLD, by_method, library_of, run_method
 
 SETTINGS = {"tasks": 5, "episodes": 12, "samples": 4}
@@ -38,3 +39,17 @@ def test_a_hilltop_tells_the_most_and_costs_the_most():
     assert cost[RESERVE.is_hilltop] == pytest.approx(np.full(4, 258.0), abs=0.5)
     assert cost[~RESERVE.is_hilltop].max() < 200
     assert RESERVE.mean.min() == 200 - 30 * 15 + 10
+
+
+def test_the_covariance_of_policies_by_hand():
+    # Columns of 40 types drawn from a process of length 1.5 over places on a line.
+    place = np.linspace(0, 10, 40)
+    true = np.exp(-0.5 * ((place[:, None] - place) / 1.5) ** 2) + 1e-8 * np.eye(40)
+    mean = np.random.default_rng(0).multivariate_normal(np.zeros(40), true, 40)
+    kernel, columns = performance_kernel(mean), mean.T
+    deviation = np.sqrt(((mean - mean.mean(axis=0)) ** 2).mean())
+    assert np.diag(kernel) == pytest.approx(deviation**2)
+    gaps = np.sqrt(((columns[:, None] - columns[None]) ** 2).mean(axis=2))
+    lengths = gaps[0, 1:] / np.sqrt(-2 * np.log(kernel[0, 1:] / deviation**2))
+    assert lengths == pytest.approx(lengths[0])
+    assert np.linalg.eigvalsh(kernel)[0] > -1e-9 * deviation**2
