@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
-from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL, Domain, Task
+from lifelore.core import COLLISION, NOTHING, TERMINAL, Domain, InputError, Task
 
 
 def slippery(params, s, a, u):

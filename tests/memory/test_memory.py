@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 import lifelore.memory
-from lifelore.core.errors import InputError, MissingExtraError, NotFoundError, StoreError
-from lifelore.core.protocols import Record
+from lifelore.core import InputError, MissingExtraError, NotFoundError, Record, StoreError
 from lifelore.memory import Memory, open_memory
 from lifelore.memory.schema import LATEST
 

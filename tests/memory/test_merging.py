@@ -13,8 +13,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from lifelore.core.errors import NotFoundError, StoreError
-from lifelore.core.protocols import Record
+from lifelore.core import NotFoundError, Record, StoreError
 from lifelore.memory import Memory, open_memory
 
 ROBOTS = ("a", "b", "ä")

@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError, StoreError
-from lifelore.core.protocols import Record
+from lifelore.core import InputError, Record, StoreError
 from lifelore.memory import Memory, open_memory, sqlite_file
 from lifelore.memory.refusal import one_line_refusals, refusal
 from lifelore.memory.sqlite_file import connect

@@ -11,11 +11,8 @@ import lzf
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
-from lifelore.core.streams import stream
-from lifelore.perception.clouds.cloud_file import read_cloud
-from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.segmentation.table_frame import to_scene
+from lifelore.core import InputError, stream
+from lifelore.perception import PointCloud, read_cloud, to_scene
 
 _NUMBERS = (b"0", b"1", b"-1", b"7", b"65537", b"2147483648", b"4294967295", b"999999999999", b"1e9", b"nan", b"")
 _WORDS = (

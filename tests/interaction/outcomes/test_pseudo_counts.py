@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction import CategorySignal, PolicyLibrary, StepRewardSignal, TransitionSignal
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.pseudo_counts import (
@@ -14,9 +14,6 @@ from lifelore.interaction.outcomes.pseudo_counts import (
     checked_pseudo_count,
     held_out_pseudo_count,
 )
-from lifelore.interaction.signals.category_signal import CategorySignal
-from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
-from lifelore.interaction.signals.transition_signal import TransitionSignal
 
 
 def naive(counts: np.ndarray, possible: np.ndarray | None = None) -> float:

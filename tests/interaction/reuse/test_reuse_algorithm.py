@@ -4,15 +4,13 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction import PolicyLibrary, ReturnSignal, TypeDynamics
 from lifelore.interaction.library.library_file import SIGNALS
-from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.outcome_kinds import KINDS
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection import RULES, rule_named
-from lifelore.interaction.signals.return_signal import ReturnSignal
 
 from .families import FAMILIES, N_POLICIES, N_TYPES, PRIOR, Family
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from scipy.stats import t
 
-from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction import CategorySignal, PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.reuse.novelty.broad_library import (
@@ -13,7 +13,6 @@ from lifelore.interaction.reuse.novelty.broad_library import (
     broad_library,
 )
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
-from lifelore.interaction.signals.category_signal import CategorySignal
 
 MEAN, DEVIATION = np.array([[10.0, 3.0], [0.0, 3.0]]), np.array([[2.0, 1.0], [2.0, 1.0]])
 PRIOR = np.array([0.5, 0.5])
