@@ -229,12 +229,6 @@ def test_a_source_that_holds_no_memory_stays_empty(memory, new_place, back_end):
             memory.merge_from(place)
 
 
-def test_another_place_is_merged_by_its_name(where, new_place):
-    with filled(where, "ab") as other, open_memory(new_place("sqlite")) as memory:
-        assert memory.merge_from(where)["added"] == 2
-        assert content(memory) == content(other)
-
-
 @pytest.mark.slow
 def test_many_at_once_count_as_they_would_one_by_one(new_place, back_end):
     """The same memory twice, the receiving one among the sources, one robot's task in two of them, a tombstone."""

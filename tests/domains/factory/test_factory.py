@@ -41,6 +41,8 @@ def test_the_printed_rewards_one_by_one():
         state, *what = task.domain.step(task.params, state, action, 0.0)
         assert what == [reward, event], (action, what)
     assert state == 2 * world.n_cells + 5
+    # At the assembly point with nothing procured.
+    assert task.domain.step(task.params, 5, ASSEMBLE, 0.0) == (5, -10.0, NOTHING)
     # It is over: whatever one does now ends at once, for nothing.
     assert [task.domain.step(task.params, state, a, 0.0) for a in range(6)] == [(state, 0.0, TERMINAL)] * 6
 

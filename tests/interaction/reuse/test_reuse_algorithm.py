@@ -164,25 +164,6 @@ def test_rules_score_rows_as_single_users(family, name):
             assert own is None or (scores[~own] == -np.inf).all()
 
 
-@every_family
-def test_what_rules_read_of_rows_is_what_they_read_of_single_users(family):
-    made, users, random = taught(family), np.array([3, 0, 4, 1, 2]), np.random.default_rng(10)
-    known, mean = made.known(users).performance, states(made, users)[1]
-    belief, types, value = made.belief(users), random.integers(N_TYPES, size=K), random.normal(3, 5, K)
-    assert known.expected(belief) == pytest.approx(np.einsum("kt,ktp->kp", belief, mean))
-    assert known.mean_on(types) == pytest.approx(mean[np.arange(K), types])
-    for row, user in enumerate(users.tolist()):
-        alone = made.known(user).performance
-        assert alone.mean == pytest.approx(mean[row])
-        assert alone.mean_on(types[row]) == pytest.approx(mean[row, types[row]])
-        for name in ("density", "exceedance", "expected_excess", "expected_mean_excess"):
-            found, single = getattr(known, name)(value), getattr(alone, name)(float(value[row]))
-            assert found[row] == pytest.approx(single, rel=1e-9, abs=1e-12), name
-        if made.library.has_table:
-            tables = [made.known(each).table(4).probs for each in (users, user)]
-            assert np.broadcast_to(tables[0], (K, *tables[1].shape))[row] == pytest.approx(tables[1], abs=1e-12)
-
-
 # ---- rows are reset, grow, are stored ------------------------------------------------------------------------
 
 
