@@ -19,7 +19,6 @@ from examples.pages.walk import serve as walk
 from examples.pages.walk.building import PLACE_NAMES, Building, Walk
 from lifelore.action.demonstrations.demonstrations import read_demonstrations
 from lifelore.core.errors import InputError
-from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import SIZES, ball_game
 from lifelore.domains.ball_game.simulated_player import choose_heading
 from lifelore.domains.grids.grid_world import MOVE_NAMES
@@ -167,21 +166,3 @@ def test_advice_comes_after_twenty_steps_of_who_seems_lost(maze):
         assert advised == [step >= 20 and one is walks[0] for step in range(1, 41)]
     # Without advice all steps are evidence; with it, the person's own ones.
     assert walks[1].view()["p_normal"] < walks[0].view()["p_normal"]
-
-
-@pytest.mark.slow
-def test_advice_helps_a_wanderer(maze):
-    """A wanderer walks straight on with probability 0.85, else turns at random, and follows advice."""
-
-    def wander(seed: int, advice: bool) -> float:
-        own, random, heading = Walk(maze, advice, seed), stream(0, "wanderer", seed), ""
-        while not (view := own.view())["reached"] and own.steps < 2000:
-            if view["advise"]:
-                heading = str(random.choice(MOVE_NAMES, p=view["theta"]))
-            elif heading not in view["open"] or random.random() > 0.85:
-                heading = str(random.choice(view["open"]))
-            own.step(heading)
-        return own.steps / own.shortest
-
-    alone, advised = (np.median([wander(seed, advice) for seed in range(8)]) for advice in (False, True))
-    assert advised < alone / 2

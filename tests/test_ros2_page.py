@@ -135,17 +135,6 @@ def test_a_mask_becomes_a_grid_with_the_lowest_row_first(conversions, tmp_path):
         conversions.occupancy_grid(tmp_path / "map.yaml")
 
 
-@pytest.mark.slow
-def test_the_masks_of_a_life_lie_on_its_map(conversions, exports):
-    occupancy = read_occupancy_map(MAP)
-    for name in ("keepout.yaml", "costs.yaml", "speed.yaml"):
-        grid = sent("nav_msgs/msg/OccupancyGrid", conversions.occupancy_grid(exports / name))
-        assert (grid.info.height, grid.info.width) == occupancy.state.shape
-        assert (grid.info.origin.position.x, grid.info.origin.position.y) == occupancy.origin[:2]
-        assert grid.data.min() >= -1
-        assert grid.data.max() <= 100
-
-
 def test_a_way_becomes_a_path_in_the_frame_of_the_node(conversions):
     document = path_message(np.array([[1.0, 2.0, 0.5], [2.0, 3.0, -0.5]])) | {"length": 1.4, "places": 3}
     stamp = {"sec": 7, "nanosec": 8}

@@ -6,8 +6,7 @@ from pathlib import Path
 import pytest
 
 from lifelore.app.live_command import setting_keys
-from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
-from lifelore.domains.buildings.office import office_map
+from lifelore.domains import OccupancyMap, office_map, write_occupancy_map
 from lifelore.memory import open_memory
 from tests.app.changed_settings import changed
 

@@ -206,20 +206,6 @@ def test_odd_scenes_are_answered(ask, cloud, points, labels, objects):
     json.dumps(answer.document, allow_nan=False)
 
 
-BAD_CLOUDS = {
-    "empty": (np.empty((0, 3)), None, "point"),
-    "all NaN": (np.full((100, 3), np.nan), None, "no finite point"),
-    "millimetres": (CUBE * 1000 * 10, np.full(len(CUBE), 2), "units"),
-    "three columns too few": (np.zeros((10, 2)), None, "points"),
-}
-
-
-@pytest.mark.parametrize("case", BAD_CLOUDS)
-def test_bad_clouds_are_one_line(ask, cloud, case):
-    points, labels, word = BAD_CLOUDS[case]
-    assert word in ask("perceive", cloud(points, labels)).refusal
-
-
 @pytest.mark.parametrize(
     ("options", "word"),
     [
@@ -251,13 +237,6 @@ def test_bad_options_are_one_line(ask, cloud, tmp_path, options, word):
     path = cloud(CUBE, np.full(len(CUBE), 2))
     assert word in ask("perceive", path, "--up", "z", *options).refusal
     assert list(tmp_path.iterdir()) == [path]
-
-
-@pytest.mark.parametrize("camera", [[np.nan] * 3, [0, 0, np.inf], [0, 0, 1e200], [1, 2]])
-def test_a_camera_that_cannot_be_is_one_line(ask, tmp_path, camera):
-    points, labels = two_cubes([0, 0, 0.06])
-    np.savez(tmp_path / "c.npz", points=points, labels=labels, camera=camera)
-    assert "camera must" in ask("perceive", tmp_path / "c.npz", "--up", "z").refusal
 
 
 def test_a_guess_of_parts_is_one_line_beside_the_document(ask, cloud):
@@ -310,12 +289,6 @@ def test_ten_million_points_in_bounded_memory(tmp_path):
 def test_what_is_no_cloud_is_one_line(ask, tmp_path, name):
     (tmp_path / "text.txt").write_text("no cloud at all")
     assert ask("perceive", name).refusal
-
-
-def test_a_cloud_cut_short_is_one_line(ask, cloud):
-    path = cloud(*two_cubes([0, 0, 0.06]))
-    path.write_bytes(path.read_bytes()[:1000])
-    assert "cloud.npz" in ask("perceive", path).refusal
 
 
 @pytest.fixture
@@ -417,19 +390,6 @@ def test_a_folder_is_watched_until_ctrl_c(start, answer, three, tmp_path):
 def test_a_box_and_a_range_crop_the_cloud(ask, cloud, option, objects):
     answer = ask("perceive", cloud(*two_cubes([0, 0, 0.2])), "--up", "z", option, "--json")
     assert [entry["id"] for entry in answer.document["objects"]] == objects
-
-
-@pytest.mark.parametrize(
-    ("option", "rule"),
-    [
-        ("--roi=1,2,3", "XMIN"),
-        ("--roi=a", "six numbers"),
-        ("--max-range=0", "positive"),
-        ("--roi=5,6,5,6,5,6", "spans"),
-    ],
-)
-def test_a_region_that_cannot_be_is_one_line(ask, cloud, option, rule):
-    assert rule in ask("perceive", cloud(*two_cubes([0, 0, 0.2])), "--up", "z", option).refusal
 
 
 def test_warnings_are_printed_and_stand_in_the_document(ask, cloud):

@@ -1,9 +1,6 @@
-"""Lives as real processes: interrupted, killed, side by side, out of space, and without the right to write."""
+"""Lives as real processes: interrupted, side by side, out of space, and without the right to write."""
 
 import json
-import os
-import random
-import re
 import resource
 import signal
 import sqlite3
@@ -13,13 +10,11 @@ import time
 from contextlib import closing
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from lifelore.memory import open_memory
 from tests.app.changed_settings import changed
 
-SOAK_KILLS = int(os.environ.get("LIFELORE_SOAK_KILLS", "200"))
 LATTICE = ("live", "--domain", "lattice")
 
 
@@ -74,61 +69,6 @@ def test_ctrl_c_is_heard_within_a_task(start, answer, ask, tmp_path):
     assert ask(*LATTICE, "--tasks", 1, "--memory", memory).status == 0
 
 
-def killed_life(start, memory: Path, seconds: float, after: int | None, wait_for_tasks) -> None:
-    """Start a life and kill it: `seconds` after its start, or after there are more than `after` tasks."""
-    child = start(*LATTICE, "--tasks", 1_000_000, "--set", "jobs=1", "--memory", memory)
-    if after is not None:
-        wait_for_tasks(child, memory, after + 1)
-    time.sleep(seconds)
-    child.kill()
-    assert (child.wait(), child.stdout.read()) == (-signal.SIGKILL, "")
-    assert re.fullmatch(r"(341 places; about .*\n)?", child.stderr.read())
-
-
-def kill_loop(start, ask, wait_for_tasks, memory: Path, kills: int, seed: int) -> None:
-    """After every kill memory is sound, nothing of it is gone, and the next life goes on where it stopped.
-
-    Every fourth kill falls anywhere into the first 1.5 s, so also into a start or an opening; the others fall
-    into the life itself, at least one task after its beginning: so there is progress on any machine.
-    """
-    draw, before = random.Random(seed), 0
-    for kill in range(kills):
-        if kill % 4 == 0:
-            killed_life(start, memory, draw.uniform(0.3, 1.5), None, wait_for_tasks)
-        else:
-            killed_life(start, memory, draw.uniform(0.0, 0.3), before, wait_for_tasks)
-        tasks = sound_tasks(memory)
-        assert tasks > before if kill % 4 else tasks >= before
-        before = tasks
-    life = ask(*LATTICE, "--tasks", 2, "--memory", memory, "--json").document
-    assert life["memory"] == {"tasks_before": before, "tasks_after": before + 2}
-    # No task was lived twice, none was left out, and none was stored by halves.
-    assert task_indices(memory) == list(range(before + 2))
-
-
-def test_kills_lose_at_most_the_task_in_progress(start, ask, wait_for_tasks, tmp_path):
-    kill_loop(start, ask, wait_for_tasks, tmp_path / "life.db", kills=4, seed=20)
-
-
-@pytest.mark.soak
-def test_soak_kills(start, ask, wait_for_tasks, tmp_path):
-    kill_loop(start, ask, wait_for_tasks, tmp_path / "life.db", kills=SOAK_KILLS, seed=200)
-
-
-SLOTS = 2**18
-"""More than there are percepts times actions."""
-
-
-def prior_counts(path: Path) -> np.ndarray:
-    """(SLOTS,) sums of all action priors in a memory, as the integers that are stored."""
-    counts = np.zeros(SLOTS, np.int64)
-    with open_memory(path) as memory:
-        for key, version, _ in memory.keys("action_prior"):
-            record = memory.recall("action_prior", key, version)
-            counts[np.asarray(record.slots)] += np.asarray(record.values)
-    return counts
-
-
 def test_two_lives_of_one_robot_share_its_tasks(start, answer, tmp_path):
     """Both begin where no memory is yet. Which task is lived by whom is a matter of time."""
     memory = tmp_path / "life.db"
@@ -137,25 +77,6 @@ def test_two_lives_of_one_robot_share_its_tasks(start, answer, tmp_path):
     assert [(life.status, life.err) for life in lives] == [(0, ""), (0, "")]
     assert sound_tasks(memory) == 10
     assert sorted(task["index"] for life in lives for task in life.document["tasks"]) == list(range(10))
-
-
-def test_two_lives_that_remember_everything(start, answer, tmp_path):
-    """The whole agent; memory is the sum of its robots, and one's part is what forgetting the other leaves."""
-    memory = tmp_path / "life.db"
-    robots = ("rosie", "wally")
-    options = ("--tasks", 8, "--memory", memory, "--json", "--robot")
-    children = [start(*LATTICE, *options, robot) for robot in robots]
-    assert [answer(child).status for child in children] == [0, 0]
-    parts = []
-    for robot in robots:
-        assert sound_tasks(memory, robot) == 8
-        part = tmp_path / f"without-{robot}.db"
-        with open_memory(part) as other:
-            assert other.merge_from(memory) == {"added": 16, "already_there": 0, "forgotten": 0}
-            assert other.forget(robot) == 8
-        parts.append(prior_counts(part))
-    assert all(part.sum() > 0 for part in parts)
-    assert np.array_equal(prior_counts(memory), sum(parts))
 
 
 def test_a_full_disk_is_one_line_and_keeps_what_is_finished(start, answer, ask, known):

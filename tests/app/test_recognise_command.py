@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
-from lifelore.domains.buildings.office import office_map
+from lifelore.domains import OccupancyMap, office_map, write_occupancy_map
 from tests.domains.buildings.resaved_maps import shifted
 
 OFFICE = office_map(1, 14.0, 12.0)

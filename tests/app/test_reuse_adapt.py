@@ -5,9 +5,7 @@ import json
 
 import pytest
 
-from lifelore.interaction.adaptation.beat import Beat
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.signals.category_signal import CategorySignal
+from lifelore.interaction import Beat, CategorySignal, PolicyLibrary
 
 FIELDS = {
     "types": ["steady", "shaky"], "policies": ["slow", "fast"],

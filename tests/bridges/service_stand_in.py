@@ -1,5 +1,6 @@
 """A small service with the routes of a study that the client uses; it can be killed and started again."""
 
+import contextlib
 import json
 import random
 import socket
@@ -184,6 +185,15 @@ class Handler(BaseHTTPRequestHandler):
             return error.document
 
 
+def free_port() -> int:
+    """A port below those of outgoing connections, so that none of them takes it while the service is down."""
+    for port in random.SystemRandom().sample(range(20_000, 32_000), 50):
+        with contextlib.suppress(OSError), socket.socket() as probe:
+            probe.bind(("127.0.0.1", port))
+            return port
+    raise AssertionError("50 ports are taken")
+
+
 class StandIn:
     """The service in threads of this process; `mode` is how it answers.
 
@@ -192,7 +202,7 @@ class StandIn:
     """
 
     def __init__(self) -> None:
-        self.state, self._port = State(), 0
+        self.state, self._port = State(), free_port()
         self.mode, self.token, self.asked, self.dead = "well", "", 0, True
         self.tls: ssl.SSLContext | None = None
         self.sockets: set[socket.socket] = set()
@@ -208,7 +218,7 @@ class StandIn:
         self._server.stand_in, self._server.state = self, self.state
         if self.tls:
             self._server.socket = self.tls.wrap_socket(self._server.socket, server_side=True)
-        self._port, self.dead = self._server.server_address[1], False
+        self.dead = False
         self._thread = threading.Thread(target=self._server.serve_forever, args=(0.005,), daemon=True)
         self._thread.start()
 

@@ -2,15 +2,10 @@
 
 import numpy as np
 import pytest
-from hypothesis import settings
 
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 
 MASK = 2**64 - 1
-
-# Examples of properties take as long as they take: a busy machine is no failure.
-settings.register_profile("no deadline", deadline=None)
-settings.load_profile("no deadline")
 
 
 class BigRandom:

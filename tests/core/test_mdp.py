@@ -3,10 +3,18 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
-from lifelore.core.learning.q_learner import QLearning
-from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL, Domain, Tables, Task
-from lifelore.core.planning.planning import optimal_q, policy_values
+from lifelore.core import (
+    COLLISION,
+    NOTHING,
+    TERMINAL,
+    Domain,
+    InputError,
+    QLearning,
+    Tables,
+    Task,
+    optimal_q,
+    policy_values,
+)
 
 
 def slippery(params, s, a, u):

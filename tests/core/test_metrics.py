@@ -5,15 +5,9 @@ import pytest
 import scipy.stats
 from hypothesis import strategies as st
 
-from lifelore.core.errors import InputError
+from lifelore.core import InputError, difference_estimate, mean_estimate, stream
 from lifelore.core.intervals import RESAMPLES
-from lifelore.core.metrics import (
-    difference_estimate,
-    entropy,
-    mean_estimate,
-    ratio_estimate,
-)
-from lifelore.core.streams import stream
+from lifelore.core.metrics import entropy, ratio_estimate
 
 floats = st.floats(-100, 100, allow_subnormal=False)
 

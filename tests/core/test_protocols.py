@@ -1,11 +1,8 @@
 """Protocols are met by shape alone; a record is frozen."""
 
-from dataclasses import FrozenInstanceError
-
 import numpy as np
-import pytest
 
-from lifelore.core.protocols import Policy, Record, SignalModel, World
+from lifelore.core.protocols import Policy, SignalModel, World
 
 
 class Coin:
@@ -33,10 +30,3 @@ def test_met_by_shape():
     assert not isinstance(Loudness(), World)
     assert not isinstance(Coin(), SignalModel)
     assert not isinstance(np.zeros(3, int), Policy)  # arrays serve where callers index them, not as calls
-
-
-def test_a_record_is_frozen():
-    record = Record("kind", "key", 1, "add", np.array([1]), np.array([2]))
-    with pytest.raises(FrozenInstanceError):
-        record.key = "other"  # type: ignore[misc]
-    assert record.about == {}

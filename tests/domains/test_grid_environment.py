@@ -93,6 +93,13 @@ def test_the_compiled_table_equals_the_plain_enumeration(name):
         assert np.array_equal(fast, slow)
 
 
+def test_a_start_that_is_no_state_is_refused():
+    env = plain("lifelore/Lattice-v0")
+    for wrong in (env.task.domain.n_states, -1, 1.5, "a", True):
+        with pytest.raises(InputError, match=r"options\['state'\] must"):
+            env.reset(options={"state": wrong})
+
+
 def test_the_goal_may_be_a_state_or_a_cell():
     env = plain("lifelore/Lattice-v0", goal=7)
     cell = tuple(env.world.cells[7].tolist())

@@ -7,9 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
+from lifelore.interaction import BayesianPolicyReuse, LikelihoodSignal, PolicyLibrary
 
 from .reuse.families import FAMILIES, Family
 

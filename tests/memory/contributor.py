@@ -10,8 +10,7 @@ import uuid
 
 import numpy as np
 
-from lifelore.core.errors import StoreError
-from lifelore.core.protocols import Record
+from lifelore.core import Record, StoreError
 from lifelore.memory import open_memory
 
 

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError, StoreError
-from lifelore.core.protocols import Record
+from lifelore.core import InputError, Record, StoreError
 from lifelore.memory import open_memory
 
 

@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lifelore.core.errors import StoreError
-from lifelore.core.protocols import Record
+from lifelore.core import Record, StoreError
 from lifelore.memory import folding
 from lifelore.memory.contribution import new_offer
 from lifelore.memory.folding import Stored, fold

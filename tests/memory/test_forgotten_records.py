@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import NotFoundError
-from lifelore.core.protocols import Record
+from lifelore.core import NotFoundError, Record
 from lifelore.memory import Memory, open_memory
 
 

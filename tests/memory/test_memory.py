@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 import lifelore.memory
-from lifelore.core.errors import InputError, MissingExtraError, NotFoundError, StoreError
-from lifelore.core.protocols import Record
+from lifelore.core import InputError, MissingExtraError, NotFoundError, Record, StoreError
 from lifelore.memory import Memory, open_memory
 from lifelore.memory.schema import LATEST
 
@@ -49,18 +48,6 @@ def test_some_slots_of_a_record(memory):
     assert (found.slots.tolist(), found.values.tolist()) == ([2, 3, 4], [4, 9, 16])
     assert memory.recall("prior", "b7", 1, slots=(20, 30)).slots.tolist() == []
     assert memory.recall("prior", "none", 1, slots=(2, 4)) is None
-
-
-def test_newest_keeps_the_last_value_of_each_slot(memory):
-    give(memory, "b", 0, record({1: 10, 2: 20}, "newest"))
-    give(memory, "a", 0, record({2: 5, 3: 7}, "newest"))
-    assert cells(memory) == {1: 10, 2: 5, 3: 7}
-
-
-def test_union_keeps_the_largest_value(memory):
-    give(memory, "a", 0, record({1: -10, 2: 20}, "union"))
-    give(memory, "a", 1, record({1: -11, 2: 21, 3: 0}, "union"))
-    assert cells(memory) == {1: -10, 2: 21, 3: 0}
 
 
 def test_a_replay_changes_nothing(memory):
@@ -149,27 +136,6 @@ def test_one_key_has_one_merge(memory):
     with pytest.raises(StoreError, match="add and by union"):
         give(memory, "a", 1, record({1: 1}, "union"))
     assert memory.show() == before
-
-
-def test_forget_takes_one_robot_out_and_keeps_it_out(memory):
-    give(memory, "a", 0, record({1: 1, 2: 9}), record({4: 4}, key="only a"))
-    give(memory, "b", 0, record({1: 2}))
-    assert memory.forget("a") == 1
-    assert cells(memory) == {1: 2}
-    assert memory.recall("prior", "only a", 1) is None
-    assert memory.robots() == ["b"]
-    assert memory.show()["forgotten"] == 1
-    assert not give(memory, "a", 0, record({1: 1, 2: 9}))
-    assert give(memory, "a", 1, record({1: 5}))
-    assert cells(memory) == {1: 7}
-    assert memory.check() == []
-
-
-def test_forget_brings_back_what_was_newer_elsewhere(memory):
-    give(memory, "a", 0, record({1: 1}, "newest"), record({1: 1}, "union", key="u"))
-    give(memory, "b", 0, record({1: 2}, "newest"), record({1: 2}, "union", key="u"))
-    memory.forget("b")
-    assert (cells(memory), cells(memory, "u")) == ({1: 1}, {1: 1})
 
 
 def test_forgotten_tasks_can_be_contributed_again_under_the_next_number(memory, tmp_path):

@@ -13,8 +13,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from lifelore.core.errors import NotFoundError, StoreError
-from lifelore.core.protocols import Record
+from lifelore.core import NotFoundError, Record, StoreError
 from lifelore.memory import Memory, open_memory
 
 ROBOTS = ("a", "b", "ä")
@@ -228,12 +227,6 @@ def test_a_source_that_holds_no_memory_stays_empty(memory, new_place, back_end):
     for _ in range(2):
         with pytest.raises(StoreError, match="holds no Lifelore memory"):
             memory.merge_from(place)
-
-
-def test_another_place_is_merged_by_its_name(where, new_place):
-    with filled(where, "ab") as other, open_memory(new_place("sqlite")) as memory:
-        assert memory.merge_from(where)["added"] == 2
-        assert content(memory) == content(other)
 
 
 @pytest.mark.slow

@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from lifelore.core.protocols import Record
-from lifelore.core.streams import stream
+from lifelore.core import Record, stream
 from lifelore.memory import Memory, open_memory, store
 from lifelore.memory.study_rows import DecisionRow
 from tests.memory.power_loss import Disk, Driver

@@ -7,8 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from lifelore.core.errors import StoreError
-from lifelore.core.protocols import Record
+from lifelore.core import Record, StoreError
 from lifelore.memory import record_blob
 from lifelore.memory.record_blob import compress, decompress, pack, unpack
 

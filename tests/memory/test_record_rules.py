@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
-from lifelore.core.protocols import Record
+from lifelore.core import InputError, Record
 from lifelore.memory.contribution import new_offer
 from lifelore.memory.record_rules import checked_record
 

@@ -1,22 +1,16 @@
 """Full disks, locks and drivers' complaints: one line, nothing lost."""
 
-import resource
 import sqlite3
-import subprocess
-import sys
 from contextlib import closing
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError, StoreError
-from lifelore.core.protocols import Record
+from lifelore.core import InputError, Record, StoreError
 from lifelore.memory import Memory, open_memory, sqlite_file
 from lifelore.memory.refusal import one_line_refusals, refusal
 from lifelore.memory.sqlite_file import connect
-
-CONTRIBUTOR = Path(__file__).with_name("contributor.py")
 
 
 def noise(seq: int) -> Record:
@@ -47,24 +41,6 @@ def test_a_full_disk_loses_the_task_in_progress_only(file):
         with memory._store.pool.connection() as conn:
             conn.execute("PRAGMA max_page_count = 6000")
         assert memory.contribute("a", [noise(stored)], process="p", seq=stored, task={})
-        assert memory.check() == []
-
-
-@pytest.mark.slow
-def test_a_write_that_fails_in_the_file_system(file):
-    """A limit on the size of files makes write() itself fail, in the log and in the file."""
-    limit = 400_000
-    done = subprocess.run(
-        [sys.executable, str(CONTRIBUTOR), str(file), "a", "200", "3000"],
-        capture_output=True, text=True,
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
-    )  # fmt: skip
-    assert done.stderr == ""
-    *acknowledged, last = done.stdout.splitlines()[1:]
-    assert last.startswith(f"refused: memory {file}: ")
-    assert len(acknowledged) > 0
-    with open_memory(file) as memory:
-        assert memory.tasks("a") == len(acknowledged)
         assert memory.check() == []
 
 

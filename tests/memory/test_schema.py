@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import StoreError
-from lifelore.core.protocols import Record
+from lifelore.core import Record, StoreError
 from lifelore.memory import open_memory, schema
 from lifelore.memory.studies import TABLES
 from lifelore.memory.study_rows import DecisionRow

@@ -6,8 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.core.errors import StoreError
-from lifelore.core.protocols import Record
+from lifelore.core import Record, StoreError
 from lifelore.memory import open_memory, store
 
 ROBOTS, TASKS = 20, 200

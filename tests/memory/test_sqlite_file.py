@@ -12,8 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.core.errors import StoreError
-from lifelore.core.protocols import Record
+from lifelore.core import Record, StoreError
 from lifelore.memory import open_memory
 from lifelore.memory.sqlite_file import connect, is_in_use, read_header
 

@@ -5,8 +5,7 @@ import threading
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError, StoreError
-from lifelore.core.protocols import Record
+from lifelore.core import InputError, Record, StoreError
 from lifelore.memory import open_memory
 
 

@@ -151,34 +151,6 @@ def test_goals_pooled_lead_nowhere_where_goals_apart_lead_straight():
     assert all(apart.consider(watch, s).theta.tolist() == [1, 0] for s in range(1, 6))
 
 
-def test_the_printed_condition_step_by_step():
-    # Eq. 3.13-3.16 from the text: α = counts + α⁰, θ its proportion; M₁ takes θ, M₂ all alike; P(M) = ½ each.
-    random, n_states, n_actions, alpha0, kappa, window = np.random.default_rng(3), 5, 3, 0.4, 0.2, 6
-    walks = [
-        Trajectory(np.append(np.arange(n_states), 0), random.integers(0, n_actions, n_states)) for _ in range(4)
-    ]
-    models = [GoalModel.from_trajectories([walk], n_states, n_actions, alpha0=alpha0) for walk in walks]
-    states, actions = random.integers(0, n_states, 60), random.integers(0, n_actions, 60)
-    found = Advisor.of_thesis(models, AdviceSettings(kappa=kappa, window=window)).assess(states, actions)
-    alpha = np.full((n_states, n_actions), alpha0)
-    for walk in walks:
-        for s, a in zip(walk.states, walk.actions, strict=False):
-            alpha[s, a] += 1
-    theta = alpha / alpha.sum(axis=1, keepdims=True)
-    fired = []
-    for t, s in enumerate(states):
-        recent = slice(max(0, t - window), t)
-        normal = float(np.prod(theta[states[recent], actions[recent]]))
-        p_normal = 0.5 * normal / (0.5 * normal + 0.5 * n_actions ** -float(t - max(0, t - window)))
-        likely = p_normal * theta[s] + (1 - p_normal) / n_actions
-        gain = sum(theta[s, a] * log(theta[s, a] / likely[a]) for a in range(n_actions))
-        assert found.p_normal[t] == pytest.approx(p_normal, abs=1e-9)
-        assert found.gain[t] == pytest.approx(gain, abs=1e-9)
-        fired.append(gain >= kappa)
-    assert found.advise.tolist() == fired
-    assert 5 < sum(fired) < 55
-
-
 # ---- against the twin ------------------------------------------------------------------------------
 
 

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from lifelore.action.advice.advisor import AdviceSettings, Advisor
-from lifelore.action.advice.agent_classes import SURE, ClassAdvisor, classes_with_goals
-from lifelore.action.advice.goal_model import GoalModel, Trajectory
+from lifelore.action import AdviceSettings, Advisor, ClassAdvisor, GoalModel, Trajectory
+from lifelore.action.advice.agent_classes import SURE, classes_with_goals
 from lifelore.core.errors import InputError, NotFoundError
 
 STAFF, VISITOR = 0, 1
@@ -51,17 +50,6 @@ def test_the_class_is_inferred_by_bayes(models):
     # With the uniform model: P(M | H) of both classes together.
     likelihood = np.array([0.1, 4.1]) / 4.2 * 4.1 / 4.2
     assert advice.p_normal == pytest.approx(likelihood.sum() / 4 / (likelihood.sum() / 4 + 0.5 * 0.25))
-
-
-def test_one_class_is_one_prior_over_all_goals(models):
-    every = [*models["staff"], *models["visitor"]]
-    ours, thesis = (
-        pooled_classes({"anyone": every}, PLAIN).advisor,
-        Advisor([GoalModel.pooled(every)], None, PLAIN),
-    )
-    steps = np.random.default_rng(0).integers(0, 2, (2, 60))
-    for found, wanted in zip(ours.assess(*steps), thesis.assess(*steps), strict=True):
-        assert np.array_equal(found, wanted)
 
 
 def test_goals_apart_are_as_likely_as_their_class():

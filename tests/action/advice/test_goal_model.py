@@ -7,7 +7,6 @@ import pytest
 
 from lifelore.action.advice.goal_model import GoalModel, Trajectory, extend_goal_models
 from lifelore.core.errors import InputError
-from tests.action.advice.goal_models import goal_model_of
 
 EAST, WEST = 0, 1
 LINE = np.array([[1, -1], [2, 0], [3, 1], [4, 2], [-1, 3]])
@@ -25,13 +24,6 @@ def test_counts_and_steps_by_hand():
     assert purpose.prior.counts([0, 1, 2]).tolist() == [[1, 0], [2, 1], [0, 0]]
     assert purpose.steps.tolist() == [2, 5 / 3, np.inf, np.inf, np.inf]
     assert purpose.theta[[0, 1, 2]] == pytest.approx(np.array([[1, 0], [2 / 3, 1 / 3], [0, 0]]))
-
-
-def test_policies_count_their_tied_best_actions_but_no_goal_row():
-    best = np.array([[True, False], [True, True], [False, False]])
-    purpose = goal_model_of(best, goals=[2])
-    assert purpose.theta.tolist() == [[1, 0], [0.5, 0.5], [0, 0]]
-    assert purpose.steps.tolist() == [0, 0, np.inf]
 
 
 def test_pooled_is_the_sum():

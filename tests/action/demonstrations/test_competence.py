@@ -5,8 +5,7 @@ import pytest
 
 from lifelore.action.demonstrations.competence import competence_by_steps
 from lifelore.action.demonstrations.demonstrations import Demonstration
-from lifelore.core.mdp import TERMINAL, Tables
-from lifelore.core.streams import stream
+from lifelore.core import TERMINAL, Tables, stream
 from reproduction.chapter3.c3_12_demonstrated_priors.simulated_person import person_policy, simulated_demonstration
 
 

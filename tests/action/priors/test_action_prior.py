@@ -8,9 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.action.priors.action_prior import FORMS, MOST_WEIGHT, ONE, ActionPrior
-from lifelore.core.errors import InputError
-from lifelore.core.protocols import Record
-from lifelore.core.streams import stream
+from lifelore.core import InputError, Record, stream
 
 N_ACTIONS = 3
 codes = st.integers(-(2**60), 2**60)

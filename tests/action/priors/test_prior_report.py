@@ -5,8 +5,7 @@ import math
 
 import pytest
 
-from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.action.priors.prior_report import prior_report
+from lifelore.action import ActionPrior, prior_report
 
 
 def small() -> ActionPrior:

@@ -8,8 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lifelore.action.search.depth_first import Preferences, depth_first, preferences
-from lifelore.core.errors import InputError
-from lifelore.core.mdp import TERMINAL, Tables
+from lifelore.core import TERMINAL, InputError, Tables
 
 
 def tables_of(next_state, goal: int) -> Tables:

@@ -19,9 +19,7 @@ from lifelore.action.search.domain_reduction import (
     task_futile_states,
     trap_states,
 )
-from lifelore.core.errors import InputError
-from lifelore.core.mdp import TERMINAL, Tables
-from lifelore.core.planning.planning import optimal_q
+from lifelore.core import TERMINAL, InputError, Tables, optimal_q
 
 DISCOUNT = 0.9
 

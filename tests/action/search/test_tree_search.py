@@ -6,9 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lifelore.action.search.tree_search import EpisodeResult, SearchSettings, play, search, search_guidance
+from lifelore.core import COLLISION, TERMINAL, InputError, Tables
 from lifelore.core.compiled.random_state import next_uniform, random_state
-from lifelore.core.errors import InputError
-from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 
 ENDS = SearchSettings(simulations=60, depth=12)
 

@@ -17,8 +17,7 @@ import uvicorn
 from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Browser, Page, expect, sync_playwright
 
-from lifelore.app.pages.mount import app_with_pages
-from lifelore.app.service.settings import ServiceSettings
+from lifelore.app import ServiceSettings, app_with_pages
 
 # A page on a loaded machine may take long to draw; a passing test waits no longer than before.
 expect.set_options(timeout=60_000)

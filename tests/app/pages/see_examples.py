@@ -9,8 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.core.streams import stream
+from lifelore.core import LabelledCloud, stream
 from lifelore.domains.tabletop.scene_folder import save_cloud
 from lifelore.domains.tabletop.settings import TabletopSettings
 from lifelore.domains.tabletop.tabletop import sample_scene

@@ -15,8 +15,7 @@ from playwright.sync_api import Browser, Dialog, Page, expect
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.agent.long_lived.long_life import live_long
-from lifelore.app.pages.mount import app_with_pages
-from lifelore.app.service.settings import ServiceSettings
+from lifelore.app import ServiceSettings, app_with_pages
 from lifelore.app.service.tokens import add_token
 from lifelore.domains.worlds import WorldSettings
 from lifelore.memory import open_memory

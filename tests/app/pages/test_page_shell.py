@@ -7,9 +7,8 @@ pytest.importorskip("playwright", reason="needs the extra browser")
 
 from fastapi.testclient import TestClient
 
-from lifelore.app.pages.mount import app_with_pages
+from lifelore.app import ServiceSettings, app_with_pages
 from lifelore.app.pages.shell.page_shell import HOME, PAGES
-from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.tokens import add_token
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]

@@ -1,6 +1,7 @@
 """The page see as a person uses it: examples, objects by mouse and keyboard, own files, and without WebGL."""
 
 import json
+import re
 import struct
 from collections.abc import Callable
 from pathlib import Path
@@ -12,7 +13,7 @@ import pytest
 pytest.importorskip("fastapi", reason="needs the extra web")
 pytest.importorskip("playwright", reason="needs the extra browser")
 
-from playwright.sync_api import Browser, Page, expect
+from playwright.sync_api import Browser, Page, Route, expect
 
 from lifelore.agent.perceive.perceive import PerceiveSettings, perceive
 from lifelore.perception.clouds.cloud_file import read_cloud
@@ -156,16 +157,33 @@ def test_a_range_and_a_box_cut_the_cloud(address: str, open_page: Opened):
     shown(page, f"{len(plain['objects'])} objects, ")
     page.select_option("#up", "vector")
     page.locator("#vector").fill("0,0,3")
-    page.locator("#vector").press("Enter")
+    with page.expect_response(re.compile("up=0(,|%2C)0"), timeout=LOADED):
+        page.locator("#vector").press("Enter")
     upright = perceive(str(EXAMPLES / "without_labels.pcd"), PerceiveSettings(up=(0, 0, 3)))
     shown(page, f"{len(upright['objects'])} objects, ")
     page.select_option("#up", "table")
     page.select_option("#example", "crowded_table")
     shown(page, "6 objects")
     page.get_by_label("Only within").fill("9")
-    page.get_by_label("Only within").press("Enter")
+    with page.expect_response(re.compile("max_range=9"), timeout=LOADED):
+        page.get_by_label("Only within").press("Enter")
     expect(page.locator("#message")).to_be_hidden(timeout=LOADED)
     shown(page, "6 objects")
+
+
+def test_of_two_examples_the_last_chosen_is_shown(address: str, open_page: Opened):
+    page = open_page(address + "/see")
+    shown(page, TOWER)
+    held: list[Route] = []
+    page.route("**/crowded_table.pcd", lambda route: held.append(route))
+    page.select_option("#example", "crowded_table")
+    page.select_option("#example", "without_labels")
+    expect(page.locator("#warnings li")).to_have_count(1, timeout=LOADED)
+    with page.expect_response("**/crowded_table.pcd"):
+        held[0].continue_()
+    page.wait_for_timeout(1000)
+    expect(page.locator("#message")).to_be_hidden()
+    expect(page.locator("#warnings li")).to_have_count(1)
 
 
 def test_own_files_are_analysed_with_their_warnings(address: str, open_page: Opened, tmp_path: Path):

@@ -55,7 +55,7 @@ def test_a_study_and_one_user_are_shown(serve_pages, open_page, check_page, wher
     expect(page.locator("#uplift")).to_contain_text("Control group")
     expect(page.locator("#policies")).to_contain_text(LONG)
     expect(page.locator("#calibration")).to_contain_text("uantiles")
-    assert "study=playlists" in page.url
+    page.wait_for_url("**study=playlists**")
     check_page(page, "study" if size is DESKTOP else None, 1120)
     page.locator("#name").fill("<b>user/7</b>")
     page.locator("#ask button").click()

@@ -94,4 +94,4 @@ def test_a_large_document_delays_nobody(serve, body):
         time.sleep(0.01)
     sender.join()
     assert answers[0] in (413, 422)
-    assert longest < 1.0, "0.03 to 0.12 s on an idle machine; 9.7 s with the standard parser"
+    assert longest < 4.0, "0.03 to 0.12 s on an idle machine; 9.7 s with the standard parser"

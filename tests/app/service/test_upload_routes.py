@@ -14,8 +14,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from lifelore.agent.perceive.perceive import perceive
-from lifelore.core.errors import InputError
-from lifelore.core.protocols import Record
+from lifelore.core import InputError, Record
 from lifelore.memory import open_memory
 
 FILE = {"Content-Type": "application/octet-stream"}

@@ -5,12 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lifelore.core import COLLISION, TERMINAL, Tables, stream
 from lifelore.core.learning.curve import new_curve
 from lifelore.core.learning.known_value import KnownValue
 from lifelore.core.learning.known_world import WorldModel, unknown_world
 from lifelore.core.learning.model_learning import ExplorationStrategy, StateInfo, explore, new_model_learner
-from lifelore.core.mdp import COLLISION, TERMINAL, Tables
-from lifelore.core.streams import stream
 
 seeds = st.integers(0, 10**6)
 

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
-from lifelore.core.learning.learning_metrics import episodes_to_threshold, learning_gain
-from lifelore.core.metrics import mean_estimate
+from lifelore.core import InputError, learning_gain, mean_estimate
+from lifelore.core.learning.learning_metrics import episodes_to_threshold
 
 WITH = [[2.0, 4.0, 8.0, 10.0], [1.0, 9.0, 9.0, 9.0], [3.0, 3.0, 7.0, 7.0]]
 WITHOUT = [[0.0, 0.0, 4.0, 8.0], [0.0, 3.0, 6.0, 9.0], [1.0, 1.0, 1.0, 5.0]]

@@ -5,13 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.core.errors import InputError
+from lifelore.core import NOTHING, TERMINAL, InputError, QLearning, Tables, optimal_q, policy_values, stream
 from lifelore.core.learning.curve import new_curve
-from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import Rows, Schedule, cumulative, learn, new_learner, uniform_rows
-from lifelore.core.mdp import NOTHING, TERMINAL, Tables
-from lifelore.core.planning.planning import optimal_q, policy_values
-from lifelore.core.streams import stream
 
 ALL = 10**9
 

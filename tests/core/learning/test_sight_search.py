@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lifelore.core import COLLISION, TERMINAL, Tables, stream
 from lifelore.core.compiled.random_state import random_state
 from lifelore.core.learning.curve import EPISODE, GOALS, TOTAL, new_curve
 from lifelore.core.learning.known_value import KnownValue
@@ -22,8 +23,6 @@ from lifelore.core.learning.known_world import (
 from lifelore.core.learning.model_learning import ExplorationStrategy, StateInfo, new_model_learner
 from lifelore.core.learning.sight_plan import DRIVE, SEARCH, SHORTEN, plan_by_sight
 from lifelore.core.learning.sight_search import explore_by_sight, new_sight_search
-from lifelore.core.mdp import COLLISION, TERMINAL, Tables
-from lifelore.core.streams import stream
 
 seeds = st.integers(0, 10**6)
 

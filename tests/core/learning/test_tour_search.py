@@ -7,8 +7,7 @@ from lifelore.core.learning.known_world import UNKNOWN, WorldModel, unknown_worl
 from lifelore.core.learning.model_learning import ExplorationStrategy, StateInfo, explore, new_model_learner
 from lifelore.core.learning.tour_search import KnownTour, explore_on_tour
 from lifelore.core.streams import stream
-from lifelore.domains.grids.lattice import lattice
-from lifelore.domains.grids.noise_maze import noise_maze
+from lifelore.domains import lattice, noise_maze
 
 
 def lived(world, model, goal, seed=0, tour=True, episodes=20, max_steps=1000, known=None):

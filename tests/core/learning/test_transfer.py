@@ -6,9 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from lifelore.core.errors import InputError
-from lifelore.core.learning.transfer import lifetime_transfer
-from lifelore.core.metrics import mean_estimate
+from lifelore.core import InputError, lifetime_transfer, mean_estimate
 
 LIFE = np.array([[1, 2, 4], [8, 4, 2], [6, 8, 4], [7, 4, 8]], float)
 """Before anything, then after tasks 0, 1 and 2; columns are the tasks."""

@@ -5,10 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.core.errors import InputError
-from lifelore.core.mdp import NOTHING, Tables
+from lifelore.core import NOTHING, InputError, Tables, optimal_q
 from lifelore.core.planning.layered_planning import LayeredPlan, layered_q
-from lifelore.core.planning.planning import optimal_q
 
 seeds = st.integers(0, 10**6)
 SIZE = 4

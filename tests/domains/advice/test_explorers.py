@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
+from lifelore.domains import GridWorld, noise_maze
 from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
-from lifelore.domains.grids.grid_world import GridWorld
-from lifelore.domains.grids.noise_maze import noise_maze
 
 NORTH, SOUTH, EAST, WEST = range(4)
 CROSS = GridWorld.from_free("cross", np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]], bool))

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
-from lifelore.domains.ball_game.ball_game import MOVES, SIDE, LossScale, ball_game, check_place, slide, step
+from lifelore.domains.ball_game.ball_game import SIDE, LossScale, ball_game, check_place, step
 from lifelore.domains.ball_game.layouts import Layout, layout_names, s_maze
 from lifelore.domains.ball_game.paths import CELL, MARGIN, cost_to_go
 from lifelore.domains.ball_game.simulated_player import choose_heading
@@ -64,25 +64,6 @@ def test_games_that_cannot_be_played():
         ball_game(blocked="bounces")
     with pytest.raises(InputError, match="place must be free for a ball of size 60"):
         check_place(GAME, 5, 20, 20)
-
-
-def naive_slide(clearance, radius, x, y, dx, dy, distance):
-    for moved in range(distance):
-        if not clearance[y + dy * (moved + 1), x + dx * (moved + 1)] > radius:
-            return moved
-    return distance
-
-
-@pytest.mark.slow
-@given(st.data())
-@settings(deadline=None, max_examples=150)
-def test_slide_goes_place_by_place(data):
-    kind = data.draw(st.integers(0, 5))
-    x, y = data.draw(places(kind))
-    dx, dy = MOVES[data.draw(st.integers(0, 3))].tolist()
-    distance = data.draw(st.integers(0, 90))
-    arguments = (FIELD.clearance, FIELD.radius[kind], x, y, dx, dy, distance)
-    assert slide(*arguments) == naive_slide(*arguments)
 
 
 def test_moves_by_hand():

@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.domains.buildings.building import building_from_map
+from lifelore.domains import GridWorld, building_from_map, office_map
 from lifelore.domains.buildings.building_days import CROWD, DAYS, MOVE, REFUSED, BuildingWay, Day, day_in
-from lifelore.domains.buildings.office import office_map
-from lifelore.domains.grids.grid_world import GridWorld
 
 OFFICE = building_from_map(office_map(0))
 

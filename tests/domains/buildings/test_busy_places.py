@@ -5,9 +5,8 @@ import pytest
 from scipy.sparse import csgraph
 
 from lifelore.core.streams import stream
+from lifelore.domains import GridWorld, make_world
 from lifelore.domains.buildings.busy_places import around, blocked_passages, move_graph, on_shortest_ways, without
-from lifelore.domains.grids.grid_world import GridWorld
-from lifelore.domains.worlds import make_world
 
 
 def test_the_door_between_two_rooms_is_the_busiest_place():

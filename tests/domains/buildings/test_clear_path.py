@@ -8,17 +8,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import ndimage, sparse
-from scipy.sparse import csgraph
 from scipy.spatial import KDTree
 
 from lifelore.core.errors import InputError
-from lifelore.domains.buildings.building import building_from_map
+from lifelore.domains import GridWorld, OccupancyMap, building_from_map, floor_of, office_map, read_occupancy_map
 from lifelore.domains.buildings.clear_path import clear_path
-from lifelore.domains.buildings.floor import Floor, floor_of
-from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap, read_occupancy_map
-from lifelore.domains.buildings.office import office_map
-from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.domains.buildings.floor import Floor
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN
 
 
 def building(occupancy: OccupancyMap, cell: float, radius: float) -> tuple[GridWorld, Floor]:
@@ -93,84 +89,6 @@ def check_chains(world: GridWorld, floor: Floor, n: int, seed: int) -> None:
             assert_clear(path, floor)
         visited = floor.state[tuple(np.rint(floor.pixels(along)).astype(int).T)]
         assert np.isin(visited, chain).all()
-
-
-def shortest_lengths(floor: Floor, ends: np.ndarray) -> np.ndarray:
-    """Lengths in metres of the shortest paths that keep the radius and half a pixel; `ends` (n, 2, 2) pixels.
-
-    A visibility graph: nodes lie on circles about the solid pixels at which the solid part is convex. Lines keep
-    the clearance, and their samples lie on pixels of the floor or beside one. It keeps 0.05 pixels more, so that
-    no path depends on a passage of exactly this width. The lines between the 32 points of a circle stay outside of
-    it, and make its arc 0.5 % longer.
-    """
-    keep = floor.radius + 0.55
-    floor_or_beside = ndimage.binary_dilation(floor.state >= 0, np.ones((3, 3)))
-    solid = np.argwhere(floor.solid & (ndimage.distance_transform_cdt(floor.solid, "chessboard") == 1))
-    tree, angle = KDTree(solid), np.arange(32) * np.pi / 16
-    outward = np.column_stack([np.cos(angle), np.sin(angle)])
-    nodes = [ends.reshape(-1, 2)]
-    for pixel in solid:
-        beside = solid[tree.query_ball_point(pixel, 1.5)] - pixel
-        convex = ((beside @ outward.T) < 1e-9).all(axis=0)
-        nodes.append(pixel + outward[convex] * keep / np.cos(np.pi / 32) * (1 + 1e-9))
-    node = np.concatenate(nodes)
-    inside = ((node > -0.5) & (node < np.array(floor.state.shape) - 0.5)).all(axis=1)
-    node = node[inside & (tree.query(node)[0] >= keep)]
-    length = np.zeros((len(node), len(node)))
-    for k, point in enumerate(node):
-        along = node[k + 1 :] - point
-        square = np.maximum((along**2).sum(axis=1), 1e-12)
-        near = solid - point
-        t = np.clip(along @ near.T / square[:, None], 0, 1)
-        away = (near[None, :, 0] - t * along[:, :1]) ** 2 + (near[None, :, 1] - t * along[:, 1:]) ** 2
-        for j in np.flatnonzero((away >= (keep - 1e-7) ** 2).all(axis=1)):
-            samples = point + np.linspace(0, 1, int(4 * square[j] ** 0.5) + 2)[:, None] * along[j]
-            if floor_or_beside[tuple(np.rint(samples).astype(int).T)].all():
-                length[k, k + 1 + j] = square[j] ** 0.5
-    first = np.arange(len(ends)) * 2
-    found = csgraph.dijkstra(sparse.csr_array(length), directed=False, indices=first)
-    return found[np.arange(len(ends)), first + 1] * floor.occupancy.resolution
-
-
-def part_of(occupancy: OccupancyMap, top: int, left: int, side: int) -> OccupancyMap:
-    """A square of a map within a wall of one pixel."""
-    state = occupancy.state[top : top + side, left : left + side].copy()
-    state[[0, -1]] = state[:, [0, -1]] = OCCUPIED
-    return OccupancyMap(state, occupancy.resolution)
-
-
-def hall(side: int, seed: int) -> OccupancyMap:
-    """A hall with twelve boxes, in pixels of 0.05 m."""
-    rng, state = np.random.default_rng(seed), np.zeros((side, side), np.uint8)
-    state[[0, -1]] = state[:, [0, -1]] = OCCUPIED
-    for _ in range(12):
-        (top, left), (height, width) = rng.integers(5, side - 12, 2), rng.integers(1, 9, 2)
-        state[top : top + height, left : left + width] = OCCUPIED
-    return OccupancyMap(state, 0.05)
-
-
-def check_lengths(occupancy: OccupancyMap, n: int) -> None:
-    _, floor = building(occupancy, 0.5, 0.2)
-    roomy = np.flatnonzero(floor.distance[tuple(floor.anchors.T)] > floor.radius + 0.55)
-    ends = floor.anchors[np.random.default_rng(0).choice(roomy, (n, 2))].astype(float)
-    ends = ends[np.hypot(*(ends[:, 0] - ends[:, 1]).T) > 10]
-    paths = [clear_path(floor, *floor.metres(pair)) for pair in ends]
-    ratio = np.array([length_of(path) for path in paths]) / shortest_lengths(floor, ends)
-    assert len(ratio) > 0.7 * n
-    assert 0.995 < ratio.min() <= ratio.max() < 1.03
-    assert ratio.mean() < 1.01
-    assert min(least_clearance(path, floor) for path in paths) > floor.radius + 0.5 - 1e-6
-
-
-@pytest.mark.parametrize("occupancy", [hall(64, 3), part_of(office_map(1), 60, 60, 80)], ids=["hall", "office"])
-def test_paths_are_at_most_3_percent_longer_than_the_shortest_and_as_clear(occupancy):
-    check_lengths(occupancy, 25)
-
-
-@pytest.mark.skipif("LIFELORE_DATA" not in os.environ, reason="LIFELORE_DATA is not set")
-def test_paths_in_a_part_of_the_willow_building_are_at_most_3_percent_longer_and_as_clear():
-    willow = read_occupancy_map(Path(os.environ["LIFELORE_DATA"]) / "maps" / "willow-full.yaml")
-    check_lengths(part_of(willow, 200, 400, 60), 25)
 
 
 def test_an_empty_room_is_crossed_in_a_straight_line():

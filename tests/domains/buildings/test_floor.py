@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.domains.buildings.building import building_from_map
-from lifelore.domains.buildings.floor import floor_of
-from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
-from lifelore.domains.buildings.office import office_map
+from lifelore.domains import OccupancyMap, building_from_map, floor_of, office_map
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN
 
 
 def room(origin=(0.0, 0.0, 0.0)) -> OccupancyMap:

@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.domains.buildings.building import building_from_map
-from lifelore.domains.buildings.floor import Floor, floor_of
+from lifelore.domains import OccupancyMap, building_from_map, floor_of, office_map
+from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.buildings.footprint import Footprint, footprint_path
-from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap
-from lifelore.domains.buildings.office import office_map
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED
 
 LONG = [[0.6, 0.2], [0.6, -0.2], [-0.3, -0.2], [-0.3, 0.2]]
 

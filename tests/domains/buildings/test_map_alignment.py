@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from lifelore.domains.buildings.building import building_from_map
+from lifelore.domains import OccupancyMap, building_from_map, office_map
 from lifelore.domains.buildings.map_alignment import MapFrame, aligned_map
-from lifelore.domains.buildings.occupancy_map import FREE, UNKNOWN, OccupancyMap
-from lifelore.domains.buildings.office import office_map
+from lifelore.domains.buildings.occupancy_map import FREE, UNKNOWN
 from lifelore.domains.buildings.registration import IDENTITY, moved
 from reproduction.own.o_04_same_building.edits import turned
 from tests.domains.buildings.resaved_maps import padded, shifted

@@ -1,7 +1,6 @@
 """Reading and writing `map_server` maps: its rules by hand, and one clear line for each bad input."""
 
 import os
-from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -187,28 +186,6 @@ def error_of(path) -> str:
     message = str(caught.value)
     assert "\n" not in message
     return message
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["map.png", "map.pgm"])
-def test_spoilt_bytes_give_a_map_or_an_input_error(tmp_path, name):
-    rng = np.random.default_rng(0)
-    image = tmp_path / name
-    Image.fromarray(rng.integers(0, 256, (9, 7), dtype=np.uint8)).save(image)
-    sound = image.read_bytes()
-    path = write_yaml(tmp_path, image=name)
-    refused = 0
-    for _ in range(150):
-        spoilt = bytearray(sound[: rng.integers(1, len(sound) + 1)])
-        for place in rng.integers(len(spoilt), size=rng.integers(4)):
-            spoilt[place] = rng.integers(256)
-        image.write_bytes(bytes(spoilt))
-        with suppress(InputError):  # anything else is a defect
-            assert read_occupancy_map(path).state.size
-            continue
-        refused += 1
-        assert "no image" in error_of(path) or "at most" in error_of(path)
-    assert 0 < refused < 150
 
 
 def test_what_is_written_is_read_back(tmp_path):

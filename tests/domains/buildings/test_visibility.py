@@ -6,55 +6,10 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
+from lifelore.domains import OccupancyMap, building_from_map, floor_of, office_map
 from lifelore.domains.buildings import visibility
-from lifelore.domains.buildings.building import building_from_map
-from lifelore.domains.buildings.floor import floor_of
-from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap
-from lifelore.domains.buildings.office import office_map
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED
 from lifelore.domains.buildings.visibility import visible_places
-
-
-def drawn(picture: str):
-    """World and floor of a picture of pixels of 1 m, # occupied; a cell is a pixel, the robot a point."""
-    rows = [line.strip() for line in picture.strip().splitlines()]
-    state = np.where(np.array([list(row) for row in rows]) == "#", OCCUPIED, FREE).astype(np.uint8)
-    occupancy = OccupancyMap(state, 1.0, (0.0, 0.0, 0.0))
-    world = building_from_map(occupancy, 1.0, 0.0)
-    return world, floor_of(occupancy, world)
-
-
-def sights(picture: str, reach: float) -> dict[tuple[int, int], set[tuple[int, int]]]:
-    """The pixels in sight of each free pixel."""
-    world, floor = drawn(picture)
-    visible = visible_places(floor, world, reach)
-    pixels = [tuple(anchor) for anchor in floor.anchors.tolist()]
-    return {
-        p: {pixels[t] for t in visible.indices[slice(*visible.indptr[s : s + 2])]} for s, p in enumerate(pixels)
-    }
-
-
-ROOMS = """
-    #########
-    #...#...#
-    #.......#
-    #...#...#
-    #########
-"""
-
-
-def test_a_wall_hides_and_a_door_shows():
-    seen = sights(ROOMS, 100)
-    # From the row of the door, the other room is seen along the row, and near the door a little to its sides.
-    assert {p for p in seen[2, 1] if p[1] > 4} == {(2, 5), (2, 6), (2, 7)}
-    assert {p for p in seen[2, 3] if p[1] > 4} == {(2, 5), (2, 6), (2, 7), (1, 7), (3, 7)}
-    # The line from (1, 3) to (3, 5) passes through the middle of the door and touches the corners of its posts.
-    assert (3, 5) not in seen[1, 3]
-    # From the door all is seen except the places to which the line touches a post.
-    assert seen[2, 4] == {(r, c) for r in (1, 2, 3) for c in (1, 2, 3, 5, 6, 7)} - {
-        (1, 3), (3, 3), (1, 5), (3, 5)
-    } | {(2, 4)}  # fmt: skip
-    # In its own room everything is seen.
-    assert {(r, c) for r in (1, 2, 3) for c in (1, 2, 3)} <= seen[1, 1]
 
 
 def touches(a, b, pixel) -> bool:

@@ -2,8 +2,7 @@
 
 import pytest
 
-from lifelore.core.errors import InputError, NotFoundError
-from lifelore.core.streams import stream
+from lifelore.core import InputError, NotFoundError, stream
 from lifelore.domains.factory.customer_orders import CUSTOMERS, LONGEST, CustomerOrder
 from lifelore.domains.factory.modified_factory import modified_factory
 

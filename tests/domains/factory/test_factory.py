@@ -2,16 +2,10 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from lifelore.core.errors import InputError
-from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL
-from lifelore.core.planning.planning import best_actions, optimal_q
+from lifelore.core import COLLISION, NOTHING, TERMINAL, InputError, best_actions, optimal_q
 from lifelore.domains.factory.factory import ASSEMBLE, ASSEMBLED, PROCURE
 from lifelore.domains.factory.layout import factory
-from lifelore.domains.factory.modified_factory import modified_factory
-from lifelore.domains.grids.grid_world import MOVES
 
 NORTH, SOUTH, EAST, WEST = range(4)
 LINE = """
@@ -21,71 +15,6 @@ LINE = """
 ########
 """
 """Cells 0 to 5 from S to a, and 6, the b under the 1."""
-
-
-class Robot:
-    """A factory robot as one would tell it to a child: where it is, and what it has done."""
-
-    def __init__(self, factory, components):
-        self.factory, self.wanted = factory, set(components)
-        self.at = tuple(factory.floor.cells[factory.start].tolist())
-        self.procured, self.assembled = set(), set()
-
-    def act(self, action) -> tuple[float, int]:
-        pay, here = self.factory.rewards, self.factory.floor.state_of[self.at]
-        if action < PROCURE:
-            there = self.at[0] + int(MOVES[action][0]), self.at[1] + int(MOVES[action][1])
-            cell = self.factory.floor.state_of[there]
-            if cell < 0:
-                return pay.collision, COLLISION
-            self.at = there
-            return (pay.express if self.factory.express[cell] else pay.move), NOTHING
-        points = self.factory.procure_at if action == PROCURE else self.factory.assemble_at
-        component = list(points).index(here) if here in points else None
-        if component not in self.wanted:
-            return pay.misuse, NOTHING
-        if action == PROCURE and component not in self.procured:
-            self.procured.add(component)
-            return pay.use, NOTHING
-        if action == ASSEMBLE and component in self.procured - self.assembled:
-            self.assembled.add(component)
-            done = self.assembled == self.wanted
-            return (pay.use + pay.completion, TERMINAL) if done else (pay.use, NOTHING)
-        return pay.misuse, NOTHING
-
-    @property
-    def state(self) -> int:
-        stage = [(c in self.procured) + (c in self.assembled) for c in sorted(self.wanted)]
-        configuration = sum(s * 3**i for i, s in enumerate(stage))
-        return configuration * self.factory.n_cells + int(self.factory.floor.state_of[self.at])
-
-
-@settings(max_examples=25, deadline=None)
-@given(st.integers(0, 10**6), st.integers(1, 9), st.booleans())
-def test_same_as_a_robot_that_keeps_sets(seed, k, modified):
-    random = np.random.default_rng(seed)
-    world = modified_factory(random) if modified else factory()
-    task = world.task(world.draw_components(random, k))
-    robot, step = Robot(world, task.components), getattr(task.domain.step, "py_func", task.domain.step)
-    state, ended = int(task.starts[0]), False
-    assert robot.state == state
-    for t in range(600):
-        if t % 3 == 0:  # now and then to a point, or nothing would ever be assembled
-            component = random.choice(task.components)
-            done = component in robot.procured
-            cell = int((world.assemble_at if done else world.procure_at)[component])
-            robot.at = tuple(world.floor.cells[cell].tolist())
-            state, action = state // world.n_cells * world.n_cells + cell, PROCURE + done
-        else:
-            action = int(random.integers(6))
-        expected = robot.act(action)
-        state, reward, event = step(task.params, int(state), action, 0.5)
-        assert (int(state), (reward, event)) == (robot.state, expected)
-        ended = event & TERMINAL != 0
-        if ended:
-            break
-    assert ended
-    assert task.completed[state]
 
 
 def test_the_printed_rewards_one_by_one():
@@ -112,6 +41,8 @@ def test_the_printed_rewards_one_by_one():
         state, *what = task.domain.step(task.params, state, action, 0.0)
         assert what == [reward, event], (action, what)
     assert state == 2 * world.n_cells + 5
+    # At the assembly point with nothing procured.
+    assert task.domain.step(task.params, 5, ASSEMBLE, 0.0) == (5, -10.0, NOTHING)
     # It is over: whatever one does now ends at once, for nothing.
     assert [task.domain.step(task.params, state, a, 0.0) for a in range(6)] == [(state, 0.0, TERMINAL)] * 6
 

@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from lifelore.domains.buildings.building import building_from_map
-from lifelore.domains.buildings.occupancy_map import OccupancyMap
+from lifelore.domains import GridWorld, OccupancyMap, building_from_map
 from lifelore.domains.grids.grid_picture import AGENT_COLOUR, GOAL_COLOUR, draw_grid
-from lifelore.domains.grids.grid_world import GridWorld
 
 FLOOR = np.array([[True, True, True], [True, False, True]])
 

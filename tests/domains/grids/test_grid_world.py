@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
-from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL
+from lifelore.core import COLLISION, NOTHING, TERMINAL, InputError
 from lifelore.domains.grids.grid_world import Frame, GridWorld, step
 
 #   0 1        the cell right of 2 is a wall

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
-from lifelore.core.mdp import COLLISION, TERMINAL
+from lifelore.core import COLLISION, TERMINAL, InputError
 from lifelore.domains.pacman.pacman import MAX_STEPS, STRATEGIES, PacmanMaze, PacmanTask, step
 from reproduction.chapter4.c4_04_pacman.episode_value import return_moments
 from reproduction.chapter4.c4_04_pacman.pacman_library import Arena

@@ -60,19 +60,6 @@ def test_layouts_by_hand():
     assert {len(set(cells)) for cells in LAYOUTS.values()} == {16}
 
 
-def test_pays_of_the_first_hill_by_hand():
-    world = Surveillance()
-    top, near, far = 0, world.targets.tolist().index([7, 7]), world.targets.tolist().index([10, 10])
-    # Surveyed from the top: 30 a cell; from the arm: 20 a cell to a distance of 3; and 10 of noise always.
-    assert world.mean[near, top] == 180
-    assert world.mean[far, top] == 90
-    assert world.mean[top, near] == 190
-    assert world.mean[far, near] == 150
-    assert world.mean[top, far] == 10
-    # The next hill's top is 13 away: it pays less than nothing.
-    assert world.mean[17, top] == 200 - 390 + 10
-
-
 def test_unseen_tasks_lie_near_hills_and_are_mostly_no_targets():
     world = Surveillance()
     assert world.cells_near_hills.shape == (324, 2)

@@ -1,13 +1,11 @@
-"""BEAT by hand, against Algorithm 9 as printed, and as a special case of policy reuse."""
+"""BEAT against Algorithm 9 as printed, from the types' MDPs; its schedules by hand."""
 
 import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.adaptation.beat import EPSILONS, Beat, rule_at
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 from lifelore.interaction.signals.transition_signal import TransitionSignal
 
@@ -25,21 +23,6 @@ def library(seed=0, n_actions=2):
 def move(generator, probs, type_, policy, state):
     action = int(generator.integers(probs.shape[3]))
     return state, action, int(generator.choice(N_STATES, p=probs[type_, policy, state, action]))
-
-
-def test_belief_and_choice_by_hand():
-    # Two types: the first moves on with 0.9, the second with 0.5. Prior (0.5, 0.5); two moves made:
-    # 0.81 to 0.25, so β = (0.764, 0.236). V: set 0 is worth (1, 0), set 1 (0, 2): 0.764 to 0.472.
-    stay = [[0.1, 0.9], [0.0, 1.0]]
-    other = [[0.5, 0.5], [0.0, 1.0]]
-    signal = TransitionSignal(np.array([stay, other])[:, :, None, :], 2)
-    beat = Beat(PolicyLibrary.from_means([[1.0, 0.0], [0.0, 2.0]], 1.0, signal=signal))
-    assert beat.select() == 1  # Eq. 4.8: 0.5 to 1.0
-    for _ in range(2):
-        beat.update(1, [(0, 1)])
-    assert beat.belief == pytest.approx([0.81 / 1.06, 0.25 / 1.06])
-    assert beat.select() == 0
-    assert (beat.step, beat.episode) == (2, 0)
 
 
 @pytest.mark.slow
@@ -83,22 +66,6 @@ def test_bad_input():
         beat.update("none such", [(0, 0, 1)])
     assert beat.step == 0
     assert beat.belief == pytest.approx(np.full(N_TYPES, 1 / N_TYPES))
-
-
-def test_many_users_equal_single_ones():
-    lib, probs, _ = library(3)
-    users = ReuseAlgorithm(lib, 20, dynamics=TypeDynamics.static(), models="plug-in")
-    singles, world, generator = [Beat(lib) for _ in range(20)], np.random.default_rng(5), np.random.default_rng(6)
-    for _ in range(100):
-        playing = np.flatnonzero(world.random(20) < 0.7)
-        chosen, _ = users.select(playing, EpsilonGreedy(0.0), generator)
-        assert chosen.tolist() == [singles[u].select() for u in playing]
-        triples = [move(world, probs, u % N_TYPES, p, 0) for u, p in zip(playing, chosen, strict=True)]
-        users.observe(playing, chosen, [[triple] for triple in triples])
-        for u, p, triple in zip(playing, chosen, triples, strict=True):
-            singles[u].update(int(p), [triple])
-    for u, beat in enumerate(singles):
-        np.testing.assert_allclose(users.log_belief[u], beat.log_belief, atol=1e-12)
 
 
 # ---- from the types' MDPs ----------------------------------------------------------------------------

@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.baselines import BayesOKR
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
+from lifelore.interaction import BayesOKR, LikelihoodSignal, PolicyLibrary
 
 MOVES = np.array([[0.7, 0.2, 0.1], [0.1, 0.7, 0.2], [0.2, 0.1, 0.7]])
 """P(move | type); the policy of the same number wins the move."""

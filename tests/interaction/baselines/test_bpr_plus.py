@@ -5,8 +5,7 @@ from math import exp, pi, sqrt
 import numpy as np
 import pytest
 
-from lifelore.interaction.baselines import BPRPlus
-from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction import BPRPlus, PolicyLibrary
 
 MEAN = [[1.0, 0.2, 0.4], [0.0, 0.8, 0.6]]
 

@@ -5,13 +5,10 @@ import math
 import numpy as np
 import pytest
 
+from lifelore.core import COLLISION, TERMINAL, InputError, Tables, stream
 from lifelore.core.compiled.random_state import next_uniform, random_state
-from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learning import Schedule, uniform_rows
-from lifelore.core.mdp import COLLISION, TERMINAL, Tables
-from lifelore.core.streams import stream
 from lifelore.interaction.baselines.probabilistic_policy_reuse import ProbabilisticPolicyReuse, _draw_policy
-from reproduction.chapter4.c4_04_pacman.episode_value import return_moments
 
 N_STATES, N_ACTIONS = 6, 3
 ROW_OF = np.array([0, 1, 2, 3, 0, 1], np.int32)
@@ -106,18 +103,6 @@ def test_learning_equals_the_plain_loop(n_outcomes, unit, discount):
     assert reuser.uses.tolist() == [len(g) for g in gains]
     assert reuser.gain == pytest.approx([np.mean(g) if g else 0.0 for g in gains])
     assert reuser.temperature[0] == pytest.approx(0.1 + 120 * 0.05)
-
-
-def test_a_library_policy_followed_always_is_that_policy():
-    # ψ = ν = 1 and no temperature: episodes of policy 0 never look at Q.
-    settings = ProbabilisticPolicyReuse(temperature_step=0.0, reuse_decay=1.0)
-    tables, policies = world(2), library(1)
-    curve, chosen, _ = ran(settings, tables, policies, plan(8_000, 1.0))
-    mean, deviation = return_moments(tables, ROW_OF, policies[0], 12)
-    followed = curve.rewards[chosen == 0]
-    assert abs(followed.mean() - mean) < 5 * deviation / np.sqrt(len(followed))
-    # Temperature 0: each of the two with probability 1/2; 5 standard errors.
-    assert abs((chosen == 0).mean() - 0.5) < 5 * 0.5 / np.sqrt(len(chosen))
 
 
 @pytest.mark.parametrize(

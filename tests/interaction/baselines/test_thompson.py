@@ -20,17 +20,6 @@ def test_policies_are_played_as_often_as_they_are_thought_best():
     assert player.select().mean() == pytest.approx(0.7602, abs=0.0151)
 
 
-def test_a_gaussian_process_without_covariances_believes_the_same():
-    from lifelore.interaction.baselines import GPUCB
-
-    thompson = GaussianThompson(3, prior_means=[0, 1, 2], prior_deviations=[1, 2, 3], noise=0.5)
-    process = GPUCB(3, kernel=np.diag([1.0, 4.0, 9.0]), prior_means=[0, 1, 2], noise=0.5)
-    for policy, paid in ((0, 1.0), (2, -1.0), (0, 0.3), (1, 1.5)):
-        thompson.update(policy, paid)
-        process.update(policy, paid)
-    assert np.array(thompson.beliefs()) == pytest.approx(np.array(process.posterior()))
-
-
 def test_from_library_knows_spread_between_types_and_noise_within(library):
     player = GaussianThompson.from_library(library)
     mean, deviation = player.beliefs()

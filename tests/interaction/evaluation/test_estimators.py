@@ -92,27 +92,6 @@ def test_against_vowpal_wabbits_estimators(seed):
     assert error == pytest.approx((high - low) / 2 / 1.959963984540054, rel=1e-12)
 
 
-@pytest.mark.parametrize("seed", range(3))
-def test_against_the_open_bandit_pipeline(seed):
-    peers = pytest.importorskip("obp.ope")
-    outcomes, users, policies, logged, target, model = case(seed)
-    rows = np.arange(len(users))
-    given = {
-        "reward": outcomes, "action": policies, "pscore": logged, "action_dist": target[:, :, None],
-        "position": np.zeros(len(users), int),
-    }  # fmt: skip
-    weights = importance_weights(target[rows, policies], logged)
-    expected = peers.InverseProbabilityWeighting().estimate_policy_value(**given)
-    assert inverse_propensity(outcomes, weights, users).value == pytest.approx(expected, rel=1e-12)
-    expected = peers.SelfNormalizedInverseProbabilityWeighting().estimate_policy_value(**given)
-    assert self_normalised(outcomes, weights, users).value == pytest.approx(expected, rel=1e-12)
-    expected = peers.DoublyRobust().estimate_policy_value(
-        estimated_rewards_by_reg_model=model[:, :, None], **given
-    )
-    found = doubly_robust(outcomes, weights, model[rows, policies], (target * model).sum(axis=1), users)
-    assert found.value == pytest.approx(expected, rel=1e-12)
-
-
 def test_a_difference_uses_that_the_users_are_the_same():
     generator = np.random.default_rng(0)
     users, base = np.arange(300) // 3, generator.normal(size=300)

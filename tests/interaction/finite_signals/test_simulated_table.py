@@ -4,12 +4,10 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
+from lifelore.interaction import Greedy, InformationDirected, LikelihoodSignal, PolicyLibrary
 from lifelore.interaction.finite_signals.simulated_table import simulated_table
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection import Greedy, default_rule
+from lifelore.interaction.selection import default_rule
 from lifelore.interaction.selection.information import mutual_information
-from lifelore.interaction.selection.information_directed import InformationDirected
-from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
 PROBS = np.random.default_rng(0).dirichlet(np.ones(4), (3, 5))
 

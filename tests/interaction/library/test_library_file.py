@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, StoreError
-from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction import LikelihoodSignal, PolicyLibrary
 from lifelore.interaction.outcomes.outcome_kinds import KINDS
-from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
 from ..reuse.families import FAMILIES
 

@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.signals.category_signal import CategorySignal
-from lifelore.interaction.signals.return_signal import ReturnSignal
+from lifelore.interaction import CategorySignal, PolicyLibrary, ReturnSignal
 
 MEAN = [[10.0, 0.0], [0.0, 8.0], [4.0, 5.0]]
 

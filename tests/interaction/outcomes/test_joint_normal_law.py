@@ -7,11 +7,8 @@ import pytest
 from scipy.stats import multivariate_normal, norm
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes
+from lifelore.interaction import JointNormalOutcomes, PolicyLibrary, TypeDynamics, UserBeliefs
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
-from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 
 MEAN = np.array([[1.0, 4.0, -2.0, 30.0], [3.0, 0.0, 2.0, 28.0]])
 FACTORS = np.array([[1.0, 0.5], [0.8, -0.3], [-0.6, 1.0], [2.0, 3.0]])

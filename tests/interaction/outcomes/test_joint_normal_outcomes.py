@@ -5,10 +5,7 @@ import pytest
 from scipy.stats import norm
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.selection import Greedy
+from lifelore.interaction import BayesianPolicyReuse, Greedy, JointNormalOutcomes, PolicyLibrary
 
 MEAN = [[0.0, 1.0, 5.0], [2.0, 1.0, 3.0]]
 COVARIANCE = [[4.0, 1.0, 0.0], [1.0, 1.0, 0.5], [0.0, 0.5, 2.0]]

@@ -6,12 +6,9 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction import BayesianPolicyReuse, CategorySignal, Greedy, PolicyLibrary, TypeDynamics
 from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, MAX_SURPRISE
-from lifelore.interaction.selection import RULES, Greedy
-from lifelore.interaction.signals.category_signal import CategorySignal
+from lifelore.interaction.selection import RULES
 
 INF = math.inf
 STATIC = TypeDynamics.static()

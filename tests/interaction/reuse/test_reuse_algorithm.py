@@ -4,15 +4,13 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction import PolicyLibrary, ReturnSignal, TypeDynamics
 from lifelore.interaction.library.library_file import SIGNALS
-from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.outcomes.outcome_kinds import KINDS
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection import RULES, rule_named
-from lifelore.interaction.signals.return_signal import ReturnSignal
 
 from .families import FAMILIES, N_POLICIES, N_TYPES, PRIOR, Family
 
@@ -164,25 +162,6 @@ def test_rules_score_rows_as_single_users(family, name):
             assert scores[chosen] == scores.max()
             assert stated[user, chosen] > 0
             assert own is None or (scores[~own] == -np.inf).all()
-
-
-@every_family
-def test_what_rules_read_of_rows_is_what_they_read_of_single_users(family):
-    made, users, random = taught(family), np.array([3, 0, 4, 1, 2]), np.random.default_rng(10)
-    known, mean = made.known(users).performance, states(made, users)[1]
-    belief, types, value = made.belief(users), random.integers(N_TYPES, size=K), random.normal(3, 5, K)
-    assert known.expected(belief) == pytest.approx(np.einsum("kt,ktp->kp", belief, mean))
-    assert known.mean_on(types) == pytest.approx(mean[np.arange(K), types])
-    for row, user in enumerate(users.tolist()):
-        alone = made.known(user).performance
-        assert alone.mean == pytest.approx(mean[row])
-        assert alone.mean_on(types[row]) == pytest.approx(mean[row, types[row]])
-        for name in ("density", "exceedance", "expected_excess", "expected_mean_excess"):
-            found, single = getattr(known, name)(value), getattr(alone, name)(float(value[row]))
-            assert found[row] == pytest.approx(single, rel=1e-9, abs=1e-12), name
-        if made.library.has_table:
-            tables = [made.known(each).table(4).probs for each in (users, user)]
-            assert np.broadcast_to(tables[0], (K, *tables[1].shape))[row] == pytest.approx(tables[1], abs=1e-12)
 
 
 # ---- rows are reset, grow, are stored ------------------------------------------------------------------------

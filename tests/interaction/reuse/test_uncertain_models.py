@@ -7,11 +7,8 @@ import pytest
 from scipy import stats
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
-from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction import BayesianPolicyReuse, ExpectedImprovement, Greedy, PolicyLibrary, TypeDynamics
 from lifelore.interaction.outcomes.spread import Spread
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.selection import ExpectedImprovement, Greedy
 
 from ..twins.naive_models import NormalPair, normal_moments, over_spreads
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.user_beliefs import UserBeliefs
+from lifelore.interaction import PolicyLibrary, UserBeliefs
 
 MEAN = np.random.default_rng(3).normal(scale=30, size=(7, 5))
 

@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction import BayesianPolicyReuse, PolicyLibrary
 from lifelore.interaction.selection import RULES, rule_named
 
 NAMES = ["a", "b", "c", "d"]

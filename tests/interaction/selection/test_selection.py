@@ -1,4 +1,4 @@
-"""Rules for selecting: each beside its plain twin, by hand, for many users, and cut down by mass."""
+"""Rules for selecting: each beside its plain twin, for many users, and cut down by mass."""
 
 import math
 import subprocess
@@ -23,13 +23,11 @@ from lifelore.interaction.selection import (
     KnowledgeGradient,
     ProbabilityOfImprovement,
     ValueOfPerfectInformation,
-    choose,
     propensities,
     rule_named,
     rule_of,
 )
 from lifelore.interaction.selection import knowledge_gradient as gradient_module
-from lifelore.interaction.selection.information import mutual_information
 from lifelore.interaction.selection.knowledge_gradient import knowledge_gain
 from lifelore.interaction.selection.support import truncated
 
@@ -131,42 +129,6 @@ def test_rows_are_scored_as_one_by_one(rule, seed, n_types, n_policies):
 
 
 # ---- by hand -------------------------------------------------------------------------------------------------
-
-
-def test_the_knowledge_gradient_pays_for_a_perfect_signal():
-    # Two types; the third policy earns little but tells which. Knowing is worth 10 - 5 an episode.
-    probs = [[[0.5, 0.5], [0.5, 0.5], [1, 0]], [[0.5, 0.5], [0.5, 0.5], [0, 1]]]
-    library = SmallLibrary([[10, 0, 1], [0, 10, 1]], 1.0, probs)
-    flat = np.array([0.5, 0.5])
-    assert knowledge_gain(flat, library.performance.mean, library.table()) == pytest.approx([0.0, 0.0, 5.0])
-    rule = KnowledgeGradient()
-    assert choose(rule.scores(library, flat, episodes_left=2), np.random.default_rng(0)) == 2
-    assert choose(rule.scores(library, flat, episodes_left=0), np.random.default_rng(0)) in (0, 1)
-    assert mutual_information(flat, library.table()) == pytest.approx([0.0, 0.0, math.log(2)])
-
-
-def test_improvement_of_the_pay_by_hand():
-    # Now policy 0 is best, with 8. It pays 2 more on type 0; policy 1 pays 12 more on type 1.
-    library = SmallLibrary([[10.0, 0.0], [2.0, 20.0]], [[1.0, 500.0], [30.0, 7.0]])
-    belief = np.array([0.75, 0.25])
-    assert ExpectedImprovement().scores(library, belief).tolist() == [1.5, 3.0]
-    # Noise changes nothing of it, unlike of the improvement of the outcome.
-    loud = SmallLibrary(library.performance.mean, 1e4)
-    assert ExpectedImprovement().scores(loud, belief).tolist() == [1.5, 3.0]
-    assert ExpectedImprovement(of="outcome").scores(loud, belief).min() > 1e3
-
-
-def test_perfect_information_by_hand():
-    # A pays 5 on both types, B 0 or 8, C 2 or 3: 5, 4 and 2.5 are expected.
-    library = SmallLibrary([[5.0, 0.0, 2.0], [5.0, 8.0, 3.0]])
-    rule, belief = ValueOfPerfectInformation(lookahead=4.0), np.array([0.5, 0.5])
-    # Half of the time B turns out 3 above A; A and C are never known to change the choice.
-    assert rule.scores(library, belief).tolist() == [5.0, 4.0 + 4 * 1.5, 2.5]
-    assert rule.scores(library, belief, episodes_left=0).tolist() == [5.0, 4.0, 2.5]
-    # The best policy is known to be bad half of the time: then the second best is chosen, which pays 4 more.
-    risky = SmallLibrary([[0.0, 4.0], [10.0, 4.0]])
-    assert rule.scores(risky, belief).tolist() == [5.0 + 4 * 2.0, 4.0]
-    assert rule.scores(SmallLibrary([[3.0], [5.0]]), belief).tolist() == [4.0]
 
 
 @pytest.mark.parametrize("noise", [1.0, 1e3])

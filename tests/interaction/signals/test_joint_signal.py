@@ -4,11 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
+from lifelore.interaction import CategorySignal, JointSignal, LikelihoodSignal, ReturnSignal
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
-from lifelore.interaction.signals.category_signal import CategorySignal
-from lifelore.interaction.signals.joint_signal import JointSignal
-from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
-from lifelore.interaction.signals.return_signal import ReturnSignal
 
 COIN = CategorySignal([[[0.5, 0.5]], [[0.9, 0.1]]])
 RETURN = ReturnSignal(GaussianOutcomes([[0.0], [1.0]], 1.0))

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError, NotFoundError
-from lifelore.core.protocols import SignalModel
+from lifelore.core import InputError, NotFoundError, SignalModel
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.signals.return_signal import ReturnSignal
 

@@ -9,10 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.reuse.reuse_session import load_session
+from lifelore.interaction import BayesianPolicyReuse, PolicyLibrary, TypeDynamics, load_session
 
 HERE = Path(__file__).parent
 RELATIVE = 1e-12

@@ -7,11 +7,9 @@ import pytest
 from PIL import Image
 
 from lifelore.core.errors import InputError
-from lifelore.perception.clouds.camera_intrinsics import CameraIntrinsics
-from lifelore.perception.clouds.cloud_file import read_cloud
+from lifelore.perception import CameraIntrinsics, PointCloud, read_cloud
 from lifelore.perception.clouds.depth_file import read_depth_image
 from lifelore.perception.clouds.depth_image import metres_of_depth
-from lifelore.perception.clouds.point_cloud import PointCloud
 
 CAMERA = CameraIntrinsics(3, 2, fx=100.0, fy=50.0, cx=1.0, cy=0.5)
 DEPTH = np.array([[500, 0, 1000], [800, 900, 1100]], np.uint16)

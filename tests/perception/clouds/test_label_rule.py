@@ -33,11 +33,6 @@ def test_auto_by_the_rule(labels: list[int], expected: list[int]) -> None:
     assert ids(labels) == expected
 
 
-def test_a_plain_file_with_gaps_may_be_taken_for_parts() -> None:
-    assert ids([2, 20]) == [1, 2]
-    assert ids([2, 20], "plain") == [2, 20]
-
-
 @settings(deadline=None)
 @given(st.lists(st.sampled_from([0, 1, 2, 5, 10**6, 10**9]), max_size=12))
 def test_large_labels_and_small_ones_are_kept_alike(labels: list[int]) -> None:

@@ -7,10 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.perception.clouds.camera_intrinsics import CameraIntrinsics
-from lifelore.perception.clouds.cloud_file import read_cloud
+from lifelore.perception import CameraIntrinsics, PointCloud, read_cloud
 from lifelore.perception.clouds.pixel_camera import camera_from_pixels
-from lifelore.perception.clouds.point_cloud import PointCloud
 
 DATA = Path(os.environ.get("LIFELORE_DATA", "nowhere")) / "osd"
 PINHOLE = CameraIntrinsics(64, 48, 60.0, 55.0, 30.0, 25.0)

@@ -5,8 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.core.errors import InputError
-from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.core import InputError, LabelledCloud
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.clouds.voxel import thinned, voxelised, voxels_of
 

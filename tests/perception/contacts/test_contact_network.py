@@ -1,6 +1,4 @@
-"""Networks: the spanning tree against brute force, merging, and the way through networkx and back."""
-
-from itertools import combinations
+"""The edges of networks: those of networkx, ties included."""
 
 import networkx as nx
 import numpy as np
@@ -17,46 +15,12 @@ def contact(at, other=3):
     return ContactPoint(np.array(at, float), np.array([0.0, 0, 1]), np.zeros(3), 1.0, 7, other)
 
 
-def lightest_tree(positions):
-    """Every set of k - 1 edges that joins all nodes; the least total length."""
-    k = len(positions)
-    pairs = list(combinations(range(k), 2))
-    totals = []
-    for edges in combinations(pairs, k - 1):
-        graph = nx.Graph(edges)
-        graph.add_nodes_from(range(k))
-        if nx.is_connected(graph):
-            totals.append(sum(np.linalg.norm(positions[i] - positions[j]) for i, j in edges))
-    return min(totals)
-
-
-@settings(max_examples=40, deadline=None)
-@given(st.lists(st.tuples(*[st.integers(-5, 5)] * 3), min_size=2, max_size=5))
-def test_edges_are_a_lightest_spanning_tree(places):
-    at = np.array(places, float)
-    edges = spanning_edges(at)
-    assert len(edges) == len(at) - 1
-    graph = nx.Graph(edges.tolist())
-    graph.add_nodes_from(range(len(at)))
-    assert nx.is_connected(graph)
-    total = sum(np.linalg.norm(at[i] - at[j]) for i, j in edges)
-    assert total == pytest.approx(lightest_tree(at))
-
-
 def edges_of_networkx(positions):
     """The same tree by networkx over SciPy's distances, pairs in the order of their higher number."""
     distance = squareform(pdist(positions))
     graph = nx.Graph()
     graph.add_weighted_edges_from((i, j, distance[i, j]) for i in range(len(positions)) for j in range(i))
     return sorted(sorted(edge) for edge in nx.minimum_spanning_edges(graph, data=False))
-
-
-@pytest.mark.slow
-@settings(max_examples=200, deadline=None)
-@given(st.lists(st.tuples(*[st.integers(-2, 2)] * 3), min_size=2, max_size=12))
-def test_of_equally_short_edges_those_of_networkx_are_taken(places):
-    at = np.array(places, float) * 0.1
-    assert spanning_edges(at).tolist() == edges_of_networkx(at)
 
 
 @pytest.mark.slow

@@ -31,16 +31,6 @@ def test_closest_distances_are_those_of_all_pairs(n, m, seed, apart, bound):
     np.testing.assert_allclose(found, naive_closest(first, second, 5, bound), rtol=0, atol=1e-12)
 
 
-def test_cells_hold_every_point_once_and_within_their_box():
-    points = np.random.default_rng(0).normal(size=(200, 3)) * 0.05
-    cells = cell_cloud(points)
-    np.testing.assert_array_equal(np.sort(cells.points, axis=0), np.sort(points, axis=0))
-    for c, (start, end) in enumerate(zip(cells.starts[:-1], cells.starts[1:], strict=True)):
-        inside = cells.points[start:end]
-        assert ((inside >= cells.low[c]) & (inside <= cells.high[c])).all()
-        assert (cells.high[c] - cells.low[c] <= 0.02).all()
-
-
 def grid(low, high, step=0.01) -> np.ndarray:
     axes = [np.arange(a, b + step / 2, step) for a, b in zip(low, high, strict=True)]
     return np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)

@@ -2,8 +2,7 @@
 
 import pytest
 
-from lifelore.core.errors import InputError
-from lifelore.core.relations import PairLabel
+from lifelore.core import InputError, PairLabel
 from lifelore.perception.pairs.directed_label import pair_class
 
 NEAR, TOUCHES = PairLabel(2, 7, "on"), PairLabel(2, 7, "touches")

@@ -5,9 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lifelore.core.cloud_origin import CloudOrigin
-from lifelore.core.errors import InputError
-from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.core import CloudOrigin, InputError, LabelledCloud
 from lifelore.perception.places.object_mask import label_image, object_mask, run_lengths
 
 

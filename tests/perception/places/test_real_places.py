@@ -8,12 +8,10 @@ import numpy as np
 import pytest
 from scipy.spatial import ConvexHull
 
-from lifelore.perception.clouds.cloud_file import read_cloud
+from lifelore.perception import Scene, read_cloud, to_scene
 from lifelore.perception.places.object_box import ObjectBox
 from lifelore.perception.places.object_mask import label_image
-from lifelore.perception.scene import Scene
 from lifelore.perception.scene_json import scene_document
-from lifelore.perception.segmentation.table_frame import to_scene
 
 DATA = Path(os.environ.get("LIFELORE_DATA", "nowhere"))
 FILES = sorted([*DATA.glob("osd/*.pcd"), *DATA.glob("osd_hard/*.pcd")])

@@ -21,16 +21,6 @@ def facts(rows, **options):
     return {str(fact) for fact in compound_relations(said(*rows), **options)}
 
 
-def test_a_pile_of_three_on_the_table():
-    assert facts([(2, 1, "on"), (3, 2, "on"), (4, 3, "on")]) == {
-        "clear(4)",
-        "stacked(4, 3, 2)",
-        "supports*(2, 3)",
-        "supports*(2, 4)",
-        "supports*(3, 4)",
-    }
-
-
 def test_between_as_the_thesis_proposes_holds_at_a_corner_too():
     # §5.2: "two different adjacent relationships". 3 is the corner of an L of three boxes: nothing is between.
     assert "between(3, 2, 4)" in facts([(2, 3, "adjacent"), (3, 4, "adjacent")])

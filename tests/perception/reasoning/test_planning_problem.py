@@ -122,6 +122,7 @@ def test_goals_as_a_person_writes_them(make_scene, goal, pddl):
         ("", "goal must be statements, got ''"),
         ("on(o2", r"must be statements, got 'on\(o2' in 'on\(o2'"),
         ("on(o2, o3) or clear(o2)", r"must join statements by `and`, got 'or clear\(o2\)'"),
+        ("on(o2,\no3) or\nclear(o2)", r"got 'or clear\(o2\)' in 'on\(o2, o3\) or clear\(o2\)'"),
         ("on(o2, o3) and", r"must be statements, got '' in 'on\(o2, o3\) and'"),
         (
             "under(o2, o3)",

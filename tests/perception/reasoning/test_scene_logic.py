@@ -10,9 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.core.errors import InputError
+from lifelore.core import InputError, stream
 from lifelore.core.relations import CORE_RELATIONS
-from lifelore.core.streams import stream
 from lifelore.perception.reasoning.label_distribution import LabelDistribution, label_distributions, relation_label
 from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
 from lifelore.perception.reasoning.second_support import LONE_LEAN

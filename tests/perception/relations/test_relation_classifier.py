@@ -5,14 +5,11 @@ from typing import cast
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
-from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.core.relations import ADJACENT, NONE, ON, PairLabel
-from lifelore.core.streams import stream
-from lifelore.perception.contacts.contact_settings import ContactSettings
+from lifelore.core import InputError, LabelledCloud, PairLabel, stream
+from lifelore.core.labelled_cloud import TABLE
+from lifelore.core.relations import ADJACENT, NONE, ON
+from lifelore.perception import ContactSettings, RelationClassifier, TreeSettings
 from lifelore.perception.pairs.scene_pairs import ScenePairs, scene_pairs
-from lifelore.perception.relations.relation_classifier import RelationClassifier
-from lifelore.perception.trees.tree_training import TreeSettings
 
 SMALL = TreeSettings(n_trees=40, table_trees=20)
 CAMERA = np.array([0.0, -1.0, 0.6])

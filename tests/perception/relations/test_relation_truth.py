@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
-from lifelore.core.relations import PairLabel
+from lifelore.core import InputError, PairLabel
 from lifelore.perception.relations.relation_truth import read_planes, read_relations
 
 HEADER = "scene,a,b,relation,confidence\n"

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.perception.clouds.cloud_file import read_cloud
-from lifelore.perception.clouds.point_cloud import PointCloud
+from lifelore.perception import PointCloud, read_cloud
 from lifelore.perception.segmentation.camera_doubt import camera_at_origin, camera_doubt, share_behind
 from lifelore.perception.segmentation.scene_warnings import scene_warnings
 from lifelore.perception.segmentation.table_frame import segmented_scene

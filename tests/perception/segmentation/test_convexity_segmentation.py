@@ -7,13 +7,11 @@ import numpy as np
 import pytest
 
 from lifelore.core.labelled_cloud import TABLE
-from lifelore.perception.clouds.cloud_file import read_cloud
-from lifelore.perception.clouds.point_cloud import PointCloud
+from lifelore.perception import PointCloud, read_cloud, to_scene
 from lifelore.perception.segmentation.convexity_segmentation import agreement, convex_objects, most_agreed
 from lifelore.perception.segmentation.cut_confidence import CutCloud
 from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, cut_cloud
 from lifelore.perception.segmentation.surface_voxels import surface_voxels
-from lifelore.perception.segmentation.table_frame import to_scene
 from reproduction.chapter2.scoring.segmentation_scoring import FOUND, overlaps
 
 CAMERA = np.array([0.3, -0.9, 0.7])

@@ -7,11 +7,9 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.perception.clouds.cloud_file import read_cloud
-from lifelore.perception.clouds.point_cloud import PointCloud
+from lifelore.perception import PointCloud, read_cloud, to_scene
 from lifelore.perception.segmentation.distance_segmentation import euclidean_clusters
 from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, cut_cloud
-from lifelore.perception.segmentation.table_frame import to_scene
 
 RNG = np.random.default_rng(1)
 CLUSTERS = SegmentationSettings(method="clusters")

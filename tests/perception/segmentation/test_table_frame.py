@@ -11,11 +11,10 @@ import pytest
 
 from lifelore.core.cloud_origin import SensorFrame
 from lifelore.core.errors import InputError
-from lifelore.perception.clouds.cloud_file import read_cloud
-from lifelore.perception.clouds.point_cloud import PointCloud
+from lifelore.perception import PointCloud, read_cloud, to_scene
 from lifelore.perception.clouds.voxel import thinned
 from lifelore.perception.segmentation.region import Region
-from lifelore.perception.segmentation.table_frame import segmented_scene, table_plane, to_scene, upright
+from lifelore.perception.segmentation.table_frame import segmented_scene, table_plane, upright
 
 
 def table_top(rng, height=0.0):

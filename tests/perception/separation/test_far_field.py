@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.perception.separation.far_field import WIDEST, Cells, far_field, far_field_cells
+from lifelore.perception.separation.far_field import WIDEST, far_field, far_field_cells
 
 ROUNDING = 1e-13
 
@@ -70,13 +70,3 @@ def test_more_sources_and_points_than_go_through_at_once():
     cells = far_field_cells(points, starts * 3)
     sums, error = far_field(points, cells, sources, weights, 7)
     assert np.abs(sums - direct_sums(points, sources, weights)).max() <= error.max() + 1e-12
-
-
-def test_cells_hold_their_points():
-    points, starts, _, _ = clouds(3)
-    cells = far_field_cells(points, starts)
-    assert isinstance(cells, Cells)
-    for i in range(len(cells.radius)):
-        own = points[:, starts[i] : starts[i + 1]]
-        away = np.linalg.norm(own - cells.centre[:, i : i + 1], axis=0)
-        assert away.max() <= cells.radius[i] + 1e-15

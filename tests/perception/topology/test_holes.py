@@ -4,9 +4,7 @@ import networkx as nx
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
-from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.core.streams import stream
+from lifelore.core import InputError, LabelledCloud, stream
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.holes import contact_graph, contact_loops, find_holes, opening_along

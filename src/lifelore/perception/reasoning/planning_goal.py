@@ -36,6 +36,7 @@ def read_goal(text: str) -> tuple[Statement, ...]:
     >>> read_goal("not clear(o2)")
     (Statement(name='clear', arguments=('o2',), holds=False),)
     """
+    text = " ".join(text.split())
     statements, at, lower = [], 0, text.lower()
     while True:
         match = STATEMENT.match(lower, at)

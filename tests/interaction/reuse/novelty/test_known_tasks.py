@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction import CategorySignal, PolicyLibrary
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.novelty.known_tasks import (
@@ -9,7 +9,6 @@ from lifelore.interaction.reuse.novelty.known_tasks import (
     drawn_probs,
     known_tasks,
 )
-from lifelore.interaction.signals.category_signal import CategorySignal
 
 N = 20_000
 

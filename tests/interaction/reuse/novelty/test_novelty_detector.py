@@ -3,10 +3,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import entropy
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
-from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.reuse.novelty.novelty_detector import NoveltyDetector
+from lifelore.interaction import BayesianPolicyReuse, NoveltyDetector, PolicyLibrary, TypeDynamics
 
 LIBRARY = PolicyLibrary.from_means([[10.0, 0.0], [0.0, 10.0]], 1.0, policies=["left", "right"])
 DETECTOR = NoveltyDetector.calibrate(LIBRARY, false_alarm=0.02, horizon=12, n_tasks=2000)

@@ -51,7 +51,9 @@ async function openExample() {
   if (!name) return;
   $("file").value = "";
   const answer = await fetch(`${EXAMPLES}${name}.pcd`);
-  await openFiles([new File([await answer.blob()], `${name}.pcd`)]);
+  const content = await answer.blob();
+  if ($("example").value !== name) return; // another cloud has been chosen
+  await openFiles([new File([content], `${name}.pcd`)]);
 }
 
 async function openOwn(files) {
