@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.baselines.baseline import Baseline, library_moments, row_of
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.outcome_rows import numbers
 
 
 class GPUCB(Baseline):
@@ -101,10 +102,7 @@ class GPUCB(Baseline):
 
 
 def _checked_kernel(kernel: ArrayLike, n_policies: int) -> NDArray[np.float64]:
-    try:
-        matrix = np.array(kernel, np.float64)
-    except (TypeError, ValueError):
-        raise InputError(f"kernel must be {n_policies} × {n_policies} and finite, got {kernel!r:.60}") from None
+    matrix = numbers(kernel, f"kernel must be {n_policies} × {n_policies} and finite").copy()
     if matrix.shape != (n_policies, n_policies) or not np.isfinite(matrix).all():
         raise InputError(f"kernel must be {n_policies} × {n_policies} and finite, got shape {matrix.shape}")
     if not np.allclose(matrix, matrix.T, rtol=1e-9, atol=1e-12 * np.abs(matrix).max()):

@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
+from lifelore.interaction.outcomes.outcome_rows import numbers
 
 Array = NDArray[np.float64]
 
@@ -264,10 +265,7 @@ def _prior(rows: Array, weights: Array, intercept: Array, prior: Array) -> Array
 
 
 def _checked_rows(features: ArrayLike) -> Array:
-    try:
-        rows = np.asarray(features, np.float64)
-    except (TypeError, ValueError):
-        raise InputError("features must be numbers (n, n_features)") from None
+    rows = numbers(features, "features must be numbers (n, n_features)")
     if rows.ndim != 2 or not rows.size:
         raise InputError(f"features must be (n, n_features) numbers, none of them 0, got {rows.shape}")
     if not np.isfinite(rows).all():

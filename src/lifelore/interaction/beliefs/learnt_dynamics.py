@@ -268,11 +268,6 @@ class LearntRows:
         except (KeyError, ValueError, TypeError) as error:
             raise InputError(f"the dynamics' state is not of these dynamics: {error}") from None
 
-    @property
-    def nbytes(self) -> int:
-        """Memory in bytes."""
-        return sum(getattr(owner, name).nbytes for owner, name in self._arrays())
-
     def arrays(self) -> list[Array]:
         """Every array with a row for each user."""
         return [getattr(owner, name) for owner, name in self._arrays()]

@@ -213,8 +213,6 @@ class _HazardTerms(NamedTuple):
 class FixedRows:
     """Dynamics that are the same for all users and learn nothing; methods as of `LearntRows`."""
 
-    nbytes = 0
-
     def __init__(self, settings: TypeDynamics) -> None:
         self.settings = settings
 

@@ -13,9 +13,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
-from lifelore.interaction.outcomes.normal_law import log_t_height
-from lifelore.interaction.outcomes.prediction import over_pairs, over_types
+from lifelore.interaction.outcomes.normal_law import NormalLaw, log_t_height
+from lifelore.interaction.outcomes.prediction import over_pairs
 from lifelore.interaction.outcomes.special_functions import stdtr
+from lifelore.interaction.outcomes.spread import Spread
 
 Array = NDArray[np.float64]
 
@@ -47,8 +48,7 @@ class StudentTOutcomes(GaussianOutcomes):
 
     def log_densities(self, policies: Any, values: Any) -> Array:
         """Log densities of many outcomes, (...) and (...) to (..., n_types); without checks."""
-        z = (over_types(values) - self._centre[policies]) * self._narrow[policies]
-        return self._log_height[policies] + self._power[policies] * np.log1p(z * z)
+        return self._law.log_likelihoods(policies, values)[..., 0, :]
 
     def density(self, value: ArrayLike) -> Array:
         """Density of `value` for every pair, (..., n_types, n_policies)."""
@@ -93,8 +93,4 @@ class StudentTOutcomes(GaussianOutcomes):
         self.scale: Array = np.sqrt(self.moments.variance * (1 + 1 / self.moments.count))
         self.deviation = self.scale * np.sqrt(self.freedom / (self.freedom - 2))
         self._unit_height = log_t_height(self.freedom)
-        # Policy first: an update reads the row of a policy.
-        self._centre = np.ascontiguousarray(self.mean.T)
-        self._narrow = np.ascontiguousarray(1 / (self.scale * np.sqrt(self.freedom)).T)
-        self._power = np.ascontiguousarray(-0.5 * (self.freedom.T + 1))
-        self._log_height = np.ascontiguousarray((self._unit_height - np.log(self.scale)).T)
+        self._law = NormalLaw(self.moments, Spread.known(0.0))

@@ -375,8 +375,8 @@ class ReuseAlgorithm:
     @property
     def nbytes(self) -> int:
         """Memory of all rows in bytes."""
-        statistics = sum(array.nbytes for model in self._models.values() for array in model.arrays())
-        return self.log_belief.nbytes + self._begun.nbytes + self.changes.nbytes + statistics
+        of_models = [array for model in self._models.values() for array in model.arrays()]
+        return sum(array.nbytes for array in (self.log_belief, self._begun, *of_models, *self.changes.arrays()))
 
     def _changed(self, users: Numbers, log_belief: Array) -> Array | None:
         """P(the type has just changed to this), (..., n_types); None where it cannot have."""

@@ -121,28 +121,16 @@ def posterior_variance(moments: OutcomeMoments) -> tuple[Array, Array]:
 
 def _fitted_prior(variance: Array, freedom: Array) -> tuple[float, float]:
     """Location and degrees of freedom of a scaled inverse χ² prior, fitted to logs of sample variances (n,)."""
+    from scipy.optimize import brentq
     from scipy.special import digamma, polygamma
 
     log_ratio = np.log(variance) - digamma(freedom / 2) + np.log(freedom / 2)
     excess = float(log_ratio.var(ddof=1) - polygamma(1, freedom / 2).mean()) if len(variance) > 1 else 0.0
     if excess <= 0:
         return float((freedom * variance).sum() / freedom.sum()), np.inf
-    half = _inverse_trigamma(excess)
+    # ψ′(half) is the excess; 1 / x² < ψ′(x) < 1 / x + 1 / x².
+    half: Any = brentq(lambda x: float(polygamma(1, x)) - excess, excess**-0.5, 1 / excess + 1, xtol=1e-300)
     return float(np.exp(log_ratio.mean() + digamma(half) - np.log(half))), 2 * half
-
-
-def _inverse_trigamma(value: float) -> float:
-    """The x > 0 with ψ′(x) = value, by Newton's method on 1 / ψ′."""
-    from scipy.special import polygamma
-
-    x = 0.5 + 1 / value
-    for _ in range(50):
-        slope = float(polygamma(1, x))
-        step = slope * (1 - slope / value) / float(polygamma(2, x))
-        x += step
-        if -step / x < 1e-10:
-            break
-    return x
 
 
 def drawn_probs(model: Any, types: Numbers, generator: np.random.Generator) -> Array:
