@@ -20,7 +20,6 @@ def draw_interval_bars(
     colours: Mapping[str, str] | Sequence[str] = (),
     horizontal: bool = True,
     words: Callable[[float], str] | None = "{:.3g}".format,
-    title: str = "",
     label: str = "",
     legend: bool | None = None,
 ) -> None:
@@ -38,8 +37,8 @@ def draw_interval_bars(
     horizontal : bool
     words : callable, optional
         Text of a value, written at the end of its bar; None writes none.
-    title, label : str
-        Title of the panel and label of the axis of values.
+    label : str
+        Label of the axis of values.
     legend : bool, optional
         Default: where there are several groups.
     """
@@ -59,7 +58,7 @@ def draw_interval_bars(
             if words:
                 _write(axes, words(value), max([value, *interval]), at, horizontal)
     _ticks(axes, names, horizontal)
-    axes.set(title=title, **{"xlabel" if horizontal else "ylabel": label})
+    axes.set(**{"xlabel" if horizontal else "ylabel": label})
     if len(groups) > 1 if legend is None else legend:
         axes.legend()
 

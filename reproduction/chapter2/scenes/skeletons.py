@@ -5,7 +5,7 @@ table far below it). The thesis's pictures show no such contacts, and no table: 
 (§2.3.2), so the ground's contacts take part only where `ground` is set.
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Iterator
 from functools import cache
 from typing import NamedTuple
 
@@ -26,20 +26,18 @@ def perceived(cloud: LabelledCloud) -> Scene:
     return perceived_scene(cloud, _model())
 
 
-def reading(scene: Scene, words: Collection[str] = RELATED, *, ground: bool = False) -> Scene:
-    """The same scene with only the contacts of pairs whose predicate is among `words`, such as `RELATED`.
+def reading(scene: Scene, *, ground: bool = False) -> Scene:
+    """The same scene with only the contacts of pairs whose predicate is among `RELATED`.
 
     The table's contacts take part only where `ground` is set.
     """
     relation = {frozenset((r.a, r.b)): r.relation for r in scene.relations}
 
     def kept(a: int, b: int) -> bool:
-        return (ground or TABLE not in (a, b)) and relation.get(frozenset((a, b)), NONE) in words
+        return (ground or TABLE not in (a, b)) and relation.get(frozenset((a, b)), NONE) in RELATED
 
     contacts = tuple(pair for pair in scene.interfaces if kept(pair.a, pair.b))
-    # A reader may leave out pairs whose relation is none, so a skeleton of all near pairs has no relations.
-    relations = () if NONE in words else tuple(r for r in scene.relations if kept(r.a, r.b))
-    return Scene(scene.cloud, contacts, relations)
+    return Scene(scene.cloud, contacts, tuple(r for r in scene.relations if kept(r.a, r.b)))
 
 
 def predicates(scene: Scene) -> set[tuple[str, int, int]]:

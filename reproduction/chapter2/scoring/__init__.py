@@ -1,4 +1,4 @@
-"""Scores of perception: relations, segmentations, networks and times.
+"""Scores of perception: relations and segmentations.
 
 Start with `relation_scoring`; `pair_validation` classifies pairs by the thesis's nearest neighbours.
 """

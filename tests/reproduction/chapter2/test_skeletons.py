@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.core.relations import ADJACENT, CORE_RELATIONS, NONE, ON
+from lifelore.core.relations import NONE, ON
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene
 from reproduction.chapter2.c2_07_oversegmented_stack.run import Three, is_path
 from reproduction.chapter2.scenes.scene_example import scene_of_row, scene_row
-from reproduction.chapter2.scenes.skeletons import RELATED, reading
+from reproduction.chapter2.scenes.skeletons import reading
 from tests.perception.conftest import interface
 
 
@@ -34,18 +34,15 @@ def points_of(scene):
 
 def test_readings_by_hand():
     scene = tower()
-    assert points_of(reading(scene, CORE_RELATIONS)) == {2: 2, 3: 2, 4: 2}
-    assert points_of(reading(scene, RELATED)) == {2: 1, 3: 2, 4: 1}
-    assert points_of(reading(scene, (ON,), ground=True)) == {TABLE: 1, 2: 2, 3: 2, 4: 1}
-    assert points_of(reading(scene, (ADJACENT,))) == {2: 0, 3: 0, 4: 0}
+    assert points_of(reading(scene)) == {2: 1, 3: 2, 4: 1}
+    assert points_of(reading(scene, ground=True)) == {TABLE: 1, 2: 2, 3: 2, 4: 1}
 
 
 def test_a_tower_is_a_path_through_its_middle_alone():
     scene = reading(tower())
     assert is_path(scene, Three(scene.cloud, 2, 3, 4))
     assert not is_path(scene, Three(scene.cloud, 3, 2, 4))
-    near = reading(tower(), CORE_RELATIONS)
-    assert not is_path(near, Three(near.cloud, 2, 3, 4))
+    assert not is_path(tower(), Three(scene.cloud, 2, 3, 4))
 
 
 def test_a_row_comes_back_as_the_scene_it_was():
