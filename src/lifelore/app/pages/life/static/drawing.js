@@ -41,7 +41,7 @@ export function drawCurves(container, series, { x, y, words, height = 230, log =
       label(short(value), { x: LEFT - 6, y: py(value) + 4, "text-anchor": "end" }),
     );
   }
-  for (const value of ticks(x0, x1, Math.max(2, Math.floor(width / 110)))) {
+  for (const value of ticks(x0, x1, Math.max(2, Math.floor(width / 80)))) {
     if (whole && !Number.isInteger(value)) continue;
     drawn.append(label(short(value), { x: px(value), y: height - BOTTOM + 17, "text-anchor": "middle" }));
   }

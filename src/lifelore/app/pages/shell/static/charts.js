@@ -43,6 +43,7 @@ export function lineChart({ title, xlabel, ylabel, series, level = null, xticks 
   const ys = drawn.flatMap((one) => one.points.flatMap(([, y], i) => [y - (one.half?.[i] ?? 0), y + (one.half?.[i] ?? 0)]));
   if (level !== null) ys.push(level);
   let [low, high] = [Math.min(...ys), Math.max(...ys)];
+  if (low === high) [low, high] = [low - (Math.abs(low) / 2 || 0.5), high + (Math.abs(high) / 2 || 0.5)];
   const [x0, x1] = xends ?? [Math.min(...xs), Math.max(...xs)];
   const marks = ticksBetween(low, high);
   const left = 26 + 7 * Math.max(...marks.map((y) => `${y}`.length));
