@@ -34,6 +34,7 @@ from lifelore.agent.live.goals.job_list import read_jobs
 from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.log.log_reader import LogReader
 from lifelore.bridges.rosbag_poses import read_bag_log
+from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.domains.buildings.occupancy_map import read_occupancy_map
 from lifelore.perception.clouds.camera_intrinsics import read_intrinsics
@@ -49,6 +50,7 @@ WORLD = make_world("noise", size=9, seed=0)
 
 CAMERA = b"fx: 4\nfy: 4\ncx: 2\ncy: 2\nwidth: 4\nheight: 4\n"
 GOAL = b"on(o2, o3) and not clear(o4)"
+STUDY = b'{"library": {"types": ["t"], "policies": ["a", "b"], "means": [[1, 2]], "deviations": 1}}'
 
 
 @dataclass(frozen=True)
@@ -131,7 +133,8 @@ def _service(content: bytes) -> None:
     """A method, an address and a body, each on a line, sent to the HTTP service."""
     from fuzz.service import answer
 
-    answer(content)
+    if (status := answer(content)) >= 400:
+        raise InputError(f"the request was answered {status}")
 
 
 def _steps(content: bytes) -> None:
@@ -257,9 +260,9 @@ def targets() -> dict[str, Target]:
         "steps": Target(_steps, [b'{"agent": 1, "state": 2, "action": 0}\n']),
         "goal": Target(lambda content: read_goal(content.decode("utf-8", "replace")), [GOAL]),
         "service": Target(_service, [
+            b"PUT\n/v1/studies/s\n" + STUDY,
             b"POST\n/v1/studies/s/decisions\n" + b'{"user": "ada"}',
-            b"POST\n/v1/perceive?kind=pcd\n" + _pcd()[0],
-            b"PUT\n/v1/studies/s\n" + b'{"policies": ["a"], "types": ["t"], "means": [[1]], "deviations": [[1]]}',
+            b"POST\n/v1/studies/s/decisions/batch\n" + b'{"items": [{"user": "ada"}, {"user": "bo"}]}',
             b"GET\n/v1/memory\n",
         ]),
     }  # fmt: skip

@@ -112,11 +112,6 @@ def test_the_contract(options, names, ask, tmp_path):
     assert life["seconds"] > 0
 
 
-def test_the_report_names_the_defaults_a_building_was_made_with(ask, tmp_path):
-    settings = ask("live", "--tasks", 1, "--memory", tmp_path / "life.db", "--json").document["settings"]
-    assert (settings["cell"], settings["robot_radius"], settings["episodes"]) == (0.5, 0.2, 100)
-
-
 def repeatable(life: dict) -> dict:
     """The report without what may differ: time, threads and where the memory lies."""
     settings = {k: v for k, v in life["settings"].items() if k not in ("memory", "jobs")}
@@ -172,15 +167,11 @@ def test_a_lidar_is_named_in_the_report_and_the_table(ask):
     lidar = ("live", "--set", "sensor=lidar", "--set", "range=3", "--tasks", 2, "--memory", "life.db")
     settings = ask(*lidar, "--json").document["settings"]
     assert (settings["sensor"], settings["range"]) == ("lidar", 3.0)
+    # The defaults with which the building was made.
+    assert (settings["cell"], settings["robot_radius"], settings["episodes"]) == (0.5, 0.2, 100)
     assert "steps to see goal" in ask(*lidar).out
     assert "range applies to sensor lidar" in ask("live", "--set", "range=3", "--memory", "none.db").refusal
     assert not Path("none.db").exists()
-
-
-def test_json_and_pictures_at_once(ask):
-    said = ask(*LATTICE, "--tasks", 2, "--memory", "life.db", "--out", "out")
-    assert (said.status, said.err) == (0, "new folder out\n")
-    assert json.loads(Path("out/summary.json").read_text()) == said.document
 
 
 def test_nothing_is_forgotten_when_the_pictures_cannot_be_kept(ask, known, monkeypatch):
@@ -193,9 +184,11 @@ def test_nothing_is_forgotten_when_the_pictures_cannot_be_kept(ask, known, monke
         assert memory.tasks("robot") == 2
 
 
-def test_the_measures_go_into_a_long_table(ask, tmp_path):
-    said = ask(*LATTICE, "--tasks", 1, "--seed", 3, "--memory", "life.db", "--csv", tmp_path / "life.csv")
-    assert (said.status, said.err) == (0, "")
+def test_the_measures_go_into_a_long_table_beside_json_and_pictures(ask, tmp_path):
+    files = ("--csv", tmp_path / "life.csv", "--out", "out")
+    said = ask(*LATTICE, "--tasks", 1, "--seed", 3, "--memory", "life.db", *files)
+    assert (said.status, said.err) == (0, "new folder out\n")
+    assert json.loads(Path("out/summary.json").read_text()) == said.document
     header, *rows = (tmp_path / "life.csv").read_text(encoding="utf-8").splitlines()
     assert header == "run,task,agent,episode,measure,value"
     lore = said.document["tasks"][0]["agents"]["lore"]

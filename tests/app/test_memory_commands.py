@@ -51,17 +51,6 @@ def homes(tmp_path_factory) -> Path:
     return folder
 
 
-def test_what_is_exported_here_is_known_there(ask, homes, tmp_path):
-    home, file = homes / "rosie.db", tmp_path / "home.lore"
-    exported = ask("memory", "export", file, "--memory", home, "--json").document
-    assert exported == {"exported": 2, "file": str(file)}
-    counts = {"added": 2, "already_there": 0, "forgotten": 0}
-    assert ask("memory", "import", file, "--memory", "new.db", "--json").document == counts
-    assert recalls(tmp_path / "new.db") == recalls(home)
-    again = ask("memory", "import", file, "--memory", "new.db", "--json").document
-    assert again == {"added": 0, "already_there": 2, "forgotten": 0}
-
-
 def test_several_memories_come_in_at_once(ask, homes, tmp_path):
     names = [homes / f"{robot}.db" for robot in ("rosie", "wally")]
     both = ask("memory", "merge", *names, "--memory", "both.db", "--json").document
@@ -75,6 +64,11 @@ def test_several_memories_come_in_at_once(ask, homes, tmp_path):
     said = ask("memory", "import", *names, names[0], "--memory", "other.db").out
     assert said == "contributions: 5 added, 2 already there, 0 forgotten, from 3 memories\n"
     assert recalls(tmp_path / "other.db") == recalls(tmp_path / "both.db")
+    file = tmp_path / "rosie.lore"
+    exported = ask("memory", "export", file, "--memory", names[0], "--json").document
+    assert exported == {"exported": 2, "file": str(file)}
+    again = ask("memory", "import", file, "--memory", "both.db", "--json").document
+    assert again == {"added": 0, "already_there": 2, "forgotten": 0}
     # Who forgets forgets for good, and the tombstone travels.
     said = ask("memory", "forget", "wally", "--memory", "both.db", "--json").document
     assert said == {"forgotten": 3, "robot": "wally"}

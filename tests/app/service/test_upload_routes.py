@@ -9,12 +9,10 @@ import struct
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from PIL import Image
 
 from lifelore.agent.perceive.perceive import perceive
-from lifelore.core import InputError, Record
+from lifelore.core import Record
 from lifelore.memory import open_memory
 
 FILE = {"Content-Type": "application/octet-stream"}
@@ -231,12 +229,3 @@ def test_uploads_that_are_no_exports_change_nothing(serve, tmp_path):
         assert "/tmp" not in answer.text
     assert client.get("/v1/memory").json()["robots"] == []
     assert client.post("/v1/memory/merge", content=good, headers=FILE).json()["added"] == 1
-
-
-@settings(max_examples=30)
-@given(content=st.binary(max_size=400))
-def test_a_library_file_of_any_bytes_is_refused(content):
-    from lifelore.agent.personalise.registration import library_of
-
-    with pytest.raises(InputError, match="library"):
-        library_of({"file": base64.b64encode(content).decode()})
