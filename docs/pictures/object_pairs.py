@@ -6,11 +6,12 @@ extra ``sim``. The pairs are of the kind and the mix of relations of claims C2.1
 
 from pathlib import Path
 
+from reproduction.figures.gallery import draw_gallery
+
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 from lifelore.figures.style import house_style, save_figure
 from reproduction.chapter2.scenes.tabletop_pairs import LEAST_CONFIDENCE, MIX
-from reproduction.figures.gallery import draw_gallery
 
 PATH = Path("docs/pictures/object_pairs.png")
 PAIRS, COLUMNS = 12, 4
