@@ -64,6 +64,19 @@ def test_a_study_and_one_user_are_shown(serve_pages, open_page, check_page, wher
     check_page(page)
 
 
+def test_the_first_outcome_of_a_study_is_drawn(serve_pages, open_page, tmp_path):
+    library = PolicyLibrary.from_means(MEANS, 2.0, policies=["a", "b"])
+    with open_memory(tmp_path / "m.db") as memory:
+        study = Study("first", library, dict.fromkeys(library.policies, "active"), control=0.0).keep(memory)
+        (made,) = decide(memory, study, [Request("ann")])
+        observe(memory, study, [(made["decision"], 7.0312)])  # no round number
+    page = open_page(serve_pages(tmp_path / "m.db") + "/study", DESKTOP)
+    expect(page.locator("#traffic svg.picture")).to_have_count(2)
+    drawn = page.locator("#traffic").inner_html()
+    assert "NaN" not in drawn
+    assert "Infinity" not in drawn
+
+
 def test_the_study_of_the_command_line_is_shown_first(serve_pages, open_page, tmp_path):
     library = PolicyLibrary.from_means(MEANS, 2.0, policies=["a", "b"])
     with open_memory(tmp_path / "m.db") as memory:
