@@ -6,11 +6,10 @@ extra ``sim``. The pairs are of the kind and the mix of relations of claims C2.1
 
 from pathlib import Path
 
-from reproduction.figures.gallery import draw_gallery
-
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 from lifelore.figures.style import house_style, save_figure
+from reproduction.chapter2.scenes.scene_example import draw_scenes
 from reproduction.chapter2.scenes.tabletop_pairs import LEAST_CONFIDENCE, MIX
 
 PATH = Path("docs/pictures/object_pairs.png")
@@ -40,7 +39,7 @@ def pairs(seed: int = 0, n: int = PAIRS) -> list[tuple[LabelledCloud, str]]:
 @house_style()
 def draw_pairs(seen: list[tuple[LabelledCloud, str]]):
     """The pictures in rows of four, each under its relation."""
-    return draw_gallery([(cloud, NOTHING, words) for cloud, words in seen], columns=COLUMNS, layers=("cloud",))
+    return draw_scenes([(cloud, NOTHING, words) for cloud, words in seen], COLUMNS, ("cloud",))
 
 
 if __name__ == "__main__":

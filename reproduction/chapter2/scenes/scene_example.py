@@ -2,7 +2,7 @@
 
 import base64
 import zlib
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -20,8 +20,8 @@ _STEP = 0.0005
 """Metres: places are stored to half a millimetre."""
 _AROUND = 0.05
 """Metres of table stored around the objects."""
-_WIDE, _HIGH, _GUTTER, _CAPTION = 4.45, 3.3375, 0.1, 0.26
-"""Inches: of a picture, between pictures, and for a caption above each."""
+_WIDTH, _WIDEST, _GUTTER, _CAPTION = 9.2, 4.45, 0.1, 0.26
+"""Inches: of a figure, of a picture at most, between pictures, and for a caption above each."""
 
 
 def scene_row(scene: Scene, caption: str) -> dict:
@@ -54,16 +54,24 @@ def scene_of_row(row: Mapping) -> tuple[LabelledCloud, Mapping, str]:
 
 def draw_examples(result: Mapping, layers: Collection[str] = ("cloud", "networks")) -> Figure:
     """The pictures of a result's examples, two a row; `layers` are some of `scene_picture.LAYERS`."""
-    scenes = [scene_of_row(row) for row in result["rows"] if "example" in row]
-    columns, rows = min(2, len(scenes)), -(-len(scenes) // 2)
-    width, height = columns * (_WIDE + _GUTTER) + _GUTTER, rows * (_HIGH + _CAPTION + _GUTTER) + _GUTTER
+    return draw_scenes([scene_of_row(row) for row in result["rows"] if "example" in row], 2, layers)
+
+
+def draw_scenes(
+    scenes: Sequence[tuple[LabelledCloud, Mapping, str]], columns: int, layers: Collection[str]
+) -> Figure:
+    """Clouds with their documents and captions in a grid."""
+    columns, rows = min(columns, len(scenes)), -(-len(scenes) // columns)
+    wide = min(_WIDEST, (_WIDTH - (columns + 1) * _GUTTER) / columns)
+    high = 0.75 * wide
+    width, height = columns * (wide + _GUTTER) + _GUTTER, rows * (high + _CAPTION + _GUTTER) + _GUTTER
     figure = new_figure(width, height)
     figure.set_layout_engine("none")
     for place, (cloud, document, caption) in enumerate(scenes):
-        left = _GUTTER + place % 2 * (_WIDE + _GUTTER)
-        top = height - _GUTTER - _CAPTION - place // 2 * (_HIGH + _CAPTION + _GUTTER)
-        axes = figure.add_axes((left / width, (top - _HIGH) / height, _WIDE / width, _HIGH / height))
-        draw_scene_on(axes, cloud, document, (_WIDE, _HIGH), layers)
+        left = _GUTTER + place % columns * (wide + _GUTTER)
+        top = height - _GUTTER - _CAPTION - place // columns * (high + _CAPTION + _GUTTER)
+        axes = figure.add_axes((left / width, (top - high) / height, wide / width, high / height))
+        draw_scene_on(axes, cloud, document, (wide, high), layers)
         axes.set_title(caption, fontsize=8.5, pad=4)
     return figure
 

@@ -129,7 +129,8 @@ def votes_on(
 
 def _nearest(moved: Points, asked: Rows, scene: Rows, known: NDArray[np.bool_], k: int) -> tuple[Rows, Points]:
     """The k nearest known displacements of other scenes, and how far; infinitely far where there are fewer."""
-    k, distance = min(k, len(moved)), cdist(moved[asked], moved)
+    k = min(k, len(moved))
+    distance: Points = cdist(moved[asked], moved)
     distance[(scene[asked][:, None] == scene[None]) | ~known[None]] = np.inf
     few = np.sort(np.argpartition(distance, k - 1, axis=1)[:, :k], axis=1)
     near = np.take_along_axis(distance, few, axis=1)
