@@ -3,7 +3,7 @@
 import numpy as np
 
 from lifelore.perception.segmentation.cut_confidence import cut_confidence
-from lifelore.perception.segmentation.patch_convexity import evidence, signed_angles
+from lifelore.perception.segmentation.patch_convexity import evidence, signed_angles, steps
 from lifelore.perception.segmentation.patch_merging import absorbed, merged
 from lifelore.perception.segmentation.supervoxels import Supervoxels
 
@@ -28,11 +28,19 @@ def test_a_ridge_is_positive_and_a_crease_negative():
     valley = patches([[-1, 0, 0], [1, 0, 0]], [[1, 0, 1], [-1, 0, 1]], [[0, 1]])
     assert np.isclose(signed_angles(roof)[0], 90)
     assert np.isclose(signed_angles(valley)[0], -90)
+    assert steps(roof).tolist() == steps(valley).tolist() == [0]
+
+
+def test_a_step_is_the_height_between_level_patches():
+    # A level patch beside another; the second is 3 higher. Where it leans, the step is the smaller height.
+    up, leaning = [0, 0, 1], [-1, 0, 2]
+    assert np.isclose(steps(patches([[0, 0, 0], [4, 0, 3]], [up, up], [[0, 1]]))[0], 3)
+    assert np.isclose(steps(patches([[0, 0, 0], [4, 0, 3]], [up, leaning], [[0, 1]]))[0], 2 / np.sqrt(5))
 
 
 def test_evidence_is_greatest_on_flat_surfaces_and_least_in_creases():
-    found = evidence(np.array([-90.0, -40.0, -15.0, 0.0, 90.0]))
-    assert found.tolist() == [-5, -5, 0, 5, 1]
+    found = evidence(np.array([-90.0, -40.0, -15.0, 0.0, 90.0, 0.0, 0.0]), np.array([0, 0, 0, 0, 0, 0.5, 9]))
+    assert found.tolist() == [-5, -5, 0, 5, 1, 0.5, -5]
 
 
 def test_regions_end_at_negative_evidence():

@@ -15,7 +15,7 @@ from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.segmentation.cut_confidence import CutCloud, cut_confidence, labels_by_size
 from lifelore.perception.segmentation.hollow_objects import hollow_pairs
 from lifelore.perception.segmentation.parted_objects import SeenImage, parted_pairs
-from lifelore.perception.segmentation.patch_convexity import beyond_bend, evidence, signed_angles
+from lifelore.perception.segmentation.patch_convexity import beyond_bend, evidence, signed_angles, steps
 from lifelore.perception.segmentation.patch_merging import absorbed, merged
 from lifelore.perception.segmentation.plane import NEAR
 from lifelore.perception.segmentation.range_noise import band
@@ -88,7 +88,7 @@ def _cut(
     min_area: float,
 ) -> CutCloud:
     """Labels of the voxels of a surface, whose patches join into objects."""
-    odds = evidence(beyond_bend(patches, signed_angles(patches)))
+    odds = evidence(beyond_bend(patches, signed_angles(patches)), steps(patches) / surface.size)
     regions = merged(len(patches.counts), patches.pairs, patches.borders, odds)
     fragment = round(FRAGMENT * (VOXEL / surface.size) ** 2)
     regions = absorbed(
