@@ -127,10 +127,11 @@ def votes_on(
     return Votes(owner[asked], labels, shares)
 
 
-def _nearest(moved: Points, asked: Rows, scene: Rows, known: NDArray[np.bool_], k: int) -> tuple[Rows, Points]:
+def _nearest(
+    moved: Points, asked: Rows, scene: Rows, known: NDArray[np.bool_], k: int
+) -> tuple[Rows, NDArray[np.floating]]:
     """The k nearest known displacements of other scenes, and how far; infinitely far where there are fewer."""
-    k = min(k, len(moved))
-    distance: Points = cdist(moved[asked], moved)
+    k, distance = min(k, len(moved)), cdist(moved[asked], moved)
     distance[(scene[asked][:, None] == scene[None]) | ~known[None]] = np.inf
     few = np.sort(np.argpartition(distance, k - 1, axis=1)[:, :k], axis=1)
     near = np.take_along_axis(distance, few, axis=1)
