@@ -215,6 +215,19 @@ def test_types_of_two_robots_of_one_name_are_not_mixed(tmp_path):
         assert memory.tasks("robot") == 1
         memory.export_to(tmp_path / "copy.db")
         assert merge_memories(memory, [tmp_path / "copy.db"])[0][0]["already_there"] == 1
+        memory.merge_from(tmp_path / "there.db")  # as earlier versions mixed them: nothing more is lost
+    with open_memory(tmp_path / "fleet.db") as fleet:
+        assert merge_memories(fleet, [tmp_path / "here.db"])[0][0]["added"] == 2
+
+
+def test_returns_do_not_go_on_with_a_life_that_was_told_by_moves(tmp_path):
+    with LongLivedAgent(**SETTINGS, memory=tmp_path / "life.db") as agent:
+        agent.live(WindyGrid(-1))
+    with (
+        LongLivedAgent(**SETTINGS, memory=tmp_path / "life.db", signals="returns") as agent,
+        pytest.raises(InputError, match=r"signals must be 'moves'.*or give another key"),
+    ):
+        agent.live(WindyGrid(-1))
 
 
 def test_a_killed_task_is_lived_again(tmp_path):

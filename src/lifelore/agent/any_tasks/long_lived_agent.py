@@ -214,11 +214,19 @@ class LongLivedAgent(AbstractContextManager):
             self._revision = self._memory.revision()
 
     def experience_for(self, n_actions: int) -> Experience:
-        """What is known for environments of so many actions; InputError if the tasks before had others."""
+        """What is known for environments of so many actions; InputError if the tasks before had others.
+
+        Returns cannot go on with types that moves told apart: their tasks would show no moves, which join types.
+        """
         self._recall()
         if self._experience is None:
             self._experience = Experience(self.key, n_actions)
         self._experience.check_actions(n_actions)
+        if self.settings.signals == "returns" and self._experience.causes:
+            raise InputError(
+                f"signals must be 'moves', which told the types of '{self.key}' apart, got 'returns'; or give "
+                "another key"
+            )
         return self._experience
 
     # ---- what is known -----------------------------------------------------------------------------

@@ -69,6 +69,10 @@ def test_cells_of_another_size_are_other_places(tmp_path):
         memory.contribute("a", [moves], process="a", seq=1, task={})
         assert GoalCounts.recalled(office[0.5], grids[0.5], memory).count.sum() == 2
         assert GoalCounts.recalled(office[1.0], grids[1.0], memory).count.sum() == 0
+    with open_memory(str(tmp_path / "older.db")) as memory:  # whose moves do not tell the size of cells either
+        about = {name: value for name, value in moves.about.items() if name != "settings"}
+        memory.contribute("a", [old, replace(moves, about=about)], process="a", seq=0, task={})
+        assert GoalCounts.recalled(office[0.5], grids[0.5], memory).count.sum() == 1
 
 
 def test_another_corner_of_the_grid_is_the_same_place():

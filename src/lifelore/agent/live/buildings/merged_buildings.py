@@ -53,8 +53,8 @@ def merge_memories(memory: Memory, others: Sequence[str | Path]) -> tuple[list[d
     with memory.together():
         before = _mixed_types(memory)
         counts = memory.merge_many(others)
-        if mixed := sorted(_mixed_types(memory) - before):
-            key, name = mixed[0]
+        if (mixed := _mixed_types(memory) - before) and (mixed := mixed - _mixed_before(others)):
+            key, name = min(mixed, key=str)
             raise StoreError(
                 f"two robots of one name each met a type '{name}' of '{key}', which would become one type; "
                 "nothing was merged. Robots that live apart need names of their own (--robot NAME, robot=NAME)"
@@ -91,6 +91,15 @@ def _mixed_types(memory: Memory) -> set[tuple[Any, Any]]:
                 name = (task.get("key", task.get("domain")), task.get("type", task.get("learnt")))
                 if first.setdefault(name, task) != task:
                     mixed.add(name)
+    return mixed
+
+
+def _mixed_before(others: Sequence[str | Path]) -> set[tuple[Any, Any]]:
+    """Types that one of several memories has mixed already, as earlier versions did."""
+    mixed: set[tuple[Any, Any]] = set()
+    for other in others:
+        with open_memory(other, read_only=True) as opened:
+            mixed |= _mixed_types(opened)
     return mixed
 
 

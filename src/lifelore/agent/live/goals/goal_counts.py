@@ -53,8 +53,9 @@ class GoalCounts:
     def _remembered(self, grid: BuildingGrid, memory: Memory) -> list[Record]:
         """The counts of a building; earlier versions stored them without the size of cells."""
         keys, moves = [key_of(self.world, grid)], (about for _, _, about in memory.keys(transitions.KIND))
-        cells = {about["settings"].get("cell") for about in moves if about.get("building") == grid.building}
-        if grid.building is not None and cells <= {self.world.frame.cell}:
+        own = [about.get("settings", {}) for about in moves if about.get("building") == grid.building]
+        cell = self.world.frame.cell
+        if grid.building is not None and all(settings.get("cell", cell) == cell for settings in own):
             keys.append(grid.building)
         found = (memory.recall(KIND, key, VERSION) for key in keys)
         return [record for record in found if record is not None]
