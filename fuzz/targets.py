@@ -146,10 +146,16 @@ def _steps(content: bytes) -> None:
 
 
 def _pcd() -> list[bytes]:
-    columns = "FIELDS x y z label\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\n"
-    head = f"VERSION 0.7\n{columns}WIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA "
+    fields = "FIELDS x y z label\nSIZE 4 4 4 4\nTYPE F F F U\nCOUNT 1 1 1 1\n"
+    head = f"VERSION 0.7\n{fields}WIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA "
     text = (head + "ascii\n0 0 1 1\n0.1 0 1 2\n").encode()
-    return [text, (head + "binary\n").encode() + struct.pack("<fffIfffI", 0, 0, 1, 1, 0.1, 0, 1, 2)]
+    columns = struct.pack("<6f2I", 0, 0.1, 0, 0, 1, 1, 1, 2)
+    packed = bytes([len(columns) - 1]) + columns  # LZF of one literal run
+    return [
+        text,
+        (head + "binary\n").encode() + struct.pack("<fffIfffI", 0, 0, 1, 1, 0.1, 0, 1, 2),
+        (head + "binary_compressed\n").encode() + struct.pack("<II", len(packed), len(columns)) + packed,
+    ]
 
 
 def _ply() -> list[bytes]:

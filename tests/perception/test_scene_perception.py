@@ -91,3 +91,10 @@ def test_a_table_may_be_labelled_with_what_is_below_its_top(tower, box):
 def test_labels_are_whole_numbers(labels):
     with pytest.raises(InputError, match=f"labels must be 2 whole numbers from 0, got .* of {labels.dtype}"):
         LabelledCloud(np.zeros((2, 3)), labels)
+
+
+@pytest.mark.parametrize(("of_points", "of_labels"), [("<f4", "u1"), (">f8", "u8"), ("<f2", "i2")])
+def test_points_and_labels_may_be_any_kind_of_numbers(tower, of_points, of_labels):
+    cloud = cloud_of(tower)
+    scene = perceived_scene(LabelledCloud(cloud.points.astype(of_points), cloud.labels.astype(of_labels)))
+    assert scene.relation_of(3, 2).relation == "on"

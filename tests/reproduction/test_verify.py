@@ -73,15 +73,17 @@ def test_where_and_what_differs():
     made = {"source": "k", "processor": "p", "simd": "s", "data": {}}
     one = {
         "claim": "C3.1", "verdict": "reproduced", "marks": {}, "versions": {"numpy": "1"}, "readings": [],
-        "rows": [{"x": 1}, {"x": 2}], "measured": {"a": {"value": 1.0}, "seconds": {"value": 5.0}}, "made": made,
+        "rows": [{"x": 1}, {"x": 2}], "made": made,
+        "measured": {"a": {"value": 1.0, "ci95": None}, "seconds": {"value": 5.0}},
     }  # fmt: skip
     other = {
         **one, "verdict": "not reproduced", "versions": {"numpy": "2"}, "rows": [{"x": 1}],
-        "measured": {"a": {"value": 1.0}, "b": {"value": 3}, "seconds": {"value": 6.0}},
+        "measured": {"a": {"value": 1.0, "ci95": [1.0, 1.0]}, "b": {"value": 3}, "seconds": {"value": 6.0}},
         "made": {**made, "source": "l"}, "seconds": 7.0,
     }  # fmt: skip
     found = compared(one, other)
-    assert [difference["where"] for difference in found["differences"]] == ["verdict", "measured.b", "rows[1]"]
+    places = ["verdict", "measured.a.ci95", "measured.b", "rows[1]"]
+    assert [difference["where"] for difference in found["differences"]] == places
     assert found["changed"] == [
         {"where": "versions.numpy", "stored": "1", "now": "2"},
         {"where": "source", "stored": "k", "now": "l"},

@@ -20,10 +20,11 @@ class LabelledCloud:
 
     Parameters
     ----------
-    points : (n, 3) float64
-        Metres, finite, z up; z = 0 at the table where one is known.
-    labels : (n,) int64
-        Not changed afterwards. `UNLABELLED` (0), `TABLE` (1), or the number of an object (2 and above).
+    points : (n, 3) float
+        Metres, finite, z up; z = 0 at the table where one is known. Stored as float64.
+    labels : (n,) int
+        Stored as int64, not changed afterwards. `UNLABELLED` (0), `TABLE` (1), or the number of an object (2 and
+        above).
     colours : (n, 3) uint8, optional
     camera : (3,) float64, optional
         Position of the camera, in the same frame.
@@ -59,6 +60,9 @@ class LabelledCloud:
             raise InputError(
                 f"labels must be {n} whole numbers from 0, got shape {self.labels.shape} of {self.labels.dtype}"
             )
+        # Compiled functions take these kinds of numbers alone.
+        object.__setattr__(self, "points", self.points.astype(np.float64, copy=False))
+        object.__setattr__(self, "labels", self.labels.astype(np.int64, copy=False))
         if self.colours is not None and self.colours.shape != (n, 3):
             raise InputError(f"colours must have shape ({n}, 3), got {self.colours.shape}")
         if self.camera is not None and self.camera.shape != (3,):

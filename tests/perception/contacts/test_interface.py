@@ -112,3 +112,16 @@ def test_mixed_up_labels_are_reported_and_blocks_side_by_side_are_not(monkeypatc
         assert len(one.contacts_a) >= 1
         assert one.max_violation == again.max_violation
         np.testing.assert_array_equal(one.contacts_a[0].position, again.contacts_a[0].position)
+
+
+@pytest.mark.parametrize(("voxel", "factor"), [(0.006, 4.0), (0.0015, 0.25), (0.0, 1.0)])
+def test_costs_are_stated_at_three_millimetres(monkeypatch, voxel, factor):
+    costs, plain = [], module.separate
+
+    def noted(*clouds, cost, **rest):
+        costs.append(cost)
+        return plain(*clouds, cost=cost, **rest)
+
+    monkeypatch.setattr(module, "separate", noted)
+    interfaces(scene(*STACK, table=False), ContactSettings(voxel=voxel, cost=8.0, wide_cost=2.0))
+    assert costs == [8.0 * factor, 2.0 * factor]

@@ -28,9 +28,12 @@ def hidden_behind(points, left, right, y):
     return (points[:, 1] > y) & (along > left) & (along < right)
 
 
-def labels_of(*parts):
+BEFORE = face((-0.4, -0.4, 0), (0.8, 0, 0), (0, 0.2, 0))
+"""The table before all parts."""
+
+
+def labels_of(*parts, table=BEFORE):
     points = np.concatenate(parts)
-    table = face((-0.4, -0.4, 0), (0.8, 0, 0), (0, 0.2, 0))  # what the parts do not hide
     noisy = points + np.random.default_rng(0).normal(0, 0.0007, points.shape)
     labels = convex_objects(noisy, CAMERA, 6e-4, np.concatenate([noisy, table])).labels
     return np.split(labels, np.cumsum([len(part) for part in parts])[:-1])
@@ -56,9 +59,16 @@ def test_blocks_of_other_heights_and_fronts_behind_a_post_are_two(height):
     assert np.bincount(first).argmax() != np.bincount(second).argmax()
 
 
-def test_equal_blocks_with_a_gap_that_is_seen_are_two():
-    left, right = block(-0.12, 0.0, 0.08, 0.08, 0.08), block(0.04, 0.0, 0.08, 0.08, 0.08)
-    first, second = labels_of(left, right)
+def test_equal_blocks_with_nothing_before_their_gap_are_two():
+    first, second = labels_of(block(-0.12, 0.0, 0.08, 0.08, 0.08), block(0.04, 0.0, 0.08, 0.08, 0.08))
+    assert np.bincount(first).argmax() != np.bincount(second).argmax()
+
+
+def test_equal_blocks_are_two_if_the_camera_sees_the_table_beside_the_post_between_them():
+    left, right = block(-0.11, 0.0, 0.08, 0.08, 0.08), block(0.03, 0.0, 0.08, 0.08, 0.08)
+    behind = face((-0.4, -0.4, 0), (0.8, 0, 0), (0, 0.8, 0))
+    behind = behind[~hidden_behind(behind, -0.02, 0.02, -0.15)]
+    first, second, _ = labels_of(left, right, POST, table=behind)
     assert np.bincount(first).argmax() != np.bincount(second).argmax()
 
 
