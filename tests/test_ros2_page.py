@@ -61,11 +61,11 @@ def conversions() -> Any:
 
 @pytest.fixture(scope="module")
 def exports(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """What the first command of the page exports, after two tasks instead of five."""
+    """What the first command of the page exports, after three tasks instead of five."""
     folder = tmp_path_factory.mktemp("round")
     (folder / "examples").symlink_to(ROOT / "examples")
     (line,) = re.findall(r"^lifelore (live .*)$", PAGE, flags=re.M)
-    shorter = line.replace("--tasks 5", "--tasks 2")
+    shorter = line.replace("--tasks 5", "--tasks 3")
     assert shorter != line
     run_block("sh", f"lifelore {shorter} --memory m.db", folder)
     return folder / "exports"

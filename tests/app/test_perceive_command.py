@@ -341,7 +341,7 @@ def test_several_clouds_for_a_person_and_their_files(ask, three, tmp_path):
         (["pair.npz", "alone.npz", "--register", "--poses", "p.json"], "leave one of them out"),
         (["pair.npz", "--register"], "joins two or more clouds, got 1"),
         (["pair.npz", "alone.npz", "--plot", "a.png"], "plot names one file for many clouds"),
-        (["pair.npz", "sub/pair.npz", "--dot", "{name}.dot"], "rename one of them"),
+        (["pair.npz", "sub/pair.npz", "--dot", "{name}.dot"], "rename clouds of one name"),
     ],
 )
 @pytest.mark.usefixtures("three")

@@ -15,14 +15,21 @@ FOUND = 0.5
 
 
 class ObjectOverlap(NamedTuple):
-    """A true object: the number of its points, and the largest intersection over union with a segment, in 0–1."""
+    """A true object beside its best segments.
+
+    points : int, number of points of the object
+    iou : float, largest intersection over union with a segment, in 0–1
+    right, wrong : int, points of the object, and other points, in the segment that holds most of the object
+    """
 
     points: int
     iou: float
+    right: int
+    wrong: int
 
 
 def overlaps(truth: NDArray[np.int64], labels: NDArray[np.int64]) -> list[ObjectOverlap]:
-    """Each true object of a scene beside its best segment.
+    """Each true object of a scene beside its best segments.
 
     Parameters
     ----------
@@ -35,6 +42,16 @@ def overlaps(truth: NDArray[np.int64], labels: NDArray[np.int64]) -> list[Object
     shared = np.zeros((len(objects), len(segments)), np.int64)
     np.add.at(shared, (row, column), 1)
     of_object, of_segment = shared.sum(axis=1), shared.sum(axis=0)
-    iou = (shared / (of_object[:, None] + of_segment - shared))[:, segments > TABLE].max(axis=1, initial=0.0)
-    best = zip(objects, of_object.tolist(), iou.tolist(), strict=True)
-    return [ObjectOverlap(points, own) for label, points, own in best if label > TABLE]
+    kept = segments > TABLE
+    shared, of_segment = shared[:, kept], of_segment[kept]
+    return [_overlap(int(of_object[i]), shared[i], of_segment) for i, label in enumerate(objects) if label > TABLE]
+
+
+def _overlap(points: int, shared: NDArray[np.int64], sizes: NDArray[np.int64]) -> ObjectOverlap:
+    if not shared.any():
+        return ObjectOverlap(points, 0.0, 0, 0)
+    most = int(shared.argmax())
+    right = int(shared[most])
+    return ObjectOverlap(
+        points, float((shared / (points + sizes - shared)).max()), right, int(sizes[most]) - right
+    )

@@ -83,3 +83,8 @@ def _certainly_below(results: Sequence[Mapping], world: str, key: str) -> bool:
     """Whether the whole 95 % interval of the gain over the textbook lies below 0."""
     interval = _gain(results, world, key, "textbook").ci95
     return interval is not None and interval[1] < 0
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Returns of each life, by world and agent: the table of docs/start/learning.md is made of them."""
+    return [dict(result) for result in results]
