@@ -115,6 +115,20 @@ def test_poses_are_solved_as_by_walking(seed):
         assert open_directions(env.observation(inner.gen_obs())[None]).tolist() == [ways]
 
 
+def test_a_layout_may_be_open_to_the_edge_and_the_robot_may_stand_in_a_door():
+    env = gymnasium.make("MiniGrid-Empty-5x5-v0")
+    env.reset(seed=0)
+    env.unwrapped.agent_pos = (0, 2)  # no cell of the floor
+    assert not solved_layout(env).passed.any()
+    for place in range(5):
+        for edge in ((0, place), (4, place), (place, 0), (place, 4)):
+            env.unwrapped.grid.set(*edge, None)
+    layout = solved_layout(env)
+    assert len(layout.steps) == 4 * (5 * 5 - 1)
+    # The goal (3, 3) is 3 columns and 3 rows away from the corner (0, 0), and a robot that faces away turns twice.
+    assert (layout.steps.min(), layout.steps.max()) == (1, 3 + 3 + 2)
+
+
 def test_what_cannot_be_solved():
     with pytest.raises(InputError, match="must be a MiniGrid environment"):
         solved_layout(gymnasium.make("CartPole-v1"))

@@ -105,13 +105,13 @@ def solved_layout(env: gymnasium.Env) -> SolvedLayout:
     grid = getattr(env.unwrapped, "grid", None)
     if grid is None or not hasattr(grid, "encode"):
         raise InputError(f"env must be a MiniGrid environment that was reset, got {type(env.unwrapped).__name__}")
-    kind = _KIND[grid.encode()[..., 0]]
+    kind = np.pad(_KIND[grid.encode()[..., 0]], 1, constant_values=BLOCKED)
     if not (kind == GOAL).any():
         raise InputError("env must have a goal in its layout, got none")
     cells = np.argwhere((kind == FREE) | (kind == GOAL))
     number = np.full(kind.shape, -1)
     number[tuple(cells.T)] = np.arange(len(cells))
-    # Pose 4 · cell + direction; the outer wall hides what lies beyond the edge of the arrays.
+    # Pose 4 · cell + direction.
     ahead = number[tuple((cells[:, None] + _DIRECTIONS).transpose(2, 0, 1))]
     cell, direction = np.indices((len(cells), 4)).reshape(2, -1)
     forward = 4 * np.where(ahead.ravel() >= 0, ahead.ravel(), cell) + direction
@@ -119,13 +119,14 @@ def solved_layout(env: gymnasium.Env) -> SolvedLayout:
     moves = sparse.csr_array((np.ones(after.size), after.ravel(), np.arange(0, after.size + 1, N_MOVES)))
     ends = np.flatnonzero(kind[tuple(cells[cell].T)] == GOAL)
     steps = np.asarray(csgraph.dijkstra(moves.T, indices=ends, unweighted=True, min_only=True))
-    stands = tuple(env.unwrapped.agent_pos)  # pyright: ignore[reportAttributeAccessIssue]
-    here = 4 * number[stands] + env.unwrapped.agent_dir  # pyright: ignore[reportAttributeAccessIssue]
+    x, y = env.unwrapped.agent_pos  # pyright: ignore[reportAttributeAccessIssue]
+    stands = number[x + 1, y + 1]
+    here = 4 * stands + env.unwrapped.agent_dir  # pyright: ignore[reportAttributeAccessIssue]
     on_way = np.asarray(csgraph.dijkstra(moves, indices=here, unweighted=True)) + steps == steps[here]
     beside = ahead[cell[:, None], (direction[:, None] + np.arange(-1, 2)) % 4] >= 0
     counted = np.isfinite(steps) & (steps > 0)
     best = steps[after[counted]] + 1 == steps[counted, None]
-    passed = on_way[counted] & np.isfinite(steps[here])
+    passed = on_way[counted] & (stands >= 0) & np.isfinite(steps[here])
     return SolvedLayout(
         np.where(beside, _BITS, 0).sum(axis=1)[counted], best, steps[counted].astype(np.int64), passed
     )

@@ -222,7 +222,8 @@ class LongLivedAgent(AbstractContextManager):
         if self._experience is None:
             self._experience = Experience(self.key, n_actions)
         self._experience.check_actions(n_actions)
-        if self.settings.signals == "returns" and self._experience.causes:
+        by_returns = self.settings.signals == "returns" and self.settings.abilities.reuse
+        if by_returns and self._experience.causes:
             raise InputError(
                 f"signals must be 'moves', which told the types of '{self.key}' apart, got 'returns'; or give "
                 "another key"

@@ -25,7 +25,7 @@ def new_rewards(world: str, rewards: Sequence[float]) -> list[str]:
     """A sentence if the rewards of a task's moves hardly repeat, else none."""
     says = (
         "paid a reward that no move had paid before, so known types look new. Round noisy rewards with "
-        'gymnasium.wrappers.TransformReward, or pass signals="returns".'
+        'gymnasium.wrappers.TransformReward, or pass signals="returns" and another key.'
     )
     return _hardly_repeat(world, rewards, LEAST_REWARDS, says)
 
