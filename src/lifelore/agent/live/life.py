@@ -92,7 +92,7 @@ def live(
         Called as ``watch(task, results)`` after memory has stored a task: the report's entry, and the results by
         agent.
     notify : callable, optional
-        Called with a line of text that a person should read, for instance if ``scratch`` is left out of a big world.
+        Called with a line of text for a person, for instance if ``scratch`` is left out of a big world.
     **keys
         Settings by key: those of ``lifelore live --settings``, and ``map``, ``tasks``, ``goal``,
         ``goals`` (a job list's path), ``agent``, ``robot``, ``memory`` and ``seed``. A point is a pair of metres.

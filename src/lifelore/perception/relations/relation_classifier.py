@@ -182,12 +182,12 @@ class RelationClassifier(Estimator):
             check_directions(truths, self.symmetric_, LEAST_CONFIDENCE)
         else:
             self._check_one_class(scenes, truths)
-        if self.method == "trees" and not self.multi_label and (always := self._without_counterexample(scenes, truths)):
-            warn(
-                f"every labelled pair of objects is '{always[0]}', and so will be every near pair predicted: "
-                f"label pairs without it, too, as '{NONE}'",
-                stacklevel=2,
-            )
+            if self.method == "trees" and (always := self._without_counterexample(scenes, truths)):
+                warn(
+                    f"every labelled pair of objects is '{always[0]}', and so will be every near pair predicted: "
+                    f"label pairs without it, too, as '{NONE}'",
+                    stacklevel=2,
+                )
         self.models_ = self._fitted(scenes, truths)
         self.learnt_from_ = dict(sorted(learnt_from.items()))
         return self
