@@ -23,20 +23,31 @@ def memory(tmp_path):
         yield opened
 
 
+def outcome(random, user, policy, model):
+    """A normal outcome of a user, or whether it is good."""
+    value = random.normal(MEANS[user % 2, policy], 2)
+    return float(value > 2) if model == "categorical" else float(value)
+
+
 @pytest.fixture
-def study(memory):
+def model():
+    return "gaussian"
+
+
+@pytest.fixture
+def study(memory, model):
     random = np.random.default_rng(0)
     rows = [(user, policy) for user in range(20) for policy in range(3)]
     frame = {
         "user": [f"u{user}" for user, _ in rows], "type": [f"k{user % 2}" for user, _ in rows],
         "policy": [f"p{policy}" for _, policy in rows],
-        "outcome": [random.normal(MEANS[user % 2, policy], 2) for user, policy in rows],
+        "outcome": [outcome(random, user, policy, model) for user, policy in rows],
     }  # fmt: skip
-    fit(frame, memory, FitSettings(model="gaussian", control=0.0, rule="sampling"))
+    fit(frame, memory, FitSettings(model=model, control=0.0, rule="sampling"))
     return open_study(memory)
 
 
-def lived(memory, study, users=6, times=4):
+def lived(memory, study, users=6, times=4, model="gaussian"):
     """Decisions and outcomes of new users, by user, in the order of decisions; the last outcome is not known."""
     random, said = np.random.default_rng(1), {}
     for user in range(users):
@@ -44,20 +55,21 @@ def lived(memory, study, users=6, times=4):
             made = choose(memory, study, f"n{user}")
             policy = int(made["policy"][1])
             if time < times - 1:
-                outcome = float(random.normal(MEANS[user % 2, policy], 2))
-                update(memory, study, made["decision"], outcome)
-                said.setdefault(user, []).append((policy, outcome))
+                said.setdefault(user, []).append((policy, outcome(random, user, policy, model)))
+                update(memory, study, made["decision"], said[user][-1][1])
     return said
 
 
-def test_outcomes_are_those_of_agents_that_live_the_same(memory, study):
-    said = lived(memory, study)
+@pytest.mark.parametrize("model", ["gaussian", "categorical"])
+def test_outcomes_are_those_of_agents_that_live_the_same(memory, study, model):
+    said = lived(memory, study, model=model)
     levels, groups = [], []
     for user, rows in said.items():
         agent = BayesianPolicyReuse(study.library)
         for policy, outcome in rows:
             performance = agent.algorithm.known(0).performance
-            levels.append(2 * [agent.belief @ performance.cumulative(policy, np.array([outcome]))[:, 0]])
+            ends = outcome - 1e-9 * (model == "categorical"), outcome
+            levels.append(agent.belief @ performance.cumulative(policy, np.array(ends)))
             groups.append(user)
             agent.update(policy, outcome)
     found = report(memory, study)["calibration"]["outcomes"]

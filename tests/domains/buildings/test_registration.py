@@ -99,3 +99,12 @@ def test_specks_are_counted_as_labels_of_the_picture_say():
         label = np.asarray(ndimage.label(picture, np.ones((3, 3)))[0])  # type: ignore[index]
         size = np.bincount(label.ravel())[1:]
         assert _clustered(walls, missed) == size[size > SPECK].sum()
+
+
+def test_a_map_with_gaps_in_its_ground_is_compared_with_a_whole_one_by_walls():
+    whole, state = Walls(hall()), hall().state
+    state[(state == FREE) & (np.random.default_rng(0).random(state.shape) < 0.4)] = UNKNOWN
+    gaps = Walls(OccupancyMap(state, 0.1))
+    assert gaps.hardly_any
+    for fit in (register(whole, gaps).best, register_near(gaps, whole)):
+        assert fit.match > 0.95

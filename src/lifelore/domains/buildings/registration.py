@@ -26,7 +26,7 @@ Pose = tuple[float, float, float]
 IDENTITY: Pose = (0.0, 0.0, 0.0)
 
 LEAST_WALLED = 0.1
-"""Share of the border of free ground that is walls, below which all of it counts."""
+"""Share of the border of free ground that is walls; two maps that both have less are compared by all of it."""
 WALL_TOLERANCE = 0.15
 """Metres within which two walls are the same wall."""
 SPECK = 3
@@ -74,6 +74,7 @@ class Registration:
 
 def register(a: "Walls", b: "Walls") -> Registration | None:
     """The pose that lays the new map `b` on `a`; None where a map has no walls or no pose has enough overlap."""
+    a, b = _comparable(a, b)
     if len(a.points) < 2 or len(b.points) < 2:
         return None
     places, value = _searched(a, b, _coarse(a, b))
@@ -93,9 +94,18 @@ def register(a: "Walls", b: "Walls") -> Registration | None:
 
 def register_near(a: "Walls", b: "Walls") -> Fit | None:
     """The fit of `b` on `a` nearly as they lie; None where most walls do not lie on walls, or a map has none."""
+    a, b = _comparable(a, b)
     if len(a.points) < 2 or len(b.points) < 2 or _rough_match(a, b, IDENTITY) < LEAST_ROUGH:
         return None
     return _fit(a, b, _pose(b, _refined(a, b, np.array([*b.middle, 0.0]))))
+
+
+def _comparable(a: "Walls", b: "Walls") -> tuple["Walls", "Walls"]:
+    """Two maps by their walls; by the border of their free ground if both have hardly a wall, such as of a yard.
+
+    A part of a building may have hardly a wall, too, where its ground has gaps: the whole has walls.
+    """
+    return (a.border, b.border) if a.hardly_any and b.hardly_any else (a, b)
 
 
 # ---- walls -----------------------------------------------------------------------------------------
@@ -104,20 +114,26 @@ def register_near(a: "Walls", b: "Walls") -> Fit | None:
 class Walls:
     """The walls of a map as points in metres of its world frame, and what lies near them.
 
-    A map with hardly a wall, such as of a yard, has the border of its free ground in their place.
+    With `by_border`, all of the border of its free ground is in their place.
     """
 
-    def __init__(self, occupancy: OccupancyMap) -> None:
+    def __init__(self, occupancy: OccupancyMap, by_border: bool = False) -> None:
         self.map = occupancy
         state, self.pixel = occupancy.state, occupancy.resolution
         border = (state != FREE) & inflate(state == FREE, 2**0.5)
         walls = border & (state == OCCUPIED)
-        self.edge = walls if walls.sum() >= LEAST_WALLED * border.sum() else border
+        self.hardly_any = bool(walls.sum() < LEAST_WALLED * border.sum())
+        self.edge = border if by_border else walls
         rows, columns = np.nonzero(self.edge)
         self.width = state.shape[1] + 1  # with an empty column, so that no row continues in the next one
         self.numbers = rows * self.width + columns
         self.points = occupancy.metres(np.column_stack([rows, columns]))
         self.middle = self.points.mean(axis=0) if len(self.points) else np.zeros(2)
+
+    @cached_property
+    def border(self) -> "Walls":
+        """The border of free ground in place of the walls."""
+        return Walls(self.map, by_border=True)
 
     @cached_property
     def few(self) -> NDArray[np.float64]:
