@@ -98,8 +98,8 @@ class OneTask:
         self.recognise()
         while len(self.result.returns) < self.settings.learning.episode_cap:
             self.exploring = self.worth_learning()
-            if self.exploring and self.learner is None:
-                self.begin_learning()
+            if self.exploring:
+                self.explore()
             self.live_episode()
         return self.remember(name)
 
@@ -163,9 +163,7 @@ class OneTask:
         if self.reuse is not None:
             self.reuse.observe(self.codes.pairs(step))
             if self.alarmed and not self.exploring and not callable(self.settings.learner):
-                self.exploring = True
-                if self.learner is None:
-                    self.begin_learning()
+                self.explore()
             self.whole = self.whole and self.running is before
 
     def end_episode(self, steps: list[Step], earned: float, began: str) -> None:
@@ -204,8 +202,11 @@ class OneTask:
             self.draw = float(self.generator.random())
         return strange or self.experience.is_hopeless(own) or self.draw < 1 / (n_tasks + 1)
 
-    def begin_learning(self) -> None:
+    def explore(self) -> None:
         """Explore from here on: the policy that still improves, or one of its own from the policy in reuse."""
+        self.exploring = True
+        if self.learner is not None:
+            return
         surely = self.reuse is not None and not self.alarmed and self.reuse.belief.max() >= SURE
         own = self.reuse.own_policy() if self.reuse is not None and surely else None
         start, self.goes_on_with = own or self.policy, own
@@ -290,8 +291,8 @@ class OneTask:
         by_moves = self.settings.signals == "moves" and self.abilities.reuse
         moves = counted(self.steps, self.codes) if by_moves else Counter()
         belief = self.learning_types(name, moves)
-        if result.new and self.learner is None:
-            self.begin_learning()
+        if result.new:
+            self.explore()
         prior = ActionPrior(experience.n_actions, experience.prior.alpha0, experience.prior.key)
         if self.learner is not None:
             prior.update(*self.learner.best(), self.settings.guidance.weight)
