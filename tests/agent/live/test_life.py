@@ -44,6 +44,24 @@ def test_a_life_goes_on_where_it_stopped(tmp_path):
     assert first["tasks"] + second["tasks"] == once.report["tasks"]
 
 
+def test_numbers_of_a_search_stay_as_they_were(tmp_path):
+    """Of earlier releases: a change here moves all that was published of lives."""
+    names = ("lore", "scratch", "frontier")
+    life = live(settings(tmp_path, domain="building", agent="all", tasks=2, seed=4))
+    agents = [{name: task["agents"][name] for name in names} for task in life.report["tasks"]]
+    assert {
+        name: [
+            (one[name]["steps_to_80"], one[name]["collisions"], round(one[name]["first_return"], 6))
+            for one in agents
+        ]
+        for name in names
+    } == {
+        "lore": [(6300, 757, -172.615949), (500, 0, 1.468188)],
+        "scratch": [(6300, 757, -172.615949), (6400, 766, -107.390132)],
+        "frontier": [(2100, 0, 11.639428), (1700, 0, 7.330787)],
+    }
+
+
 @pytest.mark.slow
 def test_a_life_on_a_server_is_the_life_in_a_file(tmp_path, new_place):
     place = new_place("postgresql")
