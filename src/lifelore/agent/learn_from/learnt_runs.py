@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from lifelore.action.demonstrations.demonstrations import Demonstration, count_demonstrations
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.agent.learn_from.run_log import Run
+from lifelore.agent.learn_from.run_log import FIRST_CLOCK, Run
 from lifelore.agent.learn_from.tried_moves import TriedMoves
 from lifelore.agent.live import transitions
 from lifelore.agent.live.buildings.recognition import Place
@@ -17,9 +17,6 @@ from lifelore.agent.travel import Travel
 from lifelore.core.learning.known_world import UNKNOWN, unknown_world
 from lifelore.core.protocols import Record
 from lifelore.domains.grids.grid_world import MOVE_NAMES
-
-FIRST_CLOCK = 1e9
-"""Seconds since 1970: times from here on are of a clock, smaller ones count from the start of a robot."""
 
 DRIVER = "robot"
 """Name of the agent of all demonstrations; the robot has another one in memory."""
