@@ -27,7 +27,7 @@ ESTIMATE = {"value", "median", "ci95", "n"}
 RATIOS = ("steps_to_80_ratio", "collisions_ratio", "jumpstart")
 MEASURES = ("steps_to_80", "steps_to_goal", "collisions", "episodes_to_80", "first_return")
 TOLD = {
-    "domain", "map", "tasks", "cell", "robot_radius", "destinations", "prior", "agent", "robot",
+    "domain", "map", "tasks", "cell", "robot_radius", "destinations", "agent", "robot",
     "start", "memory", "episodes", "max_steps", "seed", "jobs", "density", "discount", "goal_reward",
     "wall_reward", "alpha0", "weight",
 }  # fmt: skip
@@ -204,7 +204,7 @@ SET = {
         "building": "home", "start": [1.5, 1.5],
     },
     "lattice": {"destinations": 3, "size": 9, "episodes": 7, "jobs": 1, "max_steps": 30,
-        "discount": 0.9, "goal_reward": 7.0, "wall_reward": -3.0, "prior": "state", "alpha0": 0.3, "weight": 2.0,
+        "discount": 0.9, "goal_reward": 7.0, "wall_reward": -3.0, "alpha0": 0.3, "weight": 2.0,
     },
     "noise": {"density": 0.55},
     "advice": {"loops": 0.3},
@@ -302,14 +302,6 @@ def test_every_setting_says_what_it_means(ask):
 def test_a_wrong_setting_is_one_line(options, line, ask):
     assert line in ask("live", "--memory", "none.db", *options).refusal
     assert not Path("none.db").exists()
-
-
-def test_choices_are_those_that_settings_allow(ask):
-    rows = [row for row in ask("live", "--settings", "--json").document["settings"] if row["choices"]]
-    assert {row["key"] for row in rows} == {"prior"}
-    for row in rows:
-        refused = ask("live", "--memory", "none.db", *changed(**{row["key"]: "odd"})).refusal
-        assert f"{row['key']} must be one of {', '.join(row['choices'])}, got 'odd'" in refused
 
 
 def test_help_is_one_screen(ask, monkeypatch):

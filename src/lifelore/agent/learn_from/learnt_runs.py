@@ -12,7 +12,7 @@ from lifelore.agent.learn_from.run_log import FIRST_CLOCK, Run
 from lifelore.agent.learn_from.tried_moves import TriedMoves
 from lifelore.agent.live import transitions
 from lifelore.agent.live.buildings.recognition import Place
-from lifelore.agent.live.lore import prior_scope
+from lifelore.agent.live.lore import ABOUT_PRIOR, PERCEPT_KEY
 from lifelore.agent.travel import Travel
 from lifelore.core.learning.known_world import UNKNOWN, unknown_world
 from lifelore.core.protocols import Record
@@ -55,10 +55,9 @@ class LearntRun:
         known = transitions.to_record(world, transitions.model_table(world, model), UNKNOWN, place.grid)
         records = [known, *_travel(place, tried).news()]
         if self.goal is not None:
-            scope = prior_scope(world, "observation")
-            news, shown = ActionPrior(len(MOVE_NAMES), alpha0, scope.key), self.demonstration(with_bumps=False)
-            count_demonstrations(news, [shown], lambda each: scope.contexts[each.states], {DRIVER: weight})
-            records.append(news.to_record({"prior": scope.kind, "actions": list(MOVE_NAMES)}))
+            news, shown = ActionPrior(len(MOVE_NAMES), alpha0, PERCEPT_KEY), self.demonstration(with_bumps=False)
+            count_demonstrations(news, [shown], lambda each: world.percepts[each.states], {DRIVER: weight})
+            records.append(news.to_record(ABOUT_PRIOR))
         return [record for record in records if len(record.slots)]
 
 

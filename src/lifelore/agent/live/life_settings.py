@@ -17,7 +17,6 @@ from lifelore.core.errors import InputError
 from lifelore.core.keyed_settings import arguments_by_key, keys_of
 from lifelore.domains.worlds import WorldSettings
 
-CONDITIONS = ("observation", "state", "none")
 MOST_REWARD = 1e6
 """Largest magnitude of rewards and of α⁰: a larger number hides the others by rounding."""
 LONGEST_NAME = 200
@@ -34,9 +33,6 @@ class PriorSettings:
 
     Parameters
     ----------
-    condition : {"observation", "state", "none"}
-        Whether the prior is conditioned on what the agent observes in a cell, or on the cell, or there is none.
-        Does not apply to external worlds, which have contexts of their own.
     alpha0 : float
         Pseudo-count α⁰ of every action in the prior, > 0.
     weight : float
@@ -52,14 +48,12 @@ class PriorSettings:
         A setting is out of its range.
     """
 
-    condition: str = "observation"
     alpha0: float = 0.1
     weight: float = 1.0
     form: str = "proportion"
     ties: str = "uniform"
 
     def __post_init__(self) -> None:
-        _check_choice("prior", self.condition, CONDITIONS)
         _check_choice("form", self.form, FORMS)
         _check_choice("ties", self.ties, TIES)
         if not 0 < self.alpha0 <= MOST_REWARD:
@@ -116,8 +110,6 @@ class LifeSettings:
     ----------
     world : WorldSettings
         The world to live in; `world.seed` draws the tasks and the agents' choices too.
-    prior : {"observation", "state", "none"}
-        Whether the action prior is conditioned on what is observed in a cell, on the cell, or there is none.
     alpha0 : float
         Pseudo-count α⁰ of every action in the prior, > 0.
     weight : float
@@ -170,7 +162,6 @@ class LifeSettings:
     """
 
     world: WorldSettings = field(default_factory=WorldSettings)
-    prior: str = "observation"
     alpha0: float = 0.1
     weight: float = 1.0
     episodes: int | None = None
@@ -189,7 +180,7 @@ class LifeSettings:
     again: bool = False
 
     def __post_init__(self) -> None:
-        PriorSettings(self.prior, self.alpha0, self.weight)  # checks them
+        PriorSettings(self.alpha0, self.weight)  # checks them
         for name, value in (("episodes", self.episodes), ("max_steps", self.max_steps)):
             if value is not None:
                 _check_whole(name, value, 1, 10**8)

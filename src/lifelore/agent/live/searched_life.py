@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.live import baselines
-from lifelore.agent.live.baselines import agent_kind, agents_for
+from lifelore.agent.live.baselines import AGENTS, agents_for
 from lifelore.agent.live.goals.own_places import OwnGoal
 from lifelore.agent.live.grid_life import SEARCHED, GridLife, LivedByAll
 from lifelore.agent.live.life_settings import LifeSettings
-from lifelore.agent.live.lore import Lore, prior_scope
+from lifelore.agent.live.lore import Lore
 from lifelore.agent.live.summary import summarise
 from lifelore.agent.live.task_result import TaskResult
 from lifelore.agent.live.task_search import TaskSearch
@@ -32,7 +32,7 @@ class SearchedLife(GridLife):
     def __init__(self, *life: Any, notify: Callable[[str], None]) -> None:
         super().__init__(*life)
         settings, place, start = self.settings, self.place, self.places.start
-        self._kinds = {name: agent_kind(name, settings) for name in _names(settings, place.world, notify)}
+        self._kinds = {name: AGENTS[name] for name in _names(settings, place.world, notify)}
         self._first = next(iter(self._kinds))
         self._lores: dict[str, Lore] = {}
         self._goals = hidden_goals(place.world, settings, place.grid.frame, start)
@@ -41,8 +41,7 @@ class SearchedLife(GridLife):
     def recall(self) -> None:
         """The first agent knows what memory holds; at the start all agents do, and then learn by themselves."""
         settings, place = self.settings, self.place
-        scope = prior_scope(place.world, settings.prior)
-        self.lore = Lore.recalled(place.world, scope, settings.alpha0, self.memory, place.grid)
+        self.lore = Lore.recalled(place.world, settings.alpha0, self.memory, place.grid)
         self._lores = self._lores or {name: self.lore.copy() for name in self._kinds}
         self._lores[self._first] = self.lore
 

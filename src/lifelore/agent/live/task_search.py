@@ -22,7 +22,7 @@ from lifelore.core.learning.model_learning import StateInfo, check_deterministic
 from lifelore.core.learning.tour_search import explore_on_tour
 from lifelore.core.mdp import Tables, Task
 from lifelore.core.streams import stream
-from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.domains.grids.grid_world import MOVE_BITS, GridWorld
 
 CHECK_EVERY = 100
 """Steps between two evaluations of the greedy policy, the same for every agent."""
@@ -103,8 +103,8 @@ class TaskSearch:
         percepts = self.world.percepts
         if not kind.uses_prior:
             return StateInfo(percepts, np.zeros(len(percepts), np.int32), np.zeros((1, self.tables.n_actions)))
-        codes, row = np.unique(lore.scope.contexts, return_inverse=True)
-        probs = posterior_mean(lore.prior, codes, lore.scope.coarser)
+        codes, row = np.unique(percepts, return_inverse=True)
+        probs = posterior_mean(lore.prior, codes, (MOVE_BITS,))
         return StateInfo(percepts, row.astype(np.int32), try_costs(probs))
 
     def _until_learnt(
