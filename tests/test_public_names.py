@@ -59,10 +59,10 @@ def test_a_room_without_its_source_exports_the_same_names(tmp_path):
     room.write_text(inspect.getsource(import_module("lifelore.bridges")))
     py_compile.compile(str(room), str(room.with_suffix(".pyc")))
     room.unlink()
-    code = "import room; print(room.__all__, room.open_directions.__module__)"
+    code = "import room; print(room.__all__, room.PriorMask.__module__)"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, cwd=tmp_path, check=True)
     names = import_module("lifelore.bridges").__all__
-    assert found.stdout.strip() == f"{names} lifelore.bridges.minigrid_view"
+    assert found.stdout.strip() == f"{names} lifelore.bridges.prior_mask"
 
 
 def test_importing_the_package_imports_nothing_heavy():

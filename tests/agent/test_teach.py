@@ -8,7 +8,7 @@ import pytest
 
 from lifelore.action.demonstrations.demonstrations import read_demonstrations
 from lifelore.action.priors.prior_file import load_prior
-from lifelore.agent.live.lore import prior_scope
+from lifelore.agent.live.lore import PERCEPT_KEY
 from lifelore.agent.teach import COLUMNS, ROWS, grid_text, teach
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.domains.grids.grid_world import GridWorld
@@ -78,8 +78,7 @@ def test_whoever_walks_by_the_picture_is_an_expert(tmp_path):
         assert np.array_equal(after[:-1], one.states[1:])
         assert after[-1] == goal
     prior = load_prior(tmp_path / "prior.npz")
-    scope = prior_scope(world, "observation")
-    assert prior.key == scope.key
+    assert prior.key == PERCEPT_KEY
     assert prior.counts(np.unique(world.percepts)).sum() == report["steps"]
     with np.load(tmp_path / "prior.npz") as file:
         about = json.loads(file["about"].tobytes())["about"]

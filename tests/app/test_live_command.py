@@ -27,9 +27,9 @@ ESTIMATE = {"value", "median", "ci95", "n"}
 RATIOS = ("steps_to_80_ratio", "collisions_ratio", "jumpstart")
 MEASURES = ("steps_to_80", "steps_to_goal", "collisions", "episodes_to_80", "first_return")
 TOLD = {
-    "domain", "map", "tasks", "cell", "robot_radius", "destinations", "prior", "agent", "robot",
+    "domain", "map", "tasks", "cell", "robot_radius", "destinations", "agent", "robot",
     "start", "memory", "episodes", "max_steps", "seed", "jobs", "density", "discount", "goal_reward",
-    "wall_reward", "alpha0", "weight", "sensor", "range",
+    "wall_reward", "alpha0", "weight",
 }  # fmt: skip
 LATTICE = ("live", "--domain", "lattice", "--json")
 
@@ -163,17 +163,6 @@ def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
     assert set(json.loads(Path("out/summary.json").read_text())) == DOCUMENT
 
 
-def test_a_lidar_is_named_in_the_report_and_the_table(ask):
-    lidar = ("live", "--set", "sensor=lidar", "--set", "range=3", "--tasks", 2, "--memory", "life.db")
-    settings = ask(*lidar, "--json").document["settings"]
-    assert (settings["sensor"], settings["range"]) == ("lidar", 3.0)
-    # The defaults with which the building was made.
-    assert (settings["cell"], settings["robot_radius"], settings["episodes"]) == (0.5, 0.2, 100)
-    assert "steps to see goal" in ask(*lidar).out
-    assert "range applies to sensor lidar" in ask("live", "--set", "range=3", "--memory", "none.db").refusal
-    assert not Path("none.db").exists()
-
-
 def test_nothing_is_forgotten_when_the_pictures_cannot_be_kept(ask, known, monkeypatch):
     """The folder is looked at first: a refusal costs no life, and memory stays as it was."""
     before = known.read_bytes()
@@ -211,11 +200,11 @@ def test_every_episode_is_logged_where_it_is_told(ask, tmp_path):
 
 SET = {
     "building": {
-        "cell": 0.4, "robot_radius": 0.15, "min_free": 0.5, "sensor": "lidar", "range": 4.0, "refresh": True,
-        "compare": False, "building": "home", "start": [1.5, 1.5],
+        "cell": 0.4, "robot_radius": 0.15, "min_free": 0.5, "refresh": True, "compare": False,
+        "building": "home", "start": [1.5, 1.5],
     },
     "lattice": {"destinations": 3, "size": 9, "episodes": 7, "jobs": 1, "max_steps": 30,
-        "discount": 0.9, "goal_reward": 7.0, "wall_reward": -3.0, "prior": "state", "alpha0": 0.3, "weight": 2.0,
+        "discount": 0.9, "goal_reward": 7.0, "wall_reward": -3.0, "alpha0": 0.3, "weight": 2.0,
     },
     "noise": {"density": 0.55},
     "advice": {"loops": 0.3},
@@ -313,14 +302,6 @@ def test_every_setting_says_what_it_means(ask):
 def test_a_wrong_setting_is_one_line(options, line, ask):
     assert line in ask("live", "--memory", "none.db", *options).refusal
     assert not Path("none.db").exists()
-
-
-def test_choices_are_those_that_settings_allow(ask):
-    rows = [row for row in ask("live", "--settings", "--json").document["settings"] if row["choices"]]
-    assert {row["key"] for row in rows} == {"prior", "sensor"}
-    for row in rows:
-        refused = ask("live", "--memory", "none.db", *changed(**{row["key"]: "odd"})).refusal
-        assert f"{row['key']} must be one of {', '.join(row['choices'])}, got 'odd'" in refused
 
 
 def test_help_is_one_screen(ask, monkeypatch):

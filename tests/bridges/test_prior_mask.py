@@ -1,4 +1,4 @@
-"""Masks from a prior, and a prior from episodes: by hand in a lake of ice that does not slip."""
+"""Masks from a prior, by hand in a lake of ice that does not slip."""
 
 import gymnasium
 import numpy as np
@@ -6,7 +6,6 @@ import pytest
 from gymnasium.spaces import Discrete
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.bridges.counted_episodes import count_episodes
 from lifelore.bridges.observations import check_actions
 from lifelore.bridges.prior_mask import PriorMask
 from lifelore.core.errors import InputError
@@ -79,34 +78,11 @@ def test_new_counts_are_heeded_from_the_next_episode_on():
     assert env.action_masks().tolist() == [False, True, False, False]
 
 
-class Straight:
-    """A model that goes down and then right, and at place 8 chooses as it was told."""
-
-    def __init__(self, at_eight):
-        self.at_eight = at_eight
-
-    def predict(self, observation, deterministic=False):
-        assert deterministic
-        return {0: DOWN, 4: DOWN, 8: self.at_eight, 9: DOWN, 13: RIGHT, 14: RIGHT}[int(observation)], None
-
-
-@pytest.mark.parametrize(("at_eight", "counted"), [(RIGHT, 3), (DOWN, 0)])
-def test_only_episodes_that_pay_are_counted(at_eight, counted):
-    prior = ActionPrior(4)  # at place 12 there is a hole
-    assert count_episodes(prior, Straight(at_eight), lake(), places, episodes=3) == counted
-    assert prior.contexts.tolist() == ([0, 4, 8, 9, 13, 14] if counted else [])
-    actions = prior.counts(prior.contexts)
-    assert (actions.sum(axis=1) == counted).all()
-    assert actions.argmax(axis=1).tolist() == ([DOWN, DOWN, RIGHT, DOWN, RIGHT, RIGHT] if counted else [])
-
-
 def test_what_is_refused():
     with pytest.raises(
         InputError, match=r"prior must be for the environment's actions Discrete\(4\), got one for 3"
     ):
         PriorMask(lake(), ActionPrior(3), places)
-    with pytest.raises(InputError, match="got one for 3"):
-        count_episodes(ActionPrior(3), Straight(RIGHT), lake(), places, episodes=1)
     for escape in (-0.1, 1.1, float("nan")):
         with pytest.raises(InputError, match="escape must lie in"):
             PriorMask(lake(), ActionPrior(4), places, escape=escape)

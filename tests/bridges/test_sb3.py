@@ -16,7 +16,7 @@ from sb3_contrib import MaskablePPO  # noqa: E402
 from stable_baselines3 import DQN  # noqa: E402
 from stable_baselines3.common.vec_env import DummyVecEnv, VecNormalize  # noqa: E402
 
-from lifelore.bridges.sb3 import PriorDQN, PriorMask, count_episodes  # noqa: E402
+from lifelore.bridges.sb3 import PriorDQN, PriorMask  # noqa: E402
 
 pytestmark = pytest.mark.deep
 
@@ -217,14 +217,3 @@ def test_maskable_ppo_keeps_to_the_masks():
     seen, actions = kept.observations.reshape(-1).astype(int), kept.actions.reshape(-1)
     assert len(seen) == 128
     assert (actions == seen % N).all()
-
-
-# ---- counting what a model does ---------------------------------------------------------------------------
-
-
-def test_a_learnt_model_becomes_a_prior():
-    model = DQN("MlpPolicy", Ring(), buffer_size=100, seed=0, device="cpu")
-    always(model, 1)
-    prior = ActionPrior(N)
-    assert count_episodes(prior, model, Ring(), places, episodes=10) == 10
-    assert (prior.counts(prior.contexts)[:, 1] > 0).all()

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from examples.pages.walk.sight import visible_places
 from lifelore.action.advice.advisor import BETTER, Advisor
 from lifelore.action.advice.goal_model import extend_goal_models
 from lifelore.agent.advise.advise import AdviseSettings, non_expert_models, world_settings
@@ -19,7 +20,6 @@ from lifelore.core.learning.known_world import GOAL, goal_distances
 from lifelore.core.streams import stream
 from lifelore.domains.buildings.floor import Floor, floor_of
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap
-from lifelore.domains.buildings.visibility import visible_places
 from lifelore.domains.grids.grid_world import MOVE_NAMES, GridWorld
 from lifelore.domains.worlds import map_from_settings, world_from_settings
 

@@ -56,18 +56,15 @@ def _compiled() -> set[Path]:
 
 def _live(folder: Path) -> None:
     from lifelore.agent.live.life import live
-    from lifelore.agent.live.life_settings import LifeSettings, MemorySettings, SensorSettings
+    from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
     from lifelore.core.learning.q_learner import QLearning
     from lifelore.domains.buildings.clear_path import clear_path
     from lifelore.domains.worlds import make_world
 
-    memory = MemorySettings(str(folder / "touch.db"))
-    live(LifeSettings(memory=memory, agent="all", tasks=2, episodes=3, max_steps=50))
+    memory = MemorySettings(str(folder / "life.db"))
+    life = live(LifeSettings(memory=memory, agent="all", tasks=2, episodes=3, max_steps=50))
     random = np.random.default_rng(0)
     QLearning(episodes=3).learn(make_world("lattice").task(0).tables(), 0.95, world=random, own=random)
-    life = live(
-        LifeSettings(memory=MemorySettings(str(folder / "lidar.db")), tasks=1, sensor=SensorSettings("lidar"))
-    )
     assert life.floor is not None, "the default domain is a building"
     clear_path(life.floor, *life.floor.metres(life.floor.anchors[:2]))
 

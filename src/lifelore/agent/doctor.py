@@ -38,7 +38,7 @@ EXTRAS = {
     "rerun-sdk": ("view", "perceive --log *.rrd"),
     "mujoco": ("sim", "scenes, live --domain tabletop"),
     "unified-planning": ("planning", "perceive --plan"),
-    "minigrid": ("envs", "bridges.minigrid_view: MiniGrid worlds for live_in"),
+    "minigrid": ("envs", "MiniGrid worlds, in examples"),
     "stable-baselines3": ("deep", "bridges.sb3: action priors in deep Q-learning"),
     "openfeature-sdk": ("openfeature", "bridges.openfeature_provider: studies as flags"),
     "distributed": ("cluster", "reproduce --scheduler"),

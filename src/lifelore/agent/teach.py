@@ -16,7 +16,7 @@ from lifelore.action.demonstrations.demonstrations import Demonstration, count_d
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.policy_counts import actions_to_count
 from lifelore.action.priors.prior_file import save_prior
-from lifelore.agent.live.lore import prior_scope
+from lifelore.agent.live.lore import PERCEPT_KEY
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL
 from lifelore.core.planning.planning import optimal_q
@@ -172,7 +172,6 @@ def _best(world: GridWorld, goal: int) -> np.ndarray:
 
 
 def _percept_prior(world: GridWorld, shown: list[Demonstration], weights: dict[str, float]) -> ActionPrior:
-    scope = prior_scope(world, "observation")  # the key of the percept priors in memory, so that they merge
-    prior = ActionPrior(len(MOVE_NAMES), key=scope.key)
-    count_demonstrations(prior, shown, lambda demonstration: scope.contexts[demonstration.states], weights)
+    prior = ActionPrior(len(MOVE_NAMES), key=PERCEPT_KEY)  # that of the priors in memory, so that they merge
+    count_demonstrations(prior, shown, lambda demonstration: world.percepts[demonstration.states], weights)
     return prior

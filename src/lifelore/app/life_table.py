@@ -12,8 +12,6 @@ SHOWN = (
     ("first_return", "first return"),
 )
 
-SHOWN_BY_SIGHT = (SHOWN[0], ("steps_to_goal", "steps to see goal"), *SHOWN[2:])
-
 SHOWN_DRIVEN = (("seconds", "seconds"), ("metres", "metres"), ("refusals", "refusals"), ("replans", "new routes"))
 
 LISTED = 20
@@ -38,8 +36,7 @@ def print_life(report: dict, written: list[str]) -> None:
     if tasks and report["how"] == "driven":
         _print_driven(console, report)
     elif tasks:
-        shown = SHOWN if report["settings"]["sensor"] == "touch" else SHOWN_BY_SIGHT
-        console.print(_thirds(report["summary"]["agents"], shown), soft_wrap=False)
+        console.print(_thirds(report["summary"]["agents"], SHOWN), soft_wrap=False)
         for name, ratios in report["summary"].items():
             if name != "agents":
                 console.print(_ratio_line(name, ratios))

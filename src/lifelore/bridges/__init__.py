@@ -1,13 +1,10 @@
-"""Connections to other programs: MiniGrid, Stable-Baselines3, rosbags, PDDL planners, clients of the service."""
+"""Connections to other programs: Stable-Baselines3, rosbags, PDDL planners, clients of the service."""
 
 from typing import TYPE_CHECKING
 
 from lifelore.core.lazy_exports import lazy_exports
 
 if TYPE_CHECKING:
-    from lifelore.bridges.minigrid_view import SymbolicView as SymbolicView
-    from lifelore.bridges.minigrid_view import open_directions as open_directions
-    from lifelore.bridges.minigrid_view import solved_layout as solved_layout
     from lifelore.bridges.prior_mask import PriorMask as PriorMask
     from lifelore.bridges.study_client import StudyClient as StudyClient
 

@@ -36,13 +36,13 @@ class PriorMask(gymnasium.Wrapper):
 
     Examples
     --------
-    >>> import minigrid
     >>> from lifelore import ActionPrior
-    >>> from lifelore.bridges import SymbolicView, open_directions
-    >>> env = PriorMask(SymbolicView(gymnasium.make("MiniGrid-Empty-5x5-v0")), ActionPrior(3), open_directions)
+    >>> prior = ActionPrior(4)
+    >>> prior.update_trajectory([0, 0], [1, 2])  # at the start of the lake: down and right
+    >>> env = PriorMask(gymnasium.make("FrozenLake-v1"), prior, np.asarray, escape=0.0)
     >>> observation, info = env.reset(seed=0)
     >>> env.action_masks().tolist()
-    [True, True, True]
+    [False, True, True, False]
     """
 
     def __init__(

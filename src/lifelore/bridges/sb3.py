@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.bridges.cached_prior_sampler import CachedPriorSampler
-from lifelore.bridges.counted_episodes import count_episodes as count_episodes
 from lifelore.bridges.observations import Contexts, as_batch, batch_size, check_actions
 from lifelore.bridges.prior_mask import PriorMask as PriorMask
 from lifelore.core.errors import InputError, MissingExtraError

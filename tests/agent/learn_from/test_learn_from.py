@@ -13,7 +13,7 @@ from lifelore.agent.live.buildings.recognition import recognised_place
 from lifelore.agent.live.driven.route import cheapest_route
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
-from lifelore.agent.live.lore import Lore, prior_scope
+from lifelore.agent.live.lore import Lore
 from lifelore.agent.travel import Travel
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
@@ -40,7 +40,7 @@ def settings(path) -> dict[str, Any]:
 
 def known(world, path) -> Lore:
     with open_memory(path) as memory:
-        return Lore.recalled(world, prior_scope(world, "observation"), 0.1, memory)
+        return Lore.recalled(world, 0.1, memory)
 
 
 def test_what_was_driven_is_known_and_true(world, runs, tmp_path):

@@ -49,9 +49,11 @@ def test_equal_runs_have_equal_digests_in_whatever_file(tmp_path):
         ("time,x,y\n\n0,1,two\n", "line 3: y must be a number"),
         ("time,x,y\n0,1,nan\n", "line 2: y must be a number"),
         ("time,x,y\n0,1e7,0\n", "line 2: x must be a number of metres, of magnitude 1e\\+06"),
+        ("time,x,y\n1e5,0,0\n5e9,0,0\n", r"line 3: time must be seconds, .* in all lines, got 5e\+09"),
+        ("time,x,y\n1704067200,0,0\n1704067201000,0,0\n", "line 3: time must be seconds"),
         (
-            "time,x,y\n1704067200000,0,0\n",
-            r"line 2: time must be a number of seconds, of magnitude 4e\+09 at most",
+            "time,x,y,heading\n" + "".join(f"{t},{t / 10},0,{90 * (t % 4)}\n" for t in range(9)),
+            r"6 of 9 headings are beyond 2π, as degrees are; give radians",
         ),
         ("time,x,y\n1,0,0\n0,0,0\n", r"line 3: time must ascend within a run, got 0 after 1; .* \(column run\)"),
         ("time,x,y\n1700000010.5,0,0\n1700000009,0,0\n", "got 1700000009 after 1700000010.5"),
@@ -62,6 +64,17 @@ def test_equal_runs_have_equal_digests_in_whatever_file(tmp_path):
 def test_a_line_that_breaks_its_rule_is_named(tmp_path, text, message):
     with pytest.raises(InputError, match=message):
         read_runs(log(tmp_path, text))
+
+
+@pytest.mark.parametrize("unit", [1e3, 1e6, 1e9])
+def test_parts_of_seconds_since_1970_are_known_by_their_size(tmp_path, unit):
+    times = "".join(f"{round((1704067200 + t) * unit)},{t},0\n" for t in range(3))
+    assert read_runs(log(tmp_path, "time,x,y\n" + times))[0].time.tolist() == [1704067200, 1704067201, 1704067202]
+
+
+def test_a_robot_that_has_turned_round_a_few_times_is_read(tmp_path):
+    rows = "".join(f"{t},{t / 10},0,{t / 20}\n" for t in range(140))
+    assert read_runs(log(tmp_path, "time,x,y,heading\n" + rows))[0].heading[-1] == 6.95
 
 
 def test_a_log_is_cut_where_runs_end():

@@ -8,8 +8,8 @@ from lifelore.agent.live.goals.destinations import Destination
 from lifelore.agent.live.goals.job_list import Job
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
-from lifelore.agent.live.lore import observation_key
-from lifelore.agent.live.transitions import cells_of, model_table, to_record
+from lifelore.agent.live.lore import PERCEPT_KEY
+from lifelore.agent.live.transitions import model_table, to_record
 from lifelore.agent.watch_life import known_map as module
 from lifelore.agent.watch_life.known_map import known_map
 from lifelore.core.learning.known_world import unknown_world
@@ -71,22 +71,13 @@ def test_known_cells_stand_where_the_map_has_them(memory, world):
 
 
 def test_arrows_are_those_of_the_observation_prior(memory, world):
-    prior(memory, observation_key(), [int(world.percepts[1])])
+    prior(memory, PERCEPT_KEY, [int(world.percepts[1])])
     found = known(memory, world.fingerprint)
     assert found["prior"] == "observation"
     arrows = {(row, column): arrow for row, column, _, arrow, _ in found["cells"]}
     # Two counts and α⁰ = 0.1: (2 + 0.1) / (2 + 4 · 0.1)
     assert found["arrows"][arrows[1, 0]] == pytest.approx([0.875, 0.042, 0.042, 0.042], abs=1e-3)
     assert arrows[0, 0] == arrows[1, 1] == -1
-
-
-def test_arrows_of_a_state_prior_belong_to_the_place(memory, world):
-    prior(memory, world.fingerprint, [int(cells_of(world)[2])])
-    found = known(memory, world.fingerprint)
-    assert found["prior"] == "state"
-    arrows = {(row, column): arrow for row, column, _, arrow, _ in found["cells"]}
-    assert found["arrows"][arrows[1, 1]][0] == pytest.approx(0.875)
-    assert arrows[0, 0] == arrows[1, 0] == -1
 
 
 def test_of_a_large_map_the_nearest_places_are_given(memory, world, monkeypatch):

@@ -26,7 +26,7 @@ def lived(tmp_path_factory: pytest.TempPathFactory) -> tuple[str, dict, dict]:
     ).report
     types = live_long(FACTORY, tasks=4, episodes=3, robot="bo", memory=where)
     with open_memory(where) as memory:
-        memory.contribute("study: ada", [], process="p", seq=0, task={"index": 0, "goal": [0, 0], "world": "w"})
+        memory.contribute("hall: cart", [], process="p", seq=0, task={"index": 0, "goal": [0, 0], "world": "w"})
         memory.contribute("ada", [], process="another", seq=0, task={"run": 1})
     return where, in_grid, types
 
@@ -36,6 +36,7 @@ def test_a_life_for_each_robot_and_domain(lived):
         assert lives_in(memory) == [
             {"robot": "ada", "domain": "lattice", "kind": "grid", "tasks": 3},
             {"robot": "bo", "domain": FACTORY, "kind": "types", "tasks": 4},
+            {"robot": "hall: cart", "domain": "grid", "kind": "grid", "tasks": 1},
         ]
 
 

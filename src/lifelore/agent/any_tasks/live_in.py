@@ -156,11 +156,11 @@ def live_in(
     check_names(robot=robot, **({} if key is None else {"key": key}))
     own_agents = check_own_agents(agents or {}, AGENTS)
     learning = QLearning(episodes, max_steps, learning_rate, epsilon, epsilon_decay, epsilon_floor)
-    guidance = PriorSettings("observation", alpha0, weight, form, ties)
+    guidance = PriorSettings(alpha0, weight, form, ties)
     names = [*AGENTS, *own_agents]
     settings = {"tasks": tasks, "robot": robot, "key": key, "discount": discount}
     settings |= asdict(learning) | asdict(guidance) | {"agents": names}
-    del settings["annealed"], settings["condition"]
+    del settings["annealed"]
     lore = TaskSettings(
         learning, guidance, discount, "textbook", "moves", 0.05, seed, ABLATIONS["no-reuse"], cautious=False
     )  # fmt: skip

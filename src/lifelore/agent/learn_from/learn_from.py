@@ -27,7 +27,7 @@ from lifelore.agent.learn_from.run_log import Run
 from lifelore.agent.learn_from.tried_moves import tried_moves
 from lifelore.agent.live.buildings.recognition import Place, recognised_place
 from lifelore.agent.live.life_settings import MemorySettings, PriorSettings
-from lifelore.agent.live.lore import Lore, prior_scope
+from lifelore.agent.live.lore import Lore
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.planning.planning import optimal_q
 from lifelore.core.protocols import Progress
@@ -137,8 +137,7 @@ def learn_from(
 
 def _store_building(place: Place, alpha0: float, robot: str, memory: Memory) -> None:
     """Store the building and what carries over from its earlier map; both stay if the runs are forgotten."""
-    scope = prior_scope(place.world, "observation")
-    lore = Lore.recalled(place.world, scope, alpha0, memory, place.grid)
+    lore = Lore.recalled(place.world, alpha0, memory, place.grid)
     if records := [record for record in (*place.news, lore.model_news()) if len(record.slots)]:
         task = {"world": place.world.fingerprint}
         memory.contribute(robot, records, process=uuid4().hex, seq=0, task=task)

@@ -8,18 +8,15 @@ from numpy.typing import NDArray
 
 from lifelore.action.demonstrations.demonstrations import Demonstration, count_demonstrations
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.agent.learn_from.run_log import Run
+from lifelore.agent.learn_from.run_log import FIRST_CLOCK, Run
 from lifelore.agent.learn_from.tried_moves import TriedMoves
 from lifelore.agent.live import transitions
 from lifelore.agent.live.buildings.recognition import Place
-from lifelore.agent.live.lore import prior_scope
+from lifelore.agent.live.lore import ABOUT_PRIOR, PERCEPT_KEY
 from lifelore.agent.travel import Travel
 from lifelore.core.learning.known_world import UNKNOWN, unknown_world
 from lifelore.core.protocols import Record
 from lifelore.domains.grids.grid_world import MOVE_NAMES
-
-FIRST_CLOCK = 1e9
-"""Seconds since 1970: times from here on are of a clock, smaller ones count from the start of a robot."""
 
 DRIVER = "robot"
 """Name of the agent of all demonstrations; the robot has another one in memory."""
@@ -58,10 +55,9 @@ class LearntRun:
         known = transitions.to_record(world, transitions.model_table(world, model), UNKNOWN, place.grid)
         records = [known, *_travel(place, tried).news()]
         if self.goal is not None:
-            scope = prior_scope(world, "observation")
-            news, shown = ActionPrior(len(MOVE_NAMES), alpha0, scope.key), self.demonstration(with_bumps=False)
-            count_demonstrations(news, [shown], lambda each: scope.contexts[each.states], {DRIVER: weight})
-            records.append(news.to_record({"prior": scope.kind, "actions": list(MOVE_NAMES)}))
+            news, shown = ActionPrior(len(MOVE_NAMES), alpha0, PERCEPT_KEY), self.demonstration(with_bumps=False)
+            count_demonstrations(news, [shown], lambda each: world.percepts[each.states], {DRIVER: weight})
+            records.append(news.to_record(ABOUT_PRIOR))
         return [record for record in records if len(record.slots)]
 
 

@@ -1,6 +1,6 @@
 """Runs of a real robot from a CSV file: poses over time, and how they went.
 
-    time      seconds, ascending within a run
+    time      seconds, ascending within a run; also milli-, micro- or nanoseconds since 1970
     x, y      metres in the frame of the map
     run       optional: name of the run
     heading   optional: radians, 0 along x
@@ -28,8 +28,12 @@ NOTHING, BUMP, GOAL, FAILED = "", "bump", "goal", "failed"
 OUTCOMES = (BUMP, GOAL, FAILED)
 GAP = 10.0
 """Seconds without a pose that end a run in a log without the column run."""
+FIRST_CLOCK = 1e9
+"""Seconds since 1970: times from here on are of a clock, smaller ones count from the start of a robot."""
 _FARTHEST, _LATEST = 1e6, 4e9
 """Metres, and seconds since 1970; a larger coordinate or time is an error of units."""
+_MOST_TURNED = 0.2
+"""Share of headings beyond 2π from which on they are taken for degrees; fewer are of a robot that turned round."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,6 +97,10 @@ def read_runs(path: str | Path) -> list[Run]:
         raise InputError(f"{path} must hold at least one pose, got only a header")
     lines, names, outcome, poses = zip(*rows, strict=True)
     time, x, y, heading = np.array(poses).T
+    time = _in_seconds(time, lines, str(path))
+    turned = int((np.abs(heading) > 2 * np.pi).sum())
+    if turned > _MOST_TURNED * (given := int(np.isfinite(heading).sum())):
+        raise InputError(f"{path}: {turned} of {given} headings are beyond 2π, as degrees are; give radians")
     whole, name = Run("", time, np.column_stack([x, y]), heading, list(outcome)), np.array(names)
     named, ended = (name[1:] != "") | (name[:-1] != ""), np.isin(outcome[:-1], (GOAL, FAILED))
     ends = np.where(named, name[1:] != name[:-1], ended | (np.diff(time) > GAP))
@@ -103,6 +111,17 @@ def read_runs(path: str | Path) -> list[Run]:
         )
     parts = _parts(ends)
     return [whole.part(names[part.start] or str(number), part) for number, part in enumerate(parts)]
+
+
+def _in_seconds(time: NDArray[np.float64], lines: Sequence[int], name: str) -> NDArray[np.float64]:
+    """Times in seconds; by their size, all of them may be milli-, micro- or nanoseconds since 1970."""
+    unit = next((unit for unit in (1e9, 1e6, 1e3) if time.min() >= FIRST_CLOCK * unit), 1.0)
+    for at in np.flatnonzero(np.abs(time / unit) > _LATEST)[:1].tolist():
+        raise InputError(
+            f"{name} line {lines[at]}: time must be seconds, or milli-, micro- or nanoseconds since 1970 in all "
+            f"lines, got {time[at]:g}"
+        )
+    return time / unit
 
 
 def cut_runs(whole: Run, ends: NDArray[np.bool_]) -> list[Run]:
@@ -159,5 +178,5 @@ def _pose(row: list[str], columns: list[str], where: str) -> tuple[str, str, tup
     if outcome not in (NOTHING, *OUTCOMES):
         raise InputError(f"{where}: outcome must be empty or one of {', '.join(OUTCOMES)}, got {outcome[:40]!r}")
     heading = number("heading", 1e4, "radians") if value.get("heading") else math.nan
-    pose = number("time", _LATEST, "seconds"), *(number(axis, _FARTHEST, "metres") for axis in "xy"), heading
+    pose = number("time", 1e9 * _LATEST, "seconds"), *(number(axis, _FARTHEST, "metres") for axis in "xy"), heading
     return value.get("run", ""), outcome, pose

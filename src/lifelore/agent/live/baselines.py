@@ -1,8 +1,7 @@
 """The agents that can live a life: `lore`, its parts, and the baselines it is compared with."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
-from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.core.errors import NotFoundError
 from lifelore.core.learning.model_learning import ExplorationStrategy
 
@@ -33,14 +32,6 @@ AGENTS = {
 """`scratch` has the same planner as the others, without prior and memory. `undirected` does not plan: it takes the
 move that it has tried least. `rmax` prefers every unknown move to a known goal. `frontier` knows where all moves
 of a cell lead as soon as it has visited the cell."""
-
-
-def agent_kind(name: str, settings: LifeSettings) -> AgentKind:
-    """What an agent uses with these settings."""
-    kind = AGENTS[name]
-    return replace(kind, uses_prior=kind.uses_prior and settings.prior != "none")
-
-
 BIG = 100_000
 """Number of places above which an agent lives alone unless the settings ask for the comparison."""
 

@@ -8,7 +8,7 @@ from threading import Event
 from typing import Any
 
 from lifelore.agent.life.loop import run_life
-from lifelore.agent.live.baselines import agent_kind, agents_for
+from lifelore.agent.live.baselines import AGENTS, agents_for
 from lifelore.agent.live.buildings.recognition import Place, own_place, recognised_place
 from lifelore.agent.live.driven.driven_life import DrivenLife
 from lifelore.agent.live.goals.destinations import NamedPlaces
@@ -157,7 +157,7 @@ def _place(
 ) -> Place:
     """The remembered building of the world, if the agent remembers transitions of buildings."""
     name = settings.memory.building
-    if occupancy is not None and (settings.driven or agent_kind(agent, settings).remembers):
+    if occupancy is not None and (settings.driven or AGENTS[agent].remembers):
         return recognised_place(settings.world, world, occupancy, memory, name)
     if name is not None:
         raise InputError(

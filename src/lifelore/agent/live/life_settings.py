@@ -1,4 +1,4 @@
-"""Settings of `live`, with three groups: the world, the sensor and the memory; and those of action priors.
+"""Settings of `live`, with two groups: the world and the memory; and those of action priors.
 
 The first sentence on a setting stands in ``lifelore live --settings``.
 """
@@ -17,55 +17,14 @@ from lifelore.core.errors import InputError
 from lifelore.core.keyed_settings import arguments_by_key, keys_of
 from lifelore.domains.worlds import WorldSettings
 
-CONDITIONS = ("observation", "state", "none")
-SENSORS = ("touch", "lidar")
-DEFAULT_RANGE = 5.0
-"""Range of a lidar in metres."""
-MOST_RANGE = 1e3
-"""Largest range of a lidar in metres: a larger number is a typing mistake."""
 MOST_REWARD = 1e6
 """Largest magnitude of rewards and of α⁰: a larger number hides the others by rounding."""
 LONGEST_NAME = 200
-LIFE_KEYS = {"kind": "sensor", "location": "memory"}
+LIFE_KEYS = {"location": "memory"}
 """The key of each setting whose key, flat beside all others, is not its name."""
 
 Place = tuple[float, float] | str
 """In buildings x and y in metres of the map's frame, or a name that memory knows; else row and column."""
-
-
-@dataclass(frozen=True)
-class SensorSettings:
-    """How far the agents perceive.
-
-    Parameters
-    ----------
-    kind : {"touch", "lidar"}
-        Whether the agents perceive by touch alone, or in buildings also by a lidar. With ``touch``, a move is
-        known once it was made, and the goal once it was entered. With ``lidar``, all places within `range` in line
-        of sight are perceived from each place: where their moves lead, and whether they are the goal.
-    range : float, optional
-        Range of the lidar in metres, > 0; 5 by default. Does not apply to ``touch``.
-
-    Raises
-    ------
-    InputError
-        A setting is out of its range.
-    """
-
-    kind: str = "touch"
-    range: float | None = None
-
-    def __post_init__(self) -> None:
-        _check_choice("sensor", self.kind, SENSORS)
-        if self.range is not None and self.kind != "lidar":
-            raise InputError(f"range applies to sensor lidar, got {self.range} for {self.kind}; leave it out")
-        if self.range is not None and not 0 < self.range <= MOST_RANGE:
-            raise InputError(f"range must lie in (0, {MOST_RANGE:g}] metres, got {self.range}")
-
-    @property
-    def reach(self) -> float | None:
-        """Range of the lidar in metres; None without a lidar."""
-        return (DEFAULT_RANGE if self.range is None else self.range) if self.kind == "lidar" else None
 
 
 @dataclass(frozen=True)
@@ -74,9 +33,6 @@ class PriorSettings:
 
     Parameters
     ----------
-    condition : {"observation", "state", "none"}
-        Whether the prior is conditioned on what the agent observes in a cell, or on the cell, or there is none.
-        Does not apply to external worlds, which have contexts of their own.
     alpha0 : float
         Pseudo-count α⁰ of every action in the prior, > 0.
     weight : float
@@ -92,14 +48,12 @@ class PriorSettings:
         A setting is out of its range.
     """
 
-    condition: str = "observation"
     alpha0: float = 0.1
     weight: float = 1.0
     form: str = "proportion"
     ties: str = "uniform"
 
     def __post_init__(self) -> None:
-        _check_choice("prior", self.condition, CONDITIONS)
         _check_choice("form", self.form, FORMS)
         _check_choice("ties", self.ties, TIES)
         if not 0 < self.alpha0 <= MOST_REWARD:
@@ -156,8 +110,6 @@ class LifeSettings:
     ----------
     world : WorldSettings
         The world to live in; `world.seed` draws the tasks and the agents' choices too.
-    prior : {"observation", "state", "none"}
-        Whether the action prior is conditioned on what is observed in a cell, on the cell, or there is none.
     alpha0 : float
         Pseudo-count α⁰ of every action in the prior, > 0.
     weight : float
@@ -167,7 +119,6 @@ class LifeSettings:
     max_steps : int, optional
         Maximum number of steps of an episode; by default 2,000 in buildings, 1,000 in the thesis's worlds.
     memory : MemorySettings
-    sensor : SensorSettings
     agent : str
         The agent that lives and whose knowledge is stored, one of `lifelore.agent.live.baselines.AGENTS`;
         ``scratch`` lives the same tasks for comparison. ``all``: `lore` and every baseline.
@@ -211,7 +162,6 @@ class LifeSettings:
     """
 
     world: WorldSettings = field(default_factory=WorldSettings)
-    prior: str = "observation"
     alpha0: float = 0.1
     weight: float = 1.0
     episodes: int | None = None
@@ -227,11 +177,10 @@ class LifeSettings:
     goals: tuple[Job, ...] = ()
     busy: bool | None = None
     move_names: bool = False
-    sensor: SensorSettings = field(default_factory=SensorSettings)
     again: bool = False
 
     def __post_init__(self) -> None:
-        PriorSettings(self.prior, self.alpha0, self.weight)  # checks them
+        PriorSettings(self.alpha0, self.weight)  # checks them
         for name, value in (("episodes", self.episodes), ("max_steps", self.max_steps)):
             if value is not None:
                 _check_whole(name, value, 1, 10**8)
@@ -242,7 +191,11 @@ class LifeSettings:
         if self.goal is not None and self.goals:
             raise InputError("goal and goals exclude each other; add the goal to the list, or leave it out")
         if self.driven:
-            self._check_driven()
+            if self.agent != "lore":
+                raise InputError(
+                    f"agent applies to hidden goals, which are searched, got '{self.agent}' with known goals, "
+                    "which are driven to; leave out agent, or goal and goals"
+                )
         elif self.goal is not None and self.destinations:
             raise InputError("goal and destinations exclude each other in worlds without a map; give one of them")
         elif self.busy or self.move_names:
@@ -257,20 +210,6 @@ class LifeSettings:
                 f"goals needs a building, whose places have metres, got domain '{self.world.domain}'; "
                 "use goal with ROW,COL"
             )
-        if self.sensor.kind == "lidar" and self.world.domain != "building":
-            raise InputError(
-                f"sensor lidar needs a building, whose map has lines of sight, got domain '{self.world.domain}'; "
-                "use sensor touch"
-            )
-
-    def _check_driven(self) -> None:
-        """Refuse what chooses how to search."""
-        for name, value, default in (("agent", self.agent, "lore"), ("sensor", self.sensor.kind, "touch")):
-            if value != default:
-                raise InputError(
-                    f"{name} applies to hidden goals, which are searched, got '{value}' with known goals, which "
-                    f"are driven to; leave out {name}, or goal and goals"
-                )
 
     @property
     def driven(self) -> bool:

@@ -16,38 +16,13 @@ from lifelore.agent.live.transitions import BuildingGrid
 from lifelore.core.learning.known_world import UNKNOWN, WorldModel
 from lifelore.core.learning.tour_search import KnownTour
 from lifelore.core.protocols import Record
-from lifelore.domains.grids.grid_world import MOVE_BITS, MOVE_NAMES, PERCEPT, GridWorld
+from lifelore.domains.grids.grid_world import MOVE_NAMES, PERCEPT, GridWorld
 from lifelore.memory import Memory
 
-
-@dataclass(frozen=True)
-class PriorScope:
-    """Contexts of an action prior, and the key under which memory stores it.
-
-    contexts : (n_states,) int64 code of each state
-    coarser : bit masks of simpler contexts, used where a context has few counts
-    """
-
-    kind: str
-    key: str
-    contexts: NDArray[np.int64]
-    coarser: tuple[int, ...]
-
-
-def prior_scope(world: GridWorld, condition: str) -> PriorScope:
-    """Contexts and key of the prior of a world; `condition` as in `PriorSettings`.
-
-    Other worlds share the key of an observation prior (`observation_key`). The key of a state prior is the
-    fingerprint of the world, so that no other world shares it.
-    """
-    if condition == "state":
-        return PriorScope("state", world.fingerprint, transitions.cells_of(world), ())
-    return PriorScope("observation", observation_key(), world.percepts, (MOVE_BITS,))
-
-
-def observation_key() -> str:
-    """Key of the observation prior of all grid worlds: the definition of the percept and the actions."""
-    return hashlib.sha256(repr((PERCEPT, MOVE_NAMES)).encode()).hexdigest()[:32]
+PERCEPT_KEY = hashlib.sha256(repr((PERCEPT, MOVE_NAMES)).encode()).hexdigest()[:32]
+"""Key of the action prior that all grid worlds share: the definition of the percept and the actions."""
+ABOUT_PRIOR = {"prior": "observation", "actions": list(MOVE_NAMES)}
+"""What memory says of this prior."""
 
 
 @dataclass
@@ -55,7 +30,6 @@ class Lore:
     """Knowledge of one agent in one world. `learn_prior` and `model_news` return what the last task added."""
 
     world: GridWorld
-    scope: PriorScope
     prior: ActionPrior
     model: WorldModel
     grid: BuildingGrid
@@ -64,17 +38,15 @@ class Lore:
     _tour: KnownTour | None = field(default=None, repr=False)
 
     @classmethod
-    def recalled(
-        cls, world: GridWorld, scope: PriorScope, alpha0: float, memory: Memory, grid: BuildingGrid | None = None
-    ) -> "Lore":
+    def recalled(cls, world: GridWorld, alpha0: float, memory: Memory, grid: BuildingGrid | None = None) -> "Lore":
         """The knowledge in memory about this world; `grid` is that of its building, by default its own."""
         grid = grid or BuildingGrid(transitions.frame_key(world))
         n_actions = world.neighbour.shape[1]
-        record = memory.recall(PRIOR_KIND, scope.key, PRIOR_VERSION)
+        record = memory.recall(PRIOR_KIND, PERCEPT_KEY, PRIOR_VERSION)
         prior = (
             ActionPrior.from_record(record, n_actions, alpha0)
             if record
-            else ActionPrior(n_actions, alpha0, scope.key)
+            else ActionPrior(n_actions, alpha0, PERCEPT_KEY)
         )
         own = memory.recall(transitions.KIND, world.fingerprint, transitions.VERSION)
         model = transitions.from_record(world, own, grid.corner)
@@ -86,22 +58,22 @@ class Lore:
                 transitions.forget_contradicted(world, model)
             elif changed and grid.building is not None and changed.record.about.get("building") == grid.building:
                 transitions.forget_changed(world, model)
-        return cls(world, scope, prior, model, grid, GoalCounts.recalled(world, grid, memory), stored)
+        return cls(world, prior, model, grid, GoalCounts.recalled(world, grid, memory), stored)
 
     def copy(self) -> "Lore":
         """An independent copy for another agent."""
         prior = ActionPrior.merged([self.prior])
         model = WorldModel(self.model.target.copy(), self.model.percept.copy())
-        return Lore(self.world, self.scope, prior, model, self.grid, self.goals.copy(), self._stored.copy())
+        return Lore(self.world, prior, model, self.grid, self.goals.copy(), self._stored.copy())
 
     def learn_prior(self, best: NDArray[np.bool_], goal: int, weight: float) -> Record:
         """Count the policy of a finished task without its goal row (Eq. 3.5, 3.7); return the contribution."""
         best = best.copy()
         best[goal] = False
-        news = ActionPrior(self.prior.n_actions, self.prior.alpha0, self.scope.key)
-        news.update(self.scope.contexts, best, weight)
+        news = ActionPrior(self.prior.n_actions, self.prior.alpha0, PERCEPT_KEY)
+        news.update(self.world.percepts, best, weight)
         self.prior.merge(news)
-        return news.to_record({"prior": self.scope.kind, "actions": list(MOVE_NAMES)})
+        return news.to_record(ABOUT_PRIOR)
 
     @property
     def known_places(self) -> int:

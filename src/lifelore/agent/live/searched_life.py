@@ -9,21 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.live import baselines
-from lifelore.agent.live.baselines import agent_kind, agents_for
-from lifelore.agent.live.buildings.recognition import Place
+from lifelore.agent.live.baselines import AGENTS, agents_for
 from lifelore.agent.live.goals.own_places import OwnGoal
 from lifelore.agent.live.grid_life import SEARCHED, GridLife, LivedByAll
 from lifelore.agent.live.life_settings import LifeSettings
-from lifelore.agent.live.lore import Lore, prior_scope
+from lifelore.agent.live.lore import Lore
 from lifelore.agent.live.summary import summarise
 from lifelore.agent.live.task_result import TaskResult
-from lifelore.agent.live.task_search import SightLists, TaskSearch
+from lifelore.agent.live.task_search import TaskSearch
 from lifelore.core.errors import InputError
 from lifelore.core.planning.planning import mean_start_value, optimal_q
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
-from lifelore.domains.buildings.floor import floor_of
-from lifelore.domains.buildings.visibility import visible_places
 from lifelore.domains.grids.grid_world import GridWorld
 
 
@@ -35,18 +32,16 @@ class SearchedLife(GridLife):
     def __init__(self, *life: Any, notify: Callable[[str], None]) -> None:
         super().__init__(*life)
         settings, place, start = self.settings, self.place, self.places.start
-        self._kinds = {name: agent_kind(name, settings) for name in _names(settings, place.world, notify)}
+        self._kinds = {name: AGENTS[name] for name in _names(settings, place.world, notify)}
         self._first = next(iter(self._kinds))
         self._lores: dict[str, Lore] = {}
         self._goals = hidden_goals(place.world, settings, place.grid.frame, start)
         self._starts = None if start is None else np.array([start], np.int32)
-        self._sight = None if settings.sensor.reach is None else _sight_lists(place, settings.sensor.reach)
 
     def recall(self) -> None:
         """The first agent knows what memory holds; at the start all agents do, and then learn by themselves."""
         settings, place = self.settings, self.place
-        scope = prior_scope(place.world, settings.prior)
-        self.lore = Lore.recalled(place.world, scope, settings.alpha0, self.memory, place.grid)
+        self.lore = Lore.recalled(place.world, settings.alpha0, self.memory, place.grid)
         self._lores = self._lores or {name: self.lore.copy() for name in self._kinds}
         self._lores[self._first] = self.lore
 
@@ -62,7 +57,7 @@ class SearchedLife(GridLife):
                 f"discount must leave the goal of task {number} a positive value at its starts, "
                 f"got {task.domain.discount}; use a larger discount"
             )
-        search = TaskSearch(settings, world, self._sight, number, task, tables, optimal, stop)
+        search = TaskSearch(settings, world, number, task, tables, optimal, stop)
         with ThreadPoolExecutor(settings.jobs) as pool:
             try:
                 futures = {
@@ -121,10 +116,3 @@ def hidden_goals(
     # Drawn from all cells of the frame, so that a map with small changes has the same destinations.
     states = stream(settings.seed, "destinations", frame).permutation(world.state_of.ravel())
     return states[np.isin(states, places)][: settings.destinations]
-
-
-def _sight_lists(place: Place, reach: float) -> SightLists:
-    """The places in sight of each place of a building, up to `reach` metres."""
-    assert place.occupancy is not None, "settings give a lidar in buildings alone"
-    visible = visible_places(floor_of(place.occupancy, place.world), place.world, reach)
-    return visible.indptr.astype(np.int64), visible.indices.astype(np.int32)

@@ -6,7 +6,7 @@ from typing import Any
 from lifelore.agent.live.life_settings import LIFE_KEYS, LifeSettings
 from lifelore.domains.grids.grid_world import GridWorld
 
-_ALWAYS = {"map", "cell", "robot_radius", "range", "start", "density"}
+_ALWAYS = {"map", "cell", "robot_radius", "start", "density"}
 """Settings that are listed also where they are null."""
 
 
@@ -15,7 +15,6 @@ def settings_document(settings: LifeSettings, world: GridWorld, location: str) -
     values = _by_key(settings) | {
         "map": None if settings.world.map is None else str(settings.world.map),
         "tasks": settings.n_tasks,
-        "range": settings.sensor.reach,
         "memory": location,
         "episodes": settings.episode_cap(world.n_states),
         "max_steps": settings.step_cap,

@@ -17,7 +17,7 @@ class TaskResult:
 
     first_return : discounted return of the first episode
     collisions : refused moves until the threshold (or the cap)
-    steps_to_goal : steps until the goal was found: entered, or seen by a lidar; the cap if it never was
+    steps_to_goal : steps until the goal was found: entered; the cap if it never was
     steps_to_80, episodes_to_80 : steps and episodes until the greedy policy's exact value, averaged over the
         starts, is ≥ 80 % of the optimum; the cap (all episodes at full length) if it never is
     reached : whether the threshold was reached

@@ -102,6 +102,13 @@ def agreement(world: GridWorld, record: Record, corner: tuple[int, int] = (0, 0)
     return float(same.mean()) if same.size else 0.0
 
 
+def has_entered(record: Record, cells: NDArray[np.int64]) -> bool:
+    """Whether a record knows the percepts of all these cells, which are counted in its building's grid."""
+    width = len(MOVE_NAMES) + 1
+    known = record.slots[(record.slots % width == width - 1) & (record.values >= 0)] // width
+    return bool(np.isin(cells, cells_from(record, known, (0, 0))).all())
+
+
 def cells_from(record: Record, cells: NDArray[np.int64], corner: tuple[int, int]) -> NDArray[np.int64]:
     """Numbers of a record's cells counted from a world's `corner`; -1 for cells below or left of it."""
     return shifted(cells, _shift(record, corner))

@@ -25,7 +25,6 @@ from lifelore.agent.perceive.scene_files import FileNames, SceneFiles, check_nam
 from lifelore.agent.perceive.source_files import NO_SOURCE_FILES
 from lifelore.core.errors import InputError, LifeloreError
 from lifelore.core.protocols import Progress
-from lifelore.perception.clouds.cloud_file import read_cloud
 
 Entry = dict[str, Any]
 """``{"source", …}`` with the document of `perceive`; or ``{"source", "error"}``."""
@@ -135,21 +134,16 @@ def perceive_folder(
     check_names(asked)
     check_scene_files([asked], files_read([], settings))
     model = model_of(settings, notice)
-    arrivals = new_clouds(
-        folder, lambda path: read_cloud(path, units=settings.units, labels=settings.labels), stop
-    )
     owner: dict[str, str] = {}
 
-    def perceived_of(path: str, cloud: Source | LifeloreError) -> Entry:
-        if isinstance(cloud, LifeloreError):
-            raise cloud
+    def document(path: str) -> Entry:
         own = asked.of(path)
         if own.paths:
             check_scene_files([own], files_read([path], settings))
             _claim(owner, path, own)
-        return perceived(cloud, model, settings, own, None, None if notice is None else _named(notice, path))
+        return perceived(path, model, settings, own, None, None if notice is None else _named(notice, path))
 
-    return (_entry(path, partial(perceived_of, path, cloud)) for path, cloud in arrivals)
+    return (_entry(path, partial(document, path)) for path in new_clouds(folder, stop))
 
 
 def scenes_document(entries: Iterable[Entry]) -> dict[str, list[Entry]]:

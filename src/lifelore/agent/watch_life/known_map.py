@@ -11,7 +11,7 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.building_record import remembered_buildings
 from lifelore.agent.live import transitions
 from lifelore.agent.live.goals.destinations import NamedPlaces
-from lifelore.agent.live.lore import observation_key
+from lifelore.agent.live.lore import PERCEPT_KEY
 from lifelore.core.protocols import Record
 from lifelore.domains.buildings.registration import inverse, moved
 from lifelore.domains.grids.cell_numbers import COLUMN_BITS
@@ -41,8 +41,8 @@ def known_map(memory: Memory, world: str, near: tuple[int, int] | None = None) -
         open moves that were never made; ``cells``, rows (row from the top, column, percept, arrow, untried) where
         percept is a code of `grid_world.PERCEPT`, arrow a number of a row of ``arrows``, -1 where the prior has
         no counts, and untried the number of open moves that were never made; ``arrows``, probabilities of the
-        moves north, south, east, west; ``prior``, what the prior is conditioned on: ``"observation"``,
-        ``"state"``, or null; ``names``, the user's destinations in this map: {"name", "at": (row, column)}.
+        moves north, south, east, west; ``prior``, what the prior is conditioned on: ``"observation"``, or
+        null without one; ``names``, the user's destinations in this map: {"name", "at": (row, column)}.
     """
     record = memory.recall(transitions.KIND, world, transitions.VERSION)
     if record is None:
@@ -51,8 +51,8 @@ def known_map(memory: Memory, world: str, near: tuple[int, int] | None = None) -
     numbers, percepts = _known_cells(record)
     row, column = rows - 1 - (numbers >> COLUMN_BITS), numbers & (2**COLUMN_BITS - 1)
     shown = _nearest(row, column, near)
-    kind, prior, contexts = _prior(memory, world, numbers[shown], percepts[shown])
-    arrows, arrow_of = _arrows(prior, contexts)
+    prior = memory.recall(PRIOR_KIND, PERCEPT_KEY, PRIOR_VERSION)
+    arrows, arrow_of = _arrows(prior, percepts[shown])
     untried = _untried(record, numbers, percepts)
     return {
         "shape": [rows, columns],
@@ -60,7 +60,7 @@ def known_map(memory: Memory, world: str, near: tuple[int, int] | None = None) -
         "untried": int((untried > 0).sum()),
         "cells": np.column_stack([row[shown], column[shown], percepts[shown], arrow_of, untried[shown]]).tolist(),
         "arrows": arrows.round(3).tolist(),
-        "prior": kind,
+        "prior": prior and "observation",
         "names": _names(memory, record),
     }
 
@@ -103,22 +103,9 @@ def _nearest(row: NDArray[np.int64], column: NDArray[np.int64], near: tuple[int,
     return np.argsort(np.hypot(row - middle[0], column - middle[1]), kind="stable")[:MOST_CELLS]
 
 
-def _prior(
-    memory: Memory, world: str, numbers: NDArray[np.int64], percepts: NDArray[np.int64]
-) -> tuple[str | None, ActionPrior | None, NDArray[np.int64]]:
-    """Kind of the prior in memory, the prior, and the context of each cell."""
-    for kind, key, contexts in (("observation", observation_key(), percepts), ("state", world, numbers)):
-        record = memory.recall(PRIOR_KIND, key, PRIOR_VERSION)
-        if record is not None:
-            return kind, ActionPrior.from_record(record, len(MOVE_NAMES)), contexts
-    return None, None, percepts
-
-
-def _arrows(
-    prior: ActionPrior | None, contexts: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def _arrows(record: Record | None, percepts: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Different rows of probabilities, and the row of each cell; -1 without counts."""
-    if prior is None or not len(contexts):
-        return np.empty((0, len(MOVE_NAMES))), np.full(len(contexts), -1)
-    codes, of = np.unique(contexts, return_inverse=True)
+    if record is None or not len(percepts):
+        return np.empty((0, len(MOVE_NAMES))), np.full(len(percepts), -1)
+    prior, (codes, of) = ActionPrior.from_record(record, len(MOVE_NAMES)), np.unique(percepts, return_inverse=True)
     return prior.probs(codes), np.where(prior.unseen(codes)[of], -1, of)

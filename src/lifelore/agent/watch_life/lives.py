@@ -16,15 +16,10 @@ MOST_TASKS = 2000
 
 
 def lives_in(memory: Memory) -> list[dict[str, Any]]:
-    """An entry for each robot and domain: ``robot``, ``domain``, ``kind`` (see `TYPES`), ``tasks`` (how many).
-
-    Robots of studies, panels and other services (``GROUP: NAME``) live no tasks and are left out.
-    """
+    """An entry for each robot and domain: ``robot``, ``domain``, ``kind`` (see `TYPES`), ``tasks`` (how many)."""
     worlds = _world_names(memory)
     found: dict[tuple[str, str, str], int] = {}
     for robot in memory.robots():
-        if ": " in robot:
-            continue
         for document in memory.task_descriptions(robot):
             if (kind := _kind(document)) is not None:
                 key = robot, _domain(document, kind, worlds), kind

@@ -9,7 +9,7 @@ from lifelore.agent.live.buildings.building_memory import buildings_in, forget_b
 from lifelore.agent.live.goals.goal_counts import KIND, VERSION, GoalCounts
 from lifelore.agent.live.life import live
 from lifelore.agent.live.transitions import BuildingGrid, frame_key, model_table, to_record
-from lifelore.core.learning.known_world import unknown_world
+from lifelore.core.learning.known_world import UNKNOWN, unknown_world
 from lifelore.domains.worlds import WorldSettings, make_world, world_from_settings
 from lifelore.memory import open_memory
 
@@ -63,10 +63,17 @@ def test_cells_of_another_size_are_other_places(tmp_path):
         counts = {cell: GoalCounts.recalled(world, grids[cell], memory).count for cell, world in office.items()}
         assert np.flatnonzero(counts[0.5]).tolist() == [7, 9]
         # A record of an earlier version does not tell its cells; the moves of the building do.
-        moves = to_record(
-            office[0.5], model_table(office[0.5], unknown_world(office[0.5].n_states, 4)), 0, grids[0.5]
-        )
+        model = unknown_world(office[0.5].n_states, 4)
+        model.percept[:] = office[0.5].percepts
+        moves = to_record(office[0.5], model_table(office[0.5], model), UNKNOWN, grids[0.5])
         memory.contribute("a", [moves], process="a", seq=1, task={})
+        assert GoalCounts.recalled(office[0.5], grids[0.5], memory).count.sum() == 2
+        assert GoalCounts.recalled(office[1.0], grids[1.0], memory).count.sum() == 0
+        # Also where the building was lived in with two sizes, if the goals were entered in cells of one of them.
+        model = unknown_world(office[1.0].n_states, 4)
+        model.percept[:3] = office[1.0].percepts[:3]
+        others = to_record(office[1.0], model_table(office[1.0], model), UNKNOWN, grids[1.0])
+        memory.contribute("a", [others], process="a", seq=2, task={})
         assert GoalCounts.recalled(office[0.5], grids[0.5], memory).count.sum() == 2
         assert GoalCounts.recalled(office[1.0], grids[1.0], memory).count.sum() == 0
     with open_memory(str(tmp_path / "older.db")) as memory:  # whose moves do not tell the size of cells either

@@ -9,7 +9,7 @@ import pytest
 
 from lifelore.agent.live.buildings.recognition import recognised_place
 from lifelore.agent.live.goals.destinations import NamedPlaces
-from lifelore.agent.live.lore import Lore, prior_scope
+from lifelore.agent.live.lore import Lore
 from lifelore.agent.live.output.known_building import MASK_FILES, NAV2_FILES, KnownBuilding, write_known_building
 from lifelore.agent.travel import Travel
 from lifelore.core.errors import InputError, NotFoundError
@@ -37,7 +37,7 @@ def memory(tmp_path: Path, settings: WorldSettings) -> Path:
     with open_memory(tmp_path / "m.db") as opened:
         place = recognised_place(settings, world_from_settings(settings, given), given, opened)
         world = place.world
-        lore = Lore.recalled(world, prior_scope(world, "observation"), 1.0, opened, place.grid)
+        lore = Lore.recalled(world, 1.0, opened, place.grid)
         lore.model.percept[:] = world.percepts
         travel, (state, action) = Travel(world, place.grid), np.nonzero(world.neighbour >= 0)
         slow = world.positions(state.astype(np.int32))[:, 0] > 5
@@ -78,7 +78,7 @@ def test_a_model_of_its_own_decides_which_places_are_known(settings, memory, tmp
     given = map_from_settings(settings)
     with open_memory(memory) as opened:
         place = recognised_place(settings, world_from_settings(settings, given), given, opened)
-        model = Lore.recalled(place.world, prior_scope(place.world, "observation"), 1.0, opened, place.grid).model
+        model = Lore.recalled(place.world, 1.0, opened, place.grid).model
         model.percept[:] = -1
         assert not KnownBuilding.recalled(place, given, opened, model).write(tmp_path / "none")
         (state,) = place.world.states_at([PLACES["dock"]])

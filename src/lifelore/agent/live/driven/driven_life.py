@@ -12,7 +12,7 @@ from lifelore.agent.live.driven.robot_clock import RobotClock, clock_text, job_s
 from lifelore.agent.live.driven.route import cheapest_route, moves_along
 from lifelore.agent.live.goals.own_places import OwnGoal
 from lifelore.agent.live.grid_life import DRIVEN, GridLife, LivedByAll, Result
-from lifelore.agent.live.lore import Lore, prior_scope
+from lifelore.agent.live.lore import Lore
 from lifelore.agent.live.summary import summarise_drives
 from lifelore.agent.travel.travel import Travel
 from lifelore.core.streams import stream
@@ -37,8 +37,7 @@ class DrivenLife(GridLife):
     def recall(self) -> None:
         """Know what memory holds of the building, and where the robot stands."""
         settings, place, memory = self.settings, self.place, self.memory
-        scope = prior_scope(place.world, settings.prior)
-        self.lore = Lore.recalled(place.world, scope, settings.alpha0, memory, place.grid)
+        self.lore = Lore.recalled(place.world, settings.alpha0, memory, place.grid)
         self._travel = Travel.recalled(place.world, place.grid, memory)
         self._clock = RobotClock.recalled(place, settings.memory.robot, memory)
 

@@ -52,13 +52,20 @@ class GoalCounts:
 
     def _remembered(self, grid: BuildingGrid, memory: Memory) -> list[Record]:
         """The counts of a building; earlier versions stored them without the size of cells."""
-        keys, moves = [key_of(self.world, grid)], (about for _, _, about in memory.keys(transitions.KIND))
-        own = [about.get("settings", {}) for about in moves if about.get("building") == grid.building]
-        cell = self.world.frame.cell
-        if grid.building is not None and all(settings.get("cell", cell) == cell for settings in own):
-            keys.append(grid.building)
-        found = (memory.recall(KIND, key, VERSION) for key in keys)
-        return [record for record in found if record is not None]
+        found = memory.recall(KIND, key_of(self.world, grid), VERSION)
+        earlier = None if grid.building is None else memory.recall(KIND, grid.building, VERSION)
+        if earlier is not None and not self._are_own_cells(earlier, memory):
+            earlier = None
+        return [record for record in (found, earlier) if record is not None]
+
+    def _are_own_cells(self, goals: Record, memory: Memory) -> bool:
+        """Whether goals lie in cells of this size: its moves alone are known, or they alone entered all goals."""
+        own, fitting = self.world.frame.cell, {}
+        for key, version, about in memory.keys(transitions.KIND):
+            if about.get("building") == goals.key and (moves := memory.recall(transitions.KIND, key, version)):
+                cell = about.get("settings", {}).get("cell", own)
+                fitting[cell] = fitting.get(cell, False) or transitions.has_entered(moves, goals.slots)
+        return set(fitting) <= {own} or [cell for cell, fits in fitting.items() if fits] == [own]
 
     def _add(self, states: NDArray[np.int64], count: NDArray[np.int64]) -> None:
         np.add.at(self.count, states[states >= 0], count[states >= 0])

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lifelore.agent.live.buildings.recognition import Place, recognised_place
 from lifelore.agent.live.goals.destinations import NamedPlaces, Point
-from lifelore.agent.live.lore import Lore, prior_scope
+from lifelore.agent.live.lore import Lore
 from lifelore.agent.live.output.folder import folder_to_write
 from lifelore.agent.live.output.nav2_masks import write_masks
 from lifelore.agent.travel.move_costs import MoveCosts
@@ -50,8 +50,7 @@ class KnownBuilding:
         """What memory knows; `model` in place of the remembered moves, for an agent that does not share them."""
         travel = Travel.recalled(place.world, place.grid, memory)
         if model is None:
-            scope = prior_scope(place.world, "observation")
-            known = Lore.recalled(place.world, scope, 1.0, memory, place.grid).model.percept >= 0
+            known = Lore.recalled(place.world, 1.0, memory, place.grid).model.percept >= 0
             known |= travel.driven
         else:
             known = model.percept >= 0

@@ -201,15 +201,12 @@ def _percent(share: float) -> str:
 
 
 def _has_prior(life: Life) -> bool:
-    lore, has_condition = life.lore, life.report["settings"]["prior"] != "none"
-    uses = AGENTS[_agents(life)[0]].uses_prior
-    return has_condition and uses and not lore.prior.unseen(lore.scope.contexts).all()
+    return AGENTS[_agents(life)[0]].uses_prior and not life.lore.prior.unseen(life.world.percepts).all()
 
 
 def _prior_figure(life: Life):
-    lore, world = life.lore, life.world
-    probs, counted = lore.prior.probs(lore.scope.contexts), ~lore.prior.unseen(lore.scope.contexts)
-    given = "the surroundings of a cell" if lore.scope.kind == "observation" else "the cell"
+    prior, world = life.lore.prior, life.world
+    probs, counted = prior.probs(world.percepts), ~prior.unseen(world.percepts)
     cell = world.frame.cell if life.report["domain"] == "building" else None
-    title = f"{_place(life)}: the action prior given {given}"
+    title = f"{_place(life)}: the action prior given the surroundings of a cell"
     return draw_prior_map(world.shape, world.cells, world.neighbour, probs, counted, cell=cell, title=title)

@@ -1,4 +1,4 @@
-"""Computes which places of a building are in sight of each other, as a lidar of limited range sees them.
+"""Computes which places of a building are in sight of each other, up to a distance.
 
 A place is seen at its anchor, the pixel of its piece that is farthest from obstacles. The straight line between
 two anchors must touch no solid pixel: obstacles and unknown space at the map's resolution, not grown by the
@@ -9,12 +9,9 @@ import numpy as np
 from scipy import sparse
 
 from lifelore.core.compiled.jit import inlined, kernel
-from lifelore.core.errors import InputError
 from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.grids.grid_world import GridWorld
 
-MOST_PAIRS = 200_000_000
-"""Maximum number of pairs in sight; more would need over a gigabyte of main memory."""
 _BLOCK = 4_000_000  # candidate pairs that are tested at once
 
 
@@ -34,11 +31,6 @@ def visible_places(floor: Floor, world: GridWorld, reach: float) -> sparse.csr_a
     scipy.sparse.csr_array
         (n_states, n_states) bool, True where a place is in sight; symmetric, with sorted indices. A place is in
         sight of itself and of all places that a move leads to, whatever the range.
-
-    Raises
-    ------
-    InputError
-        More than `MOST_PAIRS` pairs are in sight.
     """
     n, anchors = world.n_states, np.ascontiguousarray(floor.anchors)
     pixels = reach / floor.occupancy.resolution
@@ -46,17 +38,11 @@ def visible_places(floor: Floor, world: GridWorld, reach: float) -> sparse.csr_a
     window = int(np.ceil(reach / world.frame.cell)) + 1
     block = max(1, _BLOCK // (2 * window + 1) ** 2)
     buffer = np.empty((min(n, block) * (2 * window + 1) ** 2, 2), np.int32)
-    found, total = [], 0
+    found = []
     for first in range(0, n, block):
         last = min(first + block, n)
         count = _in_sight(first, last, anchors, world.cells, world.state_of, floor.solid, pixels, window, buffer)
         found.append(buffer[:count].copy())
-        total += 2 * count
-        if total > MOST_PAIRS:
-            raise InputError(
-                f"range must leave at most {MOST_PAIRS:,} pairs of places in sight of each other, got more at "
-                f"{reach:g} m; use a shorter range or a larger cell"
-            )
     near, move = np.nonzero(world.neighbour >= 0)
     itself = np.arange(n)
     a, b = np.concatenate(found).T
