@@ -119,9 +119,9 @@ class Connection:
             Names of the values in their order in `rows`, and their types on PostgreSQL.
         """
         if self.is_sqlite:
-            places = {name: f":{name}" for name in types}
+            places = {name: f"?{number}" for number, name in enumerate(types, 1)}
             statement = f"UPDATE {table} SET {setting.format(**places)} WHERE {where.format(**places)}"
-            self._driver.executemany(statement, [dict(zip(types, row, strict=True)) for row in rows])
+            self._driver.executemany(statement, rows)
         elif rows:
             places = {name: f"v.new_{name}" for name in types}
             given = f"{_unnested(types)} AS v({', '.join(f'new_{name}' for name in types)})"
