@@ -156,5 +156,5 @@ def take_step(conn: Connection, number: int) -> None:
     name, statements = MIGRATIONS[number]
     for statement in statements.format(**words).split(";"):
         conn.execute(statement)
-    note = "INSERT INTO lifelore_migrations (number, name, applied) VALUES (:number, :name, :applied)"
-    conn.execute(note, {"number": number, "name": name, "applied": time.time_ns()})
+    note = "INSERT INTO lifelore_migrations (number, name, applied) VALUES (?, ?, ?)"
+    conn.execute(note, (number, name, time.time_ns()))
