@@ -82,7 +82,7 @@ def test_in_words(reuse, log):
     assert reuse("retire", "big").out == "big is retired\n"
     assert reuse("add", "big").out == "big is in use again\n"
     assert "given to the control group" in reuse("add", "round").out
-    assert reuse("forget", "ann").out == "ann and 1 decisions and lines of the past forgotten\n"
+    assert reuse("forget", "ann").out == "ann and 1 decision or line of the past forgotten\n"
     assert "no outcome yet" in reuse("report").out
 
 
@@ -131,10 +131,10 @@ def test_warm_in_words_and_a_first_choice_that_knows_the_past(reuse, log, tmp_pa
     (tmp_path / "later.csv").write_text("user,policy,outcome\n" + "ann,dark,1\nann,big,0\n" * 9)
     assert "no study 'none'" in reuse("warm", log, "--name", "none").refusal
     first = reuse("warm", tmp_path / "later.csv").out
-    assert first.startswith("study default: 18 outcomes of 1 users added to their past\n  lines have no time: ")
+    assert first.startswith("study default: 18 outcomes of 1 user added to the past\n  lines have no time: ")
     again = reuse("warm", tmp_path / "later.csv", "--json").document
     assert (again["rows"], again["known"]) == (0, 18)
-    assert "  18 lines were read before and are not counted again\n" in reuse("warm", tmp_path / "later.csv").out
+    assert "  18 lines read before, not counted again\n" in reuse("warm", tmp_path / "later.csv").out
     made = reuse("choose", "--user", "ann", "--json").document
     assert made["policy"] == "dark"
     assert max(made["belief"].values()) > 0.99

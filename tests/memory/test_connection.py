@@ -5,18 +5,16 @@ import pytest
 from lifelore.memory.connection import Connection, Pool
 
 
-def test_parameters_go_by_name_or_by_place_in_both_back_ends(memory):
+def test_parameters_go_by_place_in_both_back_ends(memory):
     with memory._store.writing() as conn:
         conn.execute(
             "CREATE TABLE notes (number BIGINT, body TEXT, content " + ("BLOB)" if conn.is_sqlite else "BYTEA)")
         )
-        conn.execute(
-            "INSERT INTO notes VALUES (:number, :body, :content)", {"number": 1, "body": "50 %", "content": b"a\0"}
-        )
+        conn.execute("INSERT INTO notes VALUES (?, ?, ?)", (1, "50 %", b"a\0"))
         conn.execute_many("INSERT INTO notes VALUES (?, ?, ?)", [(2**62, "?:x", None), (3, "%s", b"")])
     with memory._store.reading() as conn:
         assert conn.value("SELECT COUNT(*) FROM notes WHERE body LIKE '%x' AND number > ?", (1,)) == 1
-        assert conn.first("SELECT number FROM notes WHERE number = :number", {"number": 7}) is None
+        assert conn.first("SELECT number FROM notes WHERE number = ?", (7,)) is None
         rows = list(conn.execute("SELECT number, body, content FROM notes ORDER BY number"))
     assert rows == [(1, "50 %", b"a\0"), (3, "%s", b""), (2**62, "?:x", None)]
 

@@ -1,15 +1,15 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from lifelore.core import Record, StoreError
-from lifelore.memory.contribution import new_offer
+from lifelore.memory.contribution import Contribution
+from lifelore.memory.record_blob import pack
+from lifelore.memory.record_rules import checked_records
 
 
 def make(stamp=77):
     record = Record("k", "y", 1, "add", np.array([2, 1]), np.array([20, 10]), {"unit": "m"})
-    return new_offer("r", [record], process="p", seq=3, task={"goal": [1, 2]}).stamped(stamp)
+    return Contribution.packed(("r", "p", 3), stamp, '{"goal":[1,2]}', pack(checked_records([record])))
 
 
 def test_records_come_back():
@@ -27,7 +27,7 @@ def test_equal_contributions_have_equal_digests():
 )
 def test_any_change_is_noticed(change):
     with pytest.raises(StoreError, match="SHA-256"):
-        replace(make(), **change).records()
+        make()._replace(**change).records()
 
 
 def test_the_order_is_total():

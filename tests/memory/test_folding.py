@@ -7,8 +7,10 @@ from hypothesis import strategies as st
 
 from lifelore.core import Record, StoreError
 from lifelore.memory import folding
-from lifelore.memory.contribution import new_offer
+from lifelore.memory.contribution import Contribution
 from lifelore.memory.folding import Stored, fold
+from lifelore.memory.record_blob import pack
+from lifelore.memory.record_rules import checked_records
 
 cells = st.dictionaries(
     st.integers(-3, 3) | st.sampled_from([2**63 - 1, -(2**63)]), st.integers(-9, 9), max_size=5
@@ -19,8 +21,10 @@ NAME = ("k", "y", 1)
 def stored(parts: list[dict[int, int]], merge: str) -> list[Stored]:
     columns = [(np.array(list(part), dtype=np.int64), np.array(list(part.values()))) for part in parts]
     made = [Record(*NAME, merge, slots, values) for slots, values in columns]
-    return [Stored(100 + seq, new_offer("r", [record], process="p", seq=seq, task={}).stamped(1))
-            for seq, record in enumerate(made)]  # fmt: skip
+    blobs = [pack(checked_records([record])) for record in made]
+    return [
+        Stored(100 + seq, Contribution.packed(("r", "p", seq), 1, "{}", blob)) for seq, blob in enumerate(blobs)
+    ]
 
 
 def naive(parts: list[dict[int, int]], merge: str) -> dict[int, tuple[int, int]]:

@@ -2,8 +2,7 @@ import numpy as np
 import pytest
 
 from lifelore.core import InputError, Record
-from lifelore.memory.contribution import new_offer
-from lifelore.memory.record_rules import checked_record
+from lifelore.memory.record_rules import checked_record, checked_records
 
 
 def make(**changes):
@@ -56,12 +55,12 @@ def test_what_breaks_a_rule_is_named(changes, rule):
 
 def test_one_contribution_has_each_key_once():
     with pytest.raises(InputError, match="twice"):
-        new_offer("r", [make(), make()], process="p", seq=0, task={})
+        checked_records([make(), make()])
 
 
 @pytest.mark.parametrize("changes", [{"robot": " \t"}, {"robot": 3}, {"process": ""}, {"seq": -1}, {"seq": 2**63},
                                      {"seq": "0"}, {"task": {"x": {1, 2}}}])  # fmt: skip
-def test_names_around_a_record_have_rules_too(changes):
+def test_names_around_a_record_have_rules_too(changes, memory):
     fields = {"robot": "r", "process": "p", "seq": 0, "task": {}} | changes
     with pytest.raises(InputError, match=next(iter(changes))):
-        new_offer(fields.pop("robot"), [make()], **fields)
+        memory.contribute(fields.pop("robot"), [make()], **fields)

@@ -95,6 +95,25 @@ def test_keys_beside_contributions_become_mentions(file, monkeypatch):
         assert memory.forget_records([("prior", "b7", 1)]) == 1
 
 
+def test_decisions_without_turns_are_counted(where, monkeypatch):
+    """Schemas 7 to 9 kept no turn of a decision."""
+    with monkeypatch.context() as before:
+        before.setattr(schema, "MIGRATIONS", {number: schema.MIGRATIONS[number] for number in range(6, 10)})
+        before.setattr(schema, "LATEST", 9)
+        with open_memory(where) as memory, memory._store.writing() as conn:
+            user = "1, 1, 'eva', 0, 0, 0, 0.0, 0, 0.0"
+            columns = "number, study, name, fitted, version, personal, personal_sum, control, control_sum"
+            override = "" if conn.is_sqlite else "OVERRIDING SYSTEM VALUE"
+            conn.execute(f"INSERT INTO lifelore_study_users ({columns}) {override} VALUES ({user})")
+            columns = ("study", "id", "person", "policy", "probability", "control", "version", "time")
+            rows = [(1, bytes([place] * 16), 1, "dark", 0.5, 0, 1, 0) for place in range(2)]
+            conn.insert("lifelore_decisions", columns, rows)
+    with open_memory(where) as memory, memory.studies.writing(1) as rows:
+        assert rows.users(["eva"], count=True)["eva"].n_decisions == 2
+        rows.add_decisions([DecisionRow(bytes([9] * 16), 1, "dark", 0.5, False, 1, 0, turn=2)])
+        assert rows.users(["eva"], count=True)["eva"].n_decisions == 3
+
+
 def test_a_step_that_fails_leaves_nothing_behind(where, next_schema, monkeypatch):
     with open_memory(where) as memory:
         memory.contribute("a", [], process="p", seq=0, task={})

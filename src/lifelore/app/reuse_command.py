@@ -336,7 +336,7 @@ def forget(
         count = forgot(memory, study, user)
     say(
         {"user": user, "forgotten": count},
-        f"{user} and {count} decisions and lines of the past forgotten",
+        f"{user} and {_count(count, 'decision or line', 'decisions and lines')} of the past forgotten",
         as_json,
     )
 
@@ -446,14 +446,12 @@ def _print_fit(document: dict[str, Any]) -> None:
     found = "found" if document["types_found"] else "named in the log"
     if document["context"] and document["context"]["types_of"]:
         found = "by context"
-    policies = _count(document["policies"], "policy", "policies")
-    print(
-        f"study {document['study']}: {document['rows']} outcomes of {document['users']} users, "
-        f"{policies}, {_count(document['types'], 'type', 'types')} {found}, "
-        f"{document['model']} outcomes"
-    )
+    read = f"{_count(document['rows'], 'outcome')} of {_count(document['users'], 'user')}"
+    policies = _count(len(document["policies"]), "policy", "policies")
+    types = f"{_count(len(document['types']), 'type')} {found}"
+    print(f"study {document['study']}: {read}, {policies}, {types}, {document['model']} outcomes")
     for kind in document["types"]:
-        print(f"  {kind['name']}: {kind['users']} users, best served by {kind['best']}")
+        print(f"  {kind['name']}: {_count(kind['users'], 'user')}, best served by {kind['best']}")
     _print_counts(
         document,
         *LEFT_OUT,
@@ -489,15 +487,16 @@ def _features_line(features: dict[str, Any]) -> str:
 
 def _print_warm(document: dict[str, Any]) -> None:
     print(
-        f"study {document['study']}: {document['rows']} outcomes of {document['users']} users added to their past"
+        f"study {document['study']}: {_count(document['rows'], 'outcome')} of "
+        f"{_count(document['users'], 'user')} added to the past"
     )
     _print_counts(
         document,
-        ("were read before and are not counted again", "known"),
-        ("are decisions in memory and are not counted again", "decisions"),
+        ("read before, not counted again", "known"),
+        ("of decisions in memory, not counted again", "decisions"),
         *LEFT_OUT,
-        ("have a policy that the study does not know; they give no evidence", "unknown_policies"),
-        ("have a time that cannot be read and only tells lines apart (write ISO dates)", "unread_times"),
+        ("with a policy that the study does not know: no evidence", "unknown_policies"),
+        ("with a time that cannot be read and only tells lines apart (write ISO dates)", "unread_times"),
     )
     if not document["by_time"]:
         print("  lines have no time: equal lines of a user count as often as one log has them (add a column time)")
@@ -517,16 +516,16 @@ LEFT_OUT = (
 def _print_counts(document: dict[str, Any], *notes: tuple[str, str]) -> None:
     for note, name in notes:
         if document[name]:
-            print(f"  {document[name]} lines {note}")
+            print(f"  {_count(document[name], 'line')} {note}")
 
 
-def _count(items: list[Any], singular: str, plural: str) -> str:
-    return f"{len(items)} {singular if len(items) == 1 else plural}"
+def _count(number: int, singular: str, plural: str = "") -> str:
+    return f"{number} {singular if number == 1 else plural or singular + 's'}"
 
 
 def _print_report(document: dict[str, Any]) -> None:
     pending = f"{document['pending']} without an outcome yet"
-    print(f"study {document['study']}: {document['decisions']} decisions, {pending}")
+    print(f"study {document['study']}: {_count(document['decisions'], 'decision')}, {pending}")
     single, incumbent = document["best_single"], document["incumbent"]
     for label, estimate in (
         ("chosen by belief", document["personal"]),

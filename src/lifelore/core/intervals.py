@@ -87,11 +87,6 @@ def welch_interval(first: Sequence[float], second: Sequence[float]) -> Interval 
     if np.ptp(first) + np.ptp(second) <= 1e-12 * (np.abs(first).max() + np.abs(second).max()):
         return None
     variances = np.array([np.var(values, ddof=1) / len(values) for values in (first, second)])
-    return welch_ends(float(np.mean(first) - np.mean(second)), variances, np.array([len(first), len(second)]))
-
-
-def welch_ends(difference: float, variances: NDArray[Any], numbers: NDArray[Any]) -> Interval:
-    """Welch's interval of a difference of two means, by the variances of the means and the numbers of values."""
-    freedom = variances.sum() ** 2 / (variances**2 / (numbers - 1)).sum()
-    low, high = t_interval(difference, np.sqrt(variances.sum()), freedom)
+    freedom = variances.sum() ** 2 / (variances**2 / (np.array([len(first), len(second)]) - 1)).sum()
+    low, high = t_interval(np.mean(first) - np.mean(second), np.sqrt(variances.sum()), freedom)
     return float(low), float(high)

@@ -25,7 +25,7 @@ _LATER = """EXISTS (
 
 _NOTE = (
     "INSERT INTO lifelore_lore (kind, key, version, merge, about, origin)"
-    " VALUES (:kind, :key, :version, :merge, :about, :origin) ON CONFLICT (kind, key, version)"
+    " VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (kind, key, version)"
     " DO UPDATE SET about = excluded.about, origin = excluded.origin"
     f" WHERE {_LATER.format(table='lifelore_lore')}"
 )
@@ -41,7 +41,7 @@ _UPSERT = {
     ),
 }
 _MENTION = "INSERT INTO lifelore_mentions (contribution, lore) VALUES (?, ?)"
-_MENTIONS = "SELECT contribution FROM lifelore_mentions WHERE lore = :lore"
+_MENTIONS = "SELECT contribution FROM lifelore_mentions WHERE lore = ?"
 _NAMED = "kind = ? AND key = ? AND version = ?"
 _FIND = f"SELECT number, merge, about FROM lifelore_lore WHERE {_NAMED}"
 _READ = "SELECT slot, value FROM lifelore_cells WHERE lore = ? AND slot BETWEEN ? AND ? ORDER BY slot"
@@ -50,8 +50,7 @@ _READ = "SELECT slot, value FROM lifelore_cells WHERE lore = ? AND slot BETWEEN 
 def write(conn: Connection, folded: dict[LoreKey, Folded]) -> None:
     """Merge folded contributions of any age into the cache; the ledger must hold them already."""
     for name, part in sorted(folded.items()):
-        note = {**_named(name), "merge": part.merge, "about": described(part.about), "origin": part.origin}
-        conn.execute(_NOTE, note)
+        conn.execute(_NOTE, (*name, part.merge, described(part.about), part.origin))
         lore, merge, _ = conn.execute(_FIND, name).fetchone()
         require_one_merge(name, {merge, part.merge})
         conn.execute_many(_MENTION, [(number, lore) for number in part.mentions])
@@ -107,7 +106,7 @@ def mentions(conn: Connection, name: LoreKey) -> set[int]:
 
 def mentions_of(conn: Connection, lore: int) -> set[int]:
     """`mentions` by the number of the key."""
-    return {row[0] for row in conn.execute(_MENTIONS, {"lore": lore})}
+    return {row[0] for row in conn.execute(_MENTIONS, (lore,))}
 
 
 def rebuild(conn: Connection, only: set[LoreKey] | None = None) -> None:
@@ -134,7 +133,3 @@ def _clear(conn: Connection, only: set[LoreKey]) -> set[int]:
         conn.execute("DELETE FROM lifelore_mentions WHERE lore = ?", lore)
         conn.execute("DELETE FROM lifelore_lore WHERE number = ?", lore)
     return numbers
-
-
-def _named(name: LoreKey) -> dict[str, str | int]:
-    return dict(zip(("kind", "key", "version"), name, strict=True))

@@ -3,7 +3,6 @@
 The drivers are used directly: a library above them would need most of the time of a start and of a choice.
 """
 
-import re
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -11,7 +10,7 @@ from functools import cache
 from itertools import chain
 from typing import Any
 
-Parameters = Mapping[str, Any] | Sequence[Any]
+Parameters = Sequence[Any]
 IDLE = 1.0
 """Seconds after which a connection to a server is tried before its next use; fewer cost a statement more often."""
 MANY = 10_000
@@ -40,7 +39,7 @@ class Connection:
     def execute(self, sql: str, parameters: Parameters = ()) -> Any:
         """Run a statement; the cursor gives rows as tuples.
 
-        Parameters are ``:name`` or ``?``. The text has no other colon or question mark.
+        Parameters are ``?``. The text has no other question mark.
         """
         if self.is_sqlite:
             return self._driver.execute(sql, parameters)
@@ -119,9 +118,9 @@ class Connection:
             Names of the values in their order in `rows`, and their types on PostgreSQL.
         """
         if self.is_sqlite:
-            places = {name: f":{name}" for name in types}
+            places = {name: f"?{number}" for number, name in enumerate(types, 1)}
             statement = f"UPDATE {table} SET {setting.format(**places)} WHERE {where.format(**places)}"
-            self._driver.executemany(statement, [dict(zip(types, row, strict=True)) for row in rows])
+            self._driver.executemany(statement, rows)
         elif rows:
             places = {name: f"v.new_{name}" for name in types}
             given = f"{_unnested(types)} AS v({', '.join(f'new_{name}' for name in types)})"
@@ -179,8 +178,8 @@ def _columns(rows: Iterable[Sequence[Any]]) -> list[list[Any]]:
 
 @cache
 def _for_psycopg(sql: str) -> str:
-    """`sql` with psycopg's ``%(name)s`` and ``%s`` in place of ``:name`` and ``?``."""
-    return re.sub(r":(\w+)", r"%(\1)s", sql.replace("%", "%%").replace("?", "%s"))
+    """`sql` with psycopg's ``%s`` in place of ``?``."""
+    return sql.replace("%", "%%").replace("?", "%s")
 
 
 class Pool:

@@ -2,14 +2,12 @@
 
 import hashlib
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from collections.abc import Mapping
+from typing import NamedTuple, Self
 
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
 from lifelore.memory.record_blob import compress, decompress, pack, unpack
-from lifelore.memory.record_rules import canonical_json, check_name, check_whole, checked_records
 
 Identity = tuple[str, str, int]
 Order = tuple[int, str, str, int]
@@ -17,8 +15,7 @@ LoreKey = tuple[str, str, int]
 """(kind, key, version) of a record."""
 
 
-@dataclass(frozen=True)
-class Contribution:
+class Contribution(NamedTuple):
     """The packed records of one robot about one task.
 
     Parameters
@@ -43,6 +40,11 @@ class Contribution:
     blob: bytes
     digest: str
 
+    @classmethod
+    def packed(cls, identity: Identity, stamp: int, task: str, payload: bytes) -> Self:
+        """The contribution of `record_blob.pack`ed records."""
+        return cls(*identity, stamp, task, compress(payload), _digest(identity, stamp, task, payload))
+
     @property
     def identity(self) -> Identity:
         """(robot, process, seq)."""
@@ -59,8 +61,7 @@ class Contribution:
         left = [one for one in records if forgotten.get((one.kind, one.key, one.version), -1) < self.stamp]
         if len(left) == len(records):
             return self
-        stripped = replace(self, blob=compress(payload := pack(left)))
-        return replace(stripped, digest=_digest(self.identity, self.stamp, self.task, payload))
+        return self.packed(self.identity, self.stamp, self.task, pack(left))
 
     def records(self) -> list[Record]:
         """The records; StoreError if the contribution has changed since it was stored."""
@@ -68,38 +69,6 @@ class Contribution:
         if _digest(self.identity, self.stamp, self.task, payload) != self.digest:
             raise StoreError(f"contribution {self.identity} does not match its SHA-256; the memory is damaged")
         return unpack(payload)
-
-
-@dataclass(frozen=True)
-class Offer:
-    """Checked records of one robot about one task, before they get a stamp.
-
-    Parameters
-    ----------
-    identity : (robot, process, seq)
-    task : str
-        JSON text.
-    records : list of Record
-    payload : bytes
-        The packed records, not compressed.
-    """
-
-    identity: Identity
-    task: str
-    records: list[Record]
-    payload: bytes
-
-    def stamped(self, stamp: int) -> Contribution:
-        """The contribution with this stamp."""
-        digest = _digest(self.identity, stamp, self.task, self.payload)
-        return Contribution(*self.identity, stamp, self.task, compress(self.payload), digest)
-
-
-def new_offer(robot: str, records: Sequence[Record], *, process: str, seq: int, task: Mapping[str, Any]) -> Offer:
-    """Check names and records; InputError where they break a rule."""
-    identity = check_name("robot", robot), check_name("process", process), check_whole("seq", seq)
-    described, checked = canonical_json("task", task), checked_records(records)
-    return Offer(identity, described, checked, pack(checked))
 
 
 def _digest(identity: Identity, stamp: int, task: str, payload: bytes) -> str:

@@ -22,14 +22,10 @@ _AT_A_TIME = 64
 
 @dataclass(frozen=True)
 class Stored:
-    """A contribution and the number of its row in one memory.
-
-    source : the memory that it is merged from, for error messages; empty for a contribution of this memory
-    """
+    """A contribution and the number of its row in one memory."""
 
     number: int
     contribution: Contribution
-    source: str = ""
 
 
 @dataclass(frozen=True)
@@ -72,12 +68,12 @@ def fold(stored: Iterable[Stored], only: set[LoreKey] | None = None) -> dict[Lor
     """
     waiting: dict[LoreKey, list[Folded]] = {}
     for one in stored:
-        for record in _records(one):
+        for record in one.contribution.records():
             name = (record.kind, record.key, record.version)
             if only is None or name in only:
                 parts = waiting.setdefault(name, [])
                 if parts:
-                    _require_alike(one, name, {parts[0].merge, record.merge})
+                    require_one_merge(name, {parts[0].merge, record.merge})
                 parts.append(_lift(one.number, record))
                 if len(parts) > _AT_A_TIME:
                     waiting[name] = [_join(name, parts)]
@@ -87,25 +83,6 @@ def fold(stored: Iterable[Stored], only: set[LoreKey] | None = None) -> dict[Lor
 def lift(number: int, records: Iterable[Record]) -> dict[LoreKey, Folded]:
     """The records of a single contribution in row `number` as `fold` gives them; records are checked."""
     return {(record.kind, record.key, record.version): _lift(number, record) for record in records}
-
-
-def _records(stored: Stored) -> list[Record]:
-    try:
-        return stored.contribution.records()
-    except StoreError as error:
-        raise _with_source(stored, error) from error
-
-
-def _require_alike(stored: Stored, name: LoreKey, merges: set[str]) -> None:
-    try:
-        require_one_merge(name, merges)
-    except StoreError as error:
-        raise _with_source(stored, error) from error
-
-
-def _with_source(stored: Stored, error: StoreError) -> StoreError:
-    """The error with the name of the memory that the contribution comes from."""
-    return StoreError(f"memory {stored.source}: {error}") if stored.source else error
 
 
 def _lift(number: int, record: Record) -> Folded:

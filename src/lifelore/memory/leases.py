@@ -18,36 +18,28 @@ LEASE_SECONDS = 3600
 """Time after which a task may be taken again although nobody knows that its process has died. A longer time delays
 the tasks of killed processes on other machines; a task that needs more may be done twice, and is stored once."""
 
-_FINISHED = "SELECT COUNT(*) FROM lifelore_contributions WHERE robot = :robot"
-_LEASES = "SELECT number, holder, until FROM lifelore_leases WHERE robot = :robot ORDER BY number"
+_FINISHED = "SELECT COUNT(*) FROM lifelore_contributions WHERE robot = ?"
+_LEASES = "SELECT number, holder, until FROM lifelore_leases WHERE robot = ? ORDER BY number"
 _TAKE = (
     "INSERT INTO lifelore_leases (robot, number, process, holder, until)"
-    " VALUES (:robot, :number, :process, :holder, :until) ON CONFLICT (robot, number) DO UPDATE"
+    " VALUES (?, ?, ?, ?, ?) ON CONFLICT (robot, number) DO UPDATE"
     " SET process = excluded.process, holder = excluded.holder, until = excluded.until"
 )
-_OWN = " WHERE robot = :robot AND number = :number AND process = :process"
+_OWN = " WHERE robot = ? AND process = ? AND number = ?"
 
 
 def take(conn: Connection, robot: str, process: str, seconds: int) -> int:
     """Take the lowest task whose lease has ended, else the next new one; return its number."""
     now = time.time_ns()
-    held = conn.execute(_LEASES, {"robot": robot}).fetchall()
+    held = conn.execute(_LEASES, (robot,)).fetchall()
     ended = [number for number, holder, until in held if until <= now or has_died(holder)]
     number = ended[0] if ended else _next(conn, robot, {number for number, _, _ in held})
-    until = now + seconds * 10**9
-    row = {
-        "robot": robot,
-        "number": number,
-        "process": process,
-        "holder": holder_of_this_process(),
-        "until": until,
-    }
-    conn.execute(_TAKE, row)
+    conn.execute(_TAKE, (robot, number, process, holder_of_this_process(), now + seconds * 10**9))
     return number
 
 
 def _next(conn: Connection, robot: str, held: set[int]) -> int:
-    number = conn.value(_FINISHED, {"robot": robot}) + len(held)
+    number = conn.value(_FINISHED, (robot,)) + len(held)
     while number in held:
         number += 1
     return number
@@ -55,20 +47,18 @@ def _next(conn: Connection, robot: str, held: set[int]) -> int:
 
 def finish(conn: Connection, identity: Identity, number: int) -> bool:
     """End the lease of a finished task; False if the process does not hold it any more."""
-    own = {"robot": identity[0], "process": identity[1], "number": number}
-    return conn.first("DELETE FROM lifelore_leases" + _OWN + " RETURNING number", own) is not None
+    return conn.first(f"DELETE FROM lifelore_leases{_OWN} RETURNING number", (*identity[:2], number)) is not None
 
 
 def give_back(conn: Connection, robot: str, process: str, number: int) -> None:
     """End the lease of an unfinished task, which is the next to be taken; do nothing if another process has it."""
-    own = {"robot": robot, "process": process, "number": number}
     # The row stays, so that the number does not get lost between those of tasks that are finished or leased.
-    conn.execute("UPDATE lifelore_leases SET until = 0" + _OWN, own)
+    conn.execute("UPDATE lifelore_leases SET until = 0" + _OWN, (robot, process, number))
 
 
 def forget(conn: Connection, robot: str) -> None:
     """Delete the leases of a robot."""
-    conn.execute("DELETE FROM lifelore_leases WHERE robot = :robot", {"robot": robot})
+    conn.execute("DELETE FROM lifelore_leases WHERE robot = ?", (robot,))
 
 
 def holder_of_this_process() -> str:

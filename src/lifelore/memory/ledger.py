@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from lifelore.core.errors import StoreError
 from lifelore.memory.connection import Connection
-from lifelore.memory.contribution import Contribution, Identity, LoreKey, Offer, Order
+from lifelore.memory.contribution import Contribution, Identity, LoreKey, Order
 from lifelore.memory.folding import Stored
 from lifelore.memory.record_rules import LARGEST
 
@@ -16,16 +16,16 @@ Item = TypeVar("Item")
 # Rows fetched or named in one statement: a hundred blobs are about 2 MB, and SQLite allows 32,766 names.
 BATCH = 100
 
-_IDENTITY = "robot = :robot AND process = :process AND seq = :seq"
+_IDENTITY = "robot = ? AND process = ? AND seq = ?"
 # Inserts nothing where the contribution is stored already, or was forgotten.
 _INSERT = (
     "INSERT INTO lifelore_contributions (robot, process, seq, stamp, task, blob, digest)"
-    " SELECT :robot, :process, :seq, :stamp, :task, :blob, :digest"
+    " SELECT ?, ?, ?, ?, ?, ?, ?"
     f" WHERE NOT EXISTS (SELECT 1 FROM lifelore_tombstones WHERE {_IDENTITY})"
     " ON CONFLICT (robot, process, seq) DO NOTHING"
 )
 _LAST = "SELECT COALESCE(MAX(number), 0) FROM lifelore_contributions"
-_SINCE = "SELECT number, robot, process, seq, stamp, digest FROM lifelore_contributions WHERE number > :last"
+_SINCE = "SELECT number, robot, process, seq, stamp, digest FROM lifelore_contributions WHERE number > ?"
 _KNOWN = (
     f"SELECT 1 FROM lifelore_contributions WHERE {_IDENTITY}"
     f" UNION ALL SELECT 1 FROM lifelore_tombstones WHERE {_IDENTITY}"
@@ -36,13 +36,11 @@ _LARGEST_STAMP = (
     " UNION ALL SELECT MAX(stamp) FROM lifelore_forgotten_records) AS stamps"
 )
 _FORGET_RECORD = (
-    "INSERT INTO lifelore_forgotten_records (kind, key, version, stamp) VALUES (:kind, :key, :version, :stamp)"
+    "INSERT INTO lifelore_forgotten_records (kind, key, version, stamp) VALUES (?, ?, ?, ?)"
     " ON CONFLICT (kind, key, version) DO UPDATE SET stamp = excluded.stamp"
     " WHERE excluded.stamp > lifelore_forgotten_records.stamp"
 )
-_ADD_TOMBSTONE = (
-    "INSERT INTO lifelore_tombstones (robot, process, seq) VALUES (:robot, :process, :seq) ON CONFLICT DO NOTHING"
-)
+_ADD_TOMBSTONE = "INSERT INTO lifelore_tombstones (robot, process, seq) VALUES (?, ?, ?) ON CONFLICT DO NOTHING"
 _LOAD = (
     "SELECT number, robot, process, seq, stamp, task, blob, digest FROM lifelore_contributions"
     " WHERE number IN ({})"
@@ -73,7 +71,7 @@ def in_batches(items: Iterable[Item], size: int = BATCH) -> Iterator[list[Item]]
 
 def is_known(conn: Connection, identity: Identity) -> bool:
     """Whether the memory stores this contribution, or has forgotten it."""
-    return conn.first(_KNOWN, _named(identity)) is not None
+    return conn.first(_KNOWN, identity * 2) is not None
 
 
 def next_stamp(conn: Connection) -> int:
@@ -84,9 +82,11 @@ def next_stamp(conn: Connection) -> int:
     return max(time.time_ns(), int(largest) + 1)
 
 
-def insert(conn: Connection, offer: Offer) -> int | None:
-    """Insert a contribution as the newest; its row number, or None where it is stored already or was forgotten."""
-    found = conn.first(_INSERT + " RETURNING number", vars(offer.stamped(next_stamp(conn))))
+def insert(conn: Connection, identity: Identity, task: str, payload: bytes) -> int | None:
+    """Insert packed records as the newest contribution; its row number, or None where it is stored already or was
+    forgotten."""
+    contribution = Contribution.packed(identity, next_stamp(conn), task, payload)
+    found = conn.first(_INSERT + " RETURNING number", (*contribution, *identity))
     return None if found is None else int(found[0])
 
 
@@ -94,17 +94,14 @@ def insert_many(conn: Connection, contributions: Iterable[Contribution]) -> list
     """Insert contributions in batches, with one batch in main memory at a time."""
     last = conn.value(_LAST)
     for batch in in_batches(contributions):
-        conn.execute_many(_INSERT, [vars(contribution) for contribution in batch])
-    return _entries(conn.execute(_SINCE, {"last": last}))
+        conn.execute_many(_INSERT, [(*contribution, *contribution.identity) for contribution in batch])
+    return _entries(conn.execute(_SINCE, (last,)))
 
 
 def entries(conn: Connection, robot: str | None = None) -> list[ContributionRow]:
     """All contributions, or one robot's, without their blobs, oldest first."""
     query = "SELECT number, robot, process, seq, stamp, digest FROM lifelore_contributions"
-    if robot is None:
-        rows = conn.execute(query)
-    else:
-        rows = conn.execute(query + " WHERE robot = :robot", {"robot": robot})
+    rows = conn.execute(query) if robot is None else conn.execute(query + " WHERE robot = ?", (robot,))
     return sorted(_entries(rows), key=lambda entry: entry.order)
 
 
@@ -143,7 +140,7 @@ def tombstones(conn: Connection) -> set[Identity]:
 def add_tombstones(conn: Connection, identities: Iterable[Identity]) -> None:
     """Add a tombstone for each identity."""
     for batch in in_batches(sorted(identities), 1000):
-        conn.execute_many(_ADD_TOMBSTONE, [_named(identity) for identity in batch])
+        conn.execute_many(_ADD_TOMBSTONE, batch)
 
 
 def forgotten_records(conn: Connection) -> dict[LoreKey, int]:
@@ -154,28 +151,24 @@ def forgotten_records(conn: Connection) -> dict[LoreKey, int]:
 
 def add_forgotten_records(conn: Connection, forgotten: Mapping[LoreKey, int]) -> None:
     """Add keys of forgotten records; of two stamps the later one counts."""
-    for (kind, key, version), stamp in sorted(forgotten.items()):
-        conn.execute(_FORGET_RECORD, {"kind": kind, "key": key, "version": version, "stamp": stamp})
+    for name, stamp in sorted(forgotten.items()):
+        conn.execute(_FORGET_RECORD, (*name, stamp))
 
 
 def strip(conn: Connection, numbers: Iterable[int], forgotten: Mapping[LoreKey, int]) -> list[ContributionRow]:
     """Delete the forgotten records from the contributions of these row numbers; return the changed rows."""
-    update = "UPDATE lifelore_contributions SET blob = :blob, digest = :digest WHERE number = :number"
+    update = "UPDATE lifelore_contributions SET blob = ?, digest = ? WHERE number = ?"
     changed = []
     for stored in load(conn, numbers):
         left = stored.contribution.without(forgotten)
         if left is not stored.contribution:
-            conn.execute(update, {"blob": left.blob, "digest": left.digest, "number": stored.number})
+            conn.execute(update, (left.blob, left.digest, stored.number))
             changed.append(ContributionRow(stored.number, left.identity, left.stamp, left.digest))
     return changed
 
 
 def remove(conn: Connection, numbers: Sequence[int]) -> None:
     """Delete contributions by row number."""
-    statement = "DELETE FROM lifelore_contributions WHERE number = :number"
+    statement = "DELETE FROM lifelore_contributions WHERE number = ?"
     for batch in in_batches(numbers, 1000):
-        conn.execute_many(statement, [{"number": number} for number in batch])
-
-
-def _named(identity: Identity) -> dict[str, str | int]:
-    return dict(zip(("robot", "process", "seq"), identity, strict=True))
+        conn.execute_many(statement, [(number,) for number in batch])

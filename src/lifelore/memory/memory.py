@@ -12,11 +12,11 @@ from lifelore.core.protocols import Record
 from lifelore.memory import audit, cache, leases, ledger, merging, overview
 from lifelore.memory.cache import EVERY_SLOT
 from lifelore.memory.connection import Connection
-from lifelore.memory.contribution import new_offer
 from lifelore.memory.export import export
 from lifelore.memory.folding import lift
 from lifelore.memory.location import Server, locate
-from lifelore.memory.record_rules import check_name, check_whole
+from lifelore.memory.record_blob import pack
+from lifelore.memory.record_rules import canonical_json, check_name, check_whole, checked_records
 from lifelore.memory.store import Store, check_source, open_existing, open_file, open_postgresql, open_source
 from lifelore.memory.studies import Studies
 
@@ -156,13 +156,15 @@ class Memory:
         StoreError
             The disk is full or read-only, a sum exceeds 64 bits, or the key has another merge.
         """
-        offer = new_offer(robot, records, process=process, seq=seq, task=task)
+        identity = check_name("robot", robot), check_name("process", process), check_whole("seq", seq)
+        described, checked = canonical_json("task", task), checked_records(records)
+        payload = pack(checked)
         with self._store.writing() as conn:
-            if taken is not None and not leases.finish(conn, offer.identity, taken):
+            if taken is not None and not leases.finish(conn, identity, taken):
                 return False
-            number = ledger.insert(conn, offer)
+            number = ledger.insert(conn, identity, described, payload)
             if number is not None:
-                cache.write(conn, lift(number, offer.records))
+                cache.write(conn, lift(number, checked))
         return number is not None
 
     def take_task(self, robot: str, *, process: str, seconds: int = leases.LEASE_SECONDS) -> int:

@@ -8,7 +8,7 @@ the end, so that the cells of a key are written once and not once for each sourc
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from lifelore.core.errors import StoreError
 from lifelore.memory import cache, ledger
@@ -50,6 +50,7 @@ class MemoryUnion:
         self._tombstones = ledger.tombstones(here)
         self._forgotten = ledger.forgotten_records(here)
         self._sources: dict[int, str] = {}
+        self._source = ""  # of the contribution at work, for error messages
         self._stale: set[LoreKey] = set()
 
     def take(self, there: Connection, source: str) -> Counts:
@@ -85,11 +86,12 @@ class MemoryUnion:
         self._strip_copied()
         if self._stale:
             cache.rebuild(self._here, self._stale)
-        for name, part in fold(self._copied()).items():
-            try:
+        try:
+            for name, part in fold(self._copied()).items():
+                self._source = self._sources[part.mentions[0]]
                 cache.write(self._here, {name: part})
-            except StoreError as error:
-                raise StoreError(f"memory {self._sources[part.mentions[0]]}: {error}") from error
+        except StoreError as error:
+            raise StoreError(f"memory {self._source}: {error}") from error
 
     def _forget(self, theirs: dict[LoreKey, int]) -> None:
         """Forget records here that a source has forgotten; copied contributions wait for `finish`."""
@@ -117,7 +119,8 @@ class MemoryUnion:
         copied = [entry for entry in self._own.values() if entry.number in self._sources]
         numbers = [entry.number for entry in sorted(copied, key=lambda entry: entry.order)]
         for stored in ledger.load(self._here, numbers):
-            yield replace(stored, source=self._sources[stored.number])
+            self._source = self._sources[stored.number]
+            yield stored
 
 
 def _read(there: Connection, numbers: list[int], source: str) -> Iterator[Contribution]:

@@ -88,11 +88,18 @@ DROP INDEX lifelore_contributions_lore;
 ALTER TABLE lifelore_contributions DROP COLUMN lore
 """
 
+_TURNS = """
+ALTER TABLE lifelore_decisions ADD COLUMN turn {int};
+DROP INDEX lifelore_decisions_person;
+CREATE INDEX lifelore_decisions_person ON lifelore_decisions (person, turn)
+"""
+
 MIGRATIONS = {
     6: ("contributions, tombstones, forgotten records, cache and leases", _LORE),
     7: ("studies: library versions, users, their past, decisions with outcomes", _STUDIES),
     8: ("no states beside the cells, which only users of studies had", _NO_STATES),
     9: ("no key of a contribution beside it, which only users of studies needed", _MENTIONED),
+    10: ("number of a decision among those of its user, which are not counted any more", _TURNS),
 }
 OLDEST, LATEST = min(MIGRATIONS), max(MIGRATIONS)
 
@@ -149,5 +156,5 @@ def take_step(conn: Connection, number: int) -> None:
     name, statements = MIGRATIONS[number]
     for statement in statements.format(**words).split(";"):
         conn.execute(statement)
-    note = "INSERT INTO lifelore_migrations (number, name, applied) VALUES (:number, :name, :applied)"
-    conn.execute(note, {"number": number, "name": name, "applied": time.time_ns()})
+    note = "INSERT INTO lifelore_migrations (number, name, applied) VALUES (?, ?, ?)"
+    conn.execute(note, (number, name, time.time_ns()))

@@ -7,15 +7,13 @@ from typing import Any, NamedTuple
 
 from lifelore.memory.connection import Connection
 
-DECISION = (
-    "study", "id", "person", "policy", "probability", "control", "version", "time", "context", "available",
-    "request",
-)  # fmt: skip
-"""Columns of a decision without its outcome."""
 _FIELDS = "number, name, context, features, type, fitted, version, state, "
 _USER = _FIELDS + "0"
-_COUNTED = _FIELDS + "(SELECT COUNT(*) FROM lifelore_decisions d WHERE d.person = u.number)"
-_DECISION = "id, person, policy, probability, control, version, time, context, available, request, outcome, ended"
+# Decisions of earlier schemas have no turn, so they are counted before the first one that has.
+_COUNTED = _FIELDS + (
+    "COALESCE((SELECT MAX(turn) + 1 FROM lifelore_decisions WHERE person = u.number),"
+    " (SELECT COUNT(*) FROM lifelore_decisions WHERE person = u.number))"
+)
 
 
 class UserRow(NamedTuple):
@@ -48,6 +46,7 @@ class DecisionRow(NamedTuple):
     time, ended : milliseconds since 1970; `ended` is None while the outcome is not known
     control : whether the user was held out
     available : the policies that were available; None: all
+    turn : number of decisions for the user before; None: not known
     """
 
     id: bytes
@@ -60,8 +59,14 @@ class DecisionRow(NamedTuple):
     context: str | None = None
     available: tuple[str, ...] | None = None
     request: str | None = None
+    turn: int | None = None
     outcome: float | None = None
     ended: int | None = None
+
+
+_DECISION = ", ".join(DecisionRow._fields)
+_MADE = DecisionRow._fields[: DecisionRow._fields.index("outcome")]
+"""Columns of a decision without its outcome."""
 
 
 class PastRow(NamedTuple):
@@ -220,10 +225,10 @@ class StudyRows:
     def add_decisions(self, decisions: Iterable[DecisionRow]) -> None:
         """Store new decisions, without their outcomes."""
         rows = [
-            (self._study, *one[:4], int(one.control), *one[5:8], _json(one.available), one.request)
+            (self._study, *one[:4], int(one.control), *one[5:8], _json(one.available), one.request, one.turn)
             for one in decisions
         ]
-        self._conn.insert("lifelore_decisions", DECISION, rows)
+        self._conn.insert("lifelore_decisions", ("study", *_MADE), rows)
 
     def locked_decisions(self, ids: Sequence[bytes]) -> tuple[dict[bytes, DecisionRow], dict[int, UserRow]]:
         """Decisions by identifier and their users by number, whom no other transaction changes before the end."""

@@ -107,24 +107,26 @@ class StudyTotals:
         )
         return self._columns(query, (self._study, policy, since)[: 3 if since else 2], 1)[0]
 
-    def by_period(
-        self, first: int, step: int, *, centre: float = 0.0, strangers: bool = False, since: int = 0
-    ) -> list[tuple[Any, ...]]:
-        """A row for each period of `step` milliseconds with a decision, counted from `first`, and each group.
+    def next_time(self, since: int) -> int | None:
+        """Time of the first decision from a time on, both in milliseconds.
 
-        The columns are: number of the period, 1 for the control group, users, decisions, users with an outcome,
-        and the sum and sum of squares of the mean outcomes of these users in the period, each less `centre`.
-        Further parameters as for `by_user`.
+        Decisions of an earlier Lifelore are left out, because their identifiers do not have their times.
         """
-        period = f"(time - {int(first)}) / {int(step)}"
+        query = "SELECT MIN(id) FROM lifelore_decisions WHERE study = ? AND id >= ?"
+        found = self._conn.value(query, (self._study, first_id(max(since, 1))))
+        return None if found is None else int.from_bytes(found[:6], "big")
+
+    def within(self, since: int, until: int, *, strangers: bool = False) -> Array:
+        """Decisions in [since, until), in milliseconds, by user and group, (4, n) float64.
+
+        The rows are: 1 for the control group, numbers of decisions and of outcomes, and the sum of these.
+        Decisions of an earlier Lifelore are left out.
+        """
         query = (
-            "SELECT period, control, COUNT(*), SUM(n), COUNT(mean), COALESCE(SUM(mean - ?), 0),"
-            " COALESCE(SUM((mean - ?) * (mean - ?)), 0)"
-            f" FROM (SELECT {period} AS period, control, COUNT(*) AS n, AVG(outcome) AS mean"
-            f" FROM lifelore_decisions WHERE study = ? AND time >= ?{self._who(strangers)}"
-            f" GROUP BY {period}, control, person) AS means GROUP BY period, control ORDER BY period, control"
+            "SELECT control, COUNT(*), COUNT(outcome), COALESCE(SUM(outcome), 0) FROM lifelore_decisions"
+            f" WHERE study = ? AND id >= ? AND id < ?{self._who(strangers)} GROUP BY control, person"
         )
-        return self._conn.execute(query, (centre, centre, centre, self._study, since)).fetchall()
+        return self._columns(query, (self._study, first_id(max(since, 1)), first_id(until)), 4)
 
     def _who(self, strangers: bool) -> str:
         only = " AND person IN (SELECT number FROM lifelore_study_users WHERE study = {} AND fitted = 0)"
@@ -143,10 +145,7 @@ class StudyTotals:
         return int(self._conn.value("SELECT COUNT(*) FROM lifelore_study_users WHERE study = ?", (self._study,)))
 
     def counts(self, since: int, until: int) -> list[tuple[str, int, int, int, float]]:
-        """(policy, control, decisions, outcomes, sum of outcomes) of decisions in [since, until), in milliseconds.
-
-        Decisions of an earlier Lifelore are left out, because their identifiers do not have their times.
-        """
+        """(policy, control, decisions, outcomes, sum of outcomes) of decisions, as for `within`."""
         query = (
             "SELECT policy, control, COUNT(*), COUNT(outcome), COALESCE(SUM(outcome), 0) FROM lifelore_decisions"
             " WHERE study = ? AND id >= ? AND id < ? GROUP BY policy, control"

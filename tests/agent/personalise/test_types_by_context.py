@@ -254,7 +254,7 @@ def test_users_of_two_contexts_are_counted(fitted):
     table["context"][0], table["context"][6] = "c2", ""
     document, _ = fitted(table)
     assert document["context"]["several"] == 1
-    assert "1 users have several contexts; the last of each counts" in document["notes"]
+    assert "1 of 300 users have several contexts; the last of each counts" in document["notes"]
 
 
 def test_types_of_few_users_are_named(fitted):
@@ -268,7 +268,7 @@ def test_types_of_few_users_are_named(fitted):
     rows["outcome"] = (means + random.normal(scale=0.3, size=len(users))).tolist()
     document, _ = fitted(rows, types=2)
     assert [kind["users"] for kind in document["types"]] == [56, 4]
-    assert "1 types have fewer than 10 users (type 2: 4); ask for fewer --types" in document["notes"]
+    assert "types of fewer than 10 users: type 2 has 4; ask for fewer --types" in document["notes"]
 
 
 @pytest.mark.parametrize(
@@ -283,5 +283,5 @@ def test_users_spelt_in_two_ways_are_named(fitted):
     table = drawn(0, RATES)
     table["user"][0], table["user"][7] = "U0", "U1"
     document, _ = fitted(table)
-    spelt = "2 users differ from another only in capitals or spaces ('U0', 'u0'); each counts"
-    assert [note for note in document["notes"] if "differ from another" in note] == [spelt]
+    spelt = "users differ only in capitals or spaces from others (2, as 'U0' and 'u0'); each counts"
+    assert [note for note in document["notes"] if "capitals" in note] == [spelt]

@@ -6,10 +6,9 @@ from more than `MANY` users on). Means and uplifts are of all users; the curve b
 are of a random sample of at most `calibration.SAMPLE` users.
 """
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +24,7 @@ from lifelore.agent.personalise.result_folder import write_picture, write_result
 from lifelore.agent.personalise.study import Study
 from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.core.intervals import LEAST_VALUES, t_interval, welch_ends
+from lifelore.core.intervals import LEAST_VALUES, t_interval
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.memory import Memory
@@ -150,7 +149,7 @@ def _document(
         users = totals.by_user(**counting)
         by_policy = {policy: np.sort(totals.control_means(policy, **counting)) for policy in study.states}
         personal, control = _means(users.personal, users.personal_sum), _means(users.control, users.control_sum)
-        by_time = None if by is None else _by_time(totals, by, np.concatenate([personal, control]), counting)
+        by_time = None if by is None else _by_time(totals, by, **counting)
     histories = sampled_histories(memory, study, users.person, since=counting["since"])
     algorithm, of_outcomes = lived_again(study, histories)
     return {
@@ -192,56 +191,24 @@ def _estimate(values: Sequence[float] | Array) -> dict[str, Any] | None:
     return Estimate(mean, float(np.median(values)), (low, high) if error > 0 else None, len(values)).to_dict()
 
 
-def _by_time(totals: StudyTotals, by: str, means: Array, counting: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Both groups in each period; squares are summed about the mean of all users, so that no digits are lost."""
+def _by_time(totals: StudyTotals, by: str, *, since: int, strangers: bool) -> list[dict[str, Any]]:
+    """Both groups in each period with a decision."""
     first, step = PERIODS[by]
-    centre = float(means.mean()) if len(means) else 0.0
-    periods: dict[int, dict[str, Any]] = {}
-    for period, control, users, decisions, *sums in totals.by_period(first, step, centre=centre, **counting):
-        own = periods.setdefault(int(period), {"users": 0, "decisions": 0, "personal": None, "control": None})
-        own["users"] += int(users)
-        own["decisions"] += int(decisions)
-        own["control" if control else "personal"] = _group_mean(centre, *sums)
-    return [
-        {
-            "time": (first + period * step) // 1000,
-            "users": own["users"],
-            "decisions": own["decisions"],
-            "personal": own["personal"] and own["personal"].to_dict(),
-            "control": own["control"] and own["control"].to_dict(),
-            "uplift": own["personal"] and own["control"] and own["personal"].less(own["control"]),
-        }
-        for period, own in periods.items()
-    ]
-
-
-class _GroupMean(NamedTuple):
-    """Mean over users of a group in a period, the variance of this mean (NaN: a single user), and their number."""
-
-    value: float
-    variance: float
-    n: int
-
-    def to_dict(self) -> dict[str, Any]:
-        ci95 = None
-        if self.n >= LEAST_VALUES and self.variance > 0:
-            ci95 = [float(end) for end in t_interval(self.value, self.variance**0.5, self.n - 1)]
-        return {"value": self.value, "ci95": ci95, "n": self.n}
-
-    def less(self, other: "_GroupMean") -> dict[str, Any]:
-        """The difference to another group, with Welch's interval."""
-        variances, numbers = np.array([self.variance, other.variance]), np.array([self.n, other.n])
-        value, ci95 = self.value - other.value, None
-        if numbers.min() >= LEAST_VALUES and variances.sum() > 0:
-            ci95 = list(welch_ends(value, variances, numbers))
-        return {"value": value, "ci95": ci95, "n": numbers.tolist()}
-
-
-def _group_mean(centre: float, n: int, total: float, squares: float) -> _GroupMean | None:
-    if not n:
-        return None
-    variance = max(squares - total**2 / n, 0.0) / (n - 1) / n if n > 1 else math.nan
-    return _GroupMean(centre + total / n, variance, int(n))
+    periods = []
+    while (time := totals.next_time(since)) is not None:
+        start = time - (time - first) % step
+        held, decisions, number, total = totals.within(max(start, since), start + step, strangers=strangers)
+        personal, control = (_means(number[held == group], total[held == group]) for group in (0, 1))
+        periods.append({
+            "time": start // 1000,
+            "users": len(held),
+            "decisions": int(decisions.sum()),
+            "personal": _estimate(personal),
+            "control": _estimate(control),
+            "uplift": difference(personal, control),
+        })  # fmt: skip
+        since = start + step
+    return periods
 
 
 def _beside(policy: str, personal: Array, by_policy: dict[str, Array]) -> dict[str, Any]:

@@ -75,13 +75,14 @@ def test_fit_says_so(tmp_path):
         log = {name: values for name, values in simulated(0, 0.5).items() if name in ("user", "policy", "outcome")}
         biased = fit(log, memory, FitSettings(types=2, model="gaussian"))["notes"]
         assert sum("1 / (probability of its choice)" in note for note in biased) == 1
+        n = len(log["user"])
         equal = [note for note in biased if "equal an earlier one" in note]
         assert equal == []
         stamped = log | {"time": list(range(len(log["user"])))}
         twice = fit(
             {name: values * 2 for name, values in stamped.items()}, memory, FitSettings(types=2, model="gaussian")
         )
-        assert any(note.startswith(f"{len(log['user'])} lines equal an earlier one") for note in twice["notes"])
+        assert any(note.startswith(f"{n} of {2 * n} lines equal an earlier one") for note in twice["notes"])
         timed = {name: values * 2 for name, values in log.items()} | {"time": list(range(2 * len(log["user"])))}
         timed = fit(timed, memory, FitSettings(types=2, model="gaussian"))
         assert not any("equal an earlier one" in note or "cannot be read" in note for note in timed["notes"])

@@ -207,3 +207,17 @@ def test_one_user_one_policy_one_outcome(fitted, memory):
     document, study = fitted(["a,x,3.5"])
     assert (len(document["types"]), document["means"]) == (1, [[3.5]])
     assert choose(memory, study, "b")["policy"] == "x"
+
+
+def test_a_log_of_equal_outcomes_is_told_so_and_other_outcomes_are_learnt(tmp_path):
+    log = {"user": [f"u{n // 4}" for n in range(80)], "policy": ["x", "y"] * 40, "outcome": [1] * 80}
+    with open_memory(tmp_path / "m.db") as memory:
+        document = fit(log, memory)
+        assert (
+            "every outcome is 1, so the log compares no policies: does it leave failures out?" in document["notes"]
+        )
+        study = open_study(memory)
+        made = choose(memory, study, "new")
+        assert update(memory, study, made["decision"], 0.0)["taken"]
+        after = choose(memory, study, "new")["expected"]
+        assert after[made["policy"]] < min(outcome for name, outcome in after.items() if name != made["policy"])

@@ -58,6 +58,13 @@ def test_a_byte_order_mark_is_no_letter(written):
     assert len(read_log([written(HEAD + "a,p,1\n", encoding="utf-8-sig")])) == 1
 
 
+def test_the_line_of_excel_about_the_separator_is_none_of_the_log(written):
+    text = ("sep=;\n" + HEAD + "a,p,1\n").replace(",", ";")
+    assert read_log([written(text)]).outcomes.tolist() == [1.0]
+    with pytest.raises(InputError, match="line 4: outcome must be a finite number"):
+        read_log([written(text + "a;p;?\n")])
+
+
 @pytest.mark.parametrize(
     "text",
     [
@@ -256,6 +263,8 @@ def test_no_file_and_no_text(tmp_path, written):
         read_log([tmp_path])
     with pytest.raises(InputError, match="must be CSV in UTF-8"):
         read_log([written(HEAD + "Zoë,p,1\n", encoding="latin-1")])
+    with pytest.raises(InputError, match=r"say --encoding utf-16$"):
+        read_log([written(HEAD + "a,p,1\n", encoding="utf-16")])
 
 
 def test_an_outcome_is_a_finite_number():

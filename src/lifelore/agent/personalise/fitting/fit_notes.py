@@ -93,20 +93,25 @@ def _beside_counting(gain: float, low: float, high: float) -> str:
 def _warnings(document: Mapping[str, Any], log: ReuseLog, model: str) -> list[str]:
     """What in the log or the settings may not be meant."""
     found = []
+    if len(values := np.unique(log.outcomes)) == 1:
+        found.append(
+            f"every outcome is {values[0]:g}, so the log compares no policies: does it leave failures out?"
+        )
     if document["context"] and document["context"]["several"]:
-        found.append(f"{document['context']['several']} users have several contexts; the last of each counts")
+        several = f"{document['context']['several']} of {document['users']} users have several contexts"
+        found.append(f"{several}; the last of each counts")
     small = _small_types(document) if document["types_found"] else {}
     if small:
-        named = ", ".join(f"{name}: {users}" for name, users in [*small.items()][:3])
-        found.append(f"{len(small)} types have fewer than {FEW_USERS} users ({named}); ask for fewer --types")
-    if model not in ("auto", "categorical") and len(np.unique(log.outcomes)) == 2:
+        named = ", ".join(f"{name} has {users}" for name, users in [*small.items()][:3])
+        found.append(f"types of fewer than {FEW_USERS} users: {named}; ask for fewer --types")
+    if model not in ("auto", "categorical") and len(values) == 2:
         found.append(
             f"outcomes have two values, which model {model} reads as amounts; --model categorical counts them"
         )
     if words := unread_times(log):
         found.append(
-            f"the time of {len(words)} lines cannot be read, such as {words[0]!r}, and only tells lines apart: an "
-            "export with other words would count them again; write ISO dates or seconds since 1970"
+            f"the time of {len(words)} of {len(log)} lines cannot be read, such as {words[0]!r}, and only tells "
+            "lines apart: an export with other words would count them again; write ISO dates or seconds since 1970"
         )
     found += _bias(log) + _equal_lines(log)
     return found + _spelt_twice("users", log.user.names) + _spelt_twice("policies", log.policy.names)
@@ -142,8 +147,8 @@ def _equal_lines(log: ReuseLog) -> list[str]:
         _, same = np.unique(same * (codes.max() + 1) + codes[lines], return_inverse=True)
     n = len(lines) - len(np.unique(same))
     return [
-        f"{n} lines equal an earlier one, and each counts: if an export wrote lines twice, leave them out; if "
-        "not, tell them apart by a column time or decision"
+        f"{n} of {len(log)} lines equal an earlier one, and each counts: if an export wrote lines twice, leave "
+        "them out; if not, tell them apart by a column time or decision"
     ] * (n > 0)
 
 
@@ -152,6 +157,7 @@ def _spelt_twice(what: str, names: Sequence[str]) -> list[str]:
     first: dict[str, str] = {}
     twice = [(other, name) for name in names if (other := first.setdefault(name.strip().casefold(), name)) != name]
     return [
-        f"{len(twice)} {what} differ from another only in capitals or spaces ('{one}', '{other}'); each counts"
+        f"{what} differ only in capitals or spaces from others ({len(twice)}, as '{one}' and '{other}'); each "
+        "counts"
         for one, other in twice[:1]
     ]

@@ -125,7 +125,7 @@ def _families(log: ReuseLog, model: str) -> list[str]:
     if model != "auto":
         return [model]
     n_values = len(np.unique(log.outcomes))
-    return ["categorical"] * (n_values <= FEW_VALUES) + ["gaussian"] * (n_values != 2)
+    return ["categorical"] * (1 < n_values <= FEW_VALUES) + ["gaussian"] * (n_values != 2)
 
 
 class _Trial:

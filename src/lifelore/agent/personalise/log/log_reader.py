@@ -1,5 +1,6 @@
 """Reads the CSV of logs: fields are cut, words become codes and outcomes numbers, many lines at a time."""
 
+import codecs
 import csv
 import io
 import math
@@ -64,8 +65,10 @@ class LogReader:
             self._read(iter(text))
         except UnicodeError:
             known = "UTF-8" if utf8 else form.encoding
+            marked = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+            other = "utf-16" if marked else "latin-1, or another"
             raise InputError(
-                f"{name} must be CSV in {known}, got bytes that are not; say --encoding latin-1, or another"
+                f"{name} must be CSV in {known}, got bytes that are not; say --encoding {other}"
             ) from None
         self._n_files += 1
 
@@ -79,6 +82,9 @@ class LogReader:
 
     def _read(self, lines: Iterator[str]) -> None:
         first = next(lines, "")
+        above = int(first.lower().startswith("sep="))  # Excel's line about the separator, which the header shows
+        if above:
+            first = next(lines, "")
         reader = csv.reader(chain([first], lines), strict=True, delimiter=_separator(first, self._form))
         try:
             header = [unescaped(column.strip()).lower() for column in next(reader, [])]
@@ -89,14 +95,14 @@ class LogReader:
                 # Blank lines are none.
                 if fields and (fields[0].strip() or any(map(str.strip, fields))):
                     rows.append(fields)
-                    at.append(reader.line_num)
+                    at.append(reader.line_num + above)
                     if len(rows) == CHUNK:
                         self._take(header, rows, at)
                         rows, at = [], []
             if rows:
                 self._take(header, rows, at)
         except csv.Error as error:
-            raise InputError(f"{self._name} line {reader.line_num}: not CSV ({error})") from None
+            raise InputError(f"{self._name} line {reader.line_num + above}: not CSV ({error})") from None
 
     def _take(self, header: list[str], rows: list[list[str]], at: list[int]) -> None:
         if set(map(len, rows)) != {len(header)}:
