@@ -1,7 +1,6 @@
 """`lifelore perceive` as a person meets it: tables, one JSON document, and one line for whatever is wrong."""
 
 import json
-import shutil
 import signal
 import subprocess
 import sys
@@ -301,15 +300,6 @@ def three(tmp_path) -> list[Path]:
     return [tmp_path / f"{name}.npz" for name in ("pair", "bad", "alone")]
 
 
-def test_several_clouds_are_one_document(ask, three):
-    answer = ask("perceive", three[0], three[2], "--up", "z", "--json")
-    assert (answer.status, answer.err) == (0, "")
-    assert [scene["source"] for scene in answer.document["scenes"]] == [str(three[0]), str(three[2])]
-    assert answer.document["failed"] == []
-    alone = ask("perceive", three[0], "--up", "z", "--json").document
-    assert {**answer.document["scenes"][0], "seconds": 0} == {"source": str(three[0]), **alone, "seconds": 0}
-
-
 def test_a_bad_cloud_among_many_is_one_line_and_the_others_go_on(ask, three):
     answer = ask("perceive", *three, "--up", "z", "--json")
     assert answer.status == 2
@@ -361,26 +351,6 @@ def test_ctrl_c_among_several_keeps_what_is_finished(start, answer, three):
     assert "stopping: " in said.err
     assert len(said.document["scenes"]) < 2000
     assert 1 <= len(said.document["failed"]) <= 3
-
-
-def test_a_folder_is_watched_until_ctrl_c(start, answer, three, tmp_path):
-    folder = tmp_path / "in"
-    folder.mkdir()
-    shutil.copy(three[0], folder / "old.npz")
-    child = start("perceive", "--watch", folder, "--up", "z", "--json")
-    assert child.stderr is not None
-    assert child.stdout is not None
-    assert child.stderr.readline() == f"lifelore: watching {folder} for new clouds; Ctrl-C stops\n"
-    shutil.copy(three[2], folder / "new.npz")
-    entry = json.loads(child.stdout.readline())
-    assert entry["source"] == str(folder / "new.npz")
-    assert [thing["id"] for thing in entry["objects"]] == [2]
-    shutil.copy(three[0], folder / "old.npz")
-    assert json.loads(child.stdout.readline())["source"] == str(folder / "old.npz")
-    child.send_signal(signal.SIGINT)
-    said = answer(child)
-    assert (said.status, said.out) == (130, "")
-    assert said.err.startswith("stopping: ")
 
 
 @pytest.mark.parametrize(

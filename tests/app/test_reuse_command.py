@@ -2,8 +2,6 @@
 
 import re
 import shutil
-import subprocess
-import sys
 
 import numpy as np
 import pytest
@@ -268,34 +266,3 @@ def test_mistakes_are_one_line_and_lose_nothing(arguments, said, reuse, log, liv
 
 def test_no_memory_is_made_into_a_study_by_asking(reuse):
     assert "m.db does not exist; check the path" in reuse("choose", "--user", "ann").refusal
-
-
-TOLD_WHAT_IT_IMPORTED = """
-import sys
-from lifelore.app.command_line import run
-status = run(sys.argv[1:])
-print(status, *sorted(sys.modules), file=sys.stderr)
-"""
-
-
-HEAVY = {
-    "numba", "scipy", "sklearn", "matplotlib", "networkx", "pandas", "gymnasium", "sqlalchemy", "psycopg",
-    "joblib", "rich.console", "lifelore.agent.live", "lifelore.agent.personalise.fitting.fit",
-    "lifelore.agent.personalise.log.log",
-    "lifelore.agent.personalise.study_report", "lifelore.domains", "reproduction.engine", "lifelore.figures",
-    "lifelore.interaction.selection.tie_kernels", "lifelore.perception",
-}  # fmt: skip
-"""Modules that cost a start time and that a choice does not need."""
-
-
-@pytest.mark.parametrize("model", ["gaussian", "categorical", "joint-normal"])
-def test_choosing_and_updating_import_nothing_heavy(reuse, log, tmp_path, model):
-    reuse("fit", log, "--model", model)
-    made = reuse("choose", "--user", "ann", "--json").document
-    for arguments in (["update", "--decision", made["decision"], "--outcome", "1"], ["choose", "--user", "ann"]):
-        command = [sys.executable, "-c", TOLD_WHAT_IT_IMPORTED, "reuse", *arguments, "--memory", tmp_path / "m.db"]
-        done = subprocess.run(command, capture_output=True, text=True, check=True)
-        status, *imported = done.stderr.split()
-        assert status == "0"
-        assert {"numpy", "sqlite3", "lifelore.agent.personalise.decisions"} < set(imported)
-        assert HEAVY & set(imported) == set()

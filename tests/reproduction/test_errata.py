@@ -67,27 +67,6 @@ def test_e6_softmax_of_counts_loses_what_the_proportion_keeps():
     assert prior.probs([0], "softmax")[0, 1] < 1e-17
 
 
-def test_e8_an_action_optimal_where_its_policy_never_comes_leads_out_of_the_minimised_domain():
-    # States 0 … 4, actions a and b. Both tasks start in 0. Task 1: goal 1, by 0 -a-> 1; from 2, where it never
-    # comes, its policy would go 2 -b-> 3 -a-> 1. Task 2: goal 4, by 0 -b-> 2 -a-> 4.
-    follow = np.array([[1, 2], [1, 1], [4, 3], [1, 1], [4, 4]])
-    policies = np.array([[0, 0, 1, 0, 0], [1, 0, 0, 0, 0]])
-
-    def reachable(policy):  # Algorithm 3
-        states = {0}
-        while (grown := states | {int(follow[s, policy[s]]) for s in states}) != states:
-            states = grown
-        return states
-
-    kept_states = set().union(*(reachable(p) for p in policies))
-    kept_actions = {(s, int(p[s])) for p in policies for s in range(5)}
-    assert kept_states == {0, 1, 2, 4}
-    leaving = [(s, a) for s, a in kept_actions if s in kept_states and int(follow[s, a]) not in kept_states]
-    assert leaving == [(2, 1)]  # here η(s, a) would be 1/0
-    own = {(s, int(p[s])) for p in policies for s in reachable(p)}  # pairs of one and the same task
-    assert all(int(follow[s, a]) in kept_states for s, a in own)
-
-
 def test_e9_a_domain_without_traps_cannot_have_fewer():
     world = lattice(7)
     prior = prior_of(world, np.arange(world.n_states))
@@ -100,13 +79,3 @@ def test_e10_states_that_look_alike_pool_their_own_best_actions():
     prior = ActionPrior(2)
     prior.update([7, 7], best_actions(q))  # one percept, two states, different best actions
     assert prior.counts([7]).tolist() == [[1, 1]]
-
-
-def test_e11_summed_over_actions_the_printed_terms_are_the_entropy():
-    prior = ActionPrior(3)
-    prior.update([0, 0, 0, 0], [[True, False, False]] * 2 + [[False, True, False], [False, False, True]])
-    p = np.array([0.5, 0.25, 0.25])
-    terms = -p * np.log2(p)
-    assert terms.sum() == 1.5
-    assert prior.entropy([0])[0] == pytest.approx(1.5 * np.log(2))
-    assert terms[0] != -(0.5 * np.log2(0.5) + 0.5 * np.log2(0.5))  # not the entropy of taking the action or not

@@ -143,20 +143,6 @@ def test_online_selection_after_each_task():
     assert online.prior.key == FeatureSet(("tells",), (2,)).key(("left", "right"))
 
 
-def test_a_million_configurations_reduced_to_four_features():
-    # The thesis's §3.4.6: from 4^9 · 3 to 4^4 configurations, told by the four neighbours alone.
-    names = ("UL", "UM", "UR", "ML", "MM", "MR", "DL", "DM", "DR", "Items")
-    features = FeatureSet(names, (4,) * 9 + (3,))
-    random = stream(0, "neighbours")
-    columns = np.column_stack([random.integers(0, size, 8_000) for size in features.sizes])
-    passable = columns[:, [1, 7, 5, 3]] != 1  # north, south, east, west
-    online = OnlineFeatureSelection(features, ("N", "S", "E", "W"))
-    online.update(features.codes(columns), passable)
-    assert online.chosen.names == ("UM", "ML", "MR", "DM")
-    assert online.chosen.n_codes == 256
-    assert 1 - 256 / features.n_codes == pytest.approx(0.999674, abs=1e-6)
-
-
 # ---- why the entropy is high -------------------------------------------------------------------------------
 
 

@@ -27,6 +27,7 @@ def test_codes_by_hand():
     # φ4 of the modified factory: nine terrains of four kinds and a flag of three values (§3.4.5).
     features = FeatureSet((*(f"t{i}" for i in range(9)), "items"), (4,) * 9 + (3,))
     assert features.n_codes == 4**9 * 3 == 786_432
+    assert 1 - 4**4 / features.n_codes == pytest.approx(0.999674, abs=1e-6)  # reduced to φ1 (§3.4.6)
     assert features.codes([[0] * 10, [0] * 8 + [1, 2], [3] * 9 + [2]]).tolist() == [0, 5, 786_431]
 
 

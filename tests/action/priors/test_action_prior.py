@@ -41,16 +41,6 @@ def same_bits(one: ActionPrior, other: ActionPrior) -> bool:
 # ---- closed forms ------------------------------------------------------------------------------------
 
 
-def test_counts_by_hand():
-    # Eq. 3.5: context 7 is best-served by action 0 once and by both once: (2 + ½) / (2 + 1 + 2·½).
-    prior = ActionPrior(2, alpha0=0.5)
-    prior.update([7, 7, 9], [[True, False], [True, True], [False, False]])
-    assert prior.counts([7, 9]).tolist() == [[2.0, 1.0], [0.0, 0.0]]
-    assert prior.probs([7, 9]).tolist() == [[0.625, 0.375], [0.5, 0.5]]
-    assert prior.contexts.tolist() == [7]  # a row without a best action counts nothing
-    assert len(prior) == 1
-
-
 def test_a_weight_for_each_action():
     prior = ActionPrior(3)
     prior.update([4, 5, 4], [[True, True, False]] * 3, weight=[[1.0, 0.5, 9.0], [0.0, 0.0, 1.0], [0.25, 0.0, 0.0]])

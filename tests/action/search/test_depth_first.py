@@ -26,18 +26,6 @@ def listed(order, n_tried=None) -> Preferences:
     return Preferences(order, np.full(len(order), order.shape[1] if n_tried is None else n_tried, np.int32))
 
 
-def test_by_hand_the_order_decides_what_is_expanded():
-    wrong = depth_first(FORK, 0, listed([[0, 1]] * 6))
-    assert (wrong.reached, wrong.expanded, wrong.actions.tolist()) == (True, 5, [1, 0])
-    right = depth_first(FORK, 0, listed([[1, 0]] + [[0, 1]] * 5))
-    assert (right.reached, right.expanded, right.actions.tolist()) == (True, 2, [1, 0])
-
-
-def test_pruned_actions_may_miss_the_way():
-    found = depth_first(FORK, 0, listed([[0, 1]] * 6, n_tried=1))
-    assert (found.reached, found.expanded, found.actions.size) == (False, 4, 0)
-
-
 def test_preferences_by_hand():
     preferred = preferences(np.array([[0.1, 0.7, 0.2], [0.5, 0.0, 0.5]]), np.random.default_rng(0), prune=0.15)
     assert preferred.order[0].tolist() == [1, 2, 0]

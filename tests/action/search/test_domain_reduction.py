@@ -116,31 +116,6 @@ def test_the_counterexample_of_errata_e8():
     assert np.argwhere(repaired.pairs).tolist() == [[0, 0], [0, 1], [2, 0]]
 
 
-def test_renormalising_would_change_the_dynamics():
-    # As above, but 2 -b-> leads to 3 or 4: a quarter of the outcomes stays, and η = 4 makes it all of them.
-    follow = np.array([(1, 2), (1, 1), (4, 3), (1, 1), (4, 4)])[:, :, None].repeat(2, axis=2)
-    follow[2, 1, 1] = 4
-    tasks = [goal_task(follow, goal, [0], (0.75, 0.25)) for goal in (1, 4)]
-    printed, repaired = printed_and_repaired(tasks, [best_of(tasks[0], 1), best_of(tasks[1], 4)])
-    assert printed.kept_mass[2, 1] == pytest.approx(0.25)
-    assert np.argwhere(printed.leading_out).tolist() == [[2, 1]]
-    assert not repaired.pairs[2, 1]
-    assert repaired.kept_mass[0, 1] == 1.0
-
-
-@pytest.mark.slow
-@settings(max_examples=40)
-@given(task_sets())
-def test_the_repaired_domain_is_never_left(case):
-    tasks, policies = case
-    domain = minimised_domain(tasks, policies)
-    assert domain.form == "repaired"
-    for s, a in np.argwhere(domain.pairs):
-        assert domain.states[s]
-        assert domain.states[tasks[0].next_state[s, a]].all()
-    assert not domain.leading_out.any()
-
-
 @pytest.mark.slow
 @settings(max_examples=40)
 @given(task_sets())

@@ -143,30 +143,6 @@ def test_the_kernel_is_the_plain_twin_to_the_bit(seed, n_outcomes, simulations, 
     np.testing.assert_array_equal(found.means, [s / max(v, 1) for s, v in zip(sums, visits, strict=True)])
 
 
-def test_by_hand_puct_visits():
-    # Left pays -1 and right +1, both end. P = (0.9, 0.1), c = 1.
-    tables = Tables(
-        np.zeros((1, 2, 1), np.int32),
-        np.array([[[-1.0], [1.0]]]),
-        np.full((1, 2, 1), TERMINAL, np.uint8),
-        np.ones(1),
-        np.zeros(1, np.int32),
-    )
-    guide = search_guidance(tables, [[0.9, 0.1]])
-
-    def visits(n):
-        settings = SearchSettings(n, 3, exploration=1.0)
-        return search(tables, guide, 0, settings, np.random.default_rng(0)).visits.tolist()
-
-    # While right is untried the means have no spread, and left goes on while 0.9 / (1 + n) > 0.1: until n = 8.
-    assert visits(1) == [1, 0]
-    assert visits(8) == [8, 0]
-    # Once right has been tried its mean counts 1 and left's 0, and 0.9 √40 / 9 = 0.63 cannot make up for that.
-    after = visits(40)
-    assert after[0] <= 9
-    assert sum(after) == 40
-
-
 def test_an_episode_by_hand():
     # Two moves to the right of a corridor: 0.9 · 1, and no wall is met.
     tables = corridor(4, goal=3)

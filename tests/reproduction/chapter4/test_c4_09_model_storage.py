@@ -2,13 +2,10 @@
 
 import itertools
 
-import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
-from lifelore.interaction.signals.transition_signal import TransitionSignal
 from reproduction.chapter4.c4_09_model_storage.run import StorageSizes, entries_of, measure, run_cell
 
 COUNT = st.integers(1, 50)
@@ -34,19 +31,6 @@ def test_measures_by_hand():
         "performance_below_reward": 1, "reward_below_transition": 0, "printed_formulas_bound": 4 / 6,
         "right_formulas": 1,
     }  # fmt: skip
-
-
-@pytest.mark.parametrize("n_rewards", [3, 12])
-def test_printed_formulas_are_swapped(n_rewards):
-    """What the two models really store, entry by entry, is what the formulas say once they have changed places."""
-    pairs, n_states, n_actions = (3, 5), 4, 2
-    transitions = TransitionSignal(np.full((*pairs, n_states, n_actions, n_states), 1 / n_states))
-    rewards = StepRewardSignal(range(n_rewards), np.full((*pairs, n_states, n_actions, n_rewards), 1 / n_rewards))
-    sizes = StorageSizes(5, 3, n_states, n_actions, n_rewards)
-    right, printed = entries_of(sizes), entries_of(sizes, printed=True)
-    assert (rewards.n_entries, transitions.n_entries) == (right["reward"], right["state_action_state"])
-    assert (rewards.n_entries, transitions.n_entries) == (printed["state_action_state"], printed["reward"])
-    assert transitions.n_entries != printed["state_action_state"]
 
 
 @given(COUNT, COUNT, COUNT)
