@@ -48,9 +48,8 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 def found_in(part: Scene, whole: Scene) -> dict[str, bool]:
     """Whether a scene's skeleton is found in another's, by reading."""
     return {
-        name: find_substructure(
-            *(reading(scene, ground=ground) for scene in (part, whole)), networks=networks
-        ).found
+        name: find_substructure(*(reading(scene, ground=ground) for scene in (part, whole)), networks=networks)
+        is not None
         for name, (ground, networks) in READINGS.items()
     }
 

@@ -18,7 +18,7 @@ from lifelore.perception.topology.grasp_seeds import grasp_seeds
 from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
 from reproduction.chapter2.scenes.skeletons import perceived, reading
-from reproduction.chapter2.scenes.substructure import Substructure, find_substructure, skeleton
+from reproduction.chapter2.scenes.substructure import Roles, find_substructure, skeleton
 from reproduction.chapter5.c5_08_grasps.parallel_gripper import Grasp, GraspedTabletop
 from reproduction.chapter5.c5_08_grasps.searches import anywhere, around, carried, from_above, from_seeds
 from reproduction.chapter5.role_scenes import POOLS, role_scene
@@ -68,12 +68,11 @@ def drawn_scene(name: str, pool: str, seed: int, number: int) -> TabletopScene:
     return role_scene(name, pool, f"C5.8 {pool} {name}", seed, number)
 
 
-def equal_topology(first: Scene, second: Scene) -> Substructure | None:
+def equal_topology(first: Scene, second: Scene) -> Roles | None:
     """The correspondence of two scenes whose skeletons have the same contact points, else None."""
     if len(skeleton(first)) != len(skeleton(second)):
         return None
-    found = find_substructure(first, second, networks="connected")
-    return found if found.found else None
+    return find_substructure(first, second, networks="connected")
 
 
 def searched(world: GraspedTabletop, scene: Scene, label: int, rng: np.random.Generator) -> dict:
@@ -89,17 +88,17 @@ def searched(world: GraspedTabletop, scene: Scene, label: int, rng: np.random.Ge
 
 
 def transferred(
-    worlds: list[GraspedTabletop], scenes: list[Scene], same: Substructure, label: int, rng: np.random.Generator
+    worlds: list[GraspedTabletop], scenes: list[Scene], same: Roles, label: int, rng: np.random.Generator
 ) -> dict:
     """Tries of a grasp that worked on the corresponding object of the first scene, carried over."""
-    source = next((a for a, b in same.objects.items() if b == label), None)
+    source = next((own[0] for own, other in same.items() if other == (label,)), None)
     if source is None:
         return {}
     points = [scenes[0].cloud.of(source), scenes[1].cloud.of(label)]
     tried = zip(anywhere(points[0], rng), from_above(points[0], rng), strict=True)
     grasps = islice((grasp for both in tried for grasp in both), LEARNT_TRIES)
     learnt = next((grasp for grasp in grasps if worlds[0].succeeds(grasp, source - FIRST_OBJECT)), None)
-    found = [] if learnt is None else carried(learnt, scenes[0], source, scenes[1], label, same.nodes)
+    found = [] if learnt is None else carried(learnt, scenes[0], source, scenes[1], label, same)
     if learnt is None or not found:
         return {}
     return {

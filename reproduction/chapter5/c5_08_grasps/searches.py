@@ -1,6 +1,6 @@
 """Searches for grasps in a perceived scene: from seeds, without seeds, and carried over from another scene."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from lifelore.domains.tabletop.pose import aligned
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.grasp_seeds import GraspSeed
-from lifelore.perception.topology.holes import Node
+from reproduction.chapter2.scenes.substructure import Roles
 from reproduction.chapter5.c5_08_grasps.parallel_gripper import OPENING, Grasp
 
 JITTER, TURN, BACK = 0.01, 0.3, 0.04
@@ -62,9 +62,7 @@ def _across(approach: NDArray[np.float64], rng: np.random.Generator) -> NDArray[
     return frame[:, 0] * np.cos(angle) + frame[:, 1] * np.sin(angle)
 
 
-def carried(
-    grasp: Grasp, first: Scene, label: int, second: Scene, other: int, nodes: Mapping[Node, Node]
-) -> list[Grasp]:
+def carried(grasp: Grasp, first: Scene, label: int, second: Scene, other: int, roles: Roles) -> list[Grasp]:
     """A grasp of an object carried to the object that corresponds to it, by their contact points; both ways round.
 
     The frame of an object has its origin amid the contact points, its first axis along the longest level distance
@@ -72,10 +70,10 @@ def carried(
     points of the same kind may be exchanged, so the grasp turned by 180° about the third axis comes second. Empty
     if the contact points lie above one another.
     """
-    own = [node for node in nodes if node[0] == label]
+    own = [role for role in roles if len(role) == 2 and role[0] == label]
     before = np.array([first.position(*node) for node in own]).reshape(-1, 3)
-    after = np.array([second.position(*nodes[node]) for node in own]).reshape(-1, 3)
-    if len(own) < 2 or any(nodes[node][0] != other for node in own):
+    after = np.array([second.position(*roles[node]) for node in own]).reshape(-1, 3)
+    if len(own) < 2 or any(roles[node][0] != other for node in own):
         return []
     apart = np.linalg.norm((before[:, None] - before[None])[..., :2], axis=2)
     i, j = np.unravel_index(int(apart.argmax()), apart.shape)

@@ -1,11 +1,6 @@
-"""Substructure: Fig. 2.10's stacks, controls, the witness checked, and networkx as oracle on random skeletons."""
+"""Substructure: Fig. 2.10's stacks, controls, and the witness checked."""
 
-import networkx as nx
 import numpy as np
-import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
-from networkx.algorithms.isomorphism import GraphMatcher
 
 from reproduction.chapter2.scenes.substructure import find_substructure, skeleton
 
@@ -23,29 +18,28 @@ def stack(make_scene, meet, contacts, labels=(2, 3, 4)):
 
 def check_witness(part, whole, found):
     small, large = skeleton(part), skeleton(whole)
-    whereto = {**{(a,): (b,) for a, b in found.objects.items()}, **found.nodes}
-    assert set(whereto) == set(small)
-    assert len(set(whereto.values())) == len(whereto)
+    assert set(found) == set(small)
+    assert len(set(found.values())) == len(found)
     for x, y, kind in small.edges(data="kind"):
-        assert large.edges[whereto[x], whereto[y]]["kind"] == kind
-    assert all(small.nodes[x]["kind"] == large.nodes[y]["kind"] for x, y in whereto.items())
+        assert large.edges[found[x], found[y]]["kind"] == kind
+    assert all(small.nodes[x]["kind"] == large.nodes[y]["kind"] for x, y in found.items())
 
 
 def test_a_stack_is_part_of_one_with_two_contacts_and_not_the_other_way(make_scene, meet):
     single = stack(make_scene, meet, (1, 1))
     double = stack(make_scene, meet, (1, 2), labels=(9, 5, 7))
     found = find_substructure(single, double)
-    assert found.found
     check_witness(single, double, found)
-    assert find_substructure(double, single) == type(found)(False, {}, {})
+    assert find_substructure(double, single) is None
 
 
 def test_a_row_on_the_table_is_not_a_stack(make_scene, meet):
     standing = make_scene({2: POINT, 3: POINT}, [meet(2, 1, [[0, 0, 0]]), meet(3, 1, [[0.3, 0, 0]])])
     pile = make_scene({2: POINT, 3: POINT}, [meet(2, 1, [[0, 0, 0]]), meet(3, 2, [[0, 0, 0.1]])])
-    assert not find_substructure(standing, pile).found
-    assert not find_substructure(pile, standing).found
-    assert find_substructure(pile, pile).objects == {1: 1, 2: 2, 3: 3}
+    assert find_substructure(standing, pile) is None
+    assert find_substructure(pile, standing) is None
+    found = find_substructure(pile, pile)
+    assert {own: other for own, other in found.items() if len(own) == 1} == {(1,): (1,), (2,): (2,), (3,): (3,)}
 
 
 def test_one_more_contact_in_the_middle_takes_the_printed_edge_away(make_scene, meet):
@@ -56,40 +50,9 @@ def test_one_more_contact_in_the_middle_takes_the_printed_edge_away(make_scene, 
     whole = make_scene(clouds, [*ends, meet(2, 5, [[0.1, 0, 0]])])
     assert whole.networks[2].edges.tolist() == [[0, 2], [1, 2]]
     # With the numbers free, the part is found at one end and the middle; with both ends known it is not.
-    assert 5 in find_substructure(part, whole).objects.values()
+    assert (5,) in find_substructure(part, whole).values()
     closed = [meet(3, 4, [[0.1, 0.5, 0.5]])]
     triangle = make_scene({label: clouds[label] for label in (2, 3, 4)}, [*ends, *closed])
     larger = make_scene(clouds, [*ends, *closed, meet(2, 5, [[0.1, 0, 0]])])
-    assert not find_substructure(triangle, larger).found
-    assert find_substructure(triangle, larger, networks="connected").found
-
-
-@st.composite
-def contacts(draw, n_objects):
-    pairs = [(a, b) for a in range(1, n_objects + 2) for b in range(max(a + 1, 2), n_objects + 2)]
-    return [(pair, draw(st.integers(0, 2))) for pair in pairs]
-
-
-@pytest.fixture
-def scene_with(make_scene, meet):
-    def build(counts, seed):
-        rng = np.random.default_rng(seed)
-        parts = [meet(a, b, rng.uniform(0, 1, (n, 3)).tolist()) for (a, b), n in counts if n]
-        return make_scene({2: POINT, 3: POINT, 4: POINT}, parts)
-
-    return build
-
-
-@pytest.mark.slow
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(small=contacts(3), large=contacts(3), seed=st.integers(0, 9))
-def test_networkx_agrees(scene_with, small, large, seed):
-    part, whole = scene_with(small, seed), scene_with(large, seed + 1)
-    same_kind = nx.algorithms.isomorphism.categorical_node_match("kind", None)
-    same_edge = nx.algorithms.isomorphism.categorical_edge_match("kind", None)
-    matcher = GraphMatcher(skeleton(whole), skeleton(part), same_kind, same_edge)
-    found = find_substructure(part, whole)
-    assert found.found == matcher.subgraph_is_monomorphic()
-    if found.found:
-        check_witness(part, whole, found)
-        assert find_substructure(part, whole, networks="connected").found
+    assert find_substructure(triangle, larger) is None
+    assert find_substructure(triangle, larger, networks="connected") is not None
