@@ -55,7 +55,7 @@ MONDAY_8 = 1_704_096_000.0
 """2024-01-01 08:00 by the robot's clock."""
 
 
-def observe(map: str, memory: str, clock: float, seconds: float, n=6, everywhere=False, below=2.0) -> None:
+def observe(map: str, memory: str, clock: float, seconds: float, n=6, everywhere=False, y_range=(0, 2)) -> None:
     """Remember `n` moves, ten minutes apart, of the cells at the bottom door, or between all known cells."""
     settings = WorldSettings(map=map)
     with open_memory(memory) as opened:
@@ -63,7 +63,7 @@ def observe(map: str, memory: str, clock: float, seconds: float, n=6, everywhere
         place = recognised_place(settings, world_from_settings(settings, occupancy), occupancy, opened)
         travel = Travel.recalled(place.world, place.grid, opened)
         x, y = place.world.positions(np.arange(place.world.n_states)).T
-        chosen, to = (x > 5.5) & (x < 6.5) & (y < below), place.world.neighbour
+        chosen, to = (x > 5.5) & (x < 6.5) & (y > y_range[0]) & (y < y_range[1]), place.world.neighbour
         if everywhere:
             chosen = from_record(place.world, remembered_record(place, opened)).percept >= 0
         state, action = np.nonzero(chosen[:, None] & (to >= 0) & (chosen[to] | (not everywhere)))
@@ -152,8 +152,19 @@ def test_undriven_ground_beside_a_refused_place_is_avoided_too(tmp_path):
     memory = remember(tmp_path, rooms, never_driven(5.0, 7.0, 1.5, 4.0))
     observe(rooms, memory, MONDAY_8 - 86_400, 1.0, everywhere=True)
     assert find(rooms, memory).poses[:, 1].max() < 3.0
-    observe(rooms, memory, MONDAY_8, float("nan"), below=1.5)
+    observe(rooms, memory, MONDAY_8, float("nan"), y_range=(0, 1.5))
     assert find(rooms, memory).poses[:, 1].max() > 5.0
+
+
+def test_ground_beside_a_refused_place_is_avoided_until_a_robot_passes_there(tmp_path):
+    """A wide door was driven in both halves, then closed: a robot was refused in one half alone."""
+    rooms = two_rooms(tmp_path, "rooms", (2, 35, 45))
+    memory = remember(tmp_path, rooms)
+    observe(rooms, memory, MONDAY_8 - 86_400, 1.0, everywhere=True)
+    observe(rooms, memory, MONDAY_8, float("nan"), y_range=(0, 1.5))
+    assert find(rooms, memory).poses[:, 1].max() > 5.0
+    observe(rooms, memory, MONDAY_8 + 7200, 1.0, 20, y_range=(1.5, 3))
+    assert find(rooms, memory).poses[:, 1].max() < 3.0
 
 
 def test_a_slow_door_is_avoided_where_the_way_around_takes_less_time(tmp_path):

@@ -1,6 +1,9 @@
 """`lifelore live` in domains of jobs with hidden types, and `lifelore explain`: documents, words, and refusals."""
 
+import gymnasium
 import pytest
+
+from lifelore import LongLivedAgent
 
 TASK = {
     "task", "context", "hidden_type", "best_return", "returns", "prior", "alarm", "alarm_score", "learnt",
@@ -39,6 +42,14 @@ def test_explain_says_why(ask, where):
     assert "as for" in run.out
     document = ask("explain", "3", "--memory", where, "--json").document
     assert set(document) == TASK | {"domain", "seed"}
+
+
+def test_explain_reads_a_task_of_a_world_of_ones_own(ask, where):
+    with LongLivedAgent(key="lake", memory=where, episodes=3, max_steps=20) as agent:
+        lake = gymnasium.make("FrozenLake-v1")
+        results = [agent.live(lake, context="monday") for _ in range(2)]
+        assert ask("explain", "1", "--memory", where).out == agent.explain(results[1]) + "\n"
+    assert ask("explain", "0", "--memory", where, "--json").document["returns"] == results[0].returns
 
 
 @pytest.mark.parametrize(

@@ -122,6 +122,8 @@ def test_ten_thousand_records_of_a_sort_are_one_line(capsys):
     few = capsys.readouterr().out
     assert "…" not in few
     assert "s/0007" in few
+    print_memory(place | {"robots": [], "lore": [lore[0] | {"key": f"{'0af1' * 8}/dock of the bakery"}]})
+    assert "│ 0af10af10af1/dock of the bakery │" in capsys.readouterr().out
 
 
 def test_doctor(ask, known):

@@ -1,5 +1,8 @@
 """MDPs from matrices: all forms give one task, solved as by a plain loop; each broken rule has its sentence."""
 
+from typing import Any
+
+import gymnasium
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -105,6 +108,39 @@ def test_by_hand():
     assert tables.starts.tolist() == [0]
     assert (tables.event & TERMINAL).tolist() == [[[0, 1], [0, 0]], [[1, 1], [1, 1]]]
     assert optimal_actions(tables, GAMMA).tolist() == [[True, False], [False, False]]
+
+
+@pytest.mark.parametrize(
+    ("world", "options"),
+    [("FrozenLake-v1", {}), ("CliffWalking-v1", {"is_slippery": True}), ("Taxi-v4", {"is_rainy": True})],
+)
+def test_transitions_of_a_toy_world_of_gymnasium(world, options):
+    """Moves of the slippery cliff lead to one cell with two rewards; Taxi ends by a move, not by a state."""
+    env: Any = gymnasium.make(world, **options).unwrapped
+    moves, discount = env.P, 0.9
+    tables = Tables.from_matrices(moves, starts=np.flatnonzero(env.initial_state_distrib))
+    value, q = np.zeros(len(moves)), np.zeros((len(moves), len(moves[0])))
+    for _ in range(150):
+        for s, a in np.ndindex(q.shape):
+            q[s, a] = sum(p * (r + discount * (not end) * value[t]) for p, t, r, end in moves[s][a])
+        value = q.max(axis=1)
+    # 150 sweeps leave 0.9 ** 150 of the first error, which is at most 100 / (1 - 0.9).
+    assert np.abs(optimal_q(tables, discount) - q).max() < 1e-3
+
+
+@pytest.mark.parametrize("moves", [{}, np.eye(2), {0: {0: []}}, {0: {0: {0: 1.0}}}, {1: {0: [(1.0, 1, 0, True)]}}])
+def test_transitions_without_rewards_are_those_of_gymnasium(moves):
+    with pytest.raises(InputError, match="transitions without rewards must be Gymnasium's"):
+        Tables.from_matrices(moves)
+
+
+def test_a_world_of_gymnasium_takes_more_terminal_states():
+    moves = {s: {0: [(0.5, s, -1.0, False), (0.5, (s + 1) % 3, 2.0, s == 1)]} for s in range(3)}
+    tables = Tables.from_matrices(moves, terminal=[0])
+    assert tables.event[:, 0].tolist() == [[TERMINAL, 0], [0, TERMINAL], [0, TERMINAL]]
+    assert tables.starts.tolist() == [1]
+    with pytest.raises(InputError, match="outcome_cum must rise to 1"):
+        optimal_q(Tables.from_matrices({0: {0: [(0.5, 1, 0.0, False)]}, 1: {0: [(1.0, 1, 0.0, True)]}}), GAMMA)
 
 
 def test_memory_grows_with_the_next_states_of_a_move():

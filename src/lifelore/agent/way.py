@@ -86,8 +86,8 @@ def way(
     It leads over the map's free space, keeps the robot's radius from all else, and turns at any angle. It costs
     its length, and what memory knows about its moves: where they took longer or were refused, the path leads
     around if that is expected to take less time (``MoveCosts.cost``). A metre on ground that memory does not know
-    costs `UNDRIVEN` metres more; such ground beside a place that is probably blocked counts as blocked, too, since
-    what blocks is often wider.
+    costs `UNDRIVEN` metres more. A place beside one that is probably blocked counts as blocked, too, until a robot
+    passes there, since what blocks is often wider.
 
     Parameters
     ----------
@@ -140,8 +140,7 @@ def way(
     first, last = floor.state_at("from", ends[0]), floor.state_at("to", ends[1])
     known = (transitions.from_record(place.world, record, place.grid.corner).percept >= 0) | travel.driven
     costs, cell = travel.costs(travel.newest if clock is None else clock), place.world.frame.cell
-    unsure = ~known & place.world.around(costs.closed())
-    cost = costs.cost + np.where(unsure[place.world.neighbour], DETOUR, 0.0)
+    cost = costs.cost + np.where(travel.shut_off(costs.closed())[place.world.neighbour], DETOUR, 0.0)
     price = price_of_moves(cost, cell) + np.where(known[place.world.neighbour], 0.0, UNDRIVEN * cell)
     path = footprint_path(floor, *ends, footprint, price) if footprint else clear_path(floor, *ends, price)
     assert path is not None, "the places of a floor are joined"

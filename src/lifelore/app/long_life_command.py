@@ -73,6 +73,7 @@ def explain(
 
     The words are those of the agent: the scene, its belief, the return that it expected, and what it noticed.
     """
+    from lifelore.agent.any_tasks.task_result import explained_task
     from lifelore.agent.long_lived.explanation import explained
     from lifelore.agent.long_lived.long_life import stored_task
     from lifelore.app.console import print_json
@@ -80,5 +81,7 @@ def explain(
     document = stored_task(task, robot, memory)
     if as_json:
         print_json(document)
+    elif "policies" in document:
+        print(explained_task(document))
     else:
         print("\n".join(explained(document)))

@@ -1,5 +1,7 @@
 """Prints the content of a memory as tables."""
 
+import re
+
 from rich.console import Console
 from rich.table import Table
 
@@ -18,7 +20,9 @@ def print_memory(overview: dict) -> None:
         buildings.add_row(entry["name"], entry["key"][:12], str(entry["maps"]), str(entry["grids"]))
     lore = Table("kind", "key", "version", "merges by", "slots", title="records")
     for entry in grouped_lore(overview["lore"]):
-        key = entry["key"][:12] if entry["of"] == 1 else f"{entry['key']}… ({entry['of']:,})"
+        # Hashes are shortened; what follows them, such as the name of a place, tells records apart.
+        key = re.sub(r"\b([0-9a-f]{12})[0-9a-f]{20}\b", r"\1", entry["key"])
+        key = key if entry["of"] == 1 else f"{key}… ({entry['of']:,})"
         lore.add_row(entry["kind"], key, str(entry["version"]), entry["merge"], f"{entry['slots']:,}")
     console.print(robots)
     if overview["buildings"]:

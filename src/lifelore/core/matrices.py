@@ -56,6 +56,22 @@ def outcomes_of(transitions: Any, rewards: Any, terminal: Any) -> tuple[Outcomes
     return Outcomes(chances.indices[place].astype(np.int32), paid[place], cumulative.reshape(place.shape)), ended
 
 
+def outcomes_of_moves(moves: Any) -> tuple[Outcomes, NDArray[np.bool_]]:
+    """Outcomes of Gymnasium's ``env.unwrapped.P``, and which end an episode, (n_states, n_actions, n_outcomes)."""
+    try:
+        rows = [[[*moves[s][a]] for a in range(len(moves[0]))] for s in range(len(moves))]
+        most = max(len(row) for actions in rows for row in actions)
+        filled = [[row + [(0, *row[-1][1:])] * (most - len(row)) for row in actions] for actions in rows]
+        table = np.array(filled, float)
+        chance, following, reward, ended = np.moveaxis(table, -1, 0)
+    except (IndexError, KeyError, TypeError, ValueError):
+        raise InputError(
+            "transitions without rewards must be Gymnasium's env.unwrapped.P: "
+            "{state: {action: [(probability, next state, reward, ended)]}}, numbered from 0"
+        ) from None
+    return Outcomes(following.astype(np.int32), reward, chance.cumsum(-1)), ended.astype(bool)
+
+
 def checked_numbers(given: Any, n: int, name: str) -> Ints:
     """Numbers of states or actions below `n`, (m,), from numbers or from a mask (n,) bool.
 

@@ -85,7 +85,7 @@ class Tables(NamedTuple):
 
     @classmethod
     def from_matrices(
-        cls, transitions: Any, rewards: Any, terminal: ArrayLike = (), starts: Any = None
+        cls, transitions: Any, rewards: Any = None, terminal: ArrayLike = (), starts: Any = None
     ) -> "Tables":
         """The tables of an MDP that is given as T(s, a, s') and R.
 
@@ -98,7 +98,8 @@ class Tables(NamedTuple):
             ``{state: {action: {next state: probability}}}``, all numbered from 0.
         rewards : (n_states, n_actions, n_states), (n_states, n_actions) or (n_states,) float
             Reward of a move, of an action in a state, or of entering a state. Sparse matrices and dictionaries in
-            the forms of `transitions` are rewards of moves, 0 where they have no entry.
+            the forms of `transitions` are rewards of moves, 0 where they have no entry. Leave them out where
+            `transitions` is ``env.unwrapped.P`` of one of Gymnasium's toy worlds, which holds rewards and ends.
         terminal : (n,) int or (n_states,) bool
             States that end the episode when they are entered; their own rows are not read.
         starts : (n_starts,) int or (n_states,) bool, optional
@@ -116,9 +117,15 @@ class Tables(NamedTuple):
         >>> tables.next_state[0].tolist(), tables.reward[0].tolist(), tables.outcome_cum[0].tolist()
         ([[0, 1], [0, 0]], [[0.0, 10.0], [0.0, 0.0]], [[0.5, 1.0], [1.0, 1.0]])
         """
-        from lifelore.core.matrices import checked_numbers, outcomes_of
+        from lifelore.core.matrices import checked_numbers, outcomes_of, outcomes_of_moves
 
-        outcomes, ended = outcomes_of(transitions, rewards, terminal)
+        if rewards is None:
+            outcomes, ends = outcomes_of_moves(transitions)
+            ends |= np.isin(outcomes.following, checked_numbers(terminal, len(ends), "terminal"))
+            ended = np.isin(np.arange(len(ends)), outcomes.following[ends])
+        else:
+            outcomes, ended = outcomes_of(transitions, rewards, terminal)
+            ends = ended[outcomes.following]
         begin = np.flatnonzero(~ended) if starts is None else checked_numbers(starts, len(ended), "starts")
         if not begin.size or ended[begin].any():
             raise InputError(
@@ -127,7 +134,7 @@ class Tables(NamedTuple):
                 if begin.size
                 else "starts must name at least one state, got none"
             )
-        event = np.where(ended[outcomes.following], TERMINAL, NOTHING).astype(np.uint8)
+        event = np.where(ends, TERMINAL, NOTHING).astype(np.uint8)
         return cls(outcomes.following, outcomes.reward, event, outcomes.cumulative, begin.astype(np.int32))
 
 

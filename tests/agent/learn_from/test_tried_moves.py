@@ -1,5 +1,7 @@
 """Poses become moves: worked by hand on a small floor, also turned and shifted."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -83,6 +85,23 @@ def test_seconds_are_those_in_the_cell(world):
     tried = tried_moves(world, run(world, [(0.5, 0.5), (1.5, 0.5), (2.0, 0.5), (2.5, 0.5)]))
     assert np.allclose(tried.time, [0.5, 2.0], atol=0.05)
     assert np.allclose(tried.seconds, [1.0, 1.5], atol=0.1)  # the first is the time of a cell at that speed
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.2, np.pi / 6, np.pi / 4])
+def test_seconds_are_those_of_a_straight_move_at_the_speed_of_the_drive(angle):
+    """Half a cell a second, at any angle and along a border: each move that has a time has that of two seconds."""
+    world = GridWorld.from_free("hall", np.ones((30, 30), bool), frame=Frame(0.5, (1.0, 2.0, 0.5)))
+    along = np.arange(1, 20, 0.05)
+    noise = np.random.default_rng(0).normal(0, 0.02, len(along))  # across the drive, in cells
+    path = np.column_stack(
+        [3 + along * np.cos(angle) - noise * np.sin(angle), 3 + along * np.sin(angle) + noise * np.cos(angle)]
+    )
+    drive = run(world, path)
+    tried = tried_moves(world, replace(drive, time=(along - 1) / 0.5), noise=0.01)
+    timed = tried.seconds[~np.isnan(tried.seconds)][1:]  # the first is of a single pair of poses
+    # Both ends of a piece are some 0.02 cells off, and the piece is at least half a cell long.
+    assert np.abs(timed - 2.0).max() < 0.25
+    assert len(timed) >= 9  # a time for every other cell of 19
 
 
 def test_poses_that_tremble_across_a_border_are_no_moves(world):

@@ -58,22 +58,26 @@ class TaskResult:
 
     def explain(self) -> str:
         """Why the agent acted as it did, in a few lines."""
-        n = len(self.returns)
-        lines = [f"task {self.number}, context {self.context!r}, {n} episode{'s' if n != 1 else ''}"]
-        if self.prior:
-            lines.append(f"expected  {_most_probable(self.prior)}")
-            lines.append(f"believed  {_most_probable(self.beliefs[0])} after the first episode")
-        else:
-            lines.append("expected  nothing: no type was known, or the agent keeps none")
-        if self.alarm:
-            lines.append(f"alarm     in episode {self.alarm_episode}: the outcomes fit no known type")
-        if self.type:
-            lines.append(f"taken for {self.type}{', a new type' if self.new else ''}")
-        lines.append(f"ran       {_runs(self.policies)}")
-        lines.append(
-            f"returns   {self.returns[0]:.4g} first, {self.returns[-1]:.4g} last, mean {sum(self.returns) / n:.4g}"
-        )
-        return "\n".join(lines)
+        return explained_task(self.to_dict())
+
+
+def explained_task(document: Mapping[str, Any]) -> str:
+    """A task in words, from `TaskResult.to_dict` or as memory keeps it."""
+    returns = document["returns"]
+    n = len(returns)
+    lines = [f"task {document['number']}, context {document['context']}, {n} episode{'s' if n != 1 else ''}"]
+    if document["prior"]:
+        lines.append(f"expected  {_most_probable(document['prior'])}")
+        lines.append(f"believed  {_most_probable(document['beliefs'][0])} after the first episode")
+    else:
+        lines.append("expected  nothing: no type was known, or the agent keeps none")
+    if document["alarm"]:
+        lines.append(f"alarm     in episode {document['alarm_episode']}: the outcomes fit no known type")
+    if document["type"]:
+        lines.append(f"taken for {document['type']}{', a new type' if document['new'] else ''}")
+    lines.append(f"ran       {_runs(document['policies'])}")
+    lines.append(f"returns   {returns[0]:.4g} first, {returns[-1]:.4g} last, mean {sum(returns) / n:.4g}")
+    return "\n".join(lines)
 
 
 def _most_probable(belief: Mapping[str, float]) -> str:

@@ -23,6 +23,8 @@ AT_REST = 0.02
 TREMBLE, MOST_TREMBLE = 0.02, 0.25
 """Least depth in metres to which a robot enters a cell that it leaves by the same border, and the largest share of
 a cell that noise can make it."""
+SHORTEST = 0.5
+"""Cells: the shortest straight way between two crossings that has a time; a shorter one counts with the next."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,8 +36,9 @@ class TriedMoves:
     time : (n,) float
         Seconds of the run's clock at which the robot crossed the border, or bumped.
     seconds : (n,) float
-        Seconds in the cell until the border was crossed, or the cell's side at the speed of the crossing where the
-        robot was not seen entering; NaN for bumps.
+        Seconds for the side of a cell at the robot's speed since an earlier crossing, waiting included, or at the
+        speed of the crossing where none was seen since a gap; NaN for bumps, where the robot turned back, and
+        where it came less than `SHORTEST` cells far.
     new_obstacles : (n,) bool
         Bumps where the map is free.
     gaps, contradictions, undirected : int
@@ -141,9 +144,16 @@ def _without_tremble(
 def _seconds(crossings: list[_Crossing], gaps: NDArray[np.int64], cell: float) -> list[float]:
     """Seconds of each crossing's move, see `TriedMoves`; `gaps` counts the gaps before each pose."""
     taken = [one.slowness * cell for one in crossings]
+    start = 0
     for i, (last, one) in enumerate(pairwise(crossings), start=1):
-        if last.target == one.state and gaps[last.pose] == gaps[one.pose]:
-            taken[i] = one.time - last.time
+        if gaps[last.pose] != gaps[one.pose]:
+            start = i
+        elif last.state == one.target:
+            taken[i], start = np.nan, i
+        elif (far := np.hypot(*(one.point - crossings[start].point))) < SHORTEST * cell:
+            taken[i] = np.nan
+        else:
+            taken[i], start = (one.time - crossings[start].time) * cell / far, i
     return taken
 
 

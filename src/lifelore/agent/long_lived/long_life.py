@@ -202,7 +202,7 @@ def _below(tasks: list[dict[str, Any]], episode: int) -> float:
 
 
 def stored_task(number: int, robot: str = "robot", memory: str | None = None) -> dict[str, Any]:
-    """The document of a task that a robot has lived through.
+    """The document of a task that a robot has lived through, in a family or as a `LongLivedAgent`.
 
     Raises
     ------
@@ -213,9 +213,10 @@ def stored_task(number: int, robot: str = "robot", memory: str | None = None) ->
     """
     with open_memory(memory, create=False) as opened:
         for document in opened.task_descriptions(robot):
-            if document.get("task") == number and "first_episode" in document:
+            numbered = document.get("task", document.get("number"))
+            if numbered == number and document.keys() & {"first_episode", "policies"}:
                 return document
     raise NotFoundError(
-        f"robot {robot!r} has no task {number} of jobs with hidden types in this memory; "
+        f"robot {robot!r} has no task {number} with a hidden type in this memory; "
         "lifelore live --domain tabletop lives through some"
     )

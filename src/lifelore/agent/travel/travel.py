@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.ndimage import maximum_filter
 
 from lifelore.agent.building_record import joined_buildings
 from lifelore.agent.travel import passes as records
@@ -111,6 +112,19 @@ class Travel:
         moves, driven = self.passes.move[self.passes.passes > 0], np.zeros(self.world.n_states, bool)
         driven[moves // records.N_ACTIONS] = driven[self.world.neighbour.ravel()[moves]] = True
         return driven
+
+    def shut_off(self, closed: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """(n_states,) places beside `closed` ones where no robot has been since one was refused there."""
+        known, neighbour = self.passes, self.world.neighbour.ravel()
+        refused, passed = np.full((2, self.world.n_states), -1)
+        rows = known.where(known.refusals > 0)
+        np.maximum.at(refused, neighbour[rows.move], rows.minute)
+        rows = known.where(known.passes > 0)
+        for places in (rows.move // records.N_ACTIONS, neighbour[rows.move]):
+            np.maximum.at(passed, places, rows.minute)
+        grid, cells = np.full(self.world.shape, -1), tuple(self.world.cells.T)
+        grid[cells] = np.where(closed, refused, -1)
+        return (maximum_filter(grid, 3, mode="constant", cval=-1)[cells] > passed) & ~closed
 
     @property
     def newest(self) -> float:
