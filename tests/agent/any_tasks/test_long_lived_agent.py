@@ -16,7 +16,6 @@ import pytest
 from lifelore import ActionPrior, LongLivedAgent, compare_agents, open_memory
 from lifelore.agent.any_tasks.experience import Experience, TaskNews
 from lifelore.agent.any_tasks.reuse import TaskReuse
-from lifelore.agent.external_world.context_labels import ContextLabels
 from lifelore.agent.life.loop import Stopped
 from lifelore.agent.live.buildings.merged_buildings import merge_memories
 from lifelore.core.errors import InputError, NotFoundError, StoreError
@@ -164,17 +163,6 @@ def test_a_life_goes_on_in_another_agent(tmp_path):
         assert after.returns == pytest.approx(before[1].returns)
 
 
-def test_features_behind_contexts_are_read_when_they_are_shown(tmp_path):
-    for _ in range(2):
-        with LongLivedAgent(**SETTINGS, memory=tmp_path / "life.db") as agent:
-            agent.live(WindyGrid(1))
-    assert set(agent.prior.labels.values()) <= {-1, 0, 1}
-    assert set(agent.prior.labels) == set(agent.prior.contexts.tolist())
-    with open_memory(tmp_path / "life.db") as memory:
-        labels = ContextLabels(lambda: memory.recall("context_labels", "windy grid/features", 1))
-        assert dict(labels) == agent.prior.labels
-
-
 def test_features_behind_contexts_are_found_from_another_folder_and_can_be_pickled(tmp_path, monkeypatch):
     (tmp_path / "elsewhere").mkdir()
     monkeypatch.chdir(tmp_path)
@@ -184,6 +172,7 @@ def test_features_behind_contexts_are_found_from_another_folder_and_can_be_pickl
     monkeypatch.chdir(tmp_path / "elsewhere")
     text = pickle.dumps(agent.prior)
     assert dict(pickle.loads(text).labels) == dict(agent.prior.labels)
+    assert set(agent.prior.labels) == set(agent.prior.contexts.tolist())
     assert set(agent.prior.labels.values()) <= {-1, 0, 1}
     agent.close()
 
