@@ -143,15 +143,28 @@ def test_rewards_must_be_finite(reward):
         lived(Countdown((0.5, reward, 0.5)), learner_of(2, QLearning(1)), ContextCodes(), 9)
 
 
-def test_a_cautious_learner_trusts_the_prior_by_half_and_not_where_all_earn_the_same():
-    prior, random = ActionPrior(4), stream(0, "own")
+@pytest.mark.parametrize(
+    ("tries", "value", "trust"), [(0, 1.0, 0.5), (4, 1.0, 0.25), (12, 1.0, 0.125), (12, 0.0, 0.5)]
+)
+def test_a_cautious_learner_trusts_the_prior_by_half_and_less_where_its_type_has_learnt(tries, value, trust):
+    """The prior counts as a try of each of 4 actions: its share is 0.5 · 4 / (4 + tries) where values differ."""
+    prior, n = ActionPrior(4), 4000
     prior.update([7], [[True, False, False, False]])
-    guidance = PriorSettings(form="support", ties="prior")
-    learner = TableLearner(4, prior, QLearning(10, epsilon=1.0), 0.9, guidance, random, cautious=True)
-    explored, ties = learner._rows_of(7)
-    trusted = 0.5 * prior.probs([7], "support") + 0.125
-    assert np.diff(explored, prepend=0.0) == pytest.approx(trusted)
-    assert ties == pytest.approx(trusted)
+    learner = TableLearner(
+        4, prior, QLearning(10, epsilon=1.0), 0.9, PriorSettings(form="support", ties="prior"), stream(0, "own"),
+        cautious=True, start={state: np.array([0, 0, 0, value]) for state in range(n)},
+        met=lambda state, action: tries / 4,
+    )  # fmt: skip
+    expected = trust * prior.probs([7], "support")[0, 0] + (1 - trust) / 4
+    share = np.mean([learner.act(state, 7) == 0 for state in range(n)])
+    assert share == pytest.approx(expected, abs=4 * 0.5 / n**0.5)  # four deviations of a share of n draws
+    assert learner.visited[3, 7] == tries + 1
+
+
+def test_a_cautious_learner_does_not_trust_the_prior_where_all_episodes_earn_the_same():
+    learner = TableLearner(
+        4, ActionPrior(4), QLearning(10), 0.9, PriorSettings(), stream(0, "own"), cautious=True
+    )  # fmt: skip
     guided = []
     for earned in (1.0, 1.0, 1.0, 2.0, 1.0):
         learner.end_episode([], earned, True)

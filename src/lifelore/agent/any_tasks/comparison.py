@@ -1,7 +1,6 @@
 """`compare_agents`: the agent beside its ablations, a textbook's learner and the user's own, on the same tasks."""
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
-from dataclasses import replace
 from threading import Event
 from typing import Any
 
@@ -9,10 +8,9 @@ import gymnasium
 
 from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent
 from lifelore.agent.any_tasks.one_task import episode_seed
-from lifelore.agent.any_tasks.side_by_side import SideBySide
 from lifelore.agent.any_tasks.task_settings import AGENTS
-from lifelore.agent.external_world.life_summary import summarise_life
-from lifelore.agent.external_world.own_agent import OwnAgent, check_own_agents
+from lifelore.agent.external_world.life_summary import summarise_life, task_measures
+from lifelore.agent.external_world.own_agent import OwnAgent, WatchedWorld, check_own_agents, live_own
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress
 
@@ -75,16 +73,21 @@ def compare_agents(
     if settings.pop("memory", None) is not None:
         raise InputError("compare_agents stores nothing; leave out memory, or use LongLivedAgent.live")
     settings.pop("agent", None)
-    usual = LongLivedAgent(**settings)
-    common = usual.settings
-    lived = {name: replace(common, abilities=AGENTS[name]) for name in given if name not in own}
-    tasks: list[dict] = []
-    with usual.world(make) as world:
-        beside = SideBySide(world, lived, own, common, usual.key)
-        for number, context in enumerate(contexts):
-            seeds = [episode_seed(common.seed, number, episode) for episode in range(common.learning.episode_cap)]
-            found = beside.live(number, context, seeds, stop or Event()).measures
-            tasks.append({"index": number, "context": context, "agents": {name: found[name] for name in given}})
-            if progress:
-                progress(number + 1, len(contexts), f"task {number}")
+    lives = {name: LongLivedAgent(**settings, agent=name) for name in given if name not in own}
+    usual, stop, tasks = LongLivedAgent(**settings), stop or Event(), list[dict]()
+    how = usual.settings
+    for number, context in enumerate(contexts):
+        seeds = [episode_seed(how.seed, number, episode) for episode in range(how.learning.episode_cap)]
+        found = dict[str, dict]()
+        with usual.world(make(number)) as world:
+            for name in given:
+                if name in own:
+                    watched = WatchedWorld(name, world, number, seeds, how.learning.step_cap, how.discount, stop)
+                    found[name] = task_measures(live_own(own[name], watched), watched.reached)
+                else:
+                    result = lives[name].live(world.env, context, stop=stop)
+                    found[name] = task_measures(result.returns, result.reached)
+        tasks.append({"index": number, "context": context, "agents": found})
+        if progress:
+            progress(number + 1, len(contexts), f"task {number}")
     return {"tasks": tasks, "summary": summarise_life(tasks, list(given))}

@@ -9,15 +9,16 @@ from pathlib import Path
 from threading import Event
 
 from lifelore.agent.any_tasks.experience import Experience
-from lifelore.agent.any_tasks.moves import counted
-from lifelore.agent.any_tasks.side_by_side import LivedBeside, SideBySide
+from lifelore.agent.any_tasks.moves import MoveCodes, counted
+from lifelore.agent.any_tasks.one_task import OneTask
 from lifelore.agent.any_tasks.task_differences import TaskDifferences
+from lifelore.agent.any_tasks.task_result import TaskResult
 from lifelore.agent.any_tasks.task_settings import AGENTS as ABLATIONS
 from lifelore.agent.any_tasks.task_settings import TaskSettings, check_names
-from lifelore.agent.external_world.context_code import MOST_ACTIONS
-from lifelore.agent.external_world.life_summary import summarise_life
+from lifelore.agent.external_world.context_code import CONTEXT_BITS, MOST_ACTIONS, context_code
+from lifelore.agent.external_world.life_summary import summarise_life, task_measures
 from lifelore.agent.external_world.life_warnings import ContextNovelty, life_warnings, new_states
-from lifelore.agent.external_world.own_agent import OwnAgent, check_own_agents
+from lifelore.agent.external_world.own_agent import OwnAgent, WatchedWorld, check_own_agents, live_own
 from lifelore.agent.life.loop import LivedTask, opened_memory, run_life
 from lifelore.agent.live.life_settings import PriorSettings
 from lifelore.agent.live.output.long_table import LongTable
@@ -30,6 +31,8 @@ from lifelore.memory import Memory
 AGENTS = ("lore", "scratch", "textbook")
 MOST_COMPARED = 5000
 """Steps of a task by which tasks are told apart; more cost time and tell finer differences."""
+NO_CONTEXT = context_code(None, CONTEXT_BITS)
+"""Code of the context of tasks that have none."""
 TEXTBOOK = {"epsilon": 0.1, "epsilon_decay": 1.0, "epsilon_floor": 0.1}
 """The textbook agent's ε: constant, as in Sutton and Barto (2018), "Reinforcement Learning", Example 6.6."""
 
@@ -174,7 +177,7 @@ def live_in(
         LongTable(csv, seed) if csv is not None else nullcontext() as table,
         opened_memory(memory) as opened,
     ):
-        life = _ExternalLife(name, SideBySide(world, lived, own_agents, lore, key or name), opened, table)
+        life = _ExternalLife(name, world, lived, own_agents, key or name, opened, table)
         before = opened.tasks(robot) if opened else 0
         run_life(life, tasks, memory=opened, robot=robot, progress=progress, stop=stop)
     done, n_contexts = life.finished, len(life.lore.prior)
@@ -211,51 +214,61 @@ def _check_world(world: World) -> None:
 
 @dataclass(eq=False)
 class _ExternalLife:
-    """A life in progress; memory stores what ``lore`` learns."""
+    """A life in progress: agents live the same tasks side by side; memory stores what ``lore`` learns."""
 
     name: str
-    beside: SideBySide
+    world: World
+    agents: Mapping[str, TaskSettings]
+    own: Mapping[str, OwnAgent]
+    key: str
     memory: Memory | None
     table: LongTable | None
 
     def __post_init__(self) -> None:
-        self.states, self.finished = set[Hashable](), list[dict]()
+        self.codes, self.states, self.finished = MoveCodes(), set[Hashable](), list[dict]()
         self.differences, self.last_states = TaskDifferences(), list[int]()
-
-    @property
-    def lore(self) -> Experience:
-        """What ``lore`` knows."""
-        return self.beside.experience["lore"]
+        self.common = self.agents["lore"]
+        self.lore = Experience(self.key, self.world.n_actions, self.common.guidance.alpha0)
 
     def recall(self) -> None:
         """Read what memory holds under the key."""
         if self.memory is not None:
-            key, n_actions, alpha0 = self.lore.key, self.lore.n_actions, self.beside.common.guidance.alpha0
-            found = Experience.recalled(key, self.memory, alpha0)
-            found = found or Experience(key, n_actions, alpha0)
-            found.check_actions(n_actions)
-            self.beside.experience["lore"] = found
+            found = Experience.recalled(self.key, self.memory, self.common.guidance.alpha0)
+            self.lore = found or Experience(self.key, self.world.n_actions, self.common.guidance.alpha0)
+            self.lore.check_actions(self.world.n_actions)
         if not self.finished:
             self.novelty = ContextNovelty(self.lore.prior.contexts.tolist())
 
     def live(self, number: int, seq: int, stop: Event) -> LivedTask:
         """Live a task with each agent."""
-        common = self.beside.common
-        drawn = stream(common.seed, "task", number, "world").integers(2**31, size=common.learning.episode_cap)
-        lived = self.beside.live(number, None, drawn.tolist(), stop)
+        most, episodes = self.common.learning.step_cap, self.common.learning.episode_cap
+        seeds = stream(self.common.seed, "task", number, "world").integers(2**31, size=episodes).tolist()
+        measures, returns, tasks, news = dict[str, dict](), dict[str, list[float]](), dict[str, OneTask](), None
+        for name, settings in self.agents.items():
+            # The others start each task without a past.
+            known = self.lore if name == "lore" else Experience(self.key, self.world.n_actions)
+            result = TaskResult(number, None)
+            task = OneTask(known, self.world, self.codes, settings, result, NO_CONTEXT, stop, seeds=seeds)
+            news, tasks[name] = task.live(f"{name}.{number}") or news, task
+            measures[name], returns[name] = task_measures(result.returns, result.reached), result.returns
+        for name, agent in self.own.items():
+            watched = WatchedWorld(name, self.world, number, seeds, most, self.common.discount, stop)
+            returns[name] = live_own(agent, watched)
+            measures[name] = task_measures(returns[name], watched.reached)
         # Moves are compared where exploration is uniform.
-        steps = lived.tasks["scratch"].steps
-        self.differences.end_task(counted(steps[:MOST_COMPARED], self.beside.codes))
+        steps = tasks["scratch"].steps
+        self.differences.end_task(counted(steps[:MOST_COMPARED], self.codes))
         self.last_states = [step.state for step in steps]
-        self.novelty.end_task(lived.tasks["lore"].running.best()[0].tolist())
-        return LivedTask(lived.records["lore"], {"index": number, "world": self.name}, (number, lived))
+        self.novelty.end_task(tasks["lore"].running.best()[0].tolist())
+        for task in tasks.values():
+            self.states.update(task.running.policy())
+        assert news is not None, "lore remembers"
+        report = {"index": number, "goal": None, "optimal_return": None, "agents": measures}
+        return LivedTask(self.lore.learn(news), {"index": number, "world": self.name}, (report, returns))
 
     def finish(self, lived: LivedTask) -> None:
         """Report a task, which memory has stored."""
-        number, found = lived.result
-        assert isinstance(found, LivedBeside), "a task was lived side by side"
-        for task in found.tasks.values():
-            self.states.update(task.running.policy())
-        self.finished.append({"index": number, "goal": None, "optimal_return": None, "agents": found.measures})
+        report, returns = lived.result
+        self.finished.append(report)
         if self.table:
-            self.table.add(self.finished[-1], {name: {"return": values} for name, values in found.returns.items()})
+            self.table.add(report, {name: {"return": values} for name, values in returns.items()})

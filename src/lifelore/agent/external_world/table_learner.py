@@ -30,7 +30,8 @@ TABLES = {"q": (True, 0), "model": (True, 20), "textbook": (False, 0)}
 HALF, LEAST_RATE = 10.0, 0.2
 """Times that a move is learnt until its rate is a half, and the least share of the first rate, with replay."""
 TRUST = 0.5
-"""Share of a cautious learner's exploration by the action prior: a new type may want what none wanted before."""
+"""Share of a cautious learner's exploration by the action prior in a state of which nothing was learnt: a new type
+may want what none wanted before."""
 
 
 class TableLearner:
@@ -49,7 +50,8 @@ class TableLearner:
         Of `TABLES`.
     cautious : bool
         Whether the prior is trusted by half only, and not at all in every second episode as long as all episodes
-        earn the same.
+        earn the same. Once the values of a state's actions differ, the prior counts as one try of each action
+        beside all that tasks of the type have made there: a known type explores what it has not tried.
     start : mapping of states to (n_actions,) values, optional
         Values to start from; 0 by default.
     met : callable, optional
@@ -58,8 +60,8 @@ class TableLearner:
     Attributes
     ----------
     q : dict of state to (1, n_actions) float64
-    visited : dict of (state, context code)
-        In which it acted, in the order met.
+    visited : dict of (state, context code) to float
+        In which it acted, in the order met, and how often tasks of the type have acted there.
     returns : EpisodeReturns
     """
 
@@ -83,7 +85,7 @@ class TableLearner:
         self.random = random_state(generator)
         self.q: dict[Any, Array] = defaultdict(lambda: np.zeros((1, n_actions)))
         self.q.update({state: row[None].copy() for state, row in (start or {}).items()})
-        self.visited: dict[tuple[Any, int], None] = {}
+        self.visited: dict[tuple[Any, int], float] = {}
         self.returns = EpisodeReturns(n_actions)
         self.remembered: list[Step] = []
         self._epsilons = learning.schedule(discount).epsilon.tolist()
@@ -101,19 +103,31 @@ class TableLearner:
     def act(self, state: Hashable, context: int, explore: bool = True) -> int:
         """The ε-greedy action (Alg. 2, line 5), or the greedy one."""
         epsilon = self._epsilons[min(len(self.returns.returns), len(self._epsilons) - 1)] if explore else 0.0
-        if context not in self._rows:
-            self._rows[context] = self._rows_of(context)
-        explored, ties = self._rows[context] if self._guided else self._even
-        self.visited[state, context] = None
+        explored, ties = self._even
+        if self.prior is not None and self._is_guided(state, context):
+            if context not in self._rows:
+                self._rows[context] = self._rows_of(self.prior, context)
+            explored, ties = self._rows[context]
+        self.visited[state, context] = self._tries(state, context) + 1
         return epsilon_greedy(self.q[state], 0, explored, ties, 0, epsilon, self.random)
 
-    def _rows_of(self, context: int) -> tuple[Array, Array]:
+    def _is_guided(self, state: Hashable, context: int) -> bool:
+        """Whether the prior has the say now: always, or ever more rarely where the values of actions differ."""
+        if not self.cautious:
+            return True
+        values = self.q[state][0]
+        tries = self._tries(state, context) if values.min() < values.max() else 0.0
+        trust = TRUST * self.n_actions / (self.n_actions + tries)
+        return self._guided and self.generator.random() < trust
+
+    def _tries(self, state: Hashable, context: int) -> float:
+        """How often tasks of the type have acted in a state."""
+        known = self.visited.get((state, context))
+        return sum(self._met(state, action) for action in range(self.n_actions)) if known is None else known
+
+    def _rows_of(self, prior: ActionPrior, context: int) -> tuple[Array, Array]:
         """Cumulative exploration probabilities and tie weights, both (1, n_actions)."""
-        if self.prior is None:
-            return self._even
-        trust = TRUST if self.cautious else 1.0
-        probs = trust * self.prior.probs([context], self.guidance.form, generator=self.generator)
-        probs += (1 - trust) / self.n_actions
+        probs = prior.probs([context], self.guidance.form, generator=self.generator)
         ties = np.maximum(probs, TRACE) if self.guidance.ties == "prior" else np.ones_like(probs)
         return cumulative(probs), ties
 
@@ -139,7 +153,7 @@ class TableLearner:
     def take_over(self, steps: list[Step]) -> None:
         """Learn steps that another player has made."""
         for step in reversed(steps):
-            self.visited[step.state, step.context] = None
+            self.visited[step.state, step.context] = self._tries(step.state, step.context) + 1
             self._learn(step)
         self.remembered += steps
 

@@ -1,4 +1,4 @@
 """Types that tasks have, whatever the tasks are: what each has shown, which is expected, and which is another one.
 
-Read in this order: `type_counts` (laws), `same_type`, `novelty` (the alarm), `type_prior`.
+Read in this order: `same_type`, `novelty` (the alarm), `type_prior`.
 """
