@@ -114,6 +114,19 @@ def test_states_go_on_to_the_bit():
             rows.restore(0, {"shares": np.zeros((2, 2))})
 
 
+def test_a_type_that_never_comes_leaves_numbers_when_all_hazards_are_refuted():
+    """Types take turns for so long that the hazards' probabilities are 0 in float32; the third has prior 0."""
+    prior, belief = np.array([0.5, 0.5, 0.0]), log_prior([0.5, 0.5, 0.0]).astype("f4")
+    rows = LearntDynamics("type").rows(1, prior, "f4")
+    for episode in range(400):
+        signal = np.where(np.arange(3) == episode % 2, 0.0, -60.0).astype("f4")
+        belief = rows.step(update(belief, signal).log_belief, 0)
+        assert np.isfinite(belief).all()
+        assert belief[2] < -60
+    assert (rows.shares[0, : len(HAZARDS)] @ np.exp(belief)).max() < 1e-30
+    assert np.exp(belief) == pytest.approx([1.0, 0.0, 0.0], abs=0.01)
+
+
 def test_the_share_that_has_just_changed_was_another_type():
     rows, before = LearntDynamics("time").rows(1, PRIOR, "f8"), np.array([0.9, 0.1, 0.0])
     after = rows.step(log_prior(before), 0)

@@ -5,6 +5,7 @@ import pytest
 from scipy import integrate, stats
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.normal_law import FEW, log_t_height
 from lifelore.interaction.outcomes.student_t_outcomes import StudentTOutcomes
 
 
@@ -30,3 +31,16 @@ def test_too_little_known_for_a_deviation_is_refused():
         StudentTOutcomes([[1.0]], 1.0, 2)
     with pytest.raises(InputError, match="degrees of freedom"):
         StudentTOutcomes.from_samples([[[1.0]]], shrinkage=1.0)
+
+
+def test_the_height_of_the_density_is_that_of_scipy():
+    """SciPy's log Γ loses digits at large degrees of freedom: the bound is 1e-15 times the logarithm there."""
+    few = np.concatenate([np.geomspace(1e-3, 1e4, 57), np.arange(1, 30)])
+    many = np.tile(few, 5)
+    expected = stats.t(few).logpdf(0)
+    assert log_t_height(few) == pytest.approx(expected, rel=2e-11)
+    assert log_t_height(few[:40]) == pytest.approx(expected[:40], rel=1e-13)
+    assert len(many) > FEW
+    assert log_t_height(many) == pytest.approx(np.tile(log_t_height(few), 5), rel=1e-15)
+    exact = np.full((3, 1), 1e30)
+    assert log_t_height(exact) == pytest.approx(stats.norm.logpdf(0), rel=1e-15)

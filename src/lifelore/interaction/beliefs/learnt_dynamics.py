@@ -41,7 +41,7 @@ MOST_CATEGORIES = 64
 PARTS = ("counts", "before", "category")
 """Arrays of a table."""
 LEAST = 1e-30
-"""In place of 0 below a line."""
+"""Added to probabilities that are divided by: types of probability 0 then have this one."""
 
 
 class LearntDynamics:
@@ -95,7 +95,8 @@ class TransitionCounts:
     """
 
     def __init__(self, n_users: int, n_rows: int, by_outcome: bool, prior: Array, dtype: Any) -> None:
-        self.by_outcome, self._prior, n_types = by_outcome, CONCENTRATION * prior.astype(dtype), len(prior)
+        self.by_outcome, n_types = by_outcome, len(prior)
+        self._prior = CONCENTRATION * prior.astype(dtype) + np.asarray(LEAST, dtype)
         self.counts = np.zeros((n_users, 1, n_rows, n_types), dtype)
         # Belief over types before the last step, and the category it was made by; -1 before the first step.
         self.before = np.zeros((n_users, n_rows), dtype)
@@ -157,7 +158,7 @@ class LearntRows:
         stay = np.concatenate([1 - HAZARDS, np.zeros(len(wanted))])
         # A row for each type: products of equal shapes are faster.
         self._rates, self._stay = rates.astype(dtype), np.repeat(stay[:, None], n_types, axis=1).astype(dtype)
-        self._anew = self._rates[:, None] * self._prior
+        self._anew = self._rates[:, None] * self._prior + np.asarray(LEAST, dtype)
         self._ones, self._ways = np.ones(n_types, dtype), np.ones((len(rates), len(rates)), dtype)
         self._categories: dict[Hashable, int] = {None: 0}
         for category in settings.categories:
@@ -182,8 +183,8 @@ class LearntRows:
         joint = self._joint(users, log_belief)
         # Products with ones: sums over short axes are slow.
         weights = joint.dot(self._ones)
-        after = joint * self._stay
-        after += weights[..., None] * self._anew
+        after = weights[..., None] * self._anew
+        after += joint * self._stay
         moved: Any = 0.0
         if self.tables:
             category = self._category(outcome)
@@ -192,7 +193,7 @@ class LearntRows:
                 after[..., way, :], stayed = table.step(users, joint[..., way, :], category)
                 moved = moved + after[..., way, :] - stayed
         totals = self._ways @ after
-        after /= np.maximum(totals, LEAST, out=totals)
+        after /= totals
         self.shares[users] = after
         total = totals[..., 0, :]
         if self.tables:

@@ -7,6 +7,7 @@ spread. Thesis: §4.2, Alg. 7, with many tasks side by side.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
+from math import prod
 from typing import Any, Literal
 
 import numpy as np
@@ -27,7 +28,7 @@ Numbers = NDArray[np.int64]
 Users = ArrayLike | Sequence[str]
 """Numbers of users, or their names where the users have names."""
 
-BLOCK = 1 << 18
+BLOCK = 1 << 19
 """Numbers that the users of a block take: more would leave the processor's cache, fewer take more calls."""
 LARGEST_BLOCK = 1 << 21
 """Numbers of the largest temporary arrays, which have a row for each user, type, policy and signal."""
@@ -311,7 +312,9 @@ class UserBeliefs:
 
 def blocks(n_users: int, algorithm: ReuseAlgorithm, rule: SelectionRule | None = None) -> Iterator[slice]:
     """Blocks of users whose numbers fit the cache, and whose scores by `rule` fit the memory."""
-    library, size = algorithm.library, BLOCK // algorithm.width
+    library = algorithm.library
+    arrays = (algorithm.log_belief, *algorithm.changes.arrays(), *algorithm.signals.arrays())
+    size = BLOCK // (library.n_policies + sum(prod(array.shape[1:]) for array in arrays))
     if rule is not None and not getattr(rule, "by_means", False):
         n_bins = getattr(rule, "n_bins", 1)
         size = min(size, LARGEST_BLOCK // (library.n_types * library.n_policies * n_bins))

@@ -44,7 +44,7 @@ def drawn_types(belief: Array, generator: np.random.Generator) -> Any:
     """Draw a type for each row of beliefs (T,) or (k, T); never a type of belief 0."""
     if belief.ndim == 1:
         held = np.add.accumulate(belief)
-        return held.searchsorted(generator.random() * held[-1], side="right")
+        return int(held.searchsorted(generator.random() * held[-1], side="right"))
     n = belief.shape[1]
     held = belief @ _running(n, belief.dtype.char) if n <= MOST_TYPES else np.cumsum(belief, axis=1)
     # In the rows' precision, where comparison is fast, and below the last sum whatever is rounded.
