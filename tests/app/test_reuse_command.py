@@ -120,8 +120,8 @@ def test_a_log_of_another_program_in_words(reuse, tmp_path):
     assert "log.csv line 34: policy must be" in reuse("fit", tmp_path / "log.csv", *form).refusal
     said = reuse("fit", tmp_path / "log.csv", *form, "--missing-policy", "leave-out", "--types", "2").out
     assert said.startswith("study default: 33 outcomes of 8 users, 3 policies, 2 types found")
-    assert "  1 lines without an outcome yet left out\n" in said
-    assert "  1 lines without a policy left out\n" in said
+    assert "  1 line without an outcome yet left out\n" in said
+    assert "  1 line without a policy left out\n" in said
 
 
 def test_warm_in_words_and_a_first_choice_that_knows_the_past(reuse, log, tmp_path):

@@ -149,10 +149,21 @@ def test_a_newer_memory_and_one_too_old_are_refused(where, change, words):
         open_memory(where)
 
 
-def test_an_older_source_is_not_migrated_behind_its_back(file, tmp_path, next_schema):
-    open_memory(file).close()
-    next_schema("CREATE TABLE lifelore_extra (x {int})")
-    before = file.read_bytes()
-    with open_memory(tmp_path / "new.db") as memory, pytest.raises(StoreError, match="older Lifelore"):
-        memory.merge_from(file)
-    assert file.read_bytes() == before
+@pytest.mark.parametrize(("number", "readable"), [(8, False), (9, True)])
+def test_an_older_source_is_not_migrated_behind_its_back(number, readable, file, tmp_path, monkeypatch):
+    with monkeypatch.context() as before:
+        before.setattr(schema, "MIGRATIONS", {one: schema.MIGRATIONS[one] for one in range(6, number + 1)})
+        before.setattr(schema, "LATEST", number)
+        with open_memory(file) as memory:
+            fill(memory)
+            made = memory.studies.keep("s", {"rule": "best"}, b"library").number
+    content = file.read_bytes()
+    with open_memory(tmp_path / "new.db") as memory:
+        if readable:
+            assert memory.merge_from(file)["added"] == 1
+            with open_memory(file, read_only=True) as source, source.studies.reading(made) as rows:
+                assert rows.decisions_of([1]) == {}
+        else:
+            with pytest.raises(StoreError, match="older Lifelore"):
+                memory.merge_from(file)
+    assert file.read_bytes() == content

@@ -462,13 +462,12 @@ def _print_fit(document: dict[str, Any]) -> None:
     if document["features"]:
         print(_features_line(document["features"]))
     if document["borrowed"]:
-        print(
-            f"  {document['borrowed']} pairs of type and policy have no outcome; the mean of all types is expected"
-        )
+        pairs = _count(document["borrowed"], "pair")
+        print(f"  {pairs} of type and policy without an outcome; the mean of all types is expected")
     if kept := document["kept"]:
         print(
-            f"  {kept['decisions']} decisions for {kept['users']} users in memory stay, {kept['pending']} without "
-            f"an outcome yet; {kept['in_log']} of them are lines of the log and count once"
+            f"  memory keeps {_count(kept['decisions'], 'decision')} for {_count(kept['users'], 'user')}, "
+            f"{kept['pending']} without an outcome yet; {kept['in_log']} of them in the log, too, which count once"
         )
     for name, before in document["changed"].items():
         keep = "" if before is None else f" (--{name} {before} keeps it)"

@@ -8,29 +8,17 @@ the end, so that the cells of a key are written once and not once for each sourc
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from lifelore.core.errors import StoreError
 from lifelore.memory import cache, ledger
 from lifelore.memory.connection import Connection
-from lifelore.memory.contribution import Contribution, Identity
+from lifelore.memory.contribution import Contribution
 from lifelore.memory.folding import LoreKey, Stored, fold
 from lifelore.memory.ledger import ContributionRow
 from lifelore.memory.refusal import one_line_refusals
 
 Counts = dict[str, int]
 """``added``; ``already_there``; ``forgotten``: not added, or removed here, because of a tombstone."""
-
-
-@dataclass(frozen=True)
-class _Plan:
-    """Changes for a source: rows to remove here, rows to add from the source."""
-
-    remove: list[ContributionRow]
-    add: list[ContributionRow]
-    added: int
-    already_there: int
-    forgotten: int
 
 
 class MemoryUnion:
@@ -68,12 +56,18 @@ class MemoryUnion:
             self._forget(ledger.forgotten_records(there))
         ledger.add_tombstones(self._here, tombstones - self._tombstones)
         self._tombstones |= tombstones
-        plan = _plan(self._own, theirs, self._tombstones)
-        self._remove(plan.remove)
-        for entry in ledger.insert_many(self._here, _read(there, [entry.number for entry in plan.add], source)):
+        gone = [entry for entry in self._own.values() if entry.identity in self._tombstones]
+        offered = [entry for entry in theirs if entry.identity not in self._tombstones]
+        new = [entry for entry in offered if entry.identity not in self._own]
+        both = [(entry, self._own[entry.identity]) for entry in offered if entry.identity in self._own]
+        earlier = [(entry, own) for entry, own in both if (entry.stamp, entry.digest) < (own.stamp, own.digest)]
+        self._remove([*gone, *(own for _, own in earlier)])
+        copied = sorted([*new, *(entry for entry, _ in earlier)], key=lambda entry: entry.order)
+        for entry in ledger.insert_many(self._here, _read(there, [entry.number for entry in copied], source)):
             self._own[entry.identity] = entry
             self._sources[entry.number] = source
-        return {"added": plan.added, "already_there": plan.already_there, "forgotten": plan.forgotten}
+        n_forgotten = len(gone) + len(theirs) - len(offered)
+        return {"added": len(new), "already_there": len(both), "forgotten": n_forgotten}
 
     def finish(self) -> None:
         """Update the cache.
@@ -145,21 +139,3 @@ def forget_records(conn: Connection, forgotten: Mapping[LoreKey, int]) -> set[Lo
             numbers |= mentions
     ledger.strip(conn, sorted(numbers), forgotten)
     return stale
-
-
-def _plan(own: dict[Identity, ContributionRow], theirs: list[ContributionRow], tombstones: set[Identity]) -> _Plan:
-    removed_here = [entry for entry in own.values() if entry.identity in tombstones]
-    offered = [entry for entry in theirs if entry.identity not in tombstones]
-    new = [entry for entry in offered if entry.identity not in own]
-    earlier = [entry for entry in offered if entry.identity in own and _earlier(entry, own[entry.identity])]
-    return _Plan(
-        remove=removed_here + [own[entry.identity] for entry in earlier],
-        add=sorted(new + earlier, key=lambda entry: entry.order),
-        added=len(new),
-        already_there=len(offered) - len(new),
-        forgotten=len(removed_here) + len(theirs) - len(offered),
-    )
-
-
-def _earlier(entry: ContributionRow, other: ContributionRow) -> bool:
-    return (entry.stamp, entry.digest) < (other.stamp, other.digest)

@@ -102,6 +102,8 @@ MIGRATIONS = {
     10: ("number of a decision among those of its user, which are not counted any more", _TURNS),
 }
 OLDEST, LATEST = min(MIGRATIONS), max(MIGRATIONS)
+READABLE = 9
+"""Oldest schema that is read as it is: later steps concern what is written alone."""
 
 _HAS_NOTES = {
     True: "SELECT MAX(name) FROM sqlite_master WHERE name = 'lifelore_migrations'",

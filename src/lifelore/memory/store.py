@@ -157,9 +157,9 @@ class Store:
         return found
 
     def require_current(self) -> None:
-        """Raise StoreError unless the memory needs no migration: one that is only read is never changed."""
+        """Raise StoreError unless the memory can be read as it is: one that is only read is never changed."""
         found = self.require_memory()
-        if found < schema.LATEST:
+        if found < schema.READABLE:
             raise StoreError(
                 f"memory {self.location} is of an older Lifelore (schema {found});"
                 " update it by lifelore memory show"

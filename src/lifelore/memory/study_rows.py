@@ -46,7 +46,7 @@ class DecisionRow(NamedTuple):
     time, ended : milliseconds since 1970; `ended` is None while the outcome is not known
     control : whether the user was held out
     available : the policies that were available; None: all
-    turn : number of decisions for the user before; None: not known
+    turn : number of decisions for the user before; None: not known, or not read
     """
 
     id: bytes
@@ -59,13 +59,14 @@ class DecisionRow(NamedTuple):
     context: str | None = None
     available: tuple[str, ...] | None = None
     request: str | None = None
-    turn: int | None = None
     outcome: float | None = None
     ended: int | None = None
+    turn: int | None = None
 
 
-_DECISION = ", ".join(DecisionRow._fields)
-_MADE = DecisionRow._fields[: DecisionRow._fields.index("outcome")]
+_DECISION = ", ".join(DecisionRow._fields[:-1])
+"""Columns of a decision that are read; the turn is only for the next one."""
+_MADE = (*DecisionRow._fields[: DecisionRow._fields.index("outcome")], "turn")
 """Columns of a decision without its outcome."""
 
 

@@ -290,7 +290,7 @@ def _drawn(
         new_ids(now, len(users)), [user.number for user in users], policies, probability, held_out.tolist(),
         repeat(study.version), repeat(now), [user.context for user in users],
         [None if one.available is None else tuple(one.available) for one in requests],
-        [request.request for request in requests], numbers,
+        [request.request for request in requests], repeat(None), repeat(None), numbers,
     )  # fmt: skip
     return list(starmap(DecisionRow, columns))
 
