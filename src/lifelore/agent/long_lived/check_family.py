@@ -75,8 +75,7 @@ def _play(family: TaskFamily, task: AgentTask, name: str, generator: np.random.G
     else:
         _rule(family, False, f"{name} must end, got {MOST_ACTS} acts without an end; let the last Step have ended")
     contexts, best = task.best_acts(laws[0], shared)
-    shape = len(contexts), len(family.acts)
-    _rule(family, best.shape == shape, f"best_acts must be of shape {shape}, contexts × acts, got {best.shape}")
+    _check_shape(family, "best_acts", best, (len(contexts), len(family.acts)), "contexts × acts")
 
 
 def check_constants(family: TaskFamily) -> None:
@@ -101,14 +100,9 @@ def check_constants(family: TaskFamily) -> None:
         _rule(family, isinstance(n, WHOLE) and n >= 1, f"{name} must be a whole number from 1, got {n!r}")
     for name, kind in ARRAYS.items():
         array, shape = getattr(family, name), (family.n_causes,)
-        _rule(
-            family,
-            isinstance(array, np.ndarray) and array.shape == shape,
-            f"{name} must be an array of shape {shape}, a value a cause, got {np.shape(array)}",
-        )
-        _rule(
-            family, np.issubdtype(array.dtype, kind), f"{name} must hold {kind.__name__} values, got {array.dtype}"
-        )
+        _check_shape(family, name, array, shape, "a value a cause")
+        held = np.issubdtype(array.dtype, kind)
+        _rule(family, held, f"{name} must hold {kind.__name__} values, got {array.dtype}")
     _rule(family, np.min(family.groups) >= 0, f"groups must be numbers from 0, got {np.min(family.groups)}")
     constant = np.isfinite(family.constancy).all() and np.min(family.constancy) > 0
     _rule(family, constant, f"constancy must be finite and above 0, got {np.min(family.constancy)}")
@@ -117,20 +111,13 @@ def check_constants(family: TaskFamily) -> None:
 
 def _check_possible(family: TaskFamily) -> None:
     possible, shape = family.possible, (family.n_causes, family.n_effects)
-    _rule(
-        family,
-        isinstance(possible, np.ndarray) and possible.shape == shape,
-        f"possible must be an array of shape {shape}, causes × effects, got {np.shape(possible)}",
-    )
+    _check_shape(family, "possible", possible, shape, "causes × effects")
     sums = np.where((possible >= 0).all(axis=1), possible.sum(axis=1), np.nan)
     wrong = np.flatnonzero(~(np.abs(sums - 1) <= ROW_SUM))
     if wrong.size:
         row = possible[wrong[0]].tolist()
         _rule(family, False, f"rows of possible must be probabilities with sum 1, got {row} for cause {wrong[0]}")
-    smoothed = np.shape(family.smoothed(possible[None]))
-    _rule(
-        family, smoothed == (1, *shape), f"smoothed must keep the shape of counts, {(1, *shape)}, got {smoothed}"
-    )
+    _check_shape(family, "smoothed counts", family.smoothed(possible[None]), (1, *shape), "that of the counts")
 
 
 def checked_meeting(family: TaskFamily, number: int, met: Any) -> tuple[DrawnTask, AgentTask]:
@@ -153,17 +140,11 @@ def checked_best_return(family: TaskFamily, number: int, best: Any) -> float:
 def checked_plan(family: TaskFamily, plan: Any, n_types: int) -> Plan:
     """A plan with a value for each type and behaviour, and an act for each behaviour."""
     _rule(family, isinstance(plan, Plan), f"plan must return a Plan, got {type(plan).__name__}")
-    values = np.shape(plan.values)
-    square = values == (n_types, n_types)
-    _rule(
-        family, square, f"values of a plan must be of shape {n_types, n_types}, types × behaviours, got {values}"
-    )
+    _check_shape(family, "values of a plan", plan.values, (n_types, n_types), "types × behaviours")
     _rule(family, np.isfinite(plan.values).all(), "values of a plan must be finite, got infinite or missing ones")
     for name in ("acts", "trying"):
         acts = np.asarray(getattr(plan, name))
-        _rule(
-            family, acts.shape == (n_types,), f"{name} of a plan must be of shape {(n_types,)}, got {acts.shape}"
-        )
+        _check_shape(family, f"{name} of a plan", acts, (n_types,), "an act a behaviour")
         known = np.issubdtype(acts.dtype, np.integer) and acts.min() >= 0 and acts.max() < len(family.acts)
         _rule(family, known, f"{name} of a plan must lie in 0..{len(family.acts) - 1}, got {acts.tolist()}")
     return plan
@@ -177,16 +158,18 @@ def checked_step(family: TaskFamily, act: int, step: Any) -> Step:
     for effect in step.effects:
         _rule(family, len(effect) == 2, f"effects must be pairs (cause, effect), got {effect!r} for act {name!r}")
         for what, n, got in zip(("cause", "effect"), (family.n_causes, family.n_effects), effect, strict=True):
-            _rule(
-                family,
-                isinstance(got, WHOLE) and 0 <= got < n,
-                f"{what} must lie in 0..{n - 1} (n_{what}s = {n}), got {got!r} for act {name!r}",
-            )
+            known = isinstance(got, WHOLE) and 0 <= got < n
+            _rule(family, known, f"{what} must lie in 0..{n - 1} (n_{what}s = {n}), got {got!r} for act {name!r}")
     return step
 
 
 def _finite(value: Any) -> bool:
     return isinstance(value, Real) and math.isfinite(value)
+
+
+def _check_shape(family: TaskFamily, what: str, array: Any, shape: tuple[int, ...], axes: str) -> None:
+    right = isinstance(array, np.ndarray) and array.shape == shape
+    _rule(family, right, f"{what} must be an array of shape {shape}, {axes}, got {np.shape(array)}")
 
 
 def _rule(family: TaskFamily, holds: Any, rule: str) -> None:

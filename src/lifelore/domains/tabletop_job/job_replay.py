@@ -39,11 +39,6 @@ class JobReplay:
         """The present observation."""
         return self.tree.after(self.actions).state.observation
 
-    @property
-    def ended(self) -> bool:
-        """Whether the job has ended."""
-        return self.tree.after(self.actions).state.ended
-
     def reset(self) -> JobObservation:
         """Back to the settled tray."""
         self.actions = ()
@@ -66,14 +61,6 @@ class JobReplay:
         assert node.events is not None, "an action was taken"
         reward = reward_of(self.user, node.events, brisk, self.tree.tray.target)
         return node.state.observation, reward, node.state.ended
-
-    def copy_state(self) -> Actions:
-        """All that `restore` needs."""
-        return self.actions
-
-    def restore(self, state: Actions) -> None:
-        """Go on from a copied state of a job on the same tray and gripper."""
-        self.actions = state
 
     def seen(self, purpose: str, look: Callable[[TabletopJob], T]) -> T:
         """What `look` makes of the job as it is now; computed once for each purpose and sequence of actions."""
