@@ -37,7 +37,7 @@ def test_live_takes_keys_or_settings(room, tmp_path):
     by_settings = lifelore.live(settings).report
     by_keys = lifelore.live(map=room / "room.yaml", memory=tmp_path / "b.db", tasks=2).report
     assert by_settings["tasks"] == by_keys["tasks"]
-    assert lifelore.live(domain="lattice", prior="none", tasks=1, memory=tmp_path / "c.db").report
+    assert lifelore.live(domain="lattice", weight=0.5, tasks=1, memory=tmp_path / "c.db").report
 
 
 @pytest.mark.parametrize(

@@ -293,6 +293,9 @@ class Memory:
     def merge_from(self, other: "Memory | str | Path") -> dict[str, int]:
         """Copy all contributions and tombstones of another memory or export, which is not changed.
 
+        What records mean is not looked at: types that two robots of one name have named alike become one type,
+        where ``lifelore memory merge`` refuses. Robots that live apart need names of their own.
+
         Returns
         -------
         dict

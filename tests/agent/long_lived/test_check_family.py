@@ -75,7 +75,9 @@ MET = {  # by the checker, and in a life
     "judges must be an array of shape (3,), a value a cause, got (3,)": constant(judges=[True, True, False]),
     "judges must hold bool values, got int64": constant(judges=np.ones(3, int)),
     "constancy must be finite and above 0, got 0.0": constant(constancy=np.zeros(3)),
-    "smoothed counts must be an array of shape (1, 3, 2), that of the counts, got (1, 3)": constant(smoothed=lambda _, n: n.sum(axis=2)),
+    "smoothed counts must be an array of shape (1, 3, 2), that of the counts, got (1, 3)": constant(
+        smoothed=lambda _, n: n.sum(axis=2)
+    ),
     "meet must return (DrawnTask, task), got None": meet(lambda drawn, task: None),
     "meet must return task 0, got task 1": drawn(number=1),
     "a context must lie in 0..1048575, got -1 in task 0": drawn(context=-1),
@@ -86,7 +88,9 @@ MET = {  # by the checker, and in a life
         values=lambda n: np.eye(4, 1)
     ),
     "values of a plan must be finite, got infinite %": plan(values=lambda n: np.full((n, n), np.inf)),
-    "acts of a plan must be an array of shape (%,), an act a behaviour, got (9,)": plan(acts=lambda n: np.zeros(9, int)),
+    "acts of a plan must be an array of shape (%,), an act a behaviour, got (9,)": plan(
+        acts=lambda n: np.zeros(9, int)
+    ),
     "acts of a plan must lie in 0..3, got %4%": plan(acts=lambda n: np.full(n, 4)),
     "trying of a plan must lie in 0..3, got %-1%": plan(trying=lambda n: np.full(n, -1)),
     "act must return a Step, got tuple for '%'": (None, {"act": lambda self, act: (0.0, (), True)}),

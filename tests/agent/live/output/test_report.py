@@ -96,10 +96,10 @@ def test_every_agent_has_its_colour():
     ("settings", "has_prior"),
     [
         ({"agent": "scratch", "tasks": 1, "start": (1, 1), "episodes": 1, "max_steps": 5}, False),
-        ({"prior": "none", "tasks": 2}, False),
-        ({"domain": "noise", "prior": "state", "tasks": 2}, True),
+        ({"agent": "model", "tasks": 2}, False),
+        ({"domain": "noise", "tasks": 2}, True),
     ],
-    ids=["one capped task from one start", "no prior", "noise by state"],
+    ids=["one capped task from one start", "no prior", "noise"],
 )
 def test_other_lives_have_a_prior_or_no_picture_of_one(tmp_path, settings, has_prior):
     out = tmp_path / "out"
