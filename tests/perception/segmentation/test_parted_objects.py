@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from lifelore.perception.segmentation.convexity_segmentation import convex_objects
-from lifelore.perception.segmentation.parted_objects import coplanar_pairs
+from lifelore.perception.segmentation.free_space import view_from
+from lifelore.perception.segmentation.parted_objects import continued_pairs
+from tests.perception.segmentation.test_patch_merging import patches
 
 CAMERA = np.array([0.0, -0.9, 0.6])
 STEP = 0.002
@@ -72,7 +74,7 @@ def test_equal_blocks_are_two_if_the_camera_sees_the_table_beside_the_post_betwe
     assert np.bincount(first).argmax() != np.bincount(second).argmax()
 
 
-def test_coplanar_pairs_agree_with_matrices_of_all_pairs():
+def test_continued_pairs_agree_with_matrices_of_all_pairs():
     rng = np.random.default_rng(0)
     middles, regions, large = rng.uniform(0, 0.5, (150, 3)), rng.integers(0, 4, 150), np.array([1, 1, 0, 1], bool)
     normals = np.eye(3)[rng.integers(0, 3, 150)] + rng.normal(0, 0.1, (150, 3))
@@ -82,6 +84,12 @@ def test_coplanar_pairs_agree_with_matrices_of_all_pairs():
     good = (normals @ normals.T >= np.cos(np.radians(15))) & (off <= 0.01) & (off.T <= 0.01)
     good &= (np.linalg.norm(apart, axis=2) <= 0.35) & (regions[:, None] != regions)
     good &= large[regions] & large[regions][:, None]
-    pairs = coplanar_pairs(middles, normals, regions, large)
-    assert len(pairs) > 5
-    assert pairs == list(zip(*(rows.tolist() for rows in np.nonzero(np.triu(good))), strict=True))
+    good = np.triu(good)
+    expected = list(zip(*(rows.tolist() for rows in np.nonzero(good)), strict=True))
+    # A wall before everything hides all lines; before a wall behind everything all are free.
+    before = face((-0.3, -0.6, 0.1), (0.6, 0, 0), (0, 0, 0.8))
+    behind = CAMERA + 6 * (before - CAMERA)
+    these = patches(middles, normals, [[0, 1]])
+    found = [continued_pairs(these, regions, large, view_from(CAMERA, wall)) for wall in (before, behind)]
+    assert len(expected) > 5
+    assert found == [expected, []]

@@ -3,6 +3,7 @@
 import numpy as np
 
 from lifelore.perception.segmentation.cut_confidence import cut_confidence
+from lifelore.perception.segmentation.free_space import view_from
 from lifelore.perception.segmentation.patch_convexity import evidence, signed_angles, steps
 from lifelore.perception.segmentation.patch_merging import absorbed, merged
 from lifelore.perception.segmentation.supervoxels import Supervoxels
@@ -43,17 +44,23 @@ def test_evidence_is_greatest_on_flat_surfaces_and_least_in_creases():
     assert found.tolist() == [-5, -5, 0, 5, 1, 0.5, -5]
 
 
+def joined(n, pairs, borders, odds):
+    """Regions of patches of which no camera is known."""
+    found = patches(np.zeros((n, 3)), np.ones((n, 3)), pairs, borders)
+    return merged(found, np.array(odds), 0, 0.005, view_from(None, np.empty((0, 3)))).tolist()
+
+
 def test_regions_end_at_negative_evidence():
-    assert merged(4, CHAIN, np.array([1, 1, 1]), np.array([2.0, -1.0, 2.0])).tolist() == [0, 0, 1, 1]
+    assert joined(4, CHAIN, [1, 1, 1], [2.0, -1.0, 2.0]) == [0, 0, 1, 1]
 
 
 def test_a_long_crease_outweighs_a_short_leak():
     # 0 and 1 join, 2 and 3 join; between them lie a crease of length 9 and a leak of length 1.
     pairs = np.array([[0, 1], [2, 3], [0, 2], [1, 3]])
-    odds = np.array([5.0, 5.0, -1.0, 3.0])
-    assert merged(4, pairs, np.array([5, 5, 9, 1]), odds).tolist() == [0, 0, 1, 1]
+    odds = [5.0, 5.0, -1.0, 3.0]
+    assert joined(4, pairs, [5, 5, 9, 1], odds) == [0, 0, 1, 1]
     # The mean decides: with the lengths exchanged, all are one.
-    assert merged(4, pairs, np.array([5, 5, 1, 9]), odds).tolist() == [0, 0, 0, 0]
+    assert joined(4, pairs, [5, 5, 1, 9], odds) == [0, 0, 0, 0]
 
 
 def test_merging_agrees_with_a_slow_twin():
@@ -62,7 +69,7 @@ def test_merging_agrees_with_a_slow_twin():
         n = 12
         pairs = np.array([(a, b) for a in range(n) for b in range(a + 1, n) if rng.random() < 0.3])
         borders, odds = rng.integers(1, 20, len(pairs)), rng.normal(0, 2, len(pairs))
-        assert merged(n, pairs, borders, odds).tolist() == slowly_merged(n, pairs, borders, odds).tolist()
+        assert joined(n, pairs, borders, odds) == slowly_merged(n, pairs, borders, odds).tolist()
 
 
 def slowly_merged(n, pairs, borders, odds):
@@ -88,8 +95,7 @@ def canonical(region):
 
 
 def test_no_patches_that_touch_stay_apart():
-    none = np.empty((0, 2), np.int64)
-    assert merged(3, none, np.empty(0, np.int64), np.empty(0)).tolist() == [0, 1, 2]
+    assert joined(3, np.empty((0, 2), np.int64), np.empty(0, np.int64), np.empty(0)) == [0, 1, 2]
 
 
 def test_weak_regions_join_the_neighbour_of_the_longest_border():

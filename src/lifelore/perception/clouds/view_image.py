@@ -24,6 +24,8 @@ class ViewImage:
     Attributes
     ----------
     shape : (columns, rows)
+    low : (2,) int64
+        Column and row of the first pixel, as of `view_pixels`.
     at, depths : (n,)
         Number of the pixel of each point, column by column, and its distance.
     nearest : (columns · rows,) float64
@@ -32,8 +34,8 @@ class ViewImage:
 
     def __init__(self, rays: NDArray[np.float64], size: float) -> None:
         pixels = view_pixels(rays, size)
-        self._size, self._low = size, pixels.min(axis=1, keepdims=True)
-        pixels -= self._low
+        self._size, self.low = size, pixels.min(axis=1)
+        pixels -= self.low[:, None]
         columns, rows = (pixels.max(axis=1) + 1).tolist()
         self.shape = columns, rows
         self.at = pixels[0] * rows + pixels[1]
@@ -43,7 +45,7 @@ class ViewImage:
 
     def pixels_of(self, rays: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """Number of the pixel of each ray (m, 3), 0 outside the image, and whether it is inside; (m,) each."""
-        columns, rows = view_pixels(rays, self._size) - self._low
+        columns, rows = view_pixels(rays, self._size) - self.low[:, None]
         inside = (columns >= 0) & (columns < self.shape[0]) & (rows >= 0) & (rows < self.shape[1])
         return np.where(inside, columns * self.shape[1] + rows, 0), inside
 

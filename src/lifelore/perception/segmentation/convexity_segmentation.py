@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 
 from lifelore.perception.clouds.connected_parts import connected_parts
 from lifelore.perception.segmentation.cut_confidence import CutCloud, cut_confidence, labels_by_size
+from lifelore.perception.segmentation.free_space import View, view_from
 from lifelore.perception.segmentation.hollow_objects import hollow_pairs
-from lifelore.perception.segmentation.parted_objects import SeenImage, parted_pairs
+from lifelore.perception.segmentation.parted_objects import parted_pairs
 from lifelore.perception.segmentation.patch_convexity import beyond_bend, evidence, signed_angles, steps
 from lifelore.perception.segmentation.patch_merging import absorbed, merged
 from lifelore.perception.segmentation.plane import NEAR
@@ -69,12 +70,12 @@ def convex_objects(
     # Voxels of less than the noise would be layers of a surface, and not its surface.
     noisier = min(float(np.median(band(points, camera))) / NEAR, NOISIEST)
     surface = surface_voxels(points, camera, VOXEL * noisier, _MOST_VOXELS, _SPARSE)
-    image = None if camera is None else SeenImage(points if seen is None else seen, camera)
+    view = view_from(camera, points if seen is None else seen)
     spacing = PATCH * surface.size / VOXEL
     costs = step_costs(surface, spacing)
     cuts: list[CutCloud] = []
     for start in _STARTS:
-        cuts.append(_cut(surface, supervoxels(surface, costs, spacing, start), image, min_area))
+        cuts.append(_cut(surface, supervoxels(surface, costs, spacing, start), view, min_area))
         if len(cuts) == 2 and agreement(cuts[0].labels, cuts[1].labels) >= _SAME:
             break
     cut = most_agreed(cuts)
@@ -84,19 +85,20 @@ def convex_objects(
 def _cut(
     surface: SurfaceVoxels,
     patches: Supervoxels,
-    image: SeenImage | None,
+    view: View,
     min_area: float,
 ) -> CutCloud:
     """Labels of the voxels of a surface, whose patches join into objects."""
     odds = evidence(beyond_bend(patches, signed_angles(patches)), steps(patches) / surface.size)
-    regions = merged(len(patches.counts), patches.pairs, patches.borders, odds)
     fragment = round(FRAGMENT * (VOXEL / surface.size) ** 2)
+    regions = merged(patches, odds, fragment, surface.size, view)
     regions = absorbed(
         regions, patches.pairs, patches.borders, lambda own: _below(fragment, _voxels(patches, own))
     )
-    pairs = list(hollow_pairs(surface, patches, regions, fragment))
-    if image is not None:
-        pairs += parted_pairs(patches, regions, fragment, image)
+    pairs = [
+        *hollow_pairs(surface, patches, regions, fragment),
+        *parted_pairs(patches, regions, fragment, view),
+    ]
     joined = connected_parts(np.array(pairs, np.int64).reshape(-1, 2), int(regions.max()) + 1)
     regions = joined[regions]
     n_cut = int((_voxels(patches, regions) * surface.size**2 >= min_area).sum())

@@ -8,34 +8,51 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.compiled.jit import inlined, kernel
+from lifelore.perception.segmentation.free_space import View, free_share
+from lifelore.perception.segmentation.supervoxels import Supervoxels
+
+_STRONG = 3.5
+"""Mean evidence from which two regions merge whatever is free between them; more costs time."""
+_FREE = 0.05
+"""Share of free places between two regions, beyond that within either, from which they stay apart. More joins what
+touches at corners, less splits what is hollow."""
+_SAMPLE = 16
+"""Patches of a region from which lines are drawn."""
 
 
 def merged(
-    n: int, pairs: NDArray[np.int64], borders: NDArray[np.int64], evidence: NDArray[np.float64]
+    patches: Supervoxels, evidence: NDArray[np.float64], least: int, voxel: float, view: View
 ) -> NDArray[np.int64]:
-    """(n,) int64: region of each patch, from 0.
+    """(k,) int64: region of each patch, from 0.
 
     The evidence between two regions is the mean over their border, weighed by its length. The pair with the
     greatest mean is merged until no mean is above 0. So a few pairs of convex patches do not merge two objects
-    that meet in a long crease, and a few concave pairs do not split a box along an edge.
+    that meet in a long crease, and a few concave pairs do not split a box along an edge. Two large regions stay
+    apart where the evidence is weak and the camera sees through the space between them (`free_share`).
 
     Parameters
     ----------
-    n : int
-        Number of patches.
-    pairs, borders, evidence : (e, 2), (e,) and (e,)
-        As of `Supervoxels`, and log odds of one object.
+    patches : Supervoxels
+    evidence : (e,) float64
+        Log odds of one object, of each pair of patches.
+    least : int
+        Voxels of the smallest large region.
+    voxel : float
+        Length of the surface's voxels, metres.
+    view : View
     """
-    return np.unique(_owners(n, pairs, borders, evidence), return_inverse=True)[1].reshape(-1).astype(np.int64)
+    owner = _owners(patches, evidence, least, voxel, view)
+    return np.unique(owner, return_inverse=True)[1].reshape(-1).astype(np.int64)
 
 
 @kernel
-def _owners(n, pairs, borders, evidence):
-    """(n,) int64: a patch of the region of each patch, the same for all of a region.
+def _owners(patches, evidence, least, voxel, view):
+    """(k,) int64: a patch of the region of each patch, the same for all of a region.
 
     At 700 patches this is six times as fast as dictionaries of borders.
     """
-    border, total = borders.astype(np.float64), borders * evidence
+    n, pairs = len(patches.counts), patches.pairs
+    border, total = patches.borders.astype(np.float64), patches.borders * evidence
     # At side h % 2 of border h // 2 is region ends[h], -1 where the border has gone; a region's sides are a chain.
     ends, first, following = pairs.copy().reshape(-1), np.full(n, -1), np.empty(2 * len(pairs), np.int64)
     for h in range(len(ends)):
@@ -45,12 +62,20 @@ def _owners(n, pairs, borders, evidence):
         (-total[e] / border[e], pairs[e, 0], pairs[e, 1], e) for e in range(len(pairs)) if total[e] > 0
     ]
     heapq.heapify(queue)
-    owner, shared = np.arange(n), np.full(n, -1)
+    owner, shared, voxels = np.arange(n), np.full(n, -1), patches.counts.copy()
     while len(queue):
         key, a, b, e = heapq.heappop(queue)
         if _regions(ends, e) != (a, b) or key != -total[e] / border[e]:
             continue  # the border has grown since
-        owner[b] = a
+        if -key < _STRONG and min(voxels[a], voxels[b]) >= least:
+            of_a, of_b = _some(owner, a), _some(owner, b)
+            within = max(
+                free_share(of_a, of_a, patches, voxel, view), free_share(of_b, of_b, patches, voxel, view)
+            )
+            if free_share(of_a, of_b, patches, voxel, view) > within + _FREE:
+                continue
+        owner[owner == b] = a
+        voxels[a] += voxels[b]
         ends[2 * e] = ends[2 * e + 1] = -1
         h = first[a]
         while h >= 0:
@@ -73,9 +98,14 @@ def _owners(n, pairs, borders, evidence):
                 if total[e] > 0:
                     heapq.heappush(queue, (-total[e] / border[e], min(a, other), max(a, other), e))
             h = after
-    while (owner[owner] != owner).any():
-        owner = owner[owner]
     return owner
+
+
+@inlined
+def _some(owner, region):
+    """At most `_SAMPLE` patches of a region, evenly by their numbers, which ascend with their places."""
+    own = np.flatnonzero(owner == region)
+    return own[:: (len(own) + _SAMPLE - 1) // _SAMPLE]
 
 
 @inlined

@@ -4,8 +4,7 @@ After Papon et al. (2013). A patch takes the voxels that are nearest to its seed
 costs its length and the turn of the normal. So patches end at creases rather than cross them.
 """
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,8 +17,7 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 
-@dataclass(frozen=True, eq=False)
-class Supervoxels:
+class Supervoxels(NamedTuple):
     """Patches of a surface and their borders.
 
     Parameters
