@@ -14,13 +14,6 @@ from ..twins import naive_reuse as naive
 INF = np.inf
 
 
-def test_a_hazard_by_hand():
-    changing = TypeDynamics.hazard(0.2, [0.5, 0.5, 0.0])
-    assert np.exp(changing.step(log_prior([1.0, 0.0, 0.0]))) == pytest.approx([0.9, 0.1, 0.0])
-    assert np.exp(TypeDynamics.hazard(1, [0.3, 0.7]).step(log_prior([1.0, 0.0]))) == pytest.approx([0.3, 0.7])
-    assert np.exp(TypeDynamics.hazard(0, [0.3, 0.7]).step(log_prior([1.0, 0.0]))).tolist() == [1.0, 0.0]
-
-
 @settings(deadline=None, max_examples=100)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.002, 0.3, 1.0, 1e-12, 1e-295]))
 def test_steps_agree_with_the_slow_twin(seed, rate):
