@@ -46,7 +46,6 @@ def test_the_probability_that_a_type_has_just_changed():
     after = changing.step(log_prior([0.9, 0.1, 0.0]))
     assert np.exp(after) == pytest.approx([0.82, 0.18, 0.0])
     share = changing.changed_share(after)
-    assert share is not None
     assert share[:2] == pytest.approx([0.1 / 0.82, 0.1 / 0.18])
     assert TypeDynamics.static().changed_share(after) is None
     assert TypeDynamics.hazard(0.0, [0.5, 0.5]).changed_share(after[:2]) is None

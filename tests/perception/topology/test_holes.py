@@ -149,7 +149,6 @@ def test_opening_by_hand():
     others = own + np.where((x > 0.03) & (x < 0.07), 0.04, 0.001)[:, None] * [0, 0, 1]
     start, end = np.zeros(3), np.array([0.1, 0, 0])
     opening = opening_along(own, others, start, end, 0.015)
-    assert opening is not None
     assert opening.width == pytest.approx(0.04, abs=0.001)
     assert opening_along(own, others, start, end, 0.045) is None
     assert opening_along(own, own + np.array([0, 0, 0.04]), start, end, 0.015) is None
