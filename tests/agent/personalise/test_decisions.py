@@ -5,14 +5,7 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from lifelore.agent.personalise.decisions import (
-    Request,
-    choose,
-    decide,
-    forget,
-    observe,
-    update,
-)
+from lifelore.agent.personalise.decisions import Request, choose, decide, forget, observe, update
 from lifelore.agent.personalise.explanation import explain
 from lifelore.agent.personalise.fitting.fit import FitSettings, fit
 from lifelore.agent.personalise.identifiers import identifier, new_ids, parse_identifier
