@@ -114,8 +114,6 @@ def watched(code: str, during: str, folder: Path, home: Path) -> str:
         ["bash", "-euc", f"exec {code}"], cwd=folder, env=os.environ | {"PATH": path, "XDG_DATA_HOME": str(home)},
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
     ) as child:  # fmt: skip
-        assert child.stderr is not None
-        assert child.stdout is not None
         assert "Ctrl-C stops" in child.stderr.readline()
         run_block("sh", during, folder)
         line = child.stdout.readline()

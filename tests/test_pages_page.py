@@ -39,7 +39,6 @@ def test_its_last_commands_serve_the_pages_with_tokens(tmp_path):
     command = [*program, *serve, *options]
     with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True) as served:
         try:
-            assert served.stdout is not None
             url = json.loads(served.stdout.readline())["url"].replace("0.0.0.0", "127.0.0.1")
             for page in PAGES:
                 with urlopen(url + page.path) as answer:

@@ -203,7 +203,6 @@ def service(memory: Path) -> Iterator[str]:
     command = [*PROGRAM, "serve", "--json", "--port", "0", "--memory", str(memory)]
     served = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     with served:
-        assert served.stdout is not None
         yield json.loads(served.stdout.readline())["url"]
         served.terminate()
 

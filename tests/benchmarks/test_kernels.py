@@ -35,7 +35,6 @@ def test_the_answer_keeps_its_contract(small):
 @pytest.mark.skipif(c_loop.shutil.which("gcc") is None, reason="gcc is not installed")
 def test_the_c_twin_learns_the_same_bits():
     loop = c_loop.built_c_loop()
-    assert loop is not None
     ours, theirs = new_case(300, seed=4), new_case(300, seed=4)
     assert run_kernel(ours) == loop.run(theirs) > 3000
     for a, b in zip((*ours.learner[:4], *ours.curve), (*theirs.learner[:4], *theirs.curve), strict=True):

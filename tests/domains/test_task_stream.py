@@ -36,13 +36,7 @@ def test_a_late_type_arrives_on_time_and_no_sooner():
 
 @pytest.mark.parametrize(
     "wrong",
-    [
-        {"n_contexts": 0},
-        {"loyalty": 1.5},
-        {"arrivals": {"z": 3}},
-        {"arrivals": {"a": 3, "b": 3}},
-        {"zipf": -1.0},
-    ],
+    [{"n_contexts": 0}, {"loyalty": 1.5}, {"arrivals": {"z": 3}}, {"arrivals": {"a": 3, "b": 3}}, {"zipf": -1.0}],
 )
 def test_wrong_settings_are_refused(wrong):
     with pytest.raises(InputError):

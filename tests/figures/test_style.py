@@ -38,11 +38,6 @@ def test_save_writes_a_png_and_nothing_else(tmp_path):
         assert image.size == (540, 360)
 
 
-def test_the_same_figure_gives_the_same_bytes(tmp_path):
-    one, two = (save_figure(plain_figure(), tmp_path / name).read_bytes() for name in ("a.png", "b.png"))
-    assert one == two
-
-
 def noisy_figure():
     figure = new_figure(2, 2)
     figure.subplots().imshow(np.random.default_rng(0).random((200, 200, 3)))

@@ -91,6 +91,5 @@ def test_its_program_reads_what_memory_recalls(tmp_path, monkeypatch):
     cells = names["merged"]("memory.db")
     assert {kind for kind, _, _ in cells} == set(recalled)
     for kind, record in recalled.items():
-        assert record is not None
         assert cells[kind, "k", 1] == dict(zip(record.slots.tolist(), record.values.tolist(), strict=True))
     assert shown.getvalue().splitlines()[0] == "kind add 1 k 3 cells"

@@ -74,7 +74,6 @@ def test_a_persons_policy_by_hand():
 def test_an_expert_takes_a_shortest_way():
     tables, best = grid(6)
     one = simulated_demonstration(tables, best, 1.0, stream(2), task="t", agent="ann", most_steps=1000)
-    assert one is not None
     assert (one.task, one.agent, len(one.states), one.states[0]) == ("t", "ann", 10, 0)
     assert best[one.states, one.actions].all()
     followed = tables.next_state[one.states, one.actions, 0]

@@ -9,13 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.action.priors.action_prior import ONE, ActionPrior
-from lifelore.action.priors.prior_file import (
-    FORMAT,
-    load_prior,
-    prior_bytes,
-    prior_from_bytes,
-    save_prior,
-)
+from lifelore.action.priors.prior_file import FORMAT, load_prior, prior_bytes, prior_from_bytes, save_prior
 from lifelore.core.errors import InputError
 
 ABOUT = {"format": FORMAT.name, "version": 1, "n_actions": 2, "alpha0": 0.5, "key": "k", "about": {}}

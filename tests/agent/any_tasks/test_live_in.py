@@ -70,7 +70,6 @@ def test_only_what_is_worth_something_is_counted(tmp_path):
     with open_memory(path) as memory:
         ((key, version, about),) = memory.keys("action_prior")
         record = memory.recall("action_prior", key, version)
-    assert record is not None
     assert record.slots.tolist() == [context_code("hall") * 8 + 3]
     assert record.values.tolist() == [5 * ONE]
     assert (key, about) == ("doors/prior", {"prior": "tasks", "means": "doors"})

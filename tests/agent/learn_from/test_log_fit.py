@@ -55,7 +55,6 @@ def test_the_offset_that_mends_a_log_is_found(reachable, points, offset):
     moved = shifted(offset, points)
     assert reachable.outside(moved).mean() > MOST_OUTSIDE
     found = mending_shift(moved, reachable)
-    assert found is not None
     mended = shifted(found[0], moved)
     assert np.hypot(*(mended - points).T).max() < 0.5
     assert reachable.outside(mended).mean() <= 0.01
@@ -80,7 +79,6 @@ def test_a_turned_map_is_searched_in_its_own_frame(world, points):
     floor = floor_of(occupancy, world_from_settings(WorldSettings("building", OFFICE), occupancy))
     moved = shifted((0.0, 0.0, turn), points) + np.array([3.0, 1.0])
     found = mending_shift(moved, Reachable.of(floor))
-    assert found is not None
     assert np.allclose(found[0], (-3.0, -1.0, 0.0), atol=0.5)
 
 

@@ -69,7 +69,6 @@ def test_features_name_the_target_that_the_user_points_at(family):
     for number in range(2):
         tray = sample_tray(3, number)
         seen = look_at_raw_cloud(TabletopJob(tray, KIND))
-        assert seen is not None
         assert seen.target == tray.target
         assert seen.objects <= set(range(len(tray.shapes)))
         assert tray.target not in seen.pile(tray.target, seen.objects)
@@ -101,7 +100,6 @@ def test_a_bin_of_rewards_is_no_second_reward(family):
 def test_without_relations_the_agent_sees_places_alone(family):
     job = TabletopJob(sample_tray(3, 0), KIND)
     seen = look_at_places(job)
-    assert seen is not None
     assert seen.objects == set(range(job.n_objects))
     here = seen.objects
     assert {(seen.load(k, here), seen.room(k, here)) for k in here} == {(0, 0)}

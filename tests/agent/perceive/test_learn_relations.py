@@ -7,10 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.agent.perceive.learn_relations import (
-    LearnRelationsSettings,
-    learn_relations,
-)
+from lifelore.agent.perceive.learn_relations import LearnRelationsSettings, learn_relations
 from lifelore.agent.perceive.relation_memory import (
     EXAMPLES,
     as_bytes,

@@ -98,7 +98,6 @@ def test_a_click_chooses_and_keys_turn_the_picture(address: str, open_page: Open
     page.keyboard.press("0")
     assert canvas.screenshot() == before
     box = canvas.bounding_box()
-    assert box is not None
     page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
     expect(page.locator("#objects button[aria-pressed=true]")).to_have_count(1)
     for name in ("Points", "Contact points", "Contact networks", "Relations", "Holes"):
@@ -372,7 +371,6 @@ def test_without_webgl_the_picture_is_flat_and_does_the_same(
     page.keyboard.press("ArrowLeft")
     assert canvas.screenshot() != before
     box = canvas.bounding_box()
-    assert box is not None
     page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
     expect(page.locator("#objects button[aria-pressed=true]")).to_have_count(1)
 
@@ -407,8 +405,6 @@ def test_the_examples_are_what_their_script_makes(tmp_path: Path):
     from importlib.util import module_from_spec, spec_from_file_location
 
     found = spec_from_file_location("see_examples", Path(__file__).with_name("see_examples.py"))
-    assert found is not None
-    assert found.loader is not None
     script = module_from_spec(found)
     found.loader.exec_module(script)
     script.make_examples(tmp_path)

@@ -62,7 +62,6 @@ def serve_slowly(tmp_path: Path) -> Iterator[Start]:
             command = [sys.executable, "slow_service.py", str(tmp_path / "m.db"), str(seconds), str(longest)]
             child = subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=log, text=True)
         running.append(child)
-        assert child.stdout is not None
         return child, child.stdout.readline().strip().removeprefix("http://")
 
     yield start

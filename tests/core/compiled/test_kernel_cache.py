@@ -137,7 +137,6 @@ def test_every_kernel_lies_in_the_folder_of_its_file():
 
     for function in (q_learning.learn, model_learning.explore, planning._sweep):
         folder = kernel_folder(Path(function.__code__.co_filename))
-        assert folder is not None
         assert folder.parent == cache_folder()
         assert Path(function.stats.cache_path).is_relative_to(folder)  # type: ignore[attr-defined]
 

@@ -23,7 +23,6 @@ def test_all_measures_by_hand():
     assert gain.jumpstart == mean_estimate([2.0, 1.0, 2.0])
     assert gain.asymptote == mean_estimate([3.0, 1.5, 4.0])  # last two of four: 9-6, 9-7.5, 7-3
     assert gain.total_reward == mean_estimate([12.0, 10.0, 12.0])
-    assert gain.transfer_ratio is not None
     assert gain.transfer_ratio.value == pytest.approx(34 / 38)
     # Episodes 3, 2, 3 against 4, 4 and never, which counts as all four.
     assert gain.threshold_ratio.value == pytest.approx(8 / 12)

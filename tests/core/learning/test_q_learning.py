@@ -62,20 +62,6 @@ def corridor(length=3) -> Tables:
     return Tables(following, reward, event, np.ones(1), np.zeros(1, np.int32))
 
 
-def test_three_episodes_by_hand():
-    # Q(1) = 50, 75, 87.5. Q(0): 0, then 0 + ½(½·50) = 12.5, then 12.5 + ½(½·75 - 12.5) = 25.
-    tables = corridor()
-    who, curve = learnt(tables, uniform_rows(tables), schedule(3, 0.0, 0.5, discount=0.5))
-    assert who.q.ravel().tolist() == [25.0, 87.5, 0.0]
-    assert who.visits.ravel().tolist() == [3, 3, 0]
-    assert curve.returns.tolist() == [50.0] * 3
-    assert curve.rewards.tolist() == [100.0] * 3
-    assert curve.steps.tolist() == [2] * 3
-    assert curve.reached.all()
-    assert not curve.collisions.any()
-    assert who.cursor[4] == 6
-
-
 @pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 10**6), st.sampled_from([1, 2, 3]), st.sampled_from([0.0, 0.1, 1.0]))

@@ -1,8 +1,6 @@
 """Buildings from maps: small floors worked by hand, and a twin that follows the definition pixel by pixel."""
 
-import os
 from math import floor
-from pathlib import Path
 
 import networkx as nx
 import numpy as np
@@ -11,7 +9,7 @@ import pytest
 from lifelore.core.errors import InputError
 from lifelore.domains.buildings import building
 from lifelore.domains.buildings.building import building_from_map
-from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap, read_occupancy_map
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 
 NORTH, SOUTH, EAST, WEST = range(4)
 STATE_OF = {".": FREE, "#": OCCUPIED, "?": UNKNOWN}
@@ -20,18 +18,6 @@ STATE_OF = {".": FREE, "#": OCCUPIED, "?": UNKNOWN}
 def floor_plan(text: str, resolution: float = 0.1, origin=(0.0, 0.0, 0.0)) -> OccupancyMap:
     rows = [[STATE_OF[mark] for mark in line.strip()] for line in text.split()]
     return OccupancyMap(np.array(rows, np.uint8), resolution, origin)
-
-
-def test_a_door_one_pixel_off_the_centre_is_found():
-    plan = floor_plan("""
-        .....#....
-        ..........
-        .....#....
-        .....#....
-        .....#....
-    """)
-    world = building_from_map(plan, cell=0.5, robot_radius=0)
-    assert world.neighbour.tolist() == [[-1, -1, 1, -1], [-1, -1, -1, 0]]
 
 
 def test_positions_turn_with_the_origin():
@@ -173,17 +159,3 @@ def test_nothing_free_and_too_many_states(monkeypatch):
     monkeypatch.setattr(building, "MAX_STATES", 3)
     with pytest.raises(InputError, match="at most 3 cells are supported, got 4"):
         building_from_map(floor_plan("..\n.."), 0.1, 0.0)
-
-
-@pytest.mark.slow
-@pytest.mark.skipif("LIFELORE_DATA" not in os.environ, reason="LIFELORE_DATA is not set")
-def test_the_willow_building():
-    willow = read_occupancy_map(Path(os.environ["LIFELORE_DATA"]) / "maps" / "willow-full.yaml")
-    world = building_from_map(willow)
-    assert (world.n_states, len(np.unique(world.percepts))) == (4461, 177)
-    whole = building_from_map(willow, min_free=0)
-    assert whole.n_states == 5360
-    # Leaving slivers out loses no square metre of room: what goes is thinner than a quarter of a cell.
-    kept = {tuple(cell) for cell in world.cells.tolist()}
-    assert kept < {tuple(cell) for cell in whole.cells.tolist()}
-    assert building_from_map(willow, cell=1.0).n_states > 1200

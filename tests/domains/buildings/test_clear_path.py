@@ -84,7 +84,6 @@ def check_chains(world: GridWorld, floor: Floor, n: int, seed: int) -> None:
         ends = floor.metres(floor.anchors[chain[[0, -1]]])
         along, free = (clear_path(floor, *ends, price) for price in (moves_among(world, chain), None))
         for path in (along, free):
-            assert path is not None
             assert np.array_equal(path[[0, -1]], ends) or len(path) == 1
             assert_clear(path, floor)
         visited = floor.state[tuple(np.rint(floor.pixels(along)).astype(int).T)]

@@ -34,7 +34,6 @@ def settled(*things):
 def told(*things, **settings):
     """Relations of things placed by hand, as {(a, b): relation}."""
     found = settle_scene(list(things), np.random.default_rng(0), TabletopSettings(**settings))
-    assert found is not None
     return {(label.a, label.b): label.relation for label in found.truth}
 
 
@@ -99,7 +98,6 @@ def test_the_camera_measures_a_plane_and_a_ball_exactly():
     table = Tabletop([ball(radius)], [Pose(centre, np.eye(3))])
     outlines = [table.poses[0].apply(ball(radius).outline())]
     photo = photograph(table, outlines, view_down(), CLEAN, np.random.default_rng(0))
-    assert photo is not None
     cloud = photo.cloud
     assert cloud.of(TABLE)[:, 2] == pytest.approx(0, abs=1e-9)
     assert np.linalg.norm(cloud.of(2) - centre, axis=1) == pytest.approx(radius, abs=1e-9)

@@ -15,12 +15,6 @@ from ..twins import naive_reuse as naive
 INF = math.inf
 
 
-def test_bayes_by_hand():
-    after = update(log_prior([0.5, 0.3, 0.2]), np.log([0.1, 0.2, 0.7]))
-    assert np.exp(after.log_belief) == pytest.approx(np.array([0.05, 0.06, 0.14]) / 0.25)
-    assert math.exp(after.log_evidence) == pytest.approx(0.25)
-
-
 @pytest.mark.parametrize(("dtype", "close"), [("f8", 1e-12), ("f4", 1e-5)])
 @pytest.mark.parametrize("others", [[], [[-900.0, -901.0, -INF]], [[720.0, -3.0, 719.0]], [[-INF, -INF, -INF]]])
 def test_sums_of_rows_however_large_or_small(others, dtype, close):

@@ -14,13 +14,6 @@ from ..twins import naive_reuse as naive
 INF = np.inf
 
 
-def test_a_hazard_by_hand():
-    changing = TypeDynamics.hazard(0.2, [0.5, 0.5, 0.0])
-    assert np.exp(changing.step(log_prior([1.0, 0.0, 0.0]))) == pytest.approx([0.9, 0.1, 0.0])
-    assert np.exp(TypeDynamics.hazard(1, [0.3, 0.7]).step(log_prior([1.0, 0.0]))) == pytest.approx([0.3, 0.7])
-    assert np.exp(TypeDynamics.hazard(0, [0.3, 0.7]).step(log_prior([1.0, 0.0]))).tolist() == [1.0, 0.0]
-
-
 @settings(deadline=None, max_examples=100)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.0, 0.002, 0.3, 1.0, 1e-12, 1e-295]))
 def test_steps_agree_with_the_slow_twin(seed, rate):
@@ -53,7 +46,6 @@ def test_the_probability_that_a_type_has_just_changed():
     after = changing.step(log_prior([0.9, 0.1, 0.0]))
     assert np.exp(after) == pytest.approx([0.82, 0.18, 0.0])
     share = changing.changed_share(after)
-    assert share is not None
     assert share[:2] == pytest.approx([0.1 / 0.82, 0.1 / 0.18])
     assert TypeDynamics.static().changed_share(after) is None
     assert TypeDynamics.hazard(0.0, [0.5, 0.5]).changed_share(after[:2]) is None

@@ -4,13 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import multivariate_normal
 
-from lifelore.interaction.outcomes.joint_normal_fit import (
-    PSEUDO,
-    UserMeans,
-    first_fit,
-    joint_normal_fit,
-    step,
-)
+from lifelore.interaction.outcomes.joint_normal_fit import PSEUDO, UserMeans, first_fit, joint_normal_fit, step
 from lifelore.interaction.outcomes.outcome_rows import OutcomeRows
 
 FACTORS = np.array([[0.9, 0.0], [0.8, 0.1], [0.0, 0.9], [0.2, -0.8], [0.5, 0.5]])

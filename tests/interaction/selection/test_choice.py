@@ -9,13 +9,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.selection import (
-    RULES,
-    choose,
-    propensities,
-    rule_named,
-    tied_shares,
-)
+from lifelore.interaction.selection import RULES, choose, propensities, rule_named, tied_shares
 from lifelore.interaction.selection.choice import available_mask, scored
 
 from .small_libraries import SmallLibrary, problem, user_problem

@@ -83,8 +83,7 @@ def test_radial_distortion_by_hand() -> None:
 
 
 @pytest.mark.parametrize(
-    "distortion",
-    [(0.1, -0.2, 0.001, 0.002, 0.05), (-0.3, 0.1), (0.2, 0.1, 0.0, 0.001, 0.0, 0.25, 0.05, 0.01)],
+    "distortion", [(0.1, -0.2, 0.001, 0.002, 0.05), (-0.3, 0.1), (0.2, 0.1, 0.0, 0.001, 0.0, 0.25, 0.05, 0.01)]
 )
 def test_undistorted_rays_appear_at_their_pixels(distortion: tuple[float, ...]) -> None:
     camera = CameraIntrinsics(64, 48, 52.5, 52.5, 31.5, 23.5, distortion)

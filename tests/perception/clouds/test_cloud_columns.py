@@ -32,7 +32,6 @@ def test_colours_as_bytes_and_as_shares() -> None:
 def test_separate_channels_and_names_in_capitals() -> None:
     channels = {name: np.array([7, 8], np.uint8) for name in ("Red", "GREEN", "blue")}
     cloud = cloud_from_columns({**{name.upper(): column for name, column in XYZ.items()}, **channels})
-    assert cloud.colours is not None
     assert cloud.colours.tolist() == [[7, 7, 7], [8, 8, 8]]
 
 

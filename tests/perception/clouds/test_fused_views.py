@@ -23,15 +23,12 @@ def test_points_and_cameras_stand_in_the_first_frame() -> None:
     whole = fused([first, second], np.stack([WORLD, WORLD @ TURN]))
     # (1, 0, 0) is turned to (0, 1, 0) and shifted.
     np.testing.assert_allclose(whole.points, [[0, 0, 1], [1, 3, 3], [1, 2, 3]], atol=1e-12)
-    assert whole.labels is not None
     assert whole.labels.tolist() == [2, 2, 3]
-    assert whole.camera is not None
     assert whole.other_cameras is not None
     assert whole.camera.tolist() == [0, 0, 0]
     np.testing.assert_allclose(whole.other_cameras, [[1, 2, 3]], atol=1e-12)
     assert whole.colours is not None
     assert whole.grid is None
-    assert whole.source_rows is not None
     assert whole.source_rows.tolist() == [-1, -1, -1]
 
 

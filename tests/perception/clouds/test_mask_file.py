@@ -17,7 +17,6 @@ IMAGE = np.array([[0, 1, 1], [5, 5, 2]], np.uint8)
 
 def labels(path: Path, table_mask: int | None = None, cloud: PointCloud = CLOUD) -> list[int]:
     found = read_masks(path, cloud, table_mask).labels
-    assert found is not None
     return found.tolist()
 
 

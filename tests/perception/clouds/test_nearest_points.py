@@ -17,7 +17,6 @@ def by_tree(first, second):
 
 def agree(first, second):
     found = nearest_points(first, second)
-    assert found is not None
     distance, own, other = by_tree(first, second)
     assert found.distance == distance
     assert (found.own == own).all()

@@ -19,16 +19,12 @@ def test_only_keeps_what_belongs_together_and_the_rows() -> None:
         POINTS, np.array([0, 1, 2, 3]), np.arange(12, dtype=np.uint8).reshape(4, 3), (2, 2), np.ones(3)
     )
     part = cloud.only(np.array([3, 0]))
-    assert part.labels is not None
-    assert part.colours is not None
     assert part.labels.tolist() == [3, 0]
     assert part.colours.tolist() == [[9, 10, 11], [0, 1, 2]]
     assert part.grid == (2, 2)
-    assert part.source_rows is not None
     assert part.source_rows.tolist() == [3, 0]
     assert part.camera is cloud.camera
     loose = PointCloud(POINTS).only(np.array([True, False, True, True])).only(np.array([2, 0]))
-    assert loose.source_rows is not None
     assert loose.source_rows.tolist() == [3, 0]
     assert PointCloud(POINTS, from_parts=True).only(np.array([0])).from_parts
 

@@ -18,10 +18,7 @@ def row(make_scene, box, meet, towards_4):
     clouds = {2: box([-0.15, -0.05, 0], [-0.05, 0.05, 0.1]), 3: box([-0.05, -0.05, 0], [0.05, 0.05, 0.1])}
     clouds[4] = box(*(np.array([[-0.05, -0.05, 0], [0.05, 0.05, 0.1]]) + 0.1 * towards_4))
     # A contact's normal points out of the other object: at 2's east face, out of 3 into 2, it is west.
-    parts = [
-        meet(2, 3, [(middle - 0.05 * EAST, -EAST)]),
-        meet(3, 4, [(middle + 0.05 * towards_4, -towards_4)]),
-    ]
+    parts = [meet(2, 3, [(middle - 0.05 * EAST, -EAST)]), meet(3, 4, [(middle + 0.05 * towards_4, -towards_4)])]
     return make_scene(clouds, parts, [(2, 3, "adjacent"), (3, 4, "adjacent")])
 
 

@@ -11,11 +11,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, NONE, ON, PairLabel
 from lifelore.perception.relations.relation_classifier import SHIPPED, RelationClassifier, shipped_model
-from lifelore.perception.relations.relation_model_file import (
-    model_about,
-    model_bytes,
-    model_from_bytes,
-)
+from lifelore.perception.relations.relation_model_file import model_about, model_bytes, model_from_bytes
 from lifelore.perception.trees.tree_training import TreeSettings
 
 from ..conftest import box_surface

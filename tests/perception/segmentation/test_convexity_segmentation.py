@@ -225,7 +225,6 @@ def test_real_scenes_are_cut_as_well_as_measured():
     for path in sorted(path for folder in folders for path in folder.glob("*.pcd")):
         cloud = read_cloud(path)
         scene = to_scene(PointCloud(cloud.points, camera=cloud.camera))
-        assert cloud.labels is not None
         objects += overlaps(cloud.labels[cloud.measured], scene.labels)
     points, iou, right, wrong = np.array(objects).T
     # Weighted overlap, over- and under-segmentation (Richtsfeld et al. 2012), objects found. Over shifts of the

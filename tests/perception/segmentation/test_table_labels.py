@@ -27,7 +27,6 @@ def scene(noise: float) -> tuple[PointCloud, np.ndarray]:
 def test_the_noise_of_a_far_table_is_table_and_the_rest_keeps_its_labels(up):
     cloud, parts = scene(noise=0.012)
     labels = with_table(cloud, up).labels
-    assert labels is not None
     # A band of 10 mm would hold 60 % of these points; at 2 m it is 24 mm.
     assert (labels[parts == 0] == TABLE).mean() > 0.93
     assert not (labels[parts == 1] == TABLE).any()

@@ -75,20 +75,6 @@ def check_same_support(first, second, found, twin):
     assert margin[differing] == pytest.approx(np.ones(len(differing)), abs=3e-5)
 
 
-def test_two_points_by_hand():
-    # α = min(C, 1 / (1 - k)) with k = e^{-1/2}: the margin is met at both points, and b = 0 by symmetry.
-    found = separate([[0.1, 0, 0]], [[0, 0, 0]], length=0.1, cost=10.0)
-    k = np.exp(-0.5)
-    assert found.alpha_first == pytest.approx([1 / (1 - k)])
-    assert found.alpha_second == pytest.approx([1 / (1 - k)])
-    assert found.bias == pytest.approx(0, abs=1e-12)
-    assert found.decision([[0.1, 0, 0], [0, 0, 0], [0.05, 3, 3]]) == pytest.approx([1, -1, 0], abs=1e-12)
-    # ∇f at the middle: α k(0.05) · 0.05/0.01 from either point, both along +x.
-    assert found.gradient([[0.05, 0, 0]])[0] == pytest.approx([2 / (1 - k) * np.exp(-0.125) * 5, 0, 0])
-    capped = separate([[0.1, 0, 0]], [[0, 0, 0]], length=0.1, cost=0.5)
-    assert capped.alpha_first == pytest.approx([0.5])
-
-
 @pytest.mark.parametrize("name", PAIRS)
 @pytest.mark.parametrize(("n", "length", "cost"), [(60, 0.12, 1.0), (60, 0.03, 10.0), (700, 0.06, 10.0)])
 def test_same_as_libsvm(name, n, length, cost):

@@ -104,11 +104,7 @@ def test_neighbours_that_touch_down_to_the_table_close_no_hole(make_scene, box, 
         2: box([0, 0, 0.002], [0.099, 0.05, 0.1]),
         3: box([0.101, 0, 0.002], [0.2, 0.05, 0.1]),
     }
-    parts = [
-        meet(2, 3, [[0.1, 0, 0.05]]),
-        meet(2, 1, [[0.05, 0, 0]]),
-        meet(3, 1, [[0.15, 0, 0]]),
-    ]
+    parts = [meet(2, 3, [[0.1, 0, 0.05]]), meet(2, 1, [[0.05, 0, 0]]), meet(3, 1, [[0.15, 0, 0]])]
     scene = make_scene(clouds, parts)
     assert len(contact_loops(scene)) == 1
     assert find_holes(scene) == ()
@@ -149,7 +145,6 @@ def test_opening_by_hand():
     others = own + np.where((x > 0.03) & (x < 0.07), 0.04, 0.001)[:, None] * [0, 0, 1]
     start, end = np.zeros(3), np.array([0.1, 0, 0])
     opening = opening_along(own, others, start, end, 0.015)
-    assert opening is not None
     assert opening.width == pytest.approx(0.04, abs=0.001)
     assert opening_along(own, others, start, end, 0.045) is None
     assert opening_along(own, own + np.array([0, 0, 0.04]), start, end, 0.015) is None

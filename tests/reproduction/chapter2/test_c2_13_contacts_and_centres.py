@@ -3,13 +3,7 @@
 import pytest
 
 from lifelore.core.relations import ADJACENT, NONE, ON
-from reproduction.chapter2.c2_13_contacts_and_centres.run import (
-    ON_BLOCK,
-    ON_POST,
-    measure,
-    rows,
-    told_right,
-)
+from reproduction.chapter2.c2_13_contacts_and_centres.run import ON_BLOCK, ON_POST, measure, rows, told_right
 from reproduction.chapter2.scenes.tabletop_pairs import STANDARD
 
 FIGURE = [[0, 0, 0.2, 12], [0, 0, 0.0, 2], [0.1, 0, 0.03, 3]]

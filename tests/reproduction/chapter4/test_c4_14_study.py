@@ -201,10 +201,7 @@ def row(size, speed, loss, method=""):
 
 def test_losses_by_speed_by_hand():
     found = losses_by_speed([row(2, 30, 1.0), row(2, 30, 3.0), row(60, 70, 0.5)])
-    assert found == [
-        {"size": 2, "speed": 30, "loss": 2.0},
-        {"size": 60, "speed": 70, "loss": 0.5},
-    ]
+    assert found == [{"size": 2, "speed": 30, "loss": 2.0}, {"size": 60, "speed": 70, "loss": 0.5}]
 
 
 def test_losses_by_diversity_by_hand():

@@ -91,7 +91,6 @@ def test_pictures_without_a_motion_change_nothing():
 def test_a_push_goes_against_a_steep_side():
     known = PokedSegments(picture(PAIR))
     poke = known.poke_at(2, np.random.default_rng(0), 0.025)
-    assert poke is not None
     assert np.linalg.norm(poke.push) == pytest.approx(0.025)
     assert poke.push[2] == pytest.approx(0.0, abs=1e-9)
     assert poke.push[1] > 0.02  # the front is the only steep side that the camera sees well

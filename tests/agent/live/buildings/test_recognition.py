@@ -5,12 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.agent.building_record import (
-    Building,
-    map_digest,
-    remembered_buildings,
-    remembered_map,
-)
+from lifelore.agent.building_record import Building, map_digest, remembered_buildings, remembered_map
 from lifelore.agent.live.buildings.building_memory import buildings_in, forget_building
 from lifelore.agent.live.life import Life, live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings

@@ -93,7 +93,6 @@ def test_what_one_robot_learnt_another_one_knows(office, tmp_path):
     ends = points(100, 4)
     life_in(office, tmp_path, goals=jobs(*ends), busy=True, compare=False)
     other = life_in(office, tmp_path, goals=jobs(ends[0]), busy=True, compare=False, robot="second")
-    assert other.building is not None
     assert other.building.travel.passes.passes.sum() > 100
     assert other.report["tasks"][0]["clock"] == "2024-01-01T10:00:00"
 

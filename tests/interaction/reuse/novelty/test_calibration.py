@@ -67,7 +67,6 @@ def test_simulated_tasks_are_played_as_an_agent_plays():
         # Equals are drawn at random.
         assert scores[chosen[episode]] == pytest.approx(scores.max())
         agent.update(chosen[episode], float(pays[episode, chosen[episode]]))
-        assert agent.novelty is not None
         assert agent.novelty.score == pytest.approx(seen.statistic[0, episode])
 
 

@@ -4,11 +4,7 @@ import pytest
 from lifelore.interaction import CategorySignal, PolicyLibrary
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.spread import Spread
-from lifelore.interaction.reuse.novelty.known_tasks import (
-    drawn_moments,
-    drawn_probs,
-    known_tasks,
-)
+from lifelore.interaction.reuse.novelty.known_tasks import drawn_moments, drawn_probs, known_tasks
 
 N = 20_000
 

@@ -22,7 +22,6 @@ def learnt(n: int = 10, **options) -> PolicyLibrary:
 def test_one_signal_by_hand():
     library = PolicyLibrary.from_means([[10.0], [0.0]], 2.0)
     agent = BayesianPolicyReuse(library, novelty=0.2)
-    assert agent.novelty is not None
     assert agent.novelty.probability == pytest.approx(0.2, abs=1e-15)
     agent.update(0, 6.0)
     # Pooled mean 5, variance 4, spread over types 25: the mean counts as 4 / 25 outcomes.
