@@ -1,5 +1,6 @@
 """Picture of `reuse report`: outcomes by decision, each policy in the control group, and regret by the library."""
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
@@ -50,10 +51,8 @@ def _draw_curves(axes: "Axes", points: list) -> None:
             continue
         places = [place for place, _ in known]
         axes.plot(places, [one["value"] for _, one in known], color=colour, label=label)
-        banded = [(place, *one["ci95"]) for place, one in known if one["ci95"]]
-        if banded:
-            places, low, high = zip(*banded, strict=True)
-            axes.fill_between(places, low, high, color=colour, alpha=0.18, linewidth=0)
+        low, high = zip(*(one["ci95"] or (math.nan, math.nan) for _, one in known), strict=True)
+        axes.fill_between(places, low, high, color=colour, alpha=0.18, linewidth=0)
     axes.set(title="Mean outcome", xlabel="decision for a user")
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.grid(axis="y", color=LIGHT)

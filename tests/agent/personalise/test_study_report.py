@@ -135,6 +135,7 @@ def test_nobody_yet_and_nothing_that_varies(memory, study, tmp_path):
     same = report(memory, study, tmp_path / "same")
     assert same["uplift"]["value"] == 0
     assert same["uplift"]["ci95"] is None
+    assert (same["personal"]["value"], same["personal"]["ci95"]) == (1.0, None)
     for folder in ("empty", "same"):
         assert (tmp_path / folder / "report.png").exists()
 

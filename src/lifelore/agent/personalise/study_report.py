@@ -184,6 +184,8 @@ def _means(number: Array, total: Array) -> Array:
 def _estimate(values: Sequence[float] | Array) -> dict[str, Any] | None:
     if not len(values):
         return None
+    if np.ptp(values) == 0:  # such as no click of 24 users: nothing says how far the mean may be off
+        return Estimate(float(values[0]), float(values[0]), None, len(values)).to_dict()
     if len(values) <= MANY:
         return mean_estimate(values).to_dict()
     mean, error = float(np.mean(values)), float(np.std(values, ddof=1)) / len(values) ** 0.5
