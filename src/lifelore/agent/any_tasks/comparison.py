@@ -10,7 +10,7 @@ from lifelore.agent.any_tasks.long_lived_agent import LongLivedAgent
 from lifelore.agent.any_tasks.one_task import episode_seed
 from lifelore.agent.any_tasks.task_settings import AGENTS
 from lifelore.agent.external_world.life_summary import summarise_life, task_measures
-from lifelore.agent.external_world.own_agent import OwnAgent, WatchedWorld, check_own_agents, live_own
+from lifelore.agent.external_world.own_agent import OwnAgent, WatchedWorld, check_own_agents
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress
 
@@ -83,7 +83,7 @@ def compare_agents(
             for name in given:
                 if name in own:
                     watched = WatchedWorld(name, world, number, seeds, how.learning.step_cap, how.discount, stop)
-                    found[name] = task_measures(live_own(own[name], watched), watched.reached)
+                    found[name] = watched.live(own[name])
                 else:
                     result = lives[name].live(world.env, context, stop=stop)
                     found[name] = task_measures(result.returns, result.reached)

@@ -18,7 +18,7 @@ from lifelore.agent.any_tasks.task_settings import TaskSettings, check_names
 from lifelore.agent.external_world.context_code import CONTEXT_BITS, MOST_ACTIONS, context_code
 from lifelore.agent.external_world.life_summary import summarise_life, task_measures
 from lifelore.agent.external_world.life_warnings import ContextNovelty, life_warnings, new_states
-from lifelore.agent.external_world.own_agent import OwnAgent, WatchedWorld, check_own_agents, live_own
+from lifelore.agent.external_world.own_agent import OwnAgent, WatchedWorld, check_own_agents
 from lifelore.agent.life.loop import LivedTask, opened_memory, run_life
 from lifelore.agent.live.life_settings import PriorSettings
 from lifelore.agent.live.output.long_table import LongTable
@@ -253,8 +253,7 @@ class _ExternalLife:
             measures[name], returns[name] = task_measures(result.returns, result.reached), result.returns
         for name, agent in self.own.items():
             watched = WatchedWorld(name, self.world, number, seeds, most, self.common.discount, stop)
-            returns[name] = live_own(agent, watched)
-            measures[name] = task_measures(returns[name], watched.reached)
+            measures[name], returns[name] = watched.live(agent), watched.returns
         # Moves are compared where exploration is uniform.
         steps = tasks["scratch"].steps
         self.differences.end_task(counted(steps[:MOST_COMPARED], self.codes))

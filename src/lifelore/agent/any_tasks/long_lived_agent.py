@@ -20,6 +20,7 @@ from lifelore.agent.any_tasks.reuse import SIGNALS
 from lifelore.agent.any_tasks.task_result import TaskResult
 from lifelore.agent.any_tasks.task_settings import AGENTS, TaskSettings, check_names
 from lifelore.agent.external_world.context_code import CONTEXT_BITS, ContextCodes
+from lifelore.agent.external_world.episode import Step
 from lifelore.agent.external_world.gymnasium_world import GymnasiumWorld, ResetBy
 from lifelore.agent.external_world.life_warnings import new_rewards, new_states
 from lifelore.agent.life.loop import LivedTask, Stopped, run_life
@@ -196,9 +197,10 @@ class LongLivedAgent(AbstractContextManager):
         run_life(task, 1, memory=self._memory, robot=self.robot, stop=stop, notify=lost.append)
         if task.result is None:
             raise StoreError(f"{lost[0]}; live it again") if lost else Stopped
-        said = [] if callable(self.settings.learner) else new_states(task.world.name, task.states)
+        name, states = task.world.name, [step.state for step in task.steps]
+        said = [] if callable(self.settings.learner) else new_states(name, states)
         if self.settings.signals == "moves" and self.settings.abilities.reuse:
-            said += new_rewards(task.world.name, task.rewards)
+            said += new_rewards(name, [step.reward for step in task.steps])
         for sentence in said:
             warnings.warn(sentence, stacklevel=2)
         return task.result
@@ -290,8 +292,7 @@ class _NextTask:
     world: GymnasiumWorld
     context: Hashable
     result: TaskResult | None = None
-    states: Sequence[int] = ()
-    rewards: Sequence[float] = ()
+    steps: Sequence[Step] = ()
 
     def recall(self) -> None:
         """Know what other processes have stored."""
@@ -307,7 +308,7 @@ class _NextTask:
         )  # fmt: skip
         news = task.live(f"{agent.robot}.{number}")
         records = [] if news is None else experience.learn(news)
-        self.states, self.rewards = [step.state for step in task.steps], [step.reward for step in task.steps]
+        self.steps = task.steps
         # What memory refuses was not learnt: the agent knows it from `finish` on.
         agent._experience = None
         document = {"key": agent.key, "world": self.world.name, **result.to_dict()}

@@ -207,8 +207,8 @@ class OneTask:
         self.exploring = True
         if self.learner is not None:
             return
-        surely = self.reuse is not None and not self.alarmed and self.reuse.belief.max() >= SURE
-        own = self.reuse.own_policy() if self.reuse is not None and surely else None
+        sure = self.reuse is not None and not self.alarmed and self.reuse.belief.max() >= SURE
+        own = self.reuse.own_policy() if self.reuse is not None and sure else None
         start, self.goes_on_with = own or self.policy, own
         if callable(self.settings.learner) and self.abilities.learner is None:
             self.learner = self.taught(self.settings.learner, None if start is None else self.known_policy(start))
@@ -298,30 +298,22 @@ class OneTask:
             prior.update(*self.learner.best(), self.settings.guidance.weight)
         features = self.codes.states.contexts
         prior.labels = {code: features[code] for code in prior.contexts.tolist()}
-        news = TaskNews(result.number, self.context, belief, moves, dict(self.ran), prior, result.context)
         own = result.type if result.new or self.reuse is None else self.reuse.own_policy()
-        if self.reuse is not None and not result.new:
-            news = news._replace(alarm=self.alarmed)
-        if not belief or own is None:
-            return news
-        # A learner that began elsewhere does not replace a known policy: its few returns may be luck.
-        if self.learner is not None and (result.new or self.goes_on_with == own):
-            return self.with_learnt(news, own)
-        if own in self.players:
-            return news._replace(learner=own, policy=self.players[own].policy())
-        return news
-
-    def learnt(self) -> list[float]:
-        """Returns of the learner's episodes."""
-        result = self.result
-        return [value for value, by in zip(result.returns, result.policies, strict=True) if by == LEARNER]
-
-    def with_learnt(self, news: TaskNews, own: str) -> TaskNews:
-        """What a task has taught in which the policy of a type, `own`, was learnt."""
-        assert self.learner is not None, "a policy was learnt"
-        learnt = self.learnt()
-        returns = dict(news.returns) | {own: [*self.ran.get(own, []), *last_half(learnt)]}
-        return news._replace(returns=returns, learner=own, policy=self.learner.policy())
+        returns, player = dict(self.ran), None
+        if belief and own is not None:
+            # A learner that began elsewhere does not replace a known policy: its few returns may be luck.
+            if self.learner is not None and (result.new or self.goes_on_with == own):
+                by = zip(result.returns, result.policies, strict=True)
+                learnt = [earned for earned, policy in by if policy == LEARNER]
+                returns[own] = [*returns.get(own, []), *learnt[len(learnt) // 2 :]]
+                player = self.learner
+            else:
+                player = self.players.get(own)
+        taught, policy = (None, None) if player is None else (own, player.policy())
+        alarm = None if result.new or self.reuse is None else self.alarmed
+        return TaskNews(
+            result.number, self.context, belief, moves, returns, prior, result.context, taught, policy, alarm
+        )
 
     def learning_types(self, name: str, moves: Counts) -> dict[str, float]:
         """How much each type learns from the task; a new one has the given name."""
@@ -337,8 +329,3 @@ class OneTask:
 def episode_seed(seed: int, task: int, episode: int) -> int:
     """With what a world is reset; the same for all agents of a seed."""
     return int(stream(seed, "task", task, "world", episode).integers(2**31))
-
-
-def last_half(returns: Sequence[float]) -> Sequence[float]:
-    """The second half of returns."""
-    return returns[len(returns) // 2 :]

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.any_tasks.experience import Experience
-from lifelore.agent.any_tasks.known_returns import known_returns
-from lifelore.agent.any_tasks.known_types import KnownTypes
+from lifelore.agent.any_tasks.known_types import KnownTypes, known_returns
 from lifelore.agent.any_tasks.moves import Counts, Pairs
 from lifelore.agent.any_tasks.task_settings import TaskSettings
 from lifelore.agent.types.novelty import NoveltyAlarm

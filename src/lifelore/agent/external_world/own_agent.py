@@ -5,6 +5,7 @@ from threading import Event
 from typing import Any, NoReturn
 
 from lifelore.agent.external_world.episode import check_reward
+from lifelore.agent.external_world.life_summary import task_measures
 from lifelore.agent.life.loop import Stopped
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import World
@@ -48,10 +49,18 @@ class WatchedWorld:
         self._steps_left, self._factor = self.max_steps, 1.0
         return self.world.reset(task, seed)
 
-    def check_lived(self) -> None:
-        """InputError if the agent has not lived all its episodes to their end."""
+    def live(self, agent: OwnAgent) -> dict:
+        """Let an agent live its task; its measures, see `task_measures`.
+
+        Raises
+        ------
+        InputError
+            The agent did not live all episodes, or broke their order or their length.
+        """
+        agent(self, self.task, list(self.seeds), self.max_steps)
         if self._steps_left or len(self.returns) != len(self.seeds):
             self._refuse(f"an end after {len(self.returns)} resets with {self._steps_left} steps left")
+        return task_measures(self.returns, self.reached)
 
     def _refuse(self, got: str) -> NoReturn:
         raise InputError(
@@ -76,19 +85,6 @@ class WatchedWorld:
     def context(self, state: Hashable, last_reward: float) -> Hashable:
         """The context of the current state."""
         return self.world.context(state, last_reward)
-
-
-def live_own(agent: OwnAgent, watched: WatchedWorld) -> list[float]:
-    """Let an agent live its task; the discounted return of each episode.
-
-    Raises
-    ------
-    InputError
-        The agent did not live all episodes, or broke their order or their length.
-    """
-    agent(watched, watched.task, list(watched.seeds), watched.max_steps)
-    watched.check_lived()
-    return watched.returns
 
 
 def check_own_agents(agents: Mapping[str, OwnAgent], taken: Sequence[str]) -> dict[str, OwnAgent]:

@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.any_tasks.experience import Experience, TaskNews, TypeExperience
-from lifelore.agent.any_tasks.known_returns import known_returns
+from lifelore.agent.any_tasks.known_types import known_returns
 
 
 def sums(*values):
