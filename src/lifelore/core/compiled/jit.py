@@ -9,12 +9,15 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 import numba
+import numpy as np
 
 from lifelore.core.compiled.kernel_cache import kernel_folder
 
 F = TypeVar("F", bound=Callable)
 _config: Any = numba.config  # type: ignore[attr-defined]
 _njit: Any = numba.njit
+if _config.DISABLE_JIT:
+    np.seterr(over="ignore")  # sums of random states wrap around, as in machine code
 
 
 def kernel(function: F) -> F:

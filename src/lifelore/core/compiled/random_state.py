@@ -4,14 +4,11 @@ The state is a ``(2,) uint64`` array that the caller owns, so a learner can be s
 run on any thread with the same result.
 """
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.compiled.jit import inlined, kernel
+from lifelore.core.compiled.jit import kernel
 
-_HALF = np.uint64(0xFFFFFFFF)
-_32 = np.uint64(32)
 _24, _40 = np.uint64(24), np.uint64(40)
 _16 = np.uint64(16)
 _37, _27 = np.uint64(37), np.uint64(27)
@@ -25,27 +22,12 @@ def random_state(generator: np.random.Generator) -> NDArray[np.uint64]:
     return state
 
 
-def _sum(a, b):
-    """Sum of two ``uint64``, modulo 2^64 as machine code adds."""
-    return a + b
-
-
-def _sum_in_halves(a, b):
-    """The same bits in plain Python, where NumPy would warn about the overflow."""
-    low = (a & _HALF) + (b & _HALF)
-    high = (a >> _32) + (b >> _32) + (low >> _32)
-    return ((high & _HALF) << _32) | (low & _HALF)
-
-
-_wrapped_sum = _sum_in_halves if numba.config.DISABLE_JIT else inlined(_sum)  # type: ignore[attr-defined]
-
-
 @kernel
 def next_uniform(state):
     """The next float in [0, 1), 53 bits; advances `state` in place."""
     s0 = state[0]
     s1 = state[1]
-    total = _wrapped_sum(s0, s1)
+    total = s0 + s1
     s1 ^= s0
     state[0] = ((s0 << _24) | (s0 >> _40)) ^ s1 ^ (s1 << _16)
     state[1] = (s1 << _37) | (s1 >> _27)
