@@ -42,7 +42,7 @@ class Contribution(NamedTuple):
 
     @classmethod
     def packed(cls, identity: Identity, stamp: int, task: str, payload: bytes) -> Self:
-        """The contribution of `record_blob.pack`ed records."""
+        """The contribution of packed records; its digest follows from all of them."""
         return cls(*identity, stamp, task, compress(payload), _digest(identity, stamp, task, payload))
 
     @property

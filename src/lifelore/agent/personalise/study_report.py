@@ -86,7 +86,8 @@ def report(
         beliefs do not tell: one type, categories, or exact models); ``by_decision``: both groups' mean outcome
         at each decision; ``by_time``: for each period with a decision its start, ``time`` in seconds since 1970,
         ``users``, ``decisions``, and ``personal``, ``control`` and ``uplift`` by the users' mean outcomes in the
-        period (None without `by`); ``calibration`` of ``outcomes`` (None without one), see
+        period (None without `by`; decisions of an earlier Lifelore are left out);
+        ``calibration`` of ``outcomes`` (None without one), see
         `calibration.calibrated`.
 
     Raises

@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.personalise.fitting.fit_notes import fit_notes, personalised_by
-from lifelore.agent.personalise.fitting.library_from_log import Fitted, TypedRows, library_of
+from lifelore.agent.personalise.fitting.library_from_log import Fitted, TypedRows, library_of, typed_rows
 from lifelore.agent.personalise.fitting.model_choice import Kind, chosen_model
 from lifelore.agent.personalise.fitting.types_by_context import by_context, contexts_differ, priors_by_context
-from lifelore.agent.personalise.fitting.types_of_users import typed_rows
 from lifelore.agent.personalise.log.log import ReuseLog, read_log
 from lifelore.agent.personalise.log.log_format import LogFormat
 from lifelore.agent.personalise.past import each_line_once, keep_fitted_past
@@ -149,7 +148,8 @@ def fit(
     """
     settings = settings or FitSettings()
     log = each_line_once(read_log(sources, form))
-    earlier = _earlier(memory, settings.name)
+    found = newest_version(memory, settings.name)  # its library need not be readable
+    earlier = found.about if found else {}
     study, typed, counts, held_out = study_of_log(log, settings, dict(earlier.get("states", {})))
     with memory.together():
         study = replace(study, earlier=bool(earlier.get("earlier"))).keep(memory)
@@ -213,12 +213,6 @@ def _feature_prior(log: ReuseLog, typed: TypedRows, prior: NDArray[np.float64], 
             f"features must all be known of a user, no user has all of {', '.join(log.feature_names)}"
         )
     return FeaturePrior.fit(rows[whole], types[whole], prior, log.feature_names, seed=seed)
-
-
-def _earlier(memory: Memory, name: str) -> Mapping[str, Any]:
-    """What the study was until now, empty where it is new; its library need not be readable."""
-    found = newest_version(memory, name)
-    return found.about if found else {}
 
 
 def _kept(memory: Memory, study: Study, past: Mapping[str, int]) -> dict[str, int]:

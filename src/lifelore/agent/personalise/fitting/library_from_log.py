@@ -1,4 +1,4 @@
-"""A policy library from the rows of a log whose users' types are known or found."""
+"""Who is of which type, as a log names it or by outcomes, and the policy library of rows with types."""
 
 from typing import NamedTuple
 
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from lifelore.agent.personalise.log.log import ReuseLog
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.library.user_types import user_types
 from lifelore.interaction.outcomes.joint_normal_fit import joint_normal_fit
 from lifelore.interaction.outcomes.joint_normal_outcomes import JointNormalOutcomes
 from lifelore.interaction.outcomes.outcome_rows import OutcomeRows
@@ -50,6 +51,40 @@ class Fitted(NamedTuple):
     library: PolicyLibrary
     typed: TypedRows
     counts: NDArray[np.float64]
+
+
+def typed_rows(log: ReuseLog, model: str, n_types: int | None, generator: np.random.Generator) -> TypedRows:
+    """The rows whose user's type is named or found.
+
+    Raises
+    ------
+    InputError
+        There are more types than users.
+    """
+    if not log.says_types:
+        return _found(log, model, n_types or 1, generator)
+    return _named(log)
+
+
+def _named(log: ReuseLog) -> TypedRows:
+    """Rows that name a type, and those of users whose type other rows name."""
+    types = log.type_of_user[log.user.codes]
+    rows = np.flatnonzero(types >= 0)
+    codes, own = np.unique(types[rows], return_inverse=True)
+    return TypedRows(rows, own, tuple(log.type.names[code] for code in codes))
+
+
+def _found(log: ReuseLog, model: str, n_types: int, generator: np.random.Generator) -> TypedRows:
+    """Types found among users by their outcomes."""
+    n_users = len(log.user.names)
+    if n_types > n_users:
+        raise InputError(f"types must be at most {n_users}, the users of the log, got {n_types}")
+    rows = OutcomeRows(log.user.codes, log.policy.codes, log.outcomes, (n_users, len(log.policy.names)))
+    family = "categorical" if model == "categorical" else "gaussian"
+    found = user_types(rows, generator, n_types, family=family)
+    names = tuple(f"type {number + 1}" for number in range(found.n_types))
+    every: NDArray[np.int64] = np.arange(len(log))
+    return TypedRows(every, found.labels[log.user.codes], names, True)
 
 
 def library_of(log: ReuseLog, typed: TypedRows, model: str) -> Fitted:
