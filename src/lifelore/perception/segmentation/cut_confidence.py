@@ -14,7 +14,7 @@ from lifelore.core.labelled_cloud import UNLABELLED
 from lifelore.perception.segmentation.supervoxels import Supervoxels
 
 _BASE, _OF_BORDER, _OF_CREASES, _OF_SIZE = -20.0, -0.75, -1.7, 3.15
-"""Log odds: constant, and weights of the mean evidence of one object at the weakest border (≤ 0; the least
+"""Log odds: constant, and weights of the mean evidence of one object at the weakest border (the least
 evidence without a neighbour), of the share of creases inside, and of the logarithm of the voxels. Fitted as
 `cut_confidence` says; others change only the probabilities, not the objects."""
 _NO_BORDER = -5.0
