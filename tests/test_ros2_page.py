@@ -362,7 +362,7 @@ def test_a_service_that_is_away_is_logged_once(node_module, monkeypatch, tmp_pat
     chosen = {"exports": str(tmp_path), "map": str(MAP), "url": "http://127.0.0.1:9", "period": 0.01}
     monkeypatch.setattr(StandIn, "parameters", chosen)
     node = node_module.LifeloreNode()
-    assert node.arrived.wait(10)
+    assert node.arrived.wait(60)
     time.sleep(0.2)
     (line,) = [line for line in node.log if not line.endswith("stays silent")]
     assert line.startswith("the masks do not follow memory: http://127.0.0.1:9 does not answer")

@@ -51,7 +51,7 @@ def test_an_empty_memory_says_how_to_begin_and_shows_the_first_task(
     expect(page.locator("#empty")).to_contain_text("lifelore live --domain factory-customers")
     expect(page.locator("#life")).to_be_hidden()
     serve_customers(where, 1)
-    expect(page.locator("#task-title")).to_have_text("Task 0", timeout=15_000)
+    expect(page.locator("#task-title")).to_have_text("Task 0")
     expect(page.locator("#empty")).to_be_hidden()
     expect(page.locator("#task-context")).to_contain_text("The agent knew no type yet.")
 
@@ -79,13 +79,13 @@ def test_a_life_of_hidden_types_by_keyboard_and_while_it_goes_on(
     follow = page.get_by_label("Follow the newest task")
     expect(follow).not_to_be_checked()
     serve_customers(where, 1)  # the chosen task stays
-    expect(page.locator("#summary")).to_contain_text("6 tasks", timeout=15_000)
+    expect(page.locator("#summary")).to_contain_text("6 tasks")
     expect(page.locator("#task-title")).to_have_text("Task 3")
     follow.focus()
     page.keyboard.press("Space")
     expect(page.locator("#task-title")).to_have_text("Task 5")
     serve_customers(where, 1)  # and now the newest is followed
-    expect(page.locator("#task-title")).to_have_text("Task 6", timeout=15_000)
+    expect(page.locator("#task-title")).to_have_text("Task 6")
     page.locator("#task").select_option("0")
     expect(page.locator("#task-title")).to_have_text("Task 0")
 
@@ -106,7 +106,7 @@ def test_a_life_on_a_map_has_arrows_and_curves(serve_pages: Callable[..., str], 
     page.get_by_role("button", name="Earlier task").click()
     expect(page.locator("#map-words")).to_contain_text("The filled circle is the goal of task 2")
     walk_lattice(where, 1)
-    expect(page.locator("#summary")).to_contain_text("5 tasks", timeout=15_000)
+    expect(page.locator("#summary")).to_contain_text("5 tasks")
 
 
 def test_a_life_of_drives_shows_metres_and_seconds(serve_pages, open_page: Opened, check_page, where: Path):
@@ -137,7 +137,7 @@ def test_a_life_that_grows_is_shown_where_another_was(
     page = open_page(serve_pages(where) + "/life")
     expect(page.locator("#summary")).to_contain_text("ada has lived 2 tasks of lattice.")
     serve_customers(where, 1)
-    expect(page.locator("#summary")).to_contain_text("bo has lived 2 tasks", timeout=15_000)
+    expect(page.locator("#summary")).to_contain_text("bo has lived 2 tasks")
     page.select_option("#which", index=0)
     expect(page.locator("#summary")).to_contain_text("ada has lived 2 tasks of lattice.")
 

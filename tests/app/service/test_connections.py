@@ -76,7 +76,7 @@ def test_slow_headers_end(before):
                 assert await reader.readexactly(3) == b"abc"
             return await trickle(reader, writer, b"GET / HTTP/1.1\r\nX-Slow: " + b"x" * 200)
 
-    assert 0.2 < asyncio.run(seconds()) < 5.0, "0.3 to 0.6 s on an idle machine"
+    assert 0.2 < asyncio.run(seconds()) < 10.0, "0.3 to 0.6 s on an idle machine"
 
 
 def test_headers_have_a_largest_size():
@@ -107,15 +107,12 @@ def test_slow_bodies_and_answers_do_not_end(body):
 
 
 def test_quick_requests_on_one_connection_go_on():
-    async def asked() -> int:
+    async def asked() -> None:
         async with connected() as (reader, writer):
-            end, count = time.monotonic() + 1.5, 0
-            while time.monotonic() < end:
+            for _ in range(15):  # 1.5 s
                 writer.write(REQUEST + b"abc")
                 await reader.readuntil(b"\r\n\r\n")
                 assert await reader.readexactly(3) == b"abc"
                 await asyncio.sleep(0.1)
-                count += 1
-            return count
 
-    assert asyncio.run(asked()) > 3
+    asyncio.run(asked())

@@ -96,7 +96,7 @@ def sleepers(child: subprocess.Popen[str]) -> list[int]:
 
 
 def wait_until(holds: Callable[[], object]) -> None:
-    give_up = time.monotonic() + 30
+    give_up = time.monotonic() + 120
     while not holds():
         assert time.monotonic() < give_up
         time.sleep(0.02)

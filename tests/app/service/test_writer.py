@@ -69,7 +69,7 @@ def test_rows_that_wait_together_are_one_batch_and_parts_of_a_long_one_give_way(
 
     def counted(*given, **how):
         batches.append(len(given[2]))
-        assert gate.wait(10)
+        assert gate.wait(60)
         return decide(*given, **how)
 
     monkeypatch.setattr(module, "decide", counted)
