@@ -20,6 +20,7 @@ Results of cells are plain data (what JSON can hold), so that a stored cell equa
 import json
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
@@ -34,9 +35,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MODES = ("quick", "full")
-REQUIRED = {"title", "sentence", "thesis", "here", "decides", "settings", "statements"}
-OPTIONAL = {"figure", "erratum", "quick", "limits", "timed", "data"}
-"""Keys of ``claim.toml``."""
 
 Settings = Mapping[str, Any]
 Cell = Mapping[str, Any]
@@ -136,18 +134,16 @@ class Claim:
             data = tomllib.loads(path.read_text(encoding="utf-8"))
         except tomllib.TOMLDecodeError as error:
             raise InputError(f"{path} is not TOML: {error}") from None
-        missing, unknown = REQUIRED - data.keys(), data.keys() - REQUIRED - OPTIONAL
-        if missing or unknown:
-            words = (
-                f"missing {', '.join(sorted(missing)) or 'none'}, unknown {', '.join(sorted(unknown)) or 'none'}"
-            )
-            raise InputError(f"{path} must have the keys of a claim; {words}")
-        full = data.pop("settings")
-        sizes = {"quick": full | data.pop("quick", {}), "full": full}
-        data["statements"] = tuple(Statement.parsed(**one) for one in data["statements"])
-        for name in ("figure", "data"):
-            data[name] = tuple(data.get(name, ()))
-        return cls(id=claim_id, sizes=sizes, **data, **_functions(folder, package, full))
+        functions = _functions(folder, package, data.get("settings", {}))
+        try:
+            full = data.pop("settings")
+            sizes = {"quick": full | data.pop("quick", {}), "full": full}
+            data["statements"] = tuple(Statement.parsed(**one) for one in data["statements"])
+            for name in ("figure", "data"):
+                data[name] = tuple(data.get(name, ()))
+            return cls(id=claim_id, sizes=sizes, **data, **functions)
+        except (KeyError, TypeError) as error:
+            raise InputError(f"{path} must have the keys of a claim: {error}") from None
 
     def measured(
         self, settings: Settings, results: Sequence[CellResult]
@@ -210,26 +206,10 @@ def _as_type_of(default: Any, value: Any, label: str) -> Any:
     """`value` as a setting of the type of `default`; texts are read first."""
     read = value
     if isinstance(value, str) and not isinstance(default, str):
-        try:
-            read = json.loads(value)
-        except ValueError:
-            read = value
-    if isinstance(default, float) and isinstance(read, int) and not isinstance(read, bool):
+        with suppress(ValueError):
+            read = json.loads(value, parse_constant=int)  # refuses NaN and infinity, which no JSON may hold
+    if isinstance(default, float) and type(read) is int:
         read = float(read)
-    # NaN and infinity pass json.loads, but no JSON that others read may hold them.
-    if type(read) is not type(default) or not _is_plain(read):
-        raise InputError(f"{label} must be {_kind(default)}, got {value!r}; the default is {json.dumps(default)}")
+    if type(read) is not type(default):
+        raise InputError(f"{label} must be of the kind of its default {json.dumps(default)}, got {value!r}")
     return read
-
-
-def _is_plain(value: Any) -> bool:
-    try:
-        json.dumps(value, allow_nan=False)
-    except (TypeError, ValueError):
-        return False
-    return True
-
-
-def _kind(default: Any) -> str:
-    names = {bool: "true or false", int: "a whole number", float: "a number", str: "a text", list: "a list"}
-    return names.get(type(default), "a JSON object")

@@ -133,7 +133,7 @@ def section(result: Mapping) -> str:
 
 
 def gallery(results: Sequence[Mapping]) -> str:
-    """Every figure that was drawn again, as the thesis numbers them, two a row; then claims without a figure."""
+    """Every figure that was drawn again, as the thesis numbers them; then claims without a figure."""
     found = {number: (f"../pictures/{name}.png", "") for number, name in PICTURES.items()}
     rest = {}
     for result in results:
@@ -148,7 +148,7 @@ def gallery(results: Sequence[Mapping]) -> str:
     return "\n".join([
         "# Gallery", "", FIRST, "",
         "Figures and tables as the thesis numbers them: the thesis's axes and curves, our numbers.", "",
-        *_pairs(shown), "## Claims without a figure", "", *_pairs([("", *one) for one in rest.values()]),
+        *_pictures(shown), "## Claims without a figure", "", *_pictures([("", *one) for one in rest.values()]),
     ])  # fmt: skip
 
 
@@ -168,17 +168,13 @@ def _place(number: str) -> tuple[int, int, bool]:
     return int(chapter), int(place), number.startswith("Table")
 
 
-def _pairs(shown: Sequence[tuple[str, str, str]]) -> list[str]:
-    lines = ["| | |", "|---|---|"]
-    for first in range(0, len(shown), 2):
-        pair = shown[first : first + 2]
-        lines.append(
-            "|" + "|".join(f"![{name or words.partition(' ')[2]}]({file})" for name, file, words in pair) + "|"
-        )
-        lines.append(
-            "|" + "|".join(f"**{name}** {words}".replace("****", "").strip() for name, _, words in pair) + "|"
-        )
-    return [*lines, ""]
+def _pictures(shown: Sequence[tuple[str, str, str]]) -> list[str]:
+    """A table of pictures beside their words."""
+    rows = [
+        f"|{f'**{name}** {words}' if name else words}|![{name or words.partition(' ')[2]}]({file})|"
+        for name, file, words in shown
+    ]
+    return ["| | |", "|---|---|", *rows, ""]
 
 
 def anchor(claim_id: str) -> str:

@@ -5,30 +5,33 @@ import os
 import platform
 import subprocess
 from collections.abc import Sequence
+from contextlib import suppress
 from datetime import UTC, datetime
 from functools import cache
-from importlib.metadata import packages_distributions, version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from lifelore.core.usable_cores import usable_cores
-from reproduction.engine.source_key import CHECKOUT, foreign_modules, source_key
+from reproduction.engine.source_key import CHECKOUT, source_key
 
 DATA = "LIFELORE_DATA"
 """The variable that names the folder of data that are not in the repository."""
 SOURCES = ("src", "reproduction", ":!reproduction/results")
 """What git is asked about changed files."""
+LIBRARIES = (
+    "lifelore", "clingo", "gymnasium", "minigrid", "mujoco", "networkx", "numba", "numpy", "scikit-learn", "scipy",
+)  # fmt: skip
+"""Libraries whose versions may change a number."""
 
 
-def provenance(module: str, data: Sequence[str] = ()) -> dict[str, Any]:
+def provenance(data: Sequence[str] = ()) -> dict[str, Any]:
     """Where a result comes from, plain data.
 
     Parameters
     ----------
-    module : str
-        The module that computes it.
     data : sequence of str
         Folders in that of `DATA` that it reads.
 
@@ -36,7 +39,7 @@ def provenance(module: str, data: Sequence[str] = ()) -> dict[str, Any]:
     -------
     dict
         ``date`` (UTC); ``commit``, None outside a checkout; ``changed``: whether files of the package differed
-        from the commit; ``source``, the key of all code that it rests on; ``processor``, ``simd`` (instructions
+        from the commit; ``source``, the key of all our code; ``processor``, ``simd`` (instructions
         that NumPy uses; its logarithms differ with them in the last bit), ``cores``; ``data``: a hash for each of
         the folders, None where it is not there.
     """
@@ -45,7 +48,7 @@ def provenance(module: str, data: Sequence[str] = ()) -> dict[str, Any]:
         "date": datetime.now(UTC).strftime("%Y-%m-%d"),
         "commit": commit,
         "changed": changed,
-        "source": source_key(module),
+        "source": source_key(),
         "processor": processor(),
         "simd": simd(),
         "cores": usable_cores(),
@@ -54,13 +57,13 @@ def provenance(module: str, data: Sequence[str] = ()) -> dict[str, Any]:
 
 
 @cache
-def versions(module: str) -> dict[str, str]:
-    """Versions of Python, of Lifelore, and of every library that the code of a result imports."""
-    known = packages_distributions()
-    names = {name for top in foreign_modules(module) for name in known.get(top, ())}
-    # numba decides how loops are compiled, also where a module imports it through the kernels alone.
-    listed = sorted(names | {"numpy", "numba", "scipy"}, key=str.lower)
-    return {"python": platform.python_version(), **{name: version(name) for name in ("lifelore", *listed)}}
+def versions() -> dict[str, str]:
+    """Versions of Python and of those of `LIBRARIES` that are installed."""
+    found = {"python": platform.python_version()}
+    for name in LIBRARIES:
+        with suppress(PackageNotFoundError):
+            found[name] = version(name)
+    return found
 
 
 @cache

@@ -157,12 +157,12 @@ def _cell_runs(run: ClaimRun, out: Path) -> list[CellRun]:
 
 def _store(run: ClaimRun, out: Path) -> CellStore:
     """Where the finished cells of a run are; claims that share cells use one place."""
-    claim, module = run.claim, run.claim.run_cell.__module__
-    made = {"seed": run.seed, "code": source_key(module)}
+    claim = run.claim
+    made = {"seed": run.seed, "code": source_key()}
     if claim.shared is None:
         return CellStore(out / claim.id / "cells", {"claim": claim.id, "settings": run.settings, **made})
     read = {name: run.settings[name] for name in claim.shared}
-    name = f"{module}.{claim.run_cell.__qualname__}"
+    name = f"{claim.run_cell.__module__}.{claim.run_cell.__qualname__}"
     return CellStore(out / "shared" / "cells", {"run": name, "settings": read, **made})
 
 
@@ -197,12 +197,11 @@ def finish(run: ClaimRun, kept: Sequence[Mapping]) -> dict:
     results = [found["result"] for found in kept]
     estimates, each = claim.measured(settings, results)
     measured, readings = _plain(estimates), [{"cell": dict(cell), **_plain(found)} for cell, found in each]
-    module = claim.run_cell.__module__
     data = claim.data if settings.get("real", True) else ()
     seconds = round(sum(found["seconds"] for found in kept), 1)
     values = (
-        claim.id, mode, *judged(claim, measured, readings), measured, settings, seed, versions(module), seconds,
-        provenance(module, data), rounded(readings), rounded(claim.rows(settings, results)),
+        claim.id, mode, *judged(claim, measured, readings), measured, settings, seed, versions(), seconds,
+        provenance(data), rounded(readings), rounded(claim.rows(settings, results)),
     )  # fmt: skip
     return json.loads(json.dumps(dict(zip(RESULT_KEYS, values, strict=True)), allow_nan=False))
 

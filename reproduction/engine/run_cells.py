@@ -71,7 +71,7 @@ def run_on_workers(cells: Sequence[CellRun], jobs: int, scheduler: str | None = 
         # A batch is a cell: cells take seconds, and the cells of a dead worker's batch all run again.
         run = Parallel(-1 if scheduler else jobs, batch_size=one, return_as="generator_unordered")
         asked = (
-            delayed(run_on_worker)(place, claim.id, settings, cell, seed, source_key(claim.run_cell.__module__))
+            delayed(run_on_worker)(place, claim.id, settings, cell, seed, source_key())
             for place, (claim, settings, seed, cell, _) in enumerate(cells)
         )
         done: Any = run(asked)
@@ -101,7 +101,7 @@ def run_on_worker(
     from threadpoolctl import threadpool_limits
 
     claim = claim_of(claim_id)
-    if (own := source_key(claim.run_cell.__module__)) != code:
+    if (own := source_key()) != code:
         raise InputError(
             f"worker {socket.gethostname()} has other code of {claim_id} (key {own}, here {code}); "
             "it must have the same lifelore"

@@ -32,8 +32,7 @@ def draw_curves(
     x : (n,) or None
         Places of the points; a series may have an ``x`` of its own instead.
     series : mapping
-        Label → ``{"mean": (n,)}`` and, for a band, ``low`` and ``high`` (n,), or ``deviation`` or ``error`` (n,),
-        the half width of the band; without these there is no band.
+        Label → ``{"mean": (n,)}`` and, for a band, ``deviation`` (n,), half of its width.
     looks : mapping, optional
         Label → matplotlib's line properties (``color``, ``linewidth``, ``linestyle``, ``marker``, …).
     title, xlabel, ylabel : str
@@ -45,21 +44,12 @@ def draw_curves(
         mean = np.asarray(curve["mean"], float)
         places = np.asarray(curve.get("x", x if x is not None else np.arange(1, len(mean) + 1)), float)
         look = {"color": GREY, **(looks or {}).get(label, {})}
-        band = _band(curve, mean)
-        if band is not None:
-            axes.fill_between(places, band[0], band[1], color=look["color"], alpha=0.18, linewidth=0)
+        if curve.get("deviation") is not None:
+            half = np.asarray(curve["deviation"], float)
+            axes.fill_between(places, mean - half, mean + half, color=look["color"], alpha=0.18, linewidth=0)
         axes.plot(places, mean, label=label, **look)
     if level is not None:
         axes.axhline(level[0], color=INK, linestyle=(0, (1, 2)), linewidth=1.2, label=level[1], zorder=1)
     axes.set(title=title, xlabel=xlabel, ylabel=ylabel)
     if legend and series:
         axes.legend()
-
-
-def _band(curve: Mapping[str, Any], mean: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    if curve.get("low") is not None:
-        return np.asarray(curve["low"], float), np.asarray(curve["high"], float)
-    half = curve.get("deviation", curve.get("error"))
-    if half is None:
-        return None
-    return mean - np.asarray(half, float), mean + np.asarray(half, float)

@@ -9,7 +9,6 @@ import pytest
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.metrics import mean_estimate
 from reproduction.engine import reproduce as module
-from reproduction.engine.provenance import versions
 from reproduction.engine.reproduce import reproduce
 from tests.reproduction.toy_claim import toy_claim
 
@@ -28,9 +27,8 @@ def toy(monkeypatch):
     settings = {"n": 6, "fail_at": -1}
     claim = toy_claim(settings, run_cell, limits={"fail_at": {"least": -1}})
     monkeypatch.setattr(module, "claim_of", lambda claim_id: claim)
-    monkeypatch.setattr(module, "source_key", lambda name: "code")
-    monkeypatch.setattr(module, "provenance", lambda name, data: {"source": "code", "cores": 1})
-    monkeypatch.setattr(module, "versions", lambda name: versions("reproduction.engine.reproduce"))
+    monkeypatch.setattr(module, "source_key", lambda: "code")
+    monkeypatch.setattr(module, "provenance", lambda data: {"source": "code", "cores": 1})
     RAN.clear()
     return claim
 

@@ -53,8 +53,7 @@ def test_a_worker_with_other_code_refuses():
     claim = claim_of("C3.1")
     settings = claim.settings("quick", SMALL)
     cell = claim.cells(settings)[0]
-    code = source_key(claim.run_cell.__module__)
-    place, result, seconds = run_on_worker(3, "C3.1", settings, cell, 0, code)
+    place, result, seconds = run_on_worker(3, "C3.1", settings, cell, 0, source_key())
     assert (place, result) == (3, claim.run_cell(settings, cell, 0))
     assert seconds > 0
     with pytest.raises(InputError, match=r"has other code of C3\.1"):

@@ -21,7 +21,7 @@ from lifelore.perception.topology.holes import Hole, find_holes
 from reproduction.chapter2.c2_06_same_hole.passage import passages
 from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.perturbation import part_of
-from reproduction.chapter2.scenes.scene_example import scene_row
+from reproduction.chapter2.scenes.scene_example import draw_examples, scene_row
 from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of
 from reproduction.engine.estimates import exact_share
 from reproduction.engine.records import having, nested
@@ -41,7 +41,7 @@ _CLOSE = 0.025
 WITH_HOLE = CAPTIONS = {"hinged": "hinged blocks", "other": "another object"}
 """Kinds that have a hole, and captions of their pictures."""
 
-rows = example_rows
+rows, draw = example_rows, draw_examples
 
 
 def cells(settings: Mapping) -> list[dict]:

@@ -18,7 +18,7 @@ from lifelore.perception.scene import Scene
 from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.perturbation import cut_object
 from reproduction.chapter2.scenes.real_scenes import real_scenes
-from reproduction.chapter2.scenes.scene_example import scene_row
+from reproduction.chapter2.scenes.scene_example import draw_examples, scene_row
 from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of, uses_real
 from reproduction.chapter2.scenes.skeletons import (
     Three,
@@ -42,7 +42,7 @@ CAPTIONS = {"stack": "three objects", "cut": "two objects, segmented into three"
 TALL = 0.04
 """Metres: the lower of two real objects is cut if its visible height reaches this, else the upper."""
 
-rows = example_rows
+rows, draw = example_rows, draw_examples
 
 
 def cells(settings: Mapping) -> list[dict]:

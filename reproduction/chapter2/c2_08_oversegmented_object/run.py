@@ -5,6 +5,7 @@ parts stand side by side). Parts of an upright cut must both reach the table, el
 """
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -21,7 +22,7 @@ from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene
 from reproduction.chapter2.scenes.perturbation import cut_object
 from reproduction.chapter2.scenes.real_scenes import real_scenes
-from reproduction.chapter2.scenes.scene_example import scene_row
+from reproduction.chapter2.scenes.scene_example import draw_examples, scene_row
 from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of, real_lots
 from reproduction.chapter2.scenes.skeletons import perceived, reading
 from reproduction.engine.estimates import share_by_cluster
@@ -42,6 +43,7 @@ DRAWS = 12
 Row = dict[str, Any]
 
 rows = example_rows
+draw = partial(draw_examples, layers=("cloud", "relations"))
 
 
 def cells(settings: Mapping) -> list[dict]:

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from lifelore.core.metrics import Estimate
 from lifelore.perception.scene import Scene
 from reproduction.chapter2.scenes.arranged_scenes import arranged
-from reproduction.chapter2.scenes.scene_example import scene_row
+from reproduction.chapter2.scenes.scene_example import draw_examples, scene_row
 from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of
 from reproduction.chapter2.scenes.skeletons import perceived, reading
 from reproduction.chapter2.scenes.substructure import Reading, find_substructure
@@ -25,7 +25,7 @@ READINGS: dict[str, tuple[bool, Reading]] = {
 STACK, TWO = "stack", "stack-two-contacts"
 CAPTIONS = {STACK: "a stack: its skeleton is part of …", TWO: "… that of a stack with two contacts"}
 
-rows = example_rows
+rows, draw = example_rows, draw_examples
 
 
 def cells(settings: Mapping) -> list[dict]:

@@ -9,7 +9,7 @@ from lifelore.core.relations import ON
 from lifelore.domains.tabletop.settings import TabletopSettings
 from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.real_scenes import real_scenes
-from reproduction.chapter2.scenes.scene_example import scene_row
+from reproduction.chapter2.scenes.scene_example import draw_examples, scene_row
 from reproduction.chapter2.scenes.scene_lots import example_rows, lots, numbers_of, uses_real
 from reproduction.chapter2.scenes.skeletons import carried_pairs, only, perceived, predicates, reading, standing
 from reproduction.engine.estimates import exact_share
@@ -18,7 +18,7 @@ LOT = 10
 BLOCK, BALL = 2, 3
 CAMERAS = ("stereo", "kinect")
 
-rows = example_rows
+rows, draw = example_rows, draw_examples
 
 
 def cells(settings: Mapping) -> list[dict]:

@@ -11,6 +11,7 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate
 from reproduction.chapter2.scenes import tabletop_pairs
+from reproduction.chapter2.scenes.scene_example import draw_examples
 from reproduction.chapter2.scenes.scene_lots import lots
 from reproduction.chapter2.scenes.tabletop_pairs import KERNEL_NAMES, STANDARD, Row, data_sets
 from reproduction.chapter2.scoring.pair_validation import THRESHOLD, Reading, votes_of_neighbours, votes_on
@@ -21,7 +22,7 @@ ON_BLOCK, ON_POST = ARRANGEMENTS = "ball-at-l-block", "ball-on-post"
 LOT = 15
 NODES = 3
 """Of the L-block in the thesis's figure, without the threshold."""
-run_cell, shared = tabletop_pairs.run_cell, tabletop_pairs.SETTINGS_OF_A_CELL
+run_cell, shared, draw = tabletop_pairs.run_cell, tabletop_pairs.SETTINGS_OF_A_CELL, draw_examples
 
 
 def cells(settings: Mapping) -> list[dict]:

@@ -3,7 +3,7 @@
 Thesis: §3.4.3, Figure 3.7.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -88,24 +88,20 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     }
 
 
-def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Cell, dict[str, Estimate]]]:
-    """The comparisons in every cell of the grid."""
-    found = Comparison(results, grid_of(settings))
-    for cell in found.grid.cells:
-        yield cell, _numbers(results, found, cell)
-
-
-def _numbers(results: Sequence[Mapping], found: Comparison, cell: Mapping) -> dict[str, Estimate]:
+def _numbers(found: Comparison, cell: Mapping) -> dict[str, Estimate]:
     """Early rewards compared, and the policy learnt with the incorrect prior as a share of the optimal return."""
     if not found.is_own(cell, "incorrect"):
         return found.shares(cell, PAIRS)
-    optimal = np.array([result["optimal_return"] for result in results])
+    optimal = np.array([result["optimal_return"] for result in found.results])
     incorrect, uniform = (found.values(method, cell, "solution") for method in ("incorrect", UNIFORM))
     return {
         **found.shares(cell, PAIRS),
         "recovery": ratio_estimate(incorrect - uniform, optimal),
         "solution_incorrect": ratio_estimate(incorrect, optimal),
     }
+
+
+_, readings, _ = comparison.functions_of(grid_of, METHODS, _numbers)
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

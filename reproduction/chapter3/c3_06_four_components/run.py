@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate, mean_estimate
 from reproduction.chapter3.c3_05_one_component import run as one_component
+from reproduction.chapter3.c3_05_one_component.figure import draw
 from reproduction.chapter3.c3_05_one_component.run import (
     Sequences,
     cells,
@@ -23,7 +24,7 @@ from reproduction.chapter3.c3_05_one_component.run import (
 from reproduction.engine.grid import Cell
 from reproduction.engine.records import having
 
-__all__ = ["cells", "check", "measure", "readings", "rows", "run_cell", "shared"]
+__all__ = ["cells", "check", "draw", "measure", "readings", "rows", "run_cell", "shared"]
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:

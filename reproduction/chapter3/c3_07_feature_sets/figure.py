@@ -1,8 +1,8 @@
 """Figure of claim C3.7: rewards with priors over four sets of features, over states, and without a prior."""
 
-from collections.abc import Mapping
+from functools import partial
 
-from lifelore.figures.style import GREY, VERMILION, Figure, colour_of
+from lifelore.figures.style import GREY, VERMILION, colour_of
 from reproduction.chapter3.factory.figure import one_panel
 
 LOOKS = {
@@ -14,7 +14,4 @@ LOOKS = {
     "phi4": ("φ4: 3×3 cells, Items", colour_of("phi4")),
 }
 
-
-def draw(result: Mapping) -> Figure:
-    """The figure from the result."""
-    return one_panel(result, LOOKS, plain=("state", "phi1", "phi2", "phi4"))
+draw = partial(one_panel, looks=LOOKS, plain=("state", "phi1", "phi2", "phi4"))

@@ -1,8 +1,8 @@
 """Figure of claim C3.11: rewards with three forms of one prior."""
 
-from collections.abc import Mapping
+from functools import partial
 
-from lifelore.figures.style import BLUE, GREEN, VERMILION, Figure
+from lifelore.figures.style import BLUE, GREEN, VERMILION
 from reproduction.chapter3.factory.figure import one_panel
 
 LOOKS = {
@@ -11,7 +11,4 @@ LOOKS = {
     "dirichlet": ("Dirichlet", GREEN),
 }
 
-
-def draw(result: Mapping) -> Figure:
-    """The figure from the result."""
-    return one_panel(result, LOOKS)
+draw = partial(one_panel, looks=LOOKS)

@@ -1,8 +1,8 @@
 """Figure of claim C3.12: learning with priors demonstrated by simulated people, and with self-trained priors."""
 
-from collections.abc import Mapping
+from functools import partial
 
-from lifelore.figures.style import BLUE, GREEN, GREY, Figure
+from lifelore.figures.style import BLUE, GREEN, GREY
 from reproduction.chapter3.factory.figure import one_panel
 
 LOOKS = {
@@ -11,7 +11,4 @@ LOOKS = {
     "self-trained": ("self-trained prior", BLUE),
 }
 
-
-def draw(result: Mapping) -> Figure:
-    """The figure from the result."""
-    return one_panel(result, LOOKS)
+draw = partial(one_panel, looks=LOOKS)

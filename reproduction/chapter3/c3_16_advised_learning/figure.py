@@ -2,8 +2,6 @@
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from lifelore.figures.style import Axes
 from reproduction.chapter3.advice.figures import ADVICE_COLOURS
 from reproduction.figures.curves import draw_curves
@@ -15,11 +13,7 @@ LABELS = {"plain": "without advice", "advised": "with advice"}
 @panels(6.4, 3.6)
 def draw(result: Mapping, axes: Axes) -> None:
     """The figure from the result: tasks of the first mazes, with one standard deviation."""
-    series = {}
-    for row in result["rows"]:
-        mean, spread = np.array(row["mean"]), np.array(row["deviation"])
-        band = {"low": np.clip(mean - spread, 0, None), "high": np.clip(mean + spread, None, 1000)}
-        series[LABELS[row["curve_of"]]] = {"x": row["x"], "mean": mean, **band}
+    series = {LABELS[row["curve_of"]]: row for row in result["rows"]}
     looks = {label: {"color": ADVICE_COLOURS[label]} for label in series}
     draw_curves(axes, None, series, looks=looks, xlabel="episode", ylabel="reward of an episode")
-    axes.set(ylim=(0, 1020), xlim=(0, result["settings"]["episodes"]))
+    axes.set(ylim=(0, 1000), xlim=(0, result["settings"]["episodes"]))

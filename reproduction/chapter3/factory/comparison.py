@@ -57,7 +57,7 @@ class Comparison:
     """The records of every method in every cell of a grid, run by run; each result has its ``optimal`` reward."""
 
     def __init__(self, results: Sequence[Mapping], grid: Grid) -> None:
-        self.grid = grid
+        self.grid, self.results = grid, results
         self.records = nested(results, "found")
         self.optimal = np.array([result["optimal"] for result in results], float)
 

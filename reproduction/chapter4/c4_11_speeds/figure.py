@@ -19,7 +19,7 @@ def draw(result: Mapping, *every: Axes) -> None:
     for axes, size in zip(every, SHOWN, strict=True):
         look = size_lines([size], marker="o", markersize=4)
         mean, error = (row[key][SIZES.index(size)] for key in ("loss", "error"))
-        draw_curves(axes, SPEEDS, {f"b = {size}": {"mean": mean, "error": error}}, looks=look, legend=False)
+        draw_curves(axes, SPEEDS, {f"b = {size}": {"mean": mean, "deviation": error}}, looks=look, legend=False)
         best = min(range(len(mean)), key=mean.__getitem__)
         axes.plot(SPEEDS[best], mean[best], "o", ms=10, mfc="none", mec=look[f"b = {size}"]["color"], mew=1.5)
         axes.set(title=f"b = {size}", xlabel="speed z", xticks=SPEEDS, ylim=(0, None))

@@ -15,7 +15,12 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.domains.ball_game.ball_game import SIZES
 from reproduction.chapter4.c4_14_people.ball_round import column
-from reproduction.chapter4.c4_14_people.losses import losses_by_diversity, losses_by_speed, ratio_by_move
+from reproduction.chapter4.c4_14_people.losses import (
+    losses_by_diversity,
+    losses_by_speed,
+    mean_losses,
+    ratio_by_move,
+)
 from reproduction.chapter4.c4_14_people.records import recorded_sessions
 from reproduction.chapter4.c4_14_people.scripted_player import play_session, scripted_others
 from reproduction.chapter4.c4_14_people.study_plan import (
@@ -141,8 +146,8 @@ def _numbers(settings: Mapping, sessions: Sequence[Mapping]) -> dict[str, Estima
 
 def _gain(rounds: Sequence[Mapping], size: int, some: Sequence[int], others: Sequence[int]) -> float:
     """Mean loss of a size in training at some speeds, less that at others."""
-    own = [r for r in rounds if (r["phase"], r["size"]) == (TRAINING, size)]
-    mean, other = (np.mean([r["loss"] for r in own if r["speed"] in speeds]) for speeds in (some, others))
+    table = mean_losses(_phases(rounds)[0])
+    mean, other = (np.mean([table[size, speed] for speed in speeds]) for speeds in (some, others))
     return float(mean - other)
 
 

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.perception.registration.tabletop_view import TabletopView
 from lifelore.perception.segmentation.surface_voxels import surface_voxels
 
 NEAR = 0.007
@@ -35,8 +36,7 @@ class ViewAfter:
         self._depths = np.linalg.norm(rays, axis=1)
         self._directions = KDTree(rays / self._depths[:, None])
         surface = surface_voxels(cloud.points[cloud.labels != TABLE], cloud.camera, VOXEL, _MOST_VOXELS)
-        self.points, self.normals = surface.points, surface.normals
-        self.tree = KDTree(surface.points)
+        self.surface = view_of(surface.points, surface.normals)
 
     def costs(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
         """(n,) cost of surface at places (n, 3): 0 on a surface, 1 if seen to be empty, between if unseen."""
@@ -46,6 +46,11 @@ class ViewAfter:
         known = np.isfinite(apart)
         depth = np.where(known, self._depths[np.where(known, nearest, 0)], distance)
         empty = known & (depth > distance + BEHIND)
-        gap, _ = self.tree.query(places, distance_upper_bound=2 * NEAR)
+        gap, _ = self.surface.tree.query(places, distance_upper_bound=2 * NEAR)
         on = gap <= NEAR
         return np.where(on, 0.0, np.where(empty, 1.0, UNSEEN_COST))
+
+
+def view_of(points: NDArray[np.float64], normals: NDArray[np.float64]) -> TabletopView:
+    """A surface (m, 3) with unit normals as registrations read it, without a table."""
+    return TabletopView(np.eye(4), points, normals, np.empty((0, 3)))

@@ -8,13 +8,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.perception.clouds.fused_views import moved
+from lifelore.perception.registration.refinement import refined_motion
 from lifelore.perception.segmentation.supervoxels import step_costs, supervoxels
 from lifelore.perception.segmentation.surface_voxels import SurfaceVoxels, surface_voxels
 from reproduction.chapter5.c5_07_poking.motion_labels import motion_labels
-from reproduction.chapter5.c5_07_poking.moved_surface import NEAR, VOXEL, ViewAfter
-from reproduction.chapter5.c5_07_poking.rigid_motion import STILL, RigidMotion, registered, turned_about
+from reproduction.chapter5.c5_07_poking.moved_surface import VOXEL, ViewAfter, view_of
 
 PATCH = 0.015
 """Metres between the seeds of patches: the resolution of a split."""
@@ -42,6 +44,9 @@ _SAMPLE = 500
 _MOST_VOXELS = 40_000
 _TURNS = (0.0, -0.35, 0.35)
 """Radians about the vertical at which a registration starts."""
+STILL = np.eye(4)
+Motion = NDArray[np.float64]
+"""A rigid motion (4, 4), metres."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +87,7 @@ class PokedPatches:
             return
         self._surface = surface_voxels(cloud.points[self._rows], cloud.camera, VOXEL, _MOST_VOXELS)
         self._make_patches(cloud.labels[self._rows])
-        self._pose = [STILL] * len(self._counts)
+        self._pose = np.tile(STILL, (len(self._counts), 1, 1))
         self._seen = np.ones(len(self._counts), bool)
 
     def _make_patches(self, labels: NDArray[np.int64]) -> None:
@@ -130,9 +135,7 @@ class PokedPatches:
         own = (self._segment == segment)[self._patch] & self._seen[self._patch]
         if self._surface is None or not own.any():
             return None
-        places = self._places()[own]
-        rotations = np.array([pose.rotation for pose in self._pose])[self._patch[own]]
-        normals = np.einsum("nij,nj->ni", rotations, self._surface.normals[own])
+        places, normals = (each[own] for each in self._now())
         low, high = np.quantile(places[:, 2], [0.02, 0.98])
         level = (places[:, 2] - low) / max(high - low, 1e-6)
         steep = np.abs(normals[:, 2]) < STEEP
@@ -141,7 +144,7 @@ class PokedPatches:
             return None
         place = int(rng.choice(fit))
         turn = turned_about(np.zeros(3), np.array([0.0, 0.0, rng.uniform(-ASIDE, ASIDE)]), np.zeros(3))
-        way = turn.apply(-normals[place][None] * [1, 1, 0])[0]
+        way = turn[:3, :3] @ (-normals[place] * [1, 1, 0])
         return Poke(places[place], length * way / np.linalg.norm(way))
 
     def observe(self, poke: Poke, after: LabelledCloud) -> NDArray[np.int64]:
@@ -149,15 +152,15 @@ class PokedPatches:
         if self._surface is None:
             return np.empty(0, np.int64)
         view = ViewAfter(after)
-        places = self._places()
+        places, normals = self._now()
         motions, costs = [STILL], [self._patch_costs(view.costs(places))]
         labels = np.zeros(len(self._counts), np.int64)
         for _ in range(MOST_MOTIONS):
             unexplained = np.where(self._seen, np.stack(costs, 1)[np.arange(len(labels)), labels], 0.0)
-            fitted = self._next_motion(view, places, unexplained, poke, motions)
+            fitted = self._next_motion(view, places, normals, unexplained, poke, motions)
             if fitted is None:
                 break
-            added = self._patch_costs(view.costs(fitted.apply(places)))
+            added = self._patch_costs(view.costs(moved(places, fitted)))
             tried = motion_labels(np.stack([*costs, added], 1) * self._seen[:, None], self._pairs, self._weights)
             if not (tried == len(motions)).any():
                 break
@@ -174,19 +177,25 @@ class PokedPatches:
         self._touched.append(self._touched_segment(places, poke))
         return labels
 
-    def _places(self) -> NDArray[np.float64]:
-        """Where each voxel is now."""
+    def _now(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Where each voxel is now, and its normal, (m, 3) each."""
         assert self._surface is not None
-        rotations = np.array([pose.rotation for pose in self._pose])[self._patch]
-        shifts = np.array([pose.shift for pose in self._pose])[self._patch]
-        return np.einsum("nij,nj->ni", rotations, self._surface.points) + shifts
+        pose, surface = self._pose[self._patch], self._surface
+        places, normals = ((pose[:, :3, :3] @ of[:, :, None])[..., 0] for of in (surface.points, surface.normals))
+        return places + pose[:, :3, 3], normals
 
     def _patch_costs(self, costs: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.bincount(self._patch, costs, len(self._counts)).astype(np.float64)
 
     def _next_motion(
-        self, view: ViewAfter, places: NDArray, unexplained: NDArray, poke: Poke, motions: list[RigidMotion]
-    ) -> RigidMotion | None:
+        self,
+        view: ViewAfter,
+        places: NDArray,
+        normals: NDArray,
+        unexplained: NDArray,
+        poke: Poke,
+        motions: list[Motion],
+    ) -> Motion | None:
         """A motion for the segment with most unexplained voxels; None where no motion explains enough of them."""
         found = np.bincount(self._segment, unexplained)
         for segment in np.argsort(-found)[:3]:
@@ -194,41 +203,43 @@ class PokedPatches:
                 return None
             own = (self._segment == segment)[self._patch] & self._seen[self._patch]
             spread = np.flatnonzero(own)
-            sample = places[spread[:: max(1, len(spread) // _SAMPLE)]]
+            chosen = spread[:: max(1, len(spread) // _SAMPLE)]
+            sample, source = places[chosen], view_of(places[chosen], normals[chosen])
             loose = places[own & (unexplained > 0.4 * self._counts)[self._patch]]
             middle = loose.mean(axis=0) if len(loose) else sample.mean(axis=0)
             now = view.costs(sample).sum()
             best, least = None, now * 0.85
             for start in [*motions[1:], *_starts(middle, poke.push)]:
-                motion = registered(sample, view.points, view.normals, view.tree, start, 3 * NEAR)
-                cost = float(view.costs(motion.apply(sample)).sum())
+                motion = refined_motion(view.surface, source, start)
+                if motion is None:
+                    continue
+                cost = float(view.costs(moved(sample, motion)).sum())
                 gain = self._gain(view, places, own, motion)
-                far = motion.largest_step(sample) > FARTHEST * float(np.linalg.norm(poke.push))
+                far = largest_step(motion, sample) > FARTHEST * float(np.linalg.norm(poke.push))
                 if not far and gain > 0 and (best is None or cost - gain < least):
                     best, least = motion, cost - gain
             if best is not None:
                 return best
         return None
 
-    def _gain(self, view: ViewAfter, places: NDArray, own: NDArray, motion: RigidMotion) -> float:
+    def _gain(self, view: ViewAfter, places: NDArray, own: NDArray, motion: Motion) -> float:
         """Voxels of evidence that a motion explains better than rest, patch by patch."""
         before = np.bincount(self._patch[own], view.costs(places[own]), len(self._counts))
-        after = np.bincount(self._patch[own], view.costs(motion.apply(places[own])), len(self._counts))
+        after = np.bincount(self._patch[own], view.costs(moved(places[own], motion)), len(self._counts))
         gain = float(np.maximum(before - after, 0).sum())
         return gain if gain >= LEAST_EVIDENCE else 0.0
 
-    def _carried(self, places: NDArray, labels: NDArray, motions: list[RigidMotion], costs: NDArray) -> NDArray:
+    def _carried(self, places: NDArray, labels: NDArray, motions: list[Motion], costs: NDArray) -> NDArray:
         """Carry the patches along; patches that no motion explains are lost from now on."""
         chosen, labels = labels, labels.copy()
         for number, motion in enumerate(motions):
             rows = labels == number
             if not rows.any():
                 continue
-            if motion.largest_step(places[rows[self._patch]]) < MOVED:
+            if largest_step(motion, places[rows[self._patch]]) < MOVED:
                 labels[rows] = 0
                 continue
-            for patch in np.flatnonzero(rows):
-                self._pose[patch] = motion.after(self._pose[patch])
+            self._pose[rows] = motion @ self._pose[rows]
         # A segment whose surface is found too rarely tells nothing now; if even rarer, it cannot be followed.
         size = np.maximum(np.bincount(self._segment, self._counts), 1)
         poor = np.bincount(self._segment, costs[np.arange(len(labels)), chosen]) / size
@@ -239,7 +250,20 @@ class PokedPatches:
         return int(self._segment[self._patch[np.linalg.norm(places - poke.place, axis=1).argmin()]])
 
 
-def _starts(middle: NDArray[np.float64], push: NDArray[np.float64]) -> list[RigidMotion]:
+def largest_step(motion: Motion, points: NDArray[np.float64]) -> float:
+    """Largest way of one of the points (n, 3), metres."""
+    return float(np.linalg.norm(moved(points, motion) - points, axis=1).max(initial=0.0))
+
+
+def turned_about(middle: NDArray[np.float64], turn: NDArray[np.float64], shift: NDArray[np.float64]) -> Motion:
+    """A turn by the rotation vector `turn` about a point, and then a shift."""
+    motion = np.eye(4)
+    motion[:3, :3] = Rotation.from_rotvec(turn).as_matrix()
+    motion[:3, 3] = middle - motion[:3, :3] @ middle + shift
+    return motion
+
+
+def _starts(middle: NDArray[np.float64], push: NDArray[np.float64]) -> list[Motion]:
     """Motions at which registrations start: the way of the fingertip and half of it, with turns."""
     return [turned_about(middle, np.array([0, 0, turn]), part * push) for part in (1.0, 0.5) for turn in _TURNS]
 

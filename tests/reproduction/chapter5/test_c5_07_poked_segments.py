@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from reproduction.chapter5.c5_07_poking.poked_patches import Poke
+from reproduction.chapter5.c5_07_poking.poked_patches import Poke, largest_step, turned_about
 from reproduction.chapter5.c5_07_poking.poked_segments import PokedSegments
 from tests.perception.segmentation.boards import Board, cast_boards
 
@@ -100,3 +100,9 @@ def test_a_push_goes_against_a_steep_side():
 def test_a_cloud_may_be_empty():
     empty = PokedSegments(LabelledCloud(np.zeros((1, 3)), np.array([TABLE]), None, CAMERA))
     assert empty.corrected().tolist() == [TABLE]
+
+
+def test_a_turn_about_a_point_and_its_largest_step_by_hand():
+    quarter = turned_about(np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, np.pi / 2]), np.array([0.0, 0.0, 1.0]))
+    assert quarter @ [0, 0, 0, 1] == pytest.approx([1.0, -1.0, 1.0, 1.0])
+    assert largest_step(quarter, np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])) == pytest.approx(np.sqrt(3))
