@@ -12,6 +12,8 @@ pytest.importorskip("playwright", reason="needs the extra browser")
 from fastapi.testclient import TestClient
 from playwright.sync_api import Browser, Dialog, Page, expect
 
+from lifelore.agent.live.goals.destinations import Destination
+from lifelore.agent.live.goals.job_list import Job
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.agent.long_lived.long_life import live_long
@@ -110,14 +112,20 @@ def test_a_life_on_a_map_has_arrows_and_curves(serve_pages: Callable[..., str], 
 
 
 def test_a_life_of_drives_shows_metres_and_seconds(serve_pages, open_page: Opened, check_page, where: Path):
-    settings = LifeSettings(
-        WorldSettings(), memory=MemorySettings(str(where), "ada"), goal=(20.875, 6.025), tasks=2
-    )
+    jobs = (Job(Destination((20.875, 6.025), "the far end of the office")),) * 2
+    settings = LifeSettings(WorldSettings(), memory=MemorySettings(str(where), "ada"), goals=jobs)
     live(settings)
     page = open_page(serve_pages(where) + "/life", PHONE)
     expect(page.locator("#curve circle")).to_have_count(2 * 2)  # with memory and on the map alone
     expect(page.locator("#curve-words")).to_contain_text("the seconds of each drive to a known goal")
     expect(page.locator("#list tbody tr").first).to_contain_text(re.compile(r"\d m in [\d.]+ s"))
+    picture, *marks = page.evaluate(
+        """[document.querySelector("#map svg"), ...document.querySelectorAll("#map circle, #map text")]
+            .map((one) => one.getBoundingClientRect())
+            .map((box) => [box.left, box.top, -box.right, -box.bottom])"""
+    )
+    assert marks
+    assert all(mark >= edge - 1 for box in marks for mark, edge in zip(box, picture, strict=True))
     check_page(page)
 
 

@@ -116,7 +116,8 @@ const NEGLIGIBLE = 0.05, SHADES = 4, NEAR = 12;
 /** Draw the known cells of a map, walls, arrows of the prior, places with untried moves, named places, and goals [{row, column, text, chosen}]. */
 export function drawMap(container, map, goals, { near, words }) {
   const rows = map.cells.map((cell) => cell[0]), columns = map.cells.map((cell) => cell[1]);
-  let box = [Math.min(...columns) - 0.5, Math.min(...rows) - 0.5, Math.max(...columns) + 1.5, Math.max(...rows) + 1.5];
+  const margin = Math.max(0.5, (Math.max(...columns) - Math.min(...columns)) / 60); // room for the circle of a goal
+  let box = [Math.min(...columns) - margin, Math.min(...rows) - margin, Math.max(...columns) + 1 + margin, Math.max(...rows) + 1 + margin];
   if (near) box = [near.column - NEAR, near.row - 0.7 * NEAR, near.column + NEAR + 1, near.row + 0.7 * NEAR + 1];
   const [left, top, right, bottom] = box;
   const inside = map.cells.filter(([row, column]) => column + 1 > left && column < right && row + 1 > top && row < bottom);
@@ -131,15 +132,20 @@ export function drawMap(container, map, goals, { near, words }) {
   });
   const open = inside.filter((cell) => cell[4] > 0).map(([row, column]) => `M${column + 0.5} ${row + 0.15}l.35 .35l-.35 .35l-.35 -.35z`).join("");
   drawn.append(svg("path", { d: open, fill: ORANGE, stroke: INK, "stroke-width": 0.06 }));
-  for (const goal of goals) {
-    const at = { cx: goal.column + 0.5, cy: goal.row + 0.5, r: (goal.chosen ? 0.95 : 0.6) * (near ? 0.6 : 1) };
-    drawn.append(svg("circle", { ...at, fill: goal.chosen ? ORANGE : PAPER, stroke: INK, "stroke-width": 0.12 }));
-    if (goal.chosen) drawn.append(svg("text", { x: goal.column + 0.5, y: goal.row + (near ? 0.72 : 0.87), "text-anchor": "middle", "font-size": near ? 0.6 : 1, "font-weight": 700, fill: INK }, goal.text));
-  }
   const letters = near ? 0.6 : Math.max(1, (right - left) / 60);
+  for (const goal of goals) {
+    const at = { cx: goal.column + 0.5, cy: goal.row + 0.5, r: (goal.chosen ? 0.95 : 0.6) * letters };
+    drawn.append(svg("circle", { ...at, fill: goal.chosen ? ORANGE : PAPER, stroke: INK, "stroke-width": 0.12 }));
+    if (goal.chosen) drawn.append(svg("text", { x: at.cx, y: at.cy + 0.37 * letters, "text-anchor": "middle", "font-size": letters, "font-weight": 700, fill: INK }, goal.text));
+  }
   for (const { name, at: [row, column] } of map.names) {
-    const text = { x: column + 0.5, y: row - 0.3, "text-anchor": "middle", "font-size": letters, "font-weight": 600, fill: INK };
-    drawn.append(svg("text", { ...text, stroke: PAPER, "stroke-width": letters / 4, "paint-order": "stroke" }, name));
+    if (column + 1 < left || column > right || row + 1 < top || row > bottom) continue;
+    // Moved in where the edge would cut it, and smaller where it is wider than the map.
+    const font = Math.min(letters, (right - left) / (0.75 * name.length)), half = 0.36 * font * name.length;
+    const x = Math.max(left + half, Math.min(right - half, column + 0.5)), above = row + 0.5 - 1.1 * letters;
+    const y = above - font < top ? row + 0.5 + 1.9 * letters : above;
+    const text = { x, y, "text-anchor": "middle", "font-size": font, "font-weight": 600, fill: INK };
+    drawn.append(svg("text", { ...text, stroke: PAPER, "stroke-width": font / 4, "paint-order": "stroke" }, name));
   }
   container.replaceChildren(drawn);
 }

@@ -54,7 +54,7 @@ function drawSteps(tasks) {
   const words = `${driven ? "Seconds" : "Steps"} that each agent needed for each of ${tasks.length} tasks.`;
   drawCurves($("curve"), series, { x: "task", y: driven ? "seconds to the goal" : "steps to 80 % of the best", words, log: true });
   $("curve-words").textContent = driven
-    ? "Lower is better: the seconds of each drive to a known goal, with memory and planned on the map alone, on a logarithmic scale."
+    ? `Lower is better: the seconds of each drive to a known goal${names.includes("map only") ? ", with memory and planned on the map alone" : ""}, on a logarithmic scale.`
     : "Lower is better: the steps until the agent's way has 80 % of the value of the best way, on a logarithmic scale.";
 }
 
@@ -71,7 +71,8 @@ function drawPlaces(tasks) {
 function list(tasks, number) {
   const names = [...new Set(tasks.flatMap((one) => Object.keys(one.agents ?? {})))];
   const searched = !tasks.some(isDriven);
-  const head = make("tr", {}, ...["Task", "Goal", ...names.map((name) => searched ? `Steps, ${name}` : name)].map((text) => make("th", { scope: "col" }, text)));
+  const agents = names.map((name) => make("th", { scope: "col", class: "number" }, searched ? `Steps, ${name}` : name));
+  const head = make("tr", {}, ...["Task", "Goal"].map((text) => make("th", { scope: "col" }, text)), ...agents);
   const rows = tasks.map((one) => {
     const steps = names.map((name) => make("td", { class: "number" }, costWords(one, name, searched)));
     const goal = one.name ?? `row ${one.goal[0]}, column ${one.goal[1]}`;
