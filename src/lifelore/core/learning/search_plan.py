@@ -75,22 +75,16 @@ def plan_search(start, target, state_info, learner, goal_known, exhaustive, want
             depth += 1.0
     if best_state < 0:
         best_state, best_action = goal_state, goal_action
-    plan[0], found = best_action, best_state >= 0
-    length = write_plan(np.int64(found), best_state if found else start, start, tail, learner)
-    return OUT_OF_REACH if head == tail and not met else length
-
-
-@inlined
-def write_plan(length, end, start, tail, learner):
-    """Write the way from `start` to `end` behind the first actions of a plan, the last action first; its length.
-
-    The first `tail` states of the queue are set back to not reached.
-    """
-    _, _, plan, queue, parent, parent_action, _, _, _, _, _, _, _ = learner
-    while end != start:
-        plan[length] = parent_action[end]
-        length += 1
-        end = parent[end]
+    length, s = 0, best_state
+    if best_state >= 0:
+        plan[0] = best_action
+        length = 1
+        while s != start:
+            plan[length] = parent_action[s]
+            length += 1
+            s = parent[s]
+    if head == tail and not met:
+        length = OUT_OF_REACH
     for i in range(tail):
         parent[queue[i]] = UNKNOWN
     return np.int64(length)
