@@ -53,7 +53,7 @@ function show(view) {
     series: [{ name: title, points: walk.history.map((values, step) => [step, values[k]]) }],
   });
   at("curves").replaceChildren(curve(0, "P(M | H)", 1), curve(1, `gain in nats; dotted: κ = ${view.kappa}`, view.kappa));
-  at("errand").textContent = `${walk.reached ? "You found" : "Find"} the ${walk.goal} · ${walk.steps} steps (shortest way: ${walk.shortest})`;
+  at("errand").textContent = `${walk.reached ? "You found" : "Find"} the ${walk.goal} · ${walk.steps} ${walk.steps === 1 ? "step" : "steps"} (shortest way: ${walk.shortest})`;
   at("seen").textContent = `You can go ${walk.open.join(", ")}.` +
     (walk.places.length ? ` You see ${walk.places.map(({ name }) => `the ${name}`).join(", ")}.` : "");
   at("counsel").textContent = counsel();
