@@ -95,8 +95,7 @@ class TransitionCounts:
     """
 
     def __init__(self, n_users: int, n_rows: int, by_outcome: bool, prior: Array, dtype: Any) -> None:
-        self.by_outcome, n_types = by_outcome, len(prior)
-        self._prior = CONCENTRATION * prior.astype(dtype) + np.asarray(LEAST, dtype)
+        self.by_outcome, self._prior, n_types = by_outcome, CONCENTRATION * prior.astype(dtype) + LEAST, len(prior)
         self.counts = np.zeros((n_users, 1, n_rows, n_types), dtype)
         # Belief over types before the last step, and the category it was made by; -1 before the first step.
         self.before = np.zeros((n_users, n_rows), dtype)
@@ -158,7 +157,7 @@ class LearntRows:
         stay = np.concatenate([1 - HAZARDS, np.zeros(len(wanted))])
         # A row for each type: products of equal shapes are faster.
         self._rates, self._stay = rates.astype(dtype), np.repeat(stay[:, None], n_types, axis=1).astype(dtype)
-        self._anew = self._rates[:, None] * self._prior + np.asarray(LEAST, dtype)
+        self._anew = self._rates[:, None] * self._prior + LEAST
         self._ones, self._ways = np.ones(n_types, dtype), np.ones((len(rates), len(rates)), dtype)
         self._categories: dict[Hashable, int] = {None: 0}
         for category in settings.categories:

@@ -9,7 +9,6 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError, NotFoundError
 
 Array = NDArray[np.float64]
-WHOLE = int | np.integer
 
 
 def checked_prior(prior: ArrayLike | None, n_types: int) -> Array:
@@ -42,6 +41,6 @@ def index_of(wanted: str | int, names: Sequence[str], what: str) -> int:
     """The number of a type or policy, by name or number; NotFoundError where it is unknown."""
     if isinstance(wanted, str) and wanted in names:
         return names.index(wanted)
-    if isinstance(wanted, WHOLE) and 0 <= wanted < len(names):
+    if isinstance(wanted, int | np.integer) and 0 <= wanted < len(names):
         return int(wanted)
     raise NotFoundError(f"unknown {what} {wanted!r}; there are {len(names)}: {', '.join(names[:10])}")

@@ -316,8 +316,7 @@ def blocks(n_users: int, algorithm: ReuseAlgorithm, rule: SelectionRule | None =
     arrays = (algorithm.log_belief, *algorithm.changes.arrays(), *algorithm.signals.arrays())
     size = BLOCK // (library.n_policies + sum(prod(array.shape[1:]) for array in arrays))
     if rule is not None and not getattr(rule, "by_means", False):
-        n_bins = getattr(rule, "n_bins", 1)
-        size = min(size, LARGEST_BLOCK // (library.n_types * library.n_policies * n_bins))
+        size = min(size, LARGEST_BLOCK // (library.n_types * library.n_policies * getattr(rule, "n_bins", 1)))
     size = max(size, 1)
     for start in range(0, n_users, size):
         yield slice(start, min(start + size, n_users))
