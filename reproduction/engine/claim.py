@@ -211,5 +211,5 @@ def _as_type_of(default: Any, value: Any, label: str) -> Any:
     if isinstance(default, float) and type(read) is int:
         read = float(read)
     if type(read) is not type(default):
-        raise InputError(f"{label} must be of the kind of its default {json.dumps(default)}, got {value!r}")
+        raise InputError(f"{label} must be of the type of its default {json.dumps(default)}, got {value!r}")
     return read

@@ -59,7 +59,6 @@ NUMBERS = {
 NAMES = {
     f"{LATTICE} --domain moon": "building-days, got 'moon'",
     f"{LATTICE} --agent bob": "agent must be one of lore",
-    f"{LATTICE} --set prior=feelings": "prior must be one of observation, state, none",
     f"{LATTICE} --robot 'two\nlines'": "robot must",
     f"{LATTICE} --set start=0,0": "start must be a free cell ROW,COL of this world (23 rows, 23 columns), got 0,0",
     f"{LATTICE} --set start={10**20},1": "start must be a free cell",
@@ -73,7 +72,7 @@ NAMES = {
     "reproduce C3.1 --verify --out {folder}": "no result of C3.1 in",
     "reproduce C3.1 --set x": "KEY=VALUE",
     "reproduce C3.1 --set x=1 --out {folder}": "has no setting 'x'",
-    "reproduce C3.1 --set tasks=nan --out {folder}": "setting 'tasks' must be a whole number",
+    "reproduce C3.1 --set tasks=nan --out {folder}": "setting 'tasks' must be of the type of its default 50",
     "reproduce C3.1 --jobs 0 --out {folder}": "jobs must be at least 1",
     "reproduce C3.1 --jobs x": "'--jobs'",
     "reproduce C3.1 --out {text}": "Not a directory",

@@ -3,13 +3,14 @@
 import csv
 import os
 import sys
+import warnings
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from lifelore.bridges.planner import solve
-from lifelore.core.errors import InputError, MissingExtraError
+from lifelore.core.errors import InputError, LifeloreError, MissingExtraError
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.reasoning.planning_domain import DOMAIN, planning_domain
 from lifelore.perception.reasoning.planning_goal import read_goal
@@ -158,3 +159,10 @@ def test_without_the_library_the_extra_is_named(monkeypatch):
 def test_timeout_must_be_a_time():
     with pytest.raises(InputError, match="timeout"):
         solve(DOMAIN, pile_problem(), timeout=0)
+
+
+def test_an_engine_out_of_time_has_ended():
+    with warnings.catch_warnings(record=True) as heard, pytest.raises(LifeloreError, match=r"no plan in 0\.02 s"):
+        warnings.simplefilter("always")
+        solve(DOMAIN, pile_problem("(on o2 o5)"), timeout=0.02)
+    assert not [note.message for note in heard if "still running" in str(note.message)]

@@ -51,7 +51,7 @@ def test_overrides_are_read_as_the_settings_type(key, given, value):
 @pytest.mark.parametrize(
     ("key", "given", "rule"),
     [
-        ("runs", "many", "C0.0 setting 'runs' must be of the kind of its default 5, got 'many'"),
+        ("runs", "many", "C0.0 setting 'runs' must be of the type of its default 5, got 'many'"),
         ("runs", "1.5", "default 5"),
         ("runs", True, "default 5"),
         ("rate", "NaN", "default 0.5"),

@@ -4,6 +4,7 @@
 The engine is Fast Downward, which runs as a separate program (GPL; Lifelore does not link to it).
 """
 
+import io
 import warnings
 from dataclasses import dataclass
 from typing import Any
@@ -60,8 +61,10 @@ def solve(domain: str, problem: str, *, timeout: float = 60.0) -> tuple[Step, ..
     task = _read(reader, domain, problem)
     first, status = min(SHORT_SECONDS, timeout / 2), ""
     for search, seconds in ((SHORT, first), ({}, timeout - first)):
-        with shortcuts.OneshotPlanner(name=ENGINE, params=search) as planner:
-            result = planner.solve(task, timeout=seconds)
+        with shortcuts.OneshotPlanner(name=ENGINE, params=search) as planner, warnings.catch_warnings():
+            # With a stream for its output the engine's process is waited for, also out of time; its pipes stay open.
+            warnings.simplefilter("ignore", ResourceWarning)
+            result = planner.solve(task, timeout=seconds, output_stream=io.StringIO())
         status = result.status.name
         if status in ("UNSOLVABLE_PROVEN", "UNSOLVABLE_INCOMPLETELY"):
             return None
