@@ -62,7 +62,7 @@ def solve(domain: str, problem: str, *, timeout: float = 60.0) -> tuple[Step, ..
     first, status = min(SHORT_SECONDS, timeout / 2), ""
     for search, seconds in ((SHORT, first), ({}, timeout - first)):
         with shortcuts.OneshotPlanner(name=ENGINE, params=search) as planner, warnings.catch_warnings():
-            # With a stream for its output the engine's process is waited for, also out of time; its pipes stay open.
+            # With a stream for its output the engine is waited for, also out of time; its pipes stay open.
             warnings.simplefilter("ignore", ResourceWarning)
             result = planner.solve(task, timeout=seconds, output_stream=io.StringIO())
         status = result.status.name
