@@ -34,6 +34,11 @@ def test_agents_are_compared_on_the_same_tasks():
         assert one["agents"] == {name: other["agents"][name] for name in one["agents"]}
 
 
+def test_an_environment_in_place_of_a_function_is_named():
+    with pytest.raises(InputError, match="make must be a function from task number to environment, got WindyGrid"):
+        compare_agents(make(0), CONTEXTS, **SETTINGS)  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize(
     ("agents", "more", "says"),
     [

@@ -53,7 +53,7 @@ def test_equal_runs_have_equal_digests_in_whatever_file(tmp_path):
         ("time,x,y\n1704067200,0,0\n1704067201000,0,0\n", "line 3: time must be seconds"),
         (
             "time,x,y,heading\n" + "".join(f"{t},{t / 10},0,{90 * (t % 4)}\n" for t in range(9)),
-            r"6 of 9 headings are beyond 2π, as degrees are; give radians",
+            r"6 of 9 headings are beyond 2π, as degrees are; give radians within one turn",
         ),
         ("time,x,y\n1,0,0\n0,0,0\n", r"line 3: time must ascend within a run, got 0 after 1; .* \(column run\)"),
         ("time,x,y\n1700000010.5,0,0\n1700000009,0,0\n", "got 1700000009 after 1700000010.5"),

@@ -128,6 +128,12 @@ def test_mistakes_are_named(message):
         assert re.fullmatch(pattern, str(refused.value)), refused.value
 
 
+def test_the_values_of_a_plan_may_be_lists():
+    listed = family(*plan(values=lambda n: np.eye(n).tolist()))
+    check_family(listed)
+    assert live_long(listed, tasks=2)["tasks"]
+
+
 @pytest.mark.parametrize("name", ["factory-customers", "building-days"])
 def test_our_families_pass(name):
     check_family(family_named(name, 0))

@@ -29,12 +29,15 @@ def draw(state, out):
 
 DRAW = """
 import sys
+from threading import Thread
 import numpy as np
 import lifelore
 from lifelore.core.drawing import draw
 assert lifelore.__file__.startswith(sys.argv[1]), lifelore.__file__
 state, out = np.array([1, 2], np.uint64), np.zeros(50)
-draw(state, out)
+thread = Thread(target=draw, args=(state, out))
+thread.start()
+thread.join()
 print(out.sum(), state[0])
 """
 

@@ -72,6 +72,8 @@ def compare_agents(
         raise InputError("compare_agents needs an agent and the context of a task; give at least one")
     if settings.pop("memory", None) is not None:
         raise InputError("compare_agents stores nothing; leave out memory, or use LongLivedAgent.live")
+    if not callable(make):
+        raise InputError(f"make must be a function from task number to environment, got {type(make).__name__}")
     settings.pop("agent", None)
     lives = {name: LongLivedAgent(**settings, agent=name) for name in given if name not in own}
     usual, stop, tasks = LongLivedAgent(**settings), stop or Event(), list[dict]()

@@ -100,7 +100,9 @@ def read_runs(path: str | Path) -> list[Run]:
     time = _in_seconds(time, lines, str(path))
     turned = int((np.abs(heading) > 2 * np.pi).sum())
     if turned > _MOST_TURNED * (given := int(np.isfinite(heading).sum())):
-        raise InputError(f"{path}: {turned} of {given} headings are beyond 2π, as degrees are; give radians")
+        raise InputError(
+            f"{path}: {turned} of {given} headings are beyond 2π, as degrees are; give radians within one turn"
+        )
     whole, name = Run("", time, np.column_stack([x, y]), heading, list(outcome)), np.array(names)
     named, ended = (name[1:] != "") | (name[:-1] != ""), np.isin(outcome[:-1], (GOAL, FAILED))
     ends = np.where(named, name[1:] != name[:-1], ended | (np.diff(time) > GAP))

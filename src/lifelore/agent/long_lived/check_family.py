@@ -140,7 +140,7 @@ def checked_best_return(family: TaskFamily, number: int, best: Any) -> float:
 def checked_plan(family: TaskFamily, plan: Any, n_types: int) -> Plan:
     """A plan with a value for each type and behaviour, and an act for each behaviour."""
     _rule(family, isinstance(plan, Plan), f"plan must return a Plan, got {type(plan).__name__}")
-    _check_shape(family, "values of a plan", plan.values, (n_types, n_types), "types × behaviours")
+    _check_shape(family, "values of a plan", np.asarray(plan.values), (n_types, n_types), "types × behaviours")
     _rule(family, np.isfinite(plan.values).all(), "values of a plan must be finite, got infinite or missing ones")
     for name in ("acts", "trying"):
         acts = np.asarray(getattr(plan, name))

@@ -16,8 +16,6 @@ from lifelore.core.compiled.kernel_cache import kernel_folder
 F = TypeVar("F", bound=Callable)
 _config: Any = numba.config  # type: ignore[attr-defined]
 _njit: Any = numba.njit
-if _config.DISABLE_JIT:
-    np.seterr(over="ignore")  # sums of random states wrap around, as in machine code
 
 
 def kernel(function: F) -> F:
@@ -32,7 +30,8 @@ def inlined(function: F) -> F:
 
 def _compiled(function: F, **options: Any) -> F:
     if _config.DISABLE_JIT:
-        return function
+        # Sums of random states wrap around, as in machine code, on any thread.
+        return np.errstate(over="ignore")(function)
     folder = kernel_folder(Path(function.__code__.co_filename))
     previous = _config.CACHE_DIR
     _config.CACHE_DIR = str(folder)
