@@ -107,14 +107,18 @@ class StudyTotals:
         )
         return self._columns(query, (self._study, policy, since)[: 3 if since else 2], 1)[0]
 
-    def next_time(self, since: int) -> int | None:
+    def next_time(self, since: int, *, strangers: bool = False) -> int | None:
         """Time of the first decision from a time on, both in milliseconds.
 
         Decisions of an earlier Lifelore are left out, because their identifiers do not have their times.
         """
-        query = "SELECT MIN(id) FROM lifelore_decisions WHERE study = ? AND id >= ?"
-        found = self._conn.value(query, (self._study, first_id(max(since, 1))))
-        return None if found is None else int.from_bytes(found[:6], "big")
+        # PostgreSQL before 18 has no least of bytes.
+        query = (
+            f"SELECT id FROM lifelore_decisions WHERE study = ? AND id >= ?{self._who(strangers)}"
+            " ORDER BY id LIMIT 1"
+        )
+        found = self._conn.first(query, (self._study, first_id(max(since, 1))))
+        return None if found is None else int.from_bytes(found[0][:6], "big")
 
     def within(self, since: int, until: int, *, strangers: bool = False) -> Array:
         """Decisions in [since, until), in milliseconds, by user and group, (4, n) float64.

@@ -69,6 +69,16 @@ def test_a_file_that_grows_on_after_a_pause_comes_again(tmp_path):
     assert [n for *_, n in watched(tmp_path, Script(6, *halves))] == [300, 600]
 
 
+def test_a_file_that_changes_while_another_is_perceived_waits_until_it_has_settled(tmp_path):
+    script = Script(5, (1, saving(tmp_path / "a.npy")), (1, saving(tmp_path / "b.npy", 300)))
+    found = []
+    for path in new_clouds(tmp_path, script):  # pyright: ignore[reportArgumentType]
+        found.append((Path(path).name, os.stat(path).st_size))
+        if len(found) == 1:
+            saving(tmp_path / "b.npy", 600)()
+    assert found == [("a.npy", 27), ("b.npy", 600)]
+
+
 def test_a_file_that_goes_away_is_forgotten(tmp_path):
     deeds = ((1, saving(tmp_path / "a.npy")), (1.2, lambda: (tmp_path / "a.npy").unlink()))
     assert watched(tmp_path, Script(5, *deeds)) == []

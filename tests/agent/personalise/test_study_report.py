@@ -292,6 +292,20 @@ def test_periods_are_each_compared_by_users_means(where, clock, by, starts):
         assert (one["control"]["value"], one["control"]["n"]) == (pytest.approx(np.mean(control)), len(control))
 
 
+def test_periods_in_which_no_counted_user_came_are_left_out(where, clock):
+    library = PolicyLibrary.from_means([[8.0, 2.0]], 1.0, policies=["x", "y"])
+    with open_memory(where) as memory:
+        study = Study("s", library, {"x": "active", "y": "active"}, control=0.5, change=0.0).keep(memory)
+        update(memory, study, choose(memory, study, "of the fit")["decision"], 8.0)
+        with memory.studies.writing(study.number) as rows:
+            rows.mark_fitted([rows.users(["of the fit"])["of the fit"].number])
+        clock[0] += 3 * 86_400 * 10**9
+        update(memory, study, choose(memory, study, "stranger")["decision"], 8.0)
+        assert [one["users"] for one in report(memory, study, by="day")["by_time"]] == [1, 1]
+        (period,) = report(memory, study, by="day", split="user")["by_time"]
+    assert period["time"] == clock[0] // 10**9 // 86_400 * 86_400
+
+
 def test_users_of_no_known_type_are_counted(memory):
     library = PolicyLibrary.from_means([[8.0, 2.0], [2.0, 8.0]], 1.0, policies=["x", "y"], count=40)
     study = Study("s", library, dict.fromkeys(library.policies, "active"), control=0.0).keep(memory)

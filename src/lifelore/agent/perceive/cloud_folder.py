@@ -40,7 +40,8 @@ def _settled(folder: str | os.PathLike[str], stop: Event, done: dict[str, Versio
     while not stop.wait(LOOK_EVERY):
         present = _versions(folder)
         for path, version in sorted(present.items()):
-            if done.get(path) != version == before.get(path) and not stop.is_set():
+            # Whoever reads the clouds may take long over one, so the next is looked at once more.
+            if done.get(path) != version == before.get(path) == _version(path) and not stop.is_set():
                 done[path] = version
                 yield path
         before = present

@@ -198,7 +198,7 @@ def _by_time(totals: StudyTotals, by: str, *, since: int, strangers: bool) -> li
     """Both groups in each period with a decision."""
     first, step = PERIODS[by]
     periods = []
-    while (time := totals.next_time(since)) is not None:
+    while (time := totals.next_time(since, strangers=strangers)) is not None:
         start = time - (time - first) % step
         held, decisions, number, total = totals.within(max(start, since), start + step, strangers=strangers)
         personal, control = (_means(number[held == group], total[held == group]) for group in (0, 1))
