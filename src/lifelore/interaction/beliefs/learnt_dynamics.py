@@ -157,7 +157,7 @@ class LearntRows:
         stay = np.concatenate([1 - HAZARDS, np.zeros(len(wanted))])
         # A row for each type: products of equal shapes are faster.
         self._rates, self._stay = rates.astype(dtype), np.repeat(stay[:, None], n_types, axis=1).astype(dtype)
-        self._anew = self._rates[:, None] * self._prior + LEAST
+        self._anew, self._stayed = self._rates[:, None] * self._prior + LEAST, np.maximum(self._stay, LEAST)
         self._ones, self._ways = np.ones(n_types, dtype), np.ones((len(rates), len(rates)), dtype)
         self._categories: dict[Hashable, int] = {None: 0}
         for category in settings.categories:
@@ -204,7 +204,7 @@ class LearntRows:
         joint = self._joint(users, log_belief)
         weights = (joint @ self._ones)[..., None]
         # Of the types drawn anew, those that were the same type before have not changed.
-        before = (joint - weights * self._anew) / np.maximum(self._stay, LEAST)
+        before = (joint - weights * self._anew) / self._stayed
         others = self._rates @ (weights - before) * self._prior
         share = others / np.maximum(np.exp(log_belief), LEAST)
         return np.minimum(np.maximum(share + self.moved[users] if self.tables else share, 0.0), 1.0)
