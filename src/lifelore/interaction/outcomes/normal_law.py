@@ -292,8 +292,8 @@ class NormalRows(NormalPrediction):
     def table(self, n_bins: int) -> SignalTable:
         """The next outcome in bins that tell the types apart; the bins are those of users who showed nothing."""
         cuts, table = self._law.bins(n_bins)
-        deviation = np.sqrt(sum(self._tried_variances))
-        probs = normal_probs(self._tried_mean, deviation, cuts[self._at[1]][:, None])
+        deviation = np.sqrt(self._tried_variances[0] + self._tried_variances[1])
+        probs = normal_probs(self._tried_mean, deviation, cuts.take(self._at[1], axis=0)[:, None])
         return table.replaced(self._shape, self._at, probs)
 
     @cached_property
@@ -305,7 +305,7 @@ class NormalRows(NormalPrediction):
     @cached_property
     def _tried(self) -> Posterior:
         rows, policies = self._at
-        return self._law.posterior(policies, self._shown, self._users[rows])
+        return self._law.posterior(policies, self._shown, self._users.take(rows))
 
     @cached_property
     def _tried_mean(self) -> Array:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.law import Law, Numbers
+from lifelore.interaction.outcomes.law import Law, Numbers, of_users
 
 Array = NDArray[Any]
 
@@ -76,7 +76,7 @@ class UserModel:
             stayed, gain = found, None
         else:
             gain = np.logaddexp.reduce(found + log_belief[..., None, :], axis=-1)
-            stayed = found + self.log_weights[users][..., None].astype(found.dtype, copy=False)
+            stayed = found + of_users(self.log_weights, users)[..., None].astype(found.dtype, copy=False)
         stayed = _over_spreads(stayed)
         if changed is None:
             return Evidence(stayed, None, gain)
