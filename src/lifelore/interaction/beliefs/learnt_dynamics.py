@@ -206,8 +206,8 @@ class LearntRows:
         """P(the type was another | it is now this type) after a `step`, (..., n_types)."""
         joint = self._joint(users, log_belief)
         weights = joint @ self._ones
-        # Of the types drawn anew with probability h, those that were the same type before have not changed. Before,
-        # a type had the probability (joint - weights h G) / (1 - h) beside a hazard, whose sum is taken in parts.
+        # Of the types drawn anew with probability h, those that were the same type before have not changed. The
+        # step had made joint = (1 - h) before + h weights G; the sum of h (weights - before) is taken in parts.
         others = (weights @ self._rates)[..., None] + (weights @ self._drawn_twice)[..., None] * self._prior
         others = (others - self._drawn_after @ joint) * self._prior
         share = others / np.maximum(np.exp(log_belief), LEAST)
